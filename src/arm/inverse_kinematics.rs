@@ -1,0 +1,169 @@
+//! Joint positions that put the tip at a wanted pose, within the joint limits.
+//!
+//! Damped Gauss-Newton steps `dq = z + J^T (J J^T + lambda I)^-1 (e - J z)`: the damping follows the squared
+//! error (Sugihara, Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method, IEEE
+//! Trans. Robotics 27(5), 2011), so the last steps are plain Newton steps, and `z` pulls spare degrees of
+//! freedom towards mid range. Joints that a step would drive over a limit are held there and the step is
+//! solved again with the others. A start that does not lead there is followed by seeded random ones.
+
+mod descent;
+mod limits;
+
+#[cfg(test)]
+mod tests;
+
+use crate::arm::chain::Chain;
+use descent::Search;
+use glamx::DPose3;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// Which rotations of the tip are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TipOrientation {
+    /// All three.
+    Full,
+    /// Any rotation about the tip's own z axis will do (a tool that is symmetric about it).
+    FreeAboutZ,
+}
+
+/// How to search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IkOptions {
+    /// Largest position error accepted [m].
+    pub position_tolerance: f64,
+    /// Largest orientation error accepted [rad].
+    pub orientation_tolerance: f64,
+    /// Which rotations of the tip are wanted.
+    pub orientation: TipOrientation,
+    /// Steps from one start [-].
+    pub max_iterations: usize,
+    /// Random starts after the given one has failed [-].
+    pub random_starts: usize,
+    /// Seed of the random starts.
+    pub seed: u64,
+}
+
+impl Default for IkOptions {
+    fn default() -> Self {
+        Self {
+            position_tolerance: 1e-9,
+            orientation_tolerance: 1e-9,
+            orientation: TipOrientation::Full,
+            max_iterations: 100,
+            random_starts: 100,
+            seed: 1,
+        }
+    }
+}
+
+/// Joint positions that reach the pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IkSolution {
+    /// Joint positions [rad or m].
+    pub q: Vec<f64>,
+    /// Distance left [m].
+    pub position_error: f64,
+    /// Angle left [rad].
+    pub orientation_error: f64,
+    /// Steps taken, over all starts [-].
+    pub iterations: usize,
+    /// Random starts used; zero if the given start led there, one more than allowed if only a search that
+    /// passed outside the limits did [-].
+    pub random_starts_used: usize,
+}
+
+/// The axis that stands in the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitingAxis {
+    /// Index of the joint in the chain.
+    pub joint: usize,
+    /// Name of the joint.
+    pub name: String,
+    /// Position it would need, or has in the nearest pose found [rad or m].
+    pub position: f64,
+    /// The limit nearest to that [rad or m].
+    pub limit: f64,
+}
+
+/// Why a pose is not reached.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IkFailure {
+    /// Joint positions of the nearest pose found within the limits [rad or m].
+    pub q: Vec<f64>,
+    /// Distance left there [m].
+    pub position_error: f64,
+    /// Angle left there [rad].
+    pub orientation_error: f64,
+    /// Whether the pose would be reached without position limits; if so, `axis` is the one most over its
+    /// limit, otherwise the one nearest to its limit in the nearest pose found.
+    pub reachable_without_limits: bool,
+    /// The axis in the way; none if the chain has no finite limit.
+    pub axis: Option<LimitingAxis>,
+}
+
+/// Finds joint positions that put the tip at `world_from_tip`, starting from `start`.
+///
+/// With a start near the answer the answer is the one near the start. The result depends on the arguments
+/// alone. Fails if `world_from_tip` or `start` is not finite.
+pub fn solve(
+    chain: &Chain,
+    world_from_base: DPose3,
+    world_from_tip: &DPose3,
+    start: &[f64],
+    options: &IkOptions,
+) -> Result<IkSolution, IkFailure> {
+    let search = Search::new(chain, world_from_base, world_from_tip, options, true);
+    let mut best = search.descend(search.given_start(start));
+    let mut iterations = best.iterations;
+    if best.reached {
+        return Ok(best.solution(chain.len(), iterations, 0));
+    }
+    let mut random = ChaCha8Rng::seed_from_u64(options.seed);
+    for used in 1..=options.random_starts {
+        let found = search.descend(search.random_start(&mut random));
+        iterations += found.iterations;
+        if found.reached {
+            return Ok(found.solution(chain.len(), iterations, used));
+        }
+        if found.cost < best.cost {
+            best = found;
+        }
+    }
+    limits::explain(
+        chain,
+        world_from_base,
+        world_from_tip,
+        start,
+        best,
+        options,
+        iterations,
+    )
+}
+
+/// Every different answer that `starts` random starts lead to, in the order found.
+///
+/// Answers closer than 1e-3 rad or m in every joint count as one. For choosing a posture; a chain with
+/// spare degrees of freedom gives samples of its endless family.
+pub fn distinct_solutions(
+    chain: &Chain,
+    world_from_base: DPose3,
+    world_from_tip: &DPose3,
+    starts: usize,
+    options: &IkOptions,
+) -> Vec<IkSolution> {
+    let search = Search::new(chain, world_from_base, world_from_tip, options, true);
+    let mut random = ChaCha8Rng::seed_from_u64(options.seed);
+    let mut solutions: Vec<IkSolution> = Vec::new();
+    for used in 1..=starts {
+        let found = search.descend(search.random_start(&mut random));
+        let known = |other: &IkSolution| {
+            let mut pairs = other.q.iter().zip(&found.q);
+            pairs.all(|(a, b)| (a - b).abs() < 1e-3)
+        };
+        if found.reached && !solutions.iter().any(known) {
+            solutions.push(found.solution(chain.len(), found.iterations, used));
+        }
+    }
+    solutions
+}

@@ -1,0 +1,15 @@
+//! Serial robot arms: what a URDF file says about one, and its kinematics and dynamics.
+//!
+//! Nothing here knows a physics engine, a scenario or a recording.
+
+pub mod chain;
+pub mod dynamics;
+pub mod inverse_kinematics;
+pub mod kinematics;
+pub mod urdf;
+
+#[cfg(test)]
+pub(crate) mod test_chains;
+
+pub use chain::{BodyInertia, Chain, Joint, JointKind, MAX_JOINTS};
+pub use urdf::{Arm, ArmError, ArmOptions, LimitOverride, Visual, VisualShape, load_arm};

@@ -1,0 +1,137 @@
+//! Why a URDF file is not taken as an arm.
+
+use std::path::PathBuf;
+
+/// Why an arm could not be loaded.
+#[derive(Debug, thiserror::Error)]
+pub enum ArmError {
+    /// The file cannot be read.
+    #[error("{file}: cannot read the arm's URDF file: {source}")]
+    Unreadable {
+        /// The URDF file.
+        file: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file is not URDF.
+    #[error("{file}: not a valid URDF file: {source}")]
+    Malformed {
+        /// The URDF file.
+        file: PathBuf,
+        /// What the parser says.
+        source: urdf_rs::UrdfError,
+    },
+    /// The file holds something that cannot be honoured.
+    #[error("{file}: {refusal}")]
+    Refused {
+        /// The URDF file.
+        file: PathBuf,
+        /// What and why.
+        refusal: Box<Refusal>,
+    },
+}
+
+/// What in a URDF file cannot be honoured, by name.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages say what each field is
+pub enum Refusal {
+    #[error("there is no link `{link}` to be the {role}; the links are {known}")]
+    UnknownLink {
+        role: &'static str,
+        link: String,
+        known: String,
+    },
+    #[error("joint `{joint}` names a link `{link}` that the file does not define")]
+    DanglingJoint { joint: String, link: String },
+    #[error("{what} `{name}` is defined twice")]
+    Duplicate { what: &'static str, name: String },
+    #[error(
+        "link `{link}` is the child of both joint `{first}` and joint `{second}`; expected a tree"
+    )]
+    TwoParents {
+        link: String,
+        first: String,
+        second: String,
+    },
+    #[error("the base link is not given and the file has not exactly one root link but {roots}")]
+    NoSingleRoot { roots: String },
+    #[error("tip link `{tip}` is not reached from base link `{base}`")]
+    TipNotReached { base: String, tip: String },
+    #[error(
+        "the path from `{base}` to `{tip}` has {count} moving joints ({names}); expected 5 to 7"
+    )]
+    JointCount {
+        base: String,
+        tip: String,
+        count: usize,
+        names: String,
+    },
+    #[error("joint `{joint}` is {kind}; expected revolute, continuous, prismatic or fixed")]
+    JointType { joint: String, kind: &'static str },
+    #[error(
+        "joint `{joint}` on the path mimics joint `{source_joint}`; a driven axis cannot mimic another"
+    )]
+    MimicOnPath { joint: String, source_joint: String },
+    #[error("joint `{joint}` mimics `{source_joint}`, which {why}")]
+    Mimic {
+        joint: String,
+        source_joint: String,
+        why: &'static str,
+    },
+    #[error("joint `{joint}` has axis ({axis}); expected a vector of non-zero length")]
+    Axis { joint: String, axis: String },
+    #[error(
+        "joint `{joint}` has {limit} limit {value}; expected a positive number from the file or from a limit override"
+    )]
+    DriveLimit {
+        joint: String,
+        limit: &'static str,
+        value: f64,
+    },
+    #[error(
+        "joint `{joint}` has position limits {lower} to {upper}{origin}; expected lower below upper"
+    )]
+    PositionLimits {
+        joint: String,
+        lower: f64,
+        upper: f64,
+        origin: &'static str,
+    },
+    #[error("joint `{joint}` has {what} {value}; expected zero or a positive number")]
+    JointDynamics {
+        joint: String,
+        what: &'static str,
+        value: f64,
+    },
+    #[error("a limit override names joint `{joint}`, which is not a moving joint on the path")]
+    OverrideUnknown { joint: String },
+    #[error("link `{link}` has mass {mass} kg{context}; expected a positive mass")]
+    Mass {
+        link: String,
+        mass: f64,
+        context: &'static str,
+    },
+    #[error(
+        "link `{link}` has principal inertias {moments} kg m2{context}; expected {expected} ones"
+    )]
+    Inertia {
+        link: String,
+        moments: String,
+        context: &'static str,
+        expected: &'static str,
+    },
+    #[error("{place} is not finite")]
+    NotFinite { place: String },
+    #[error("link `{link}` has a visual {shape} of {value}; expected positive sizes")]
+    VisualSize {
+        link: String,
+        shape: &'static str,
+        value: String,
+    },
+    #[error("link `{link}`: visual mesh `{mesh}` cannot be used: {reason}")]
+    Mesh {
+        link: String,
+        mesh: String,
+        reason: String,
+    },
+}

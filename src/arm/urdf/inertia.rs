@@ -1,0 +1,118 @@
+//! Masses of the file's links, welded together to one body a moving link.
+
+use super::tree::{Placed, Tree};
+use super::{Refusal, pose_of};
+use crate::arm::chain::BodyInertia;
+use glam::{DMat3, DVec3};
+use nalgebra::Matrix3;
+
+/// One body for each moving joint, in the frame of the link behind it.
+pub(super) fn merged_bodies(
+    tree: &Tree,
+    notes: &mut Vec<String>,
+) -> Result<Vec<BodyInertia>, Refusal> {
+    let mut bodies = vec![BodyInertia::ZERO; tree.moving.len()];
+    for placed in &tree.placed {
+        // The base stands still: its mass does nothing.
+        if placed.link_index == 0 {
+            continue;
+        }
+        let body = link_body(placed, notes)?;
+        let merged = &mut bodies[placed.link_index - 1];
+        *merged = merged.welded_to(&body.seen_from(&placed.moving_from_link));
+    }
+    let context = ", with all that is fixed to it";
+    for (body, joint) in bodies.iter().zip(tree.path_joints()) {
+        let link = &joint.child.link;
+        if body.mass <= 0.0 {
+            return Err(Refusal::Mass {
+                link: link.clone(),
+                mass: body.mass,
+                context,
+            });
+        }
+        let moments = principal_moments(&body.inertia);
+        if moments.x <= 0.0 {
+            return Err(refused_inertia(link, moments, context, "positive"));
+        }
+        // The largest principal moment of real matter is at most the sum of the others.
+        if moments.z > (moments.x + moments.y) * (1.0 + 1e-6) {
+            notes.push(format!(
+                "link {link}: no distribution of mass has the principal inertias {} kg m2 ({}); taken as written",
+                written(moments),
+                "the largest exceeds the sum of the others"
+            ));
+        }
+    }
+    Ok(bodies)
+}
+
+/// Mass properties of one link of the file, in its own frame.
+fn link_body(placed: &Placed, notes: &mut Vec<String>) -> Result<BodyInertia, Refusal> {
+    let link = &placed.link.name;
+    let inertial = &placed.link.inertial;
+    let mass = inertial.mass.value;
+    if !(mass.is_finite() && mass >= 0.0) {
+        return Err(Refusal::Mass {
+            link: link.clone(),
+            mass,
+            context: "",
+        });
+    }
+    let part = &inertial.inertia;
+    let inertia = DMat3::from_cols(
+        DVec3::new(part.ixx, part.ixy, part.ixz),
+        DVec3::new(part.ixy, part.iyy, part.iyz),
+        DVec3::new(part.ixz, part.iyz, part.izz),
+    );
+    if !inertia.is_finite() {
+        return Err(Refusal::NotFinite {
+            place: format!("inertia of link `{link}`"),
+        });
+    }
+    let moments = principal_moments(&inertia);
+    if moments.x < -1e-9 * moments.z.abs() {
+        return Err(refused_inertia(link, moments, "", "no negative"));
+    }
+    if mass == 0.0 && moments.z > 0.0 {
+        notes.push(format!(
+            "link {link} has no mass but principal inertias {} kg m2; they are added as written",
+            written(moments)
+        ));
+    }
+    let frame = pose_of(&inertial.origin, || {
+        format!("inertial origin of link `{link}`")
+    })?;
+    let about_own_axes = BodyInertia {
+        mass,
+        centre_of_mass: DVec3::ZERO,
+        inertia,
+    };
+    Ok(about_own_axes.seen_from(&frame))
+}
+
+fn refused_inertia(
+    link: &str,
+    moments: DVec3,
+    context: &'static str,
+    expected: &'static str,
+) -> Refusal {
+    Refusal::Inertia {
+        link: link.to_string(),
+        moments: written(moments),
+        context,
+        expected,
+    }
+}
+
+fn written(moments: DVec3) -> String {
+    format!("{:.3e}, {:.3e}, {:.3e}", moments.x, moments.y, moments.z)
+}
+
+/// Eigenvalues, smallest first.
+fn principal_moments(inertia: &DMat3) -> DVec3 {
+    let matrix = Matrix3::from_column_slice(&inertia.to_cols_array());
+    let mut values: [f64; 3] = matrix.symmetric_eigenvalues().into();
+    values.sort_by(f64::total_cmp);
+    DVec3::from_array(values)
+}

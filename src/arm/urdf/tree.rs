@@ -1,0 +1,214 @@
+//! Which link hangs where: the path of moving joints, and what is welded to each moving link.
+
+use super::graph::Graph;
+use super::{Refusal, pose_of};
+use crate::arm::chain::BodyInertia;
+use crate::arm::chain::{Joint as ChainJoint, JointKind};
+use glam::DVec3;
+use glamx::DPose3;
+use urdf_rs::{Joint, JointType, Link, Robot};
+
+/// A moving joint on the path, with the fixed frames before it folded in.
+pub(super) struct Moving<'a> {
+    pub joint: &'a Joint,
+    pub parent_from_joint: DPose3,
+}
+
+/// A link and where it sits.
+pub(super) struct Placed<'a> {
+    pub link: &'a Link,
+    /// 0 for the base, `i` for the link behind moving joint `i - 1`.
+    pub link_index: usize,
+    /// Frame of this link in the frame of that moving link.
+    pub moving_from_link: DPose3,
+}
+
+/// The file's links as seen from the base.
+pub(super) struct Tree<'a> {
+    pub robot: &'a Robot,
+    pub base: &'a str,
+    pub moving: Vec<Moving<'a>>,
+    pub tip_from_last: DPose3,
+    pub placed: Vec<Placed<'a>>,
+}
+
+impl<'a> Tree<'a> {
+    /// Sorts the links of `robot` by the moving link they are rigid with.
+    pub fn build(
+        robot: &'a Robot,
+        base: Option<&str>,
+        tip: &str,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, Refusal> {
+        let graph = Graph::build(robot)?;
+        let base = match base {
+            Some(name) => graph.link(name, "base")?,
+            None => graph.root()?,
+        };
+        let tip = graph.link(tip, "tip")?;
+        let path = graph.path(base, tip)?;
+        let mut tree = Self {
+            robot,
+            base: &base.name,
+            moving: Vec::new(),
+            tip_from_last: DPose3::IDENTITY,
+            placed: Vec::new(),
+        };
+        tree.place(&graph, base, &path, notes)?;
+        let tip_placed = tree
+            .placed
+            .iter()
+            .find(|placed| placed.link.name == tip.name);
+        tree.tip_from_last = tip_placed.map_or(DPose3::IDENTITY, |p| p.moving_from_link);
+        if !(5..=7).contains(&tree.moving.len()) {
+            let names: Vec<_> = tree.path_joints().map(|j| j.name.as_str()).collect();
+            return Err(Refusal::JointCount {
+                base: base.name.clone(),
+                tip: tip.name.clone(),
+                count: names.len(),
+                names: names.join(", "),
+            });
+        }
+        let matters = |link: &&Link| link.inertial.mass.value != 0.0 || !link.visual.is_empty();
+        let outside = robot.links.iter().filter(|link| !tree.holds(&link.name));
+        let outside = outside.filter(matters);
+        let outside: Vec<_> = outside.map(|link| link.name.as_str()).collect();
+        if !outside.is_empty() {
+            notes.push(format!(
+                "links not carried by base link {} are left out: {}",
+                base.name,
+                outside.join(", ")
+            ));
+        }
+        Ok(tree)
+    }
+
+    /// The moving joints of the path, base first.
+    pub fn path_joints(&self) -> impl Iterator<Item = &'a Joint> + '_ {
+        self.moving.iter().map(|moving| moving.joint)
+    }
+
+    /// The base's name and the name of the link behind each moving joint.
+    pub fn link_names(&self) -> Vec<String> {
+        let behind = self.path_joints().map(|joint| joint.child.link.clone());
+        std::iter::once(self.base.to_string())
+            .chain(behind)
+            .collect()
+    }
+
+    fn holds(&self, link: &str) -> bool {
+        self.placed.iter().any(|placed| placed.link.name == link)
+    }
+
+    /// Walks down from the base, parents before children, in the order of the file's joints.
+    fn place(
+        &mut self,
+        graph: &Graph<'a>,
+        base: &'a Link,
+        path: &[&'a Joint],
+        notes: &mut Vec<String>,
+    ) -> Result<(), Refusal> {
+        self.placed.push(Placed {
+            link: base,
+            link_index: 0,
+            moving_from_link: DPose3::IDENTITY,
+        });
+        let mut next = 0;
+        while next < self.placed.len() {
+            let (parent, parent_index, moving_from_parent) = {
+                let placed = &self.placed[next];
+                (placed.link, placed.link_index, placed.moving_from_link)
+            };
+            next += 1;
+            let children = self.robot.joints.iter();
+            for joint in children.filter(|joint| joint.parent.link == parent.name) {
+                let origin = pose_of(&joint.origin, || {
+                    format!("origin of joint `{}`", joint.name)
+                })?;
+                let parent_from_joint = moving_from_parent * origin;
+                let on_path = path.iter().any(|step| step.name == joint.name);
+                let (link_index, moving_from_link) = match kind_of(joint)? {
+                    Some(_) if on_path => {
+                        self.moving.push(Moving {
+                            joint,
+                            parent_from_joint,
+                        });
+                        (self.moving.len(), DPose3::IDENTITY)
+                    }
+                    Some(kind) => {
+                        let held = graph.held_position(joint, path)?;
+                        notes.push(held_note(joint, kind, held));
+                        let motion = held_motion(joint, kind, held)?;
+                        (parent_index, parent_from_joint * motion)
+                    }
+                    None => (parent_index, parent_from_joint),
+                };
+                self.placed.push(Placed {
+                    link: graph.link(&joint.child.link, "child")?,
+                    link_index,
+                    moving_from_link,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Unit axis of a joint, in its own frame.
+pub(super) fn unit_axis(joint: &Joint) -> Result<DVec3, Refusal> {
+    let axis = DVec3::from_array(*joint.axis.xyz);
+    axis.try_normalize().ok_or_else(|| Refusal::Axis {
+        joint: joint.name.clone(),
+        axis: format!("{} {} {}", axis.x, axis.y, axis.z),
+    })
+}
+
+/// How a joint moves; none if it is fixed.
+pub(super) fn kind_of(joint: &Joint) -> Result<Option<JointKind>, Refusal> {
+    let refused = |kind| {
+        Err(Refusal::JointType {
+            joint: joint.name.clone(),
+            kind,
+        })
+    };
+    match joint.joint_type {
+        JointType::Revolute | JointType::Continuous => Ok(Some(JointKind::Revolute)),
+        JointType::Prismatic => Ok(Some(JointKind::Prismatic)),
+        JointType::Fixed => Ok(None),
+        JointType::Floating => refused("floating"),
+        JointType::Planar => refused("planar"),
+        JointType::Spherical => refused("spherical"),
+    }
+}
+
+fn held_note(joint: &Joint, kind: JointKind, held: f64) -> String {
+    let unit = match kind {
+        JointKind::Revolute => "rad",
+        JointKind::Prismatic => "m",
+    };
+    let mimic = joint.mimic.as_ref();
+    let why = mimic.map_or(String::new(), |mimic| {
+        format!(", as it mimics {}", mimic.joint)
+    });
+    format!(
+        "joint {} is off the path and held at {held} {unit}{why}; link {} is welded on",
+        joint.name, joint.child.link
+    )
+}
+
+fn held_motion(joint: &Joint, kind: JointKind, held: f64) -> Result<DPose3, Refusal> {
+    let chain_joint = ChainJoint {
+        name: String::new(),
+        kind,
+        parent_from_joint: DPose3::IDENTITY,
+        axis: unit_axis(joint)?,
+        lower: held,
+        upper: held,
+        effort: 0.0,
+        velocity: 0.0,
+        damping: 0.0,
+        friction: 0.0,
+        body: BodyInertia::ZERO,
+    };
+    Ok(chain_joint.parent_from_link(held))
+}

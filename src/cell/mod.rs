@@ -1,0 +1,171 @@
+//! The cell, assembled from a scenario and checked: everything that does not change during a run.
+
+mod error;
+mod part;
+
+use glam::{DMat3, DVec3};
+use glamx::DPose3;
+
+pub use error::CellError;
+pub use part::Part;
+
+use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind};
+use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
+use crate::device::{Device, PressureMap};
+use crate::path::plan::PlanRequest;
+use crate::path::profile::MotionLimits;
+use crate::path::{Plan, ToolPath};
+use crate::scenario::Scenario;
+
+/// A cell, ready to run.
+pub struct Cell {
+    /// What it was made from.
+    pub scenario: Scenario,
+    /// The arm.
+    pub arm: Arm,
+    /// The arm with the device's slide as its last joint.
+    pub arm_with_slide: Chain,
+    /// The device.
+    pub device: Device,
+    /// Part, edge and burr.
+    pub part: Part,
+    /// The job.
+    pub plan: Plan,
+    /// What a user may not expect, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Cell {
+    /// Loads what the scenario names, plans the job and checks that it can be done.
+    ///
+    /// # Errors
+    /// What is missing, refused or out of reach, by file, key or waypoint.
+    pub fn new(scenario: Scenario) -> Result<Self, CellError> {
+        let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario))?;
+        let arm_with_slide = with_slide(&arm.chain, &scenario);
+        let part = Part::load(&scenario.workpiece, scenario.device.tool_radius)?;
+        let device = Device::new(scenario.device.parameters.clone());
+        let tool_path = ToolPath::along(
+            part.edge.clone(),
+            scenario.workpiece.world_from_part,
+            scenario.process.lean,
+        )
+        .map_err(|error| CellError::plan(&scenario, error))?;
+        check_supply(&scenario, &tool_path)?;
+        let plan = Plan::new(&plan_request(&scenario, &arm.chain, &arm_with_slide, tool_path))
+            .map_err(|error| CellError::plan(&scenario, error))?;
+        let notes = arm.notes.iter().chain(&plan.notes).cloned().collect();
+        Ok(Self { scenario, arm, arm_with_slide, device, part, plan, notes })
+    }
+
+    /// Component of gravity along the tool's axis [m/s2].
+    pub fn gravity_along(&self, axis: DVec3) -> f64 {
+        self.scenario.simulation.gravity.dot(axis)
+    }
+
+    /// Cosine between the tool's axis and the contact normal: the share of the contact force that the device sees.
+    pub fn axial_share(&self) -> f64 {
+        self.scenario.process.lean.cos()
+    }
+}
+
+fn arm_options(scenario: &Scenario) -> ArmOptions {
+    let arm = &scenario.arm;
+    ArmOptions {
+        base_link: arm.base_link.clone(),
+        tip_link: arm.flange_link.clone(),
+        package_directories: arm.package_directories.clone(),
+        limit_overrides: arm
+            .limit_overrides
+            .iter()
+            .map(|o| (o.joint.clone(), LimitOverride { effort: o.effort, velocity: o.velocity }))
+            .collect(),
+        skip_visuals: false,
+    }
+}
+
+/// The arm's chain with the device's moving part on a prismatic joint along the flange's z.
+fn with_slide(arm: &Chain, scenario: &Scenario) -> Chain {
+    let device = &scenario.device;
+    let mass = device.parameters.moving_mass;
+    let gyration = device.moving_radius_of_gyration;
+    let mut chain = arm.clone();
+    chain.joints.push(Joint {
+        name: "device_slide".into(),
+        kind: JointKind::Prismatic,
+        parent_from_joint: arm.tip_from_last,
+        axis: DVec3::Z,
+        lower: 0.0,
+        upper: device.parameters.full_stroke,
+        effort: f64::INFINITY,
+        velocity: f64::INFINITY,
+        damping: 0.0,
+        friction: 0.0,
+        body: BodyInertia {
+            mass,
+            centre_of_mass: DVec3::new(0.0, 0.0, device.moving_centre_of_mass),
+            inertia: DMat3::from_diagonal(DVec3::splat(mass * gyration * gyration)),
+        },
+    });
+    chain.tip_from_last = DPose3::from_translation(DVec3::new(0.0, 0.0, device.tool_centre));
+    chain
+}
+
+fn plan_request<'a>(
+    scenario: &'a Scenario,
+    arm: &'a Chain,
+    arm_with_slide: &'a Chain,
+    tool_path: ToolPath,
+) -> PlanRequest<'a> {
+    let (process, device) = (&scenario.process, &scenario.device);
+    // A free slide stands at its outer end until the tool touches; a locked one does not move.
+    let push_back = if device.locked { 0.0 } else { device.parameters.full_stroke - process.working_stroke };
+    PlanRequest {
+        arm,
+        arm_with_slide,
+        world_from_base: scenario.arm.world_from_base,
+        gravity: scenario.simulation.gravity,
+        tool_path,
+        tool_distance: device.tool_centre + process.working_stroke,
+        tool_radius: device.tool_radius,
+        penetration: process.force / scenario.contact.stiffness,
+        working_stroke: process.working_stroke,
+        push_back,
+        force: process.force,
+        feed: process.feed,
+        corner_feed: process.corner_feed,
+        limits: MotionLimits { acceleration: process.acceleration, jerk: process.jerk },
+        approach_distance: process.approach_distance,
+        approach_speed: process.approach_speed,
+        engage_speed: process.engage_speed,
+        settle_time: process.settle_time,
+        seed_posture: scenario.arm.seed_posture.as_deref(),
+        seed: scenario.simulation.seed,
+    }
+}
+
+/// The supply must give the force wherever the wrist turns, and gravity alone must not press harder than asked for.
+fn check_supply(scenario: &Scenario, tool_path: &ToolPath) -> Result<(), CellError> {
+    let map = PressureMap::new(&scenario.device.parameters);
+    let axial = scenario.process.force * scenario.process.lean.cos();
+    let length = tool_path.length();
+    let count = (length / 5e-3).ceil().max(1.0) as usize;
+    for i in 0..=count {
+        let station = tool_path.at(length * i as f64 / count as f64);
+        let gravity = scenario.simulation.gravity.dot(station.axis);
+        let needed = map.unlimited(axial, gravity);
+        let supply = scenario.device.parameters.regulator.supply;
+        if needed > supply || needed < 0.0 {
+            return Err(CellError::Supply {
+                file: scenario.path.clone(),
+                force: scenario.process.force,
+                edge_length: station.edge_length,
+                needed,
+                supply,
+                attainable: [map.force(0.0, gravity), map.force(supply, gravity)]
+                    .map(|force| force / scenario.process.lean.cos()),
+            });
+        }
+    }
+    Ok(())
+}

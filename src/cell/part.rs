@@ -1,0 +1,107 @@
+//! The part in the cell: where it is believed to be, where it really is, the followed edge and the burr on it.
+
+use glam::{DQuat, DVec3};
+use glamx::DPose3;
+
+use super::error::CellError;
+use crate::scenario::{BurrScenario, EdgeSelection, Misplacement, WorkpieceScenario};
+use crate::workpiece::{
+    BurrProfile, Convexity, EdgeCurve, EdgeSearch, RiddenProfile, TriangleMesh, WorkpieceError, list_edges, load_mesh,
+};
+
+/// Spacing at which the ball's ride over the burr is tabulated [m].
+const RIDE_STEP: f64 = 2e-5;
+
+/// The part.
+pub struct Part {
+    /// Its mesh, in the part frame.
+    pub mesh: TriangleMesh,
+    /// Its mesh where it really is, in the world frame.
+    pub mesh_in_world: TriangleMesh,
+    /// Where it really is.
+    pub world_from_part: DPose3,
+    /// The followed edge, in the part frame, in the direction of travel.
+    pub edge: EdgeCurve,
+    /// Lift of the ball's centre by the burr along the followed edge; none without a burr.
+    pub ride: Option<RiddenProfile>,
+}
+
+impl Part {
+    /// Loads the mesh, finds the edge and prepares the burr for a ball of a radius [m].
+    ///
+    /// # Errors
+    /// What is wrong with the mesh, the choice of the edge or the burr.
+    pub fn load(workpiece: &WorkpieceScenario, ball_radius: f64) -> Result<Self, CellError> {
+        let mesh = load_mesh(&workpiece.mesh, workpiece.mesh_scale)?;
+        let edge = choose_edge(workpiece, &mesh)?;
+        let world_from_part = real_pose(workpiece, &edge);
+        let vertices = mesh.vertices().iter().map(|&v| world_from_part.transform_point(v)).collect();
+        let mesh_in_world = TriangleMesh::new(vertices, mesh.triangles().to_vec())
+            .expect("a rigid motion keeps a mesh closed and outward");
+        let ride = burr(&workpiece.burr)?
+            .map(|profile| {
+                profile.require_cover(edge.length)?;
+                profile.ridden_by_ball(ball_radius, edge.length, RIDE_STEP)
+            })
+            .transpose()?;
+        Ok(Self { mesh, mesh_in_world, world_from_part, edge, ride })
+    }
+}
+
+fn choose_edge(workpiece: &WorkpieceScenario, mesh: &TriangleMesh) -> Result<EdgeCurve, CellError> {
+    let choice = &workpiece.edge;
+    let search = EdgeSearch { sharp_angle: choice.sharp_angle, ..EdgeSearch::default() };
+    let list = list_edges(mesh, &search);
+    let (chosen, found) = match choice.selection {
+        EdgeSelection::Edge(number) => (format!("edge {number}"), list.edges.get(number)),
+        EdgeSelection::Loop(number) => (format!("loop {number}"), list.loops.get(number)),
+    };
+    let curve = found.ok_or_else(|| CellError::EdgeUnknown {
+        file: workpiece.mesh.clone(),
+        mesh: workpiece.mesh.clone(),
+        chosen: chosen.clone(),
+        edges: list.edges.len(),
+        loops: list.loops.len(),
+    })?;
+    let convexity = match curve.convexity {
+        Convexity::Convex => None,
+        Convexity::Concave => Some("an inside edge"),
+        Convexity::Mixed => Some("an inside edge in places"),
+    };
+    if let Some(convexity) = convexity {
+        return Err(CellError::EdgeNotConvex { mesh: workpiece.mesh.clone(), chosen, convexity });
+    }
+    let curve = if choice.reversed { curve.reversed() } else { curve.clone() };
+    match (choice.start, choice.end) {
+        (start, None) if start == 0.0 => Ok(curve),
+        (start, None) if curve.closed => Ok(curve.started_at(start)?),
+        (start, end) => Ok(curve.trim(start, end.unwrap_or(curve.length))?),
+    }
+}
+
+/// The believed pose turned and shifted about the middle of the edge.
+fn real_pose(workpiece: &WorkpieceScenario, edge: &EdgeCurve) -> DPose3 {
+    let Misplacement { shift, tilt } = workpiece.misplacement;
+    let believed = workpiece.world_from_part;
+    let middle = edge.at(0.5 * edge.length);
+    let (pivot, bisector) = (believed.transform_point(middle.point), believed.rotation * middle.bisector);
+    let tangent = believed.rotation * middle.tangent;
+    // Turning the tangent towards the bisector lifts the far end towards the tool.
+    let turn = DQuat::from_axis_angle(tangent.cross(bisector).normalize_or(DVec3::X), tilt);
+    DPose3::from_translation(pivot + bisector * shift)
+        * DPose3::from_rotation(turn)
+        * DPose3::from_translation(-pivot)
+        * believed
+}
+
+fn burr(scenario: &BurrScenario) -> Result<Option<BurrProfile>, WorkpieceError> {
+    Ok(match scenario {
+        BurrScenario::None => None,
+        BurrScenario::Constant { height } => Some(BurrProfile::constant(*height)?),
+        BurrScenario::Random { seed, mean_height, height_deviation, correlation_length } => {
+            Some(BurrProfile::seeded_random(*seed, *mean_height, *height_deviation, *correlation_length)?)
+        }
+        BurrScenario::Bump { position, height, width } => Some(BurrProfile::bump(*position, *height, *width)?),
+        BurrScenario::Table { path } => Some(BurrProfile::from_csv(path)?),
+    })
+}

@@ -1,0 +1,4 @@
+//! Controllers: the arm's joint servo and the device's set pressure.
+
+pub mod force;
+pub mod servo;

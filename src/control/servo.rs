@@ -1,0 +1,170 @@
+//! The arm's joint servo: per axis proportional, integral and derivative, on top of the torque that the planned motion needs.
+//!
+//!     tau = tau_ff + k_p (q_ref - q) + k_d (v_ref - v) + k_i integral(q_ref - q) dt,   |tau| <= effort
+//!     k_p = m w^2,  k_d = 2 z w m,  k_i = k_p / T_i
+//!
+//! m the axis's own inertia at the start [kg m2], w natural frequency [rad/s], z damping ratio, T_i integral time [s]. tau_ff is the inverse dynamics of
+//! the reference with the device's moving mass, less the contact force's share.
+//! The proportional and derivative parts go to the engine as an implicit law, so a stiff servo is stable at any step; a law whose torque would leave the
+//! effort limit is replaced by the constant torque at the limit, and the integral waits.
+
+use crate::arm::chain::Chain;
+use crate::simulation::world::JointLaw;
+
+/// Gains of one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gains {
+    proportional: f64,
+    derivative: f64,
+    integral: f64,
+    effort: f64,
+    joint_damping: f64,
+    joint_friction: f64,
+}
+
+/// Parameters of the servo, the same for all axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ServoParameters {
+    /// Natural frequency [rad/s].
+    pub natural_frequency: f64,
+    /// Damping ratio [1].
+    pub damping_ratio: f64,
+    /// Integral time [s]; infinite for none.
+    pub integral_time: f64,
+}
+
+/// Speed over which a joint's dry friction turns from one side to the other [rad/s].
+const FRICTION_SPEED: f64 = 1e-3;
+
+/// The servo of all axes.
+#[derive(Debug, Clone)]
+pub struct Servo {
+    gains: Vec<Gains>,
+    integrals: Vec<f64>,
+    saturated: Vec<bool>,
+}
+
+/// What the servo is to do for one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisCommand {
+    /// Reference at the end of the step [rad].
+    pub position: f64,
+    /// Reference speed [rad/s].
+    pub velocity: f64,
+    /// Torque that the motion needs [N m].
+    pub feed_forward: f64,
+}
+
+impl Servo {
+    /// A servo for the axes of `arm` with their own inertias [kg m2].
+    pub fn new(arm: &Chain, inertias: &[f64], parameters: &ServoParameters) -> Self {
+        let gains = arm
+            .joints
+            .iter()
+            .zip(inertias)
+            .map(|(joint, inertia)| {
+                let proportional = inertia * parameters.natural_frequency.powi(2);
+                Gains {
+                    proportional,
+                    derivative: 2.0 * parameters.damping_ratio * parameters.natural_frequency * inertia,
+                    integral: proportional / parameters.integral_time,
+                    effort: joint.effort,
+                    joint_damping: joint.damping,
+                    joint_friction: joint.friction,
+                }
+            })
+            .collect::<Vec<_>>();
+        Self { integrals: vec![0.0; gains.len()], saturated: vec![false; gains.len()], gains }
+    }
+
+    /// Law of an axis over the coming step of length `dt` [s], joint damping and friction included.
+    pub fn law(&mut self, axis: usize, command: &AxisCommand, position: f64, velocity: f64, dt: f64) -> JointLaw {
+        let gains = &self.gains[axis];
+        let error = command.position - position;
+        if !self.saturated[axis] {
+            self.integrals[axis] += gains.integral * (error - dt * (command.velocity - velocity)) * dt;
+        }
+        let constant = command.feed_forward + self.integrals[axis] + gains.derivative * command.velocity;
+        let foreseen = constant + gains.proportional * (error - dt * command.velocity) - gains.derivative * velocity;
+        self.saturated[axis] = foreseen.abs() > gains.effort;
+        let mut law = if self.saturated[axis] {
+            JointLaw::constant(foreseen.clamp(-gains.effort, gains.effort))
+        } else {
+            JointLaw {
+                force: constant,
+                stiffness: gains.proportional,
+                rest: command.position,
+                damping: gains.derivative,
+            }
+        };
+        self.add_joint_losses(axis, velocity, &mut law);
+        law
+    }
+
+    /// The joint's own viscous and dry friction, the latter linear about the present speed.
+    fn add_joint_losses(&self, axis: usize, velocity: f64, law: &mut JointLaw) {
+        let gains = &self.gains[axis];
+        law.damping += gains.joint_damping;
+        if gains.joint_friction > 0.0 {
+            let level = (velocity / FRICTION_SPEED).tanh();
+            let slope = gains.joint_friction / FRICTION_SPEED * (1.0 - level * level);
+            law.force += slope * velocity - gains.joint_friction * level;
+            law.damping += slope;
+        }
+    }
+
+    /// Torque of the drive alone, from the law's total at a speed [rad/s].
+    pub fn drive_torque(&self, axis: usize, total: f64, velocity: f64) -> f64 {
+        let gains = &self.gains[axis];
+        total + gains.joint_damping * velocity + gains.joint_friction * (velocity / FRICTION_SPEED).tanh()
+    }
+
+    /// Is the axis at its effort limit?
+    pub fn saturated(&self, axis: usize) -> bool {
+        self.saturated[axis]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::chain::{BodyInertia, Joint, JointKind};
+
+    fn servo() -> Servo {
+        let joint = Joint {
+            name: "axis".into(),
+            kind: JointKind::Revolute,
+            parent_from_joint: glamx::DPose3::IDENTITY,
+            axis: glam::DVec3::Z,
+            lower: -3.0,
+            upper: 3.0,
+            effort: 50.0,
+            velocity: 2.0,
+            damping: 0.0,
+            friction: 0.0,
+            body: BodyInertia::ZERO,
+        };
+        let arm = Chain { joints: vec![joint], tip_from_last: glamx::DPose3::IDENTITY };
+        let parameters = ServoParameters { natural_frequency: 100.0, damping_ratio: 1.0, integral_time: 0.1 };
+        Servo::new(&arm, &[2.0], &parameters)
+    }
+
+    #[test]
+    fn a_law_gives_the_stated_gains() {
+        let command = AxisCommand { position: 0.0, velocity: 0.0, feed_forward: 7.0 };
+        let law = servo().law(0, &command, 0.0, 0.0, 1e-3);
+        assert_eq!((law.stiffness, law.damping, law.force), (2e4, 400.0, 7.0));
+    }
+
+    #[test]
+    fn the_torque_stays_at_the_limit_and_the_integral_waits() {
+        let mut servo = servo();
+        let command = AxisCommand { position: 0.1, velocity: 0.0, feed_forward: 0.0 };
+        let first = servo.law(0, &command, 0.0, 0.0, 1e-3);
+        assert_eq!((first.force, first.stiffness), (50.0, 0.0));
+        for _ in 0..100 {
+            servo.law(0, &command, 0.0, 0.0, 1e-3);
+        }
+        assert!(servo.integrals[0] <= 2e4 / 0.1 * 0.1 * 1e-3 * 1.001);
+    }
+}

@@ -1,0 +1,1 @@
+//! The device against closed forms, conserved quantities and halved steps.

@@ -1,0 +1,42 @@
+//! From a desired contact force to the set pressure that gives it at rest.
+//!
+//!     p_set = (F - m g_a) / (K A_1)                                  (source paper, eq. 1 at rest, chamber 2 at the atmosphere)
+//!
+//! p_set gauge [Pa], F contact force along the axis [N], m moving mass [kg], g_a component of gravity along extension [m/s2],
+//! K regulator gain [1], A_1 area of chamber 1 [m2].
+
+use super::DeviceParameters;
+
+/// The map, with the parameters it needs.
+#[derive(Debug, Clone, Copy)]
+pub struct PressureMap {
+    moving_mass: f64,
+    force_per_pressure: f64,
+    supply: f64,
+}
+
+impl PressureMap {
+    /// The map of a device.
+    pub fn new(parameters: &DeviceParameters) -> Self {
+        Self {
+            moving_mass: parameters.moving_mass,
+            force_per_pressure: parameters.regulator.gain * parameters.areas().extending,
+            supply: parameters.regulator.supply,
+        }
+    }
+
+    /// Set pressure before any limit [Pa gauge]; may be negative or beyond the supply.
+    pub fn unlimited(&self, force: f64, gravity_along_axis: f64) -> f64 {
+        (force - self.moving_mass * gravity_along_axis) / self.force_per_pressure
+    }
+
+    /// Set pressure within what the regulator can give [Pa gauge].
+    pub fn set_pressure(&self, force: f64, gravity_along_axis: f64) -> f64 {
+        self.unlimited(force, gravity_along_axis).clamp(0.0, self.supply)
+    }
+
+    /// Contact force at rest [N] for a set pressure [Pa gauge]: the inverse.
+    pub fn force(&self, set_pressure: f64, gravity_along_axis: f64) -> f64 {
+        set_pressure * self.force_per_pressure + self.moving_mass * gravity_along_axis
+    }
+}

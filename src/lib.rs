@@ -1,0 +1,29 @@
+//! Simulation of a robot deburring cell with a pneumatic constant-force end effector.
+//!
+//! Data flows one way: scenario -> cell -> simulation -> recording -> metrics -> report.
+//!
+//! - [`physics`]: the pneumatic equations, one effect a file
+//! - [`device`]: the device made of them
+//! - [`arm`]: the robot arm from URDF: kinematics, dynamics
+//! - [`workpiece`]: mesh, edges, burrs, where a ball touches
+//! - [`scenario`]: the file that says what to simulate, checked
+//! - [`path`]: the tool's path along an edge and the joint motion that follows it
+//! - [`cell`]: all of it assembled and checked
+//! - [`control`]: joint servo and force controllers
+//! - [`recording`]: sampled signals, Parquet, Rerun
+//! - [`simulation`]: the coupled step
+//! - [`metrics`]: the numbers of a run
+//! - [`report`]: tables for people
+// Units stand in square brackets, which rustdoc would take for links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
+pub mod arm;
+pub mod cell;
+pub mod control;
+pub mod device;
+pub mod path;
+pub mod physics;
+pub mod recording;
+pub mod scenario;
+pub mod simulation;
+pub mod workpiece;

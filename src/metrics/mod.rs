@@ -1,0 +1,192 @@
+//! The numbers of a run: how uniform the contact force was, and what it cost.
+//!
+//! [`summarise`] turns a [`Recording`] into a [`Summary`], [`METRICS`] lists its numbers with their
+//! units, and [`check`] compares them with the bounds of a scenario. Every definition stands in
+//! docs/METRICS.md. Nothing here knows how a recording came about, so a real one is judged alike.
+//!
+//! A number that the recording does not determine is `None`: the phase or channel is missing, a
+//! value that it needs is not finite, or the tool never touched the part.
+
+mod catalogue;
+mod engagement;
+mod error;
+mod expect;
+mod force;
+mod load;
+mod motion;
+mod nearest;
+mod statistics;
+mod summary;
+#[cfg(test)]
+mod test_recordings;
+mod window;
+
+pub use catalogue::{METRICS, Metric, metric};
+pub use error::MetricsError;
+pub use expect::{Verdict, check, validate};
+pub use summary::{ForceTenth, JointTorqueShare, Summary, Timing};
+
+use crate::recording::Recording;
+use window::Window;
+
+/// Name of the phase over which uniformity is judged.
+pub const FOLLOW_PHASE: &str = "follow";
+/// Half width of the narrow band about the desired force, as a share of it [1].
+pub const NARROW_BAND: f64 = 0.05;
+/// Half width of the wide band about the desired force, as a share of it [1].
+pub const WIDE_BAND: f64 = 0.10;
+/// Force from which the tool counts as touching, as a share of the desired force [1].
+pub const TOUCH_SHARE: f64 = 0.01;
+
+/// What a run is measured against.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SummaryLimits {
+    /// Desired contact force [N].
+    pub desired_force: f64,
+    /// Lower and upper end of the stroke [m].
+    pub stroke_limits: (f64, f64),
+    /// Effort limit of each joint, base first [N m]; infinite if it has none.
+    pub joint_efforts: Vec<f64>,
+    /// Name of each joint, base first.
+    pub joint_names: Vec<String>,
+}
+
+impl SummaryLimits {
+    fn check(&self) -> Result<(), MetricsError> {
+        let limit = |what: String, value: String, expected| {
+            Err(MetricsError::Limit {
+                what,
+                value,
+                expected,
+            })
+        };
+        if !(self.desired_force.is_finite() && self.desired_force > 0.0) {
+            let value = format!("{} N", self.desired_force);
+            return limit("the desired force".into(), value, "a positive number");
+        }
+        let (lower, upper) = self.stroke_limits;
+        if !(lower.is_finite() && upper.is_finite() && lower < upper) {
+            let value = format!("{lower} m to {upper} m");
+            return limit("the stroke".into(), value, "a lower end below an upper end");
+        }
+        if self.joint_names.len() != self.joint_efforts.len() {
+            let value = self.joint_efforts.len().to_string();
+            let what = format!("number of efforts of {} joints", self.joint_names.len());
+            return limit(what, value, "one for each joint");
+        }
+        for (name, &effort) in self.joint_names.iter().zip(&self.joint_efforts) {
+            // Also refuses NaN.
+            if effort.is_nan() || effort <= 0.0 {
+                let what = format!("the effort limit of joint `{name}`");
+                return limit(what, format!("{effort} N m"), "a positive number");
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Measures a recording. `timing` is left empty; the caller knows the wall clock.
+///
+/// # Errors
+/// Names a limit that makes no sense, a channel in another unit, or a second `follow` phase.
+pub fn summarise(
+    recording: &Recording,
+    limits: &SummaryLimits,
+) -> Result<Summary, MetricsError> {
+    limits.check()?;
+    let run = Window::run(recording);
+    let follow = Window::follow(recording)?;
+    let mut summary = Summary {
+        desired_force_n: limits.desired_force,
+        duration_s: run.duration(),
+        ..Summary::default()
+    };
+    engagement::measure(&mut summary, recording, limits.desired_force)?;
+    if let Some(follow) = follow {
+        force::measure(&mut summary, &follow, limits.desired_force)?;
+        motion::measure(&mut summary, &follow, limits.stroke_limits)?;
+    }
+    load::measure(&mut summary, &run, limits)?;
+    Ok(summary)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::test_recordings::{Builder, limits};
+    use super::*;
+    use crate::recording::{Channel, PhaseSpan, Unit, schema};
+
+    #[test]
+    fn an_empty_recording_leaves_everything_undefined_but_its_duration() {
+        let recording = Recording::new(vec![0.0, 2.0], vec![], vec![]).unwrap();
+        let summary = summarise(&recording, &limits()).unwrap();
+        assert_eq!(summary.duration_s, 2.0);
+        for metric in METRICS {
+            let defined = ["duration_s", "desired_force_n"].contains(&metric.name);
+            assert_eq!((metric.value)(&summary).is_some(), defined, "{}", metric.name);
+        }
+    }
+
+    #[test]
+    fn a_complete_recording_defines_everything_but_the_timing() {
+        let summary = summarise(&Builder::nominal().build(), &limits()).unwrap();
+        for metric in METRICS {
+            let timed = ["wall_time_s", "real_time_factor"].contains(&metric.name);
+            assert_eq!((metric.value)(&summary).is_none(), timed, "{}", metric.name);
+        }
+    }
+
+    #[test]
+    fn the_same_recording_gives_the_same_bytes_and_they_read_back() {
+        let text = || {
+            let summary = summarise(&Builder::nominal().build(), &limits()).unwrap();
+            serde_json::to_string(&summary).unwrap()
+        };
+        assert_eq!(text(), text());
+        assert!(!text().contains("timing"));
+        let read: Summary = serde_json::from_str(&text()).unwrap();
+        assert_eq!(serde_json::to_string(&read).unwrap(), text());
+    }
+
+    #[test]
+    fn a_value_that_is_not_finite_makes_its_numbers_undefined() {
+        let mut builder = Builder::nominal();
+        let last = builder.force.len() - 1;
+        builder.force[last] = f64::NAN;
+        let summary = summarise(&builder.build(), &limits()).unwrap();
+        assert_eq!(summary.force_mean_n, None);
+        assert_eq!(summary.within_5_percent_share_percent, None);
+        assert!(summary.engagement_peak_n.is_some());
+        assert!(summary.stroke_used_mm.is_some());
+    }
+
+    #[test]
+    fn what_cannot_be_measured_against_is_refused_by_name() {
+        let recording = Builder::nominal().build();
+        let refuse = |change: fn(&mut SummaryLimits)| {
+            let mut changed = limits();
+            change(&mut changed);
+            summarise(&recording, &changed).unwrap_err().to_string()
+        };
+        let force = refuse(|limits| limits.desired_force = -3.0);
+        assert_eq!(force, "the desired force is -3 N; expected a positive number");
+        assert!(refuse(|limits| limits.stroke_limits = (0.05, 0.0)).contains("the stroke"));
+        assert!(refuse(|limits| limits.joint_efforts = vec![1.0]).contains("2 joints is 1"));
+        assert!(refuse(|limits| limits.joint_efforts[1] = f64::NAN).contains("`wrist`"));
+
+        let pascal = Channel::new(schema::CONTACT_FORCE, Unit::Pascal, vec![0.0]);
+        let recording = Recording::new(vec![0.0], vec![pascal], vec![]).unwrap();
+        let error = summarise(&recording, &limits()).unwrap_err().to_string();
+        assert_eq!(error, "channel `contact_force` is in Pa; expected N");
+
+        let span = |start, end| PhaseSpan {
+            name: FOLLOW_PHASE.into(),
+            start,
+            end,
+        };
+        let phases = vec![span(0.0, 1.0), span(2.0, 3.0)];
+        let recording = Recording::new(vec![0.0], vec![], phases).unwrap();
+        let error = summarise(&recording, &limits()).unwrap_err().to_string();
+        assert!(error.contains("2 phases named `follow`"), "{error}");
+    }
+}

@@ -1,0 +1,111 @@
+//! The numbers of a run as they stand in summary.json.
+//!
+//! Field names are file keys, so each ends in its unit; docs/METRICS.md defines every one.
+
+use serde::{Deserialize, Serialize};
+
+/// The numbers of a run; keys are written in the order of the fields.
+///
+/// All but `timing` follow from the recording alone, bit for bit.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Summary {
+    /// Desired contact force [N].
+    pub desired_force_n: f64,
+    /// Mean contact force while following [N].
+    pub force_mean_n: Option<f64>,
+    /// Population standard deviation of the contact force while following [N].
+    pub force_standard_deviation_n: Option<f64>,
+    /// Standard deviation over mean [%].
+    pub coefficient_of_variation_percent: Option<f64>,
+    /// Largest distance of the contact force from the desired force while following [N].
+    pub largest_deviation_n: Option<f64>,
+    /// Share of the followed length on which the force is within 5 % of the desired one [%].
+    pub within_5_percent_share_percent: Option<f64>,
+    /// Share of the followed length on which the force is within 10 % of the desired one [%].
+    pub within_10_percent_share_percent: Option<f64>,
+    /// Share of the followed length on which the tool does not touch [%].
+    pub loss_of_contact_share_percent: Option<f64>,
+    /// Mean friction force while following [N].
+    pub friction_force_mean_n: Option<f64>,
+    /// Largest contact force from first touch to the start of following [N].
+    pub engagement_peak_n: Option<f64>,
+    /// How far that peak exceeds the desired force [%].
+    pub engagement_overshoot_percent: Option<f64>,
+    /// From first touch until the force stays within 5 % of the desired one [s].
+    pub settling_time_s: Option<f64>,
+    /// Range of the stroke while following [mm].
+    pub stroke_used_mm: Option<f64>,
+    /// Smallest stroke while following [mm].
+    pub stroke_min_mm: Option<f64>,
+    /// Largest stroke while following [mm].
+    pub stroke_max_mm: Option<f64>,
+    /// Least distance from either end of the stroke while following [mm].
+    pub stroke_margin_mm: Option<f64>,
+    /// Root mean square of the lateral path error while following [um].
+    pub path_error_rms_um: Option<f64>,
+    /// Largest lateral path error while following [um].
+    pub path_error_max_um: Option<f64>,
+    /// Length followed [mm].
+    pub path_length_mm: Option<f64>,
+    /// Length followed over the time it took [mm/s].
+    pub feed_mean_mm_per_s: Option<f64>,
+    /// Time of following [s].
+    pub follow_duration_s: Option<f64>,
+    /// Largest torque of the most loaded joint, of its effort limit, over the run [%].
+    pub joint_torque_share_percent: Option<f64>,
+    /// Name of that joint.
+    pub most_loaded_joint: Option<String>,
+    /// Largest gap in the balance of the air in the chambers, of their mass, over the run [1].
+    pub air_mass_balance_relative: Option<f64>,
+    /// Simulated time of the whole run [s].
+    pub duration_s: f64,
+    /// Each joint's largest torque, base first.
+    pub joints: Vec<JointTorqueShare>,
+    /// The force in each tenth of the followed length; empty if nothing was followed.
+    pub force_by_tenth: Vec<ForceTenth>,
+    /// How long the computation took; differs from run to run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub timing: Option<Timing>,
+}
+
+/// How much of a joint's effort limit a run took.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JointTorqueShare {
+    /// The joint's name.
+    pub joint: String,
+    /// Its largest torque, of its effort limit [%]; undefined without limit or channel.
+    pub torque_share_percent: Option<f64>,
+}
+
+/// The contact force in one tenth of the followed length.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ForceTenth {
+    /// Where it begins, from the start of following [mm].
+    pub from_mm: f64,
+    /// Where it ends [mm].
+    pub to_mm: f64,
+    /// Mean contact force [N]; undefined if no sample fell here.
+    pub force_mean_n: Option<f64>,
+    /// Population standard deviation of the contact force [N].
+    pub force_standard_deviation_n: Option<f64>,
+}
+
+/// How long a run took to compute.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Timing {
+    /// Wall-clock time of the computation [s].
+    pub wall_time_s: f64,
+    /// Simulated time over wall-clock time [1].
+    pub real_time_factor: f64,
+}
+
+impl Timing {
+    /// The timing of `simulated` [s] computed in `wall` [s].
+    #[must_use]
+    pub fn new(simulated: f64, wall: f64) -> Self {
+        Self {
+            wall_time_s: wall,
+            real_time_factor: simulated / wall,
+        }
+    }
+}

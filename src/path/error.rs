@@ -1,0 +1,122 @@
+//! Why a job cannot be done, said before anything moves.
+
+use glam::DVec3;
+
+/// What stands in the way at a waypoint. Angles [rad], torques [N m].
+#[derive(Debug, Clone, PartialEq)]
+pub enum Obstacle {
+    /// No joint angles reach the pose; the axis that is over or nearest its limit.
+    OutOfReach {
+        /// Distance that is left [m].
+        distance: f64,
+        /// Axis with its position and limit.
+        axis: Option<(String, f64, f64)>,
+    },
+    /// An axis would leave its range.
+    Position {
+        /// Axis.
+        axis: String,
+        /// Position it would need.
+        value: f64,
+        /// Its limit.
+        limit: f64,
+    },
+    /// An axis would have to be faster than it can.
+    Velocity {
+        /// Axis.
+        axis: String,
+        /// Speed it would need [rad/s].
+        value: f64,
+        /// Its limit.
+        limit: f64,
+    },
+    /// An axis would need more torque than it has.
+    Effort {
+        /// Axis.
+        axis: String,
+        /// Torque it would need.
+        value: f64,
+        /// Its limit.
+        limit: f64,
+    },
+    /// The arm is all but singular.
+    Singular {
+        /// Smallest singular value of the scaled Jacobian [1].
+        value: f64,
+        /// Least that is accepted.
+        limit: f64,
+        /// Axis that would move most.
+        axis: String,
+    },
+}
+
+impl std::fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::OutOfReach { distance, axis } => {
+                write!(f, "out of reach by {:.1} mm", 1e3 * distance)?;
+                if let Some((axis, value, limit)) = axis {
+                    write!(
+                        f,
+                        "; axis {axis} stands at {:.1} deg, its limit is {:.1} deg",
+                        value.to_degrees(),
+                        limit.to_degrees()
+                    )?;
+                }
+                Ok(())
+            }
+            Self::Position { axis, value, limit } => write!(
+                f,
+                "axis {axis} would need {:.1} deg, its limit is {:.1} deg",
+                value.to_degrees(),
+                limit.to_degrees()
+            ),
+            Self::Velocity { axis, value, limit } => write!(
+                f,
+                "axis {axis} would need {:.1} deg/s, its limit is {:.1} deg/s",
+                value.to_degrees(),
+                limit.to_degrees()
+            ),
+            Self::Effort { axis, value, limit } => {
+                write!(f, "axis {axis} would need {value:.1} N m, its limit is {limit:.1} N m")
+            }
+            Self::Singular { value, limit, axis } => write!(
+                f,
+                "the arm is all but singular (smallest singular value {value:.4}, least accepted {limit:.4}); axis {axis} would move most"
+            ),
+        }
+    }
+}
+
+/// A job that cannot be planned.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// A waypoint cannot be passed.
+    #[error("{phase}, waypoint {waypoint} of {waypoints} at {:.1} mm along the edge, point ({:.1}, {:.1}, {:.1}) mm: {obstacle}",
+        1e3 * edge_length, 1e3 * point.x, 1e3 * point.y, 1e3 * point.z)]
+    Waypoint {
+        /// Phase of the job.
+        phase: &'static str,
+        /// Waypoint, counted from 1.
+        waypoint: usize,
+        /// Waypoints of the phase.
+        waypoints: usize,
+        /// Length along the edge [m].
+        edge_length: f64,
+        /// Point of the edge in the world [m].
+        point: DVec3,
+        /// What stands in the way.
+        obstacle: Obstacle,
+    },
+    /// A corner that turns inwards.
+    #[error("the edge turns inwards by {:.0} deg at {:.1} mm, point ({:.1}, {:.1}, {:.1}) mm: a ball cannot reach into a sharp inside corner; choose a stretch without it",
+        turn.to_degrees(), 1e3 * edge_length, 1e3 * point.x, 1e3 * point.y, 1e3 * point.z)]
+    InwardCorner {
+        /// Length along the edge [m].
+        edge_length: f64,
+        /// The corner in the world [m].
+        point: DVec3,
+        /// Angle turned [rad].
+        turn: f64,
+    },
+}

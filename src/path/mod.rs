@@ -1,0 +1,18 @@
+//! From an edge to joint motion: the tool's path along the edge, its timing, and the joint angles that follow it.
+//!
+//! - [`toolpath`]: where the tool touches and how its axis stands, along the edge;
+//! - [`profile`]: how far along it is at each time, jerk-limited;
+//! - [`spline`]: smooth joint angles over the path;
+//! - [`plan`]: the whole job (approach, engage, settle, follow, retract), checked against the arm's limits before anything moves.
+
+mod check;
+mod error;
+pub mod plan;
+mod posture;
+pub mod profile;
+pub mod spline;
+pub mod toolpath;
+
+pub use error::{Obstacle, PlanError};
+pub use plan::{Phase, Plan, PlanRequest, Reference};
+pub use toolpath::{ToolPath, ToolStation};

@@ -1,0 +1,270 @@
+//! Joint angles along a list of flange poses, and the choice of the posture to start with.
+//!
+//! Each pose is reached from the one before by plain Newton steps of least norm, always the same number, so that joint angles are as smooth as the poses.
+
+use glam::{DQuat, DVec3};
+use glamx::DPose3;
+use nalgebra::{DMatrix, DVector};
+
+use super::error::Obstacle;
+use crate::arm::chain::{Chain, MAX_JOINTS};
+use crate::arm::dynamics::gravity_torques;
+use crate::arm::inverse_kinematics::{IkOptions, TipOrientation, distinct_solutions, solve};
+use crate::arm::kinematics::{jacobian_at, link_poses, smallest_singular_value, tip_pose};
+
+/// Newton steps to each pose; poses are near enough for two, the third is rounding.
+const STEPS: usize = 4;
+/// Distance and angle up to which a pose counts as reached [m, rad].
+const TOLERANCE: f64 = 1e-8;
+/// Random starts for the first pose of each spin.
+const STARTS: usize = 24;
+/// Spins of the flange about the tool's axis that are tried.
+const SPINS: usize = 12;
+/// Height below the arm's base that no joint should go under [m].
+const FLOOR: f64 = -0.05;
+
+/// An arm that stands somewhere.
+#[derive(Debug, Clone, Copy)]
+pub struct Standing<'a> {
+    /// The arm, base to flange.
+    pub chain: &'a Chain,
+    /// Its base in the world.
+    pub world_from_base: DPose3,
+    /// Gravity in the world [m/s2].
+    pub gravity: DVec3,
+}
+
+impl Standing<'_> {
+    /// Length by which lengths are scaled against angles [m].
+    pub fn characteristic_length(&self) -> f64 {
+        0.25 * self.chain.reach()
+    }
+
+    /// Smallest singular value of the scaled Jacobian at joint angles [1], and the axis that would move most there.
+    pub fn singularity(&self, q: &[f64]) -> f64 {
+        let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
+        let poses = &mut poses[..self.chain.len()];
+        link_poses(self.chain, self.world_from_base, q, poses);
+        let tip = tip_pose(self.chain, self.world_from_base, q);
+        let jacobian = jacobian_at(self.chain, poses, tip.translation);
+        smallest_singular_value(&jacobian, self.chain.len(), self.characteristic_length())
+    }
+
+    /// Goes through all poses from `start`, which is near the first.
+    ///
+    /// # Errors
+    /// The number of the pose that is not reached, and why.
+    pub fn track(&self, poses: &[DPose3], start: &[f64]) -> Result<Vec<Vec<f64>>, (usize, Obstacle)> {
+        let mut q = start.to_vec();
+        let mut angles = Vec::with_capacity(poses.len());
+        for (index, pose) in poses.iter().enumerate() {
+            let mut error = f64::INFINITY;
+            for _ in 0..STEPS {
+                error = self.newton(pose, &mut q);
+            }
+            let distance = (tip_pose(self.chain, self.world_from_base, &q).translation - pose.translation).length();
+            if !(error < TOLERANCE) || !(distance < TOLERANCE) {
+                return Err((index, self.explain(pose, &angles.last().cloned().unwrap_or_else(|| start.to_vec()))));
+            }
+            if let Some(obstacle) = self.over_limit(&q) {
+                return Err((index, obstacle));
+            }
+            angles.push(q.clone());
+        }
+        Ok(angles)
+    }
+
+    /// One step; returns the error before it, angles scaled by 1 rad to 1 m.
+    fn newton(&self, pose: &DPose3, q: &mut [f64]) -> f64 {
+        let count = self.chain.len();
+        let mut links = [DPose3::IDENTITY; MAX_JOINTS];
+        let links = &mut links[..count];
+        link_poses(self.chain, self.world_from_base, q, links);
+        let tip = links.last().copied().unwrap_or(self.world_from_base) * self.chain.tip_from_last;
+        let jacobian = jacobian_at(self.chain, links, tip.translation);
+        let shift = pose.translation - tip.translation;
+        let turn = rotation_vector(pose.rotation * tip.rotation.inverse());
+        // A five-axis arm cannot choose the spin about the tool's axis, and need not.
+        let axes: &[DVec3] = if count < 6 {
+            &[pose.rotation * DVec3::X, pose.rotation * DVec3::Y]
+        } else {
+            &[DVec3::X, DVec3::Y, DVec3::Z]
+        };
+        let rows = 3 + axes.len();
+        let mut task = DMatrix::zeros(rows, count);
+        let mut error = DVector::zeros(rows);
+        for (row, value) in shift.to_array().into_iter().enumerate() {
+            error[row] = value;
+        }
+        for (row, axis) in axes.iter().enumerate() {
+            error[3 + row] = axis.dot(turn);
+        }
+        for column in 0..count {
+            for row in 0..3 {
+                task[(row, column)] = jacobian[(row, column)];
+            }
+            let angular = DVec3::new(jacobian[(3, column)], jacobian[(4, column)], jacobian[(5, column)]);
+            for (row, axis) in axes.iter().enumerate() {
+                task[(3 + row, column)] = axis.dot(angular);
+            }
+        }
+        let mut square = &task * task.transpose();
+        for row in 0..rows {
+            square[(row, row)] += 1e-12;
+        }
+        if let Some(factor) = square.cholesky() {
+            let step = task.transpose() * factor.solve(&error);
+            // A long step would leave the posture; the pose is then not near enough to follow.
+            let scale = (0.3 / step.amax().max(1e-300)).min(1.0);
+            for (angle, change) in q.iter_mut().zip(step.iter()) {
+                *angle += scale * change;
+            }
+        }
+        error.norm()
+    }
+
+    fn over_limit(&self, q: &[f64]) -> Option<Obstacle> {
+        self.chain.joints.iter().zip(q).find_map(|(joint, &value)| {
+            let limit = if value < joint.lower {
+                joint.lower
+            } else if value > joint.upper {
+                joint.upper
+            } else {
+                return None;
+            };
+            Some(Obstacle::Position { axis: joint.name.clone(), value, limit })
+        })
+    }
+
+    fn options(&self, seed: u64) -> IkOptions {
+        let orientation = if self.chain.len() < 6 { TipOrientation::FreeAboutZ } else { TipOrientation::Full };
+        IkOptions { orientation, seed, ..IkOptions::default() }
+    }
+
+    /// Why a pose is not reached.
+    fn explain(&self, pose: &DPose3, start: &[f64]) -> Obstacle {
+        match solve(self.chain, self.world_from_base, pose, start, &self.options(1)) {
+            Ok(_) => {
+                let value = self.singularity(start);
+                Obstacle::Singular { value, limit: super::check::SINGULAR_LIMIT, axis: self.weakest_axis(start) }
+            }
+            Err(failure) => Obstacle::OutOfReach {
+                distance: failure.position_error,
+                axis: failure.axis.map(|axis| (axis.name, axis.position, axis.limit)),
+            },
+        }
+    }
+
+    /// The axis that moves most along the direction in which the arm is weakest.
+    pub fn weakest_axis(&self, q: &[f64]) -> String {
+        let count = self.chain.len();
+        let mut links = [DPose3::IDENTITY; MAX_JOINTS];
+        let links = &mut links[..count];
+        link_poses(self.chain, self.world_from_base, q, links);
+        let tip = tip_pose(self.chain, self.world_from_base, q);
+        let jacobian = jacobian_at(self.chain, links, tip.translation);
+        let svd = DMatrix::from_fn(6, count, |row, column| jacobian[(row, column)]).svd(false, true);
+        let (smallest, _) = svd.singular_values.argmin();
+        let row = svd.v_t.map(|v_t| v_t.row(smallest).iter().map(|x| x.abs()).collect::<Vec<f64>>());
+        let most = row.and_then(|row| (0..count).max_by(|&a, &b| row[a].total_cmp(&row[b])));
+        most.map_or_else(String::new, |joint| self.chain.joints[joint].name.clone())
+    }
+
+    /// How comfortable joint angles are, 0 to 1 for the worst of: distance from singularity, from position limits, from torque limits under gravity
+    /// and `tip_force` [N, world]; negative below the floor.
+    fn comfort(&self, q: &[f64], tip_force: DVec3) -> f64 {
+        let mut links = [DPose3::IDENTITY; MAX_JOINTS];
+        let count = self.chain.len();
+        let links = &mut links[..count];
+        link_poses(self.chain, self.world_from_base, q, links);
+        let tip = tip_pose(self.chain, self.world_from_base, q);
+        let jacobian = jacobian_at(self.chain, links, tip.translation);
+        let mut comfort = (self.singularity(q) / 0.15).min(1.0);
+        let mut torques = [0.0; MAX_JOINTS];
+        gravity_torques(self.chain, self.world_from_base.rotation, self.gravity, q, &mut torques[..count]);
+        for (index, joint) in self.chain.joints.iter().enumerate() {
+            let margin = (q[index] - joint.lower).min(joint.upper - q[index]);
+            let push = DVec3::new(jacobian[(0, index)], jacobian[(1, index)], jacobian[(2, index)]).dot(tip_force);
+            let spare = 1.0 - (torques[index] - push).abs() / joint.effort;
+            comfort = comfort.min((margin / 0.5).min(1.0)).min((spare / 0.3).min(1.0));
+        }
+        let up = -self.gravity.normalize_or_zero();
+        let lowest = links
+            .iter()
+            .skip(1)
+            .map(|pose| up.dot(pose.translation - self.world_from_base.translation))
+            .fold(f64::INFINITY, f64::min);
+        if lowest < FLOOR { comfort.min(0.0) - 1.0 } else { comfort }
+    }
+
+    /// Chooses spin and posture: `poses_at` gives the coarse poses of the whole job for a spin [rad], with the force on the tip at each.
+    ///
+    /// # Errors
+    /// The best try's pose that is not reached, and why.
+    pub fn choose(
+        &self,
+        poses_at: impl Fn(f64) -> (Vec<DPose3>, Vec<DVec3>),
+        seed_posture: Option<&[f64]>,
+        seed: u64,
+    ) -> Result<(f64, Vec<f64>), (usize, Obstacle)> {
+        let spins = if self.chain.len() < 6 { 1 } else { SPINS };
+        let mut best: Option<(f64, f64, Vec<f64>)> = None;
+        let mut failure: Option<(usize, Obstacle)> = None;
+        for spin in (0..spins).map(|i| i as f64 * std::f64::consts::TAU / spins as f64) {
+            let (poses, forces) = poses_at(spin);
+            let options = self.options(seed);
+            let starts: Vec<Vec<f64>> = match seed_posture {
+                Some(posture) => solve(self.chain, self.world_from_base, &poses[0], posture, &IkOptions { random_starts: 0, ..options })
+                    .into_iter()
+                    .map(|solution| solution.q)
+                    .collect(),
+                None => distinct_solutions(self.chain, self.world_from_base, &poses[0], STARTS, &options)
+                    .into_iter()
+                    .map(|solution| solution.q)
+                    .collect(),
+            };
+            if starts.is_empty() && failure.is_none() {
+                let middle: Vec<f64> = self.chain.joints.iter().map(|joint| joint.middle().unwrap_or(0.0)).collect();
+                failure = Some((0, self.explain(&poses[0], &middle)));
+            }
+            for start in starts {
+                match self.track(&poses, &start) {
+                    Ok(angles) => {
+                        let mut worth = angles
+                            .iter()
+                            .zip(&forces)
+                            .map(|(q, &force)| self.comfort(q, force))
+                            .fold(f64::INFINITY, f64::min);
+                        if let Some(posture) = seed_posture {
+                            let far = posture.iter().zip(&start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                            worth -= 10.0 * far;
+                        }
+                        if best.as_ref().is_none_or(|b| worth > b.0 + 1e-9) {
+                            best = Some((worth, spin, start));
+                        }
+                    }
+                    Err(reached) => {
+                        if failure.as_ref().is_none_or(|f| reached.0 > f.0) {
+                            failure = Some(reached);
+                        }
+                    }
+                }
+            }
+        }
+        match (best, failure) {
+            (Some((_, spin, start)), _) => Ok((spin, start)),
+            (None, Some(failure)) => Err(failure),
+            (None, None) => Err((0, Obstacle::OutOfReach { distance: f64::NAN, axis: None })),
+        }
+    }
+}
+
+/// Axis times angle of a rotation, the shorter way round; exact for small angles, unlike glam's `to_scaled_axis`.
+fn rotation_vector(rotation: DQuat) -> DVec3 {
+    let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
+    let sine = rotation.xyz().length();
+    if sine < 1e-300 {
+        return 2.0 * rotation.xyz();
+    }
+    rotation.xyz() * (2.0 * sine.atan2(rotation.w) / sine)
+}

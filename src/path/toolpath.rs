@@ -1,0 +1,162 @@
+//! Where the tool touches the edge, and how its axis stands there.
+//!
+//! The tool follows the edge with its axis along the bisector of the two faces, or leaned from it about the edge. At a corner the touching point stays
+//! and the tool turns about it. Places along the path are measured by a length that counts the edge's own length and, at a corner, the angle turned times
+//! `CORNER_RADIUS`.
+
+use glam::{DQuat, DVec3};
+use glamx::DPose3;
+
+use super::error::PlanError;
+use crate::workpiece::EdgeCurve;
+
+/// Path length per angle turned at a corner [m/rad].
+const CORNER_RADIUS: f64 = 0.01;
+/// How far beside a corner the edge's directions are read [m].
+const BESIDE: f64 = 1e-6;
+
+/// A place on the path, in the world frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToolStation {
+    /// Length of edge behind it [m].
+    pub edge_length: f64,
+    /// Point of the edge [m].
+    pub point: DVec3,
+    /// Direction of travel along the edge.
+    pub tangent: DVec3,
+    /// Outward bisector of the two faces: the nominal contact normal.
+    pub normal: DVec3,
+    /// Axis of the tool, from the flange towards the part.
+    pub axis: DVec3,
+}
+
+/// What a stretch of the path is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stretch {
+    /// Along the edge.
+    Edge {
+        /// Length of edge at its start [m].
+        from: f64,
+        /// And at its end [m].
+        to: f64,
+    },
+    /// Turning about a corner.
+    Corner {
+        /// Before the turn.
+        before: ToolStation,
+        /// After it.
+        after: ToolStation,
+    },
+}
+
+/// A stretch with its length along the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// Path length at its start [m].
+    pub start: f64,
+    /// Its path length [m].
+    pub length: f64,
+    /// What it is.
+    pub stretch: Stretch,
+}
+
+/// The path of the tool along an edge.
+#[derive(Debug, Clone)]
+pub struct ToolPath {
+    curve: EdgeCurve,
+    world_from_part: DPose3,
+    lean: f64,
+    sections: Vec<Section>,
+}
+
+impl ToolPath {
+    /// Along all of `curve` (part frame), with the tool leaned by `lean` [rad] about the edge towards its left face.
+    ///
+    /// # Errors
+    /// A corner that turns inwards, where a ball cannot reach the edge.
+    pub fn along(curve: EdgeCurve, world_from_part: DPose3, lean: f64) -> Result<Self, PlanError> {
+        let mut path = Self { curve, world_from_part, lean, sections: Vec::new() };
+        let length = path.curve.length;
+        let mut from = 0.0;
+        let corners = path.curve.corner_stations();
+        for &corner in corners.iter().filter(|&&c| c > BESIDE && c < length - BESIDE) {
+            path.push(corner - from, Stretch::Edge { from, to: corner });
+            path.push_corner(corner)?;
+            from = corner;
+        }
+        path.push(length - from, Stretch::Edge { from, to: length });
+        Ok(path)
+    }
+
+    fn push(&mut self, length: f64, stretch: Stretch) {
+        let start = self.length();
+        self.sections.push(Section { start, length, stretch });
+    }
+
+    fn push_corner(&mut self, corner: f64) -> Result<(), PlanError> {
+        let before = self.on_edge(corner - BESIDE);
+        let mut after = self.on_edge(corner + BESIDE);
+        if after.tangent.dot(before.normal) > 0.02 {
+            return Err(PlanError::InwardCorner {
+                edge_length: corner,
+                point: before.point,
+                turn: before.tangent.angle_between(after.tangent),
+            });
+        }
+        after.point = self.world_from_part.transform_point(self.curve.at(corner).point);
+        let turned = before.axis.angle_between(after.axis).max(before.normal.angle_between(after.normal));
+        let before = ToolStation { point: after.point, edge_length: corner, ..before };
+        after.edge_length = corner;
+        self.push(CORNER_RADIUS * turned, Stretch::Corner { before, after });
+        Ok(())
+    }
+
+    /// Length of the whole path [m].
+    pub fn length(&self) -> f64 {
+        self.sections.last().map_or(0.0, |section| section.start + section.length)
+    }
+
+    /// Its sections in order.
+    pub fn sections(&self) -> &[Section] {
+        &self.sections
+    }
+
+    /// The place at a path length [m], held at the ends.
+    pub fn at(&self, place: f64) -> ToolStation {
+        let index = self.sections.partition_point(|section| section.start <= place).saturating_sub(1);
+        let section = &self.sections[index];
+        let share = ((place - section.start) / section.length).clamp(0.0, 1.0);
+        match section.stretch {
+            Stretch::Edge { from, to } => {
+                // At a corner or at the seam of a loop the directions are those of this stretch.
+                let inside = (from + share * (to - from)).clamp(from + BESIDE, to - BESIDE);
+                self.on_edge(inside)
+            }
+            Stretch::Corner { before, after } => {
+                let turn = |from: DVec3, to: DVec3| {
+                    DQuat::IDENTITY.slerp(DQuat::from_rotation_arc(from, to), share) * from
+                };
+                ToolStation {
+                    axis: turn(before.axis, after.axis),
+                    normal: turn(before.normal, after.normal),
+                    tangent: turn(before.tangent, after.tangent),
+                    ..before
+                }
+            }
+        }
+    }
+
+    fn on_edge(&self, edge_length: f64) -> ToolStation {
+        let edge = self.curve.at(edge_length);
+        let rotation = self.world_from_part.rotation;
+        let side = (edge.normal_a - edge.bisector * edge.normal_a.dot(edge.bisector)).normalize_or_zero();
+        let outward = edge.bisector * self.lean.cos() + side * self.lean.sin();
+        ToolStation {
+            edge_length,
+            point: self.world_from_part.transform_point(edge.point),
+            tangent: rotation * edge.tangent,
+            normal: rotation * edge.bisector,
+            axis: -(rotation * outward),
+        }
+    }
+}

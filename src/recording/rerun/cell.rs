@@ -1,0 +1,164 @@
+//! Draws the cell in space: bodies, edge path, contact force.
+
+use ::rerun::log::TimeColumn;
+use ::rerun::{
+    Arrows3D, Boxes3D, Color, Cylinders3D, Ellipsoids3D, FillMode, LineStrips3D, Mesh3D,
+    Quaternion, Radius, Transform3D, ViewCoordinates,
+};
+use glam::{DQuat, DVec3};
+use glamx::DPose3;
+
+use super::RerunOptions;
+use super::colours::{SKY_BLUE, force_error_colour, rerun_colour};
+use super::rrd::{RrdError, RrdWriter};
+use super::shading::shade;
+use super::timelines::Axes;
+use crate::recording::scene::{EdgePath, Scene, SceneGeometry, ScenePoses, SceneShape};
+
+/// Entity of which everything in space is a child.
+pub(super) const CELL: &str = "/cell";
+/// Entity of the edge path.
+pub(super) const EDGE_PATH: &str = "/cell/edge_path";
+/// Entity of the contact force's arrow.
+pub(super) const CONTACT_FORCE: &str = "/cell/contact_force";
+
+/// Half width of the edge path's line on the screen [points].
+const EDGE_PATH_RADIUS: f32 = 2.5;
+/// Half width of the force arrow's shaft [m].
+const ARROW_RADIUS: f32 = 0.004;
+/// Distance of the force arrow from the contact, sideways as the eye sees it [m]; at the contact
+/// itself it would be hidden in the tool.
+const ARROW_OFFSET: f64 = 0.045;
+
+/// Writes everything in space.
+pub(super) fn write_cell(
+    rrd: &mut RrdWriter,
+    scene: &Scene,
+    options: &RerunOptions,
+) -> Result<(), RrdError> {
+    rrd.add_static(CELL, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
+    let frames = Axes::of_frames(&scene.frame_times, &scene.frame_path_lengths);
+    for body in &scene.bodies {
+        let entity = format!("{CELL}/{}", body.entity);
+        match &body.world_from_body {
+            ScenePoses::Static(pose) => rrd.add_static(&entity, &transform(pose))?,
+            ScenePoses::Moving(poses) => {
+                write_motion(rrd, &entity, frames.all_columns(), poses)?;
+            }
+        }
+        for (index, shape) in body.shapes.iter().enumerate() {
+            write_shape(rrd, &format!("{entity}/part_{}", index + 1), shape)?;
+        }
+    }
+    write_edge_path(rrd, &scene.edge_path)?;
+    write_contact_force(rrd, scene, frames.all_columns(), options)
+}
+
+fn write_motion(
+    rrd: &mut RrdWriter,
+    entity: &str,
+    times: Vec<TimeColumn>,
+    poses: &[DPose3],
+) -> Result<(), RrdError> {
+    let motion = Transform3D::new()
+        .with_many_translation(poses.iter().map(|pose| triple(pose.translation)))
+        .with_many_quaternion(poses.iter().map(|pose| quaternion(pose.rotation)));
+    rrd.add_columns(entity, times, motion.columns_of_unit_batches()?)
+}
+
+fn write_shape(rrd: &mut RrdWriter, entity: &str, shape: &SceneShape) -> Result<(), RrdError> {
+    rrd.add_static(entity, &transform(&shape.body_from_shape))?;
+    let colour: Color = rerun_colour(shape.colour);
+    match &shape.geometry {
+        SceneGeometry::Box { size } => {
+            let solid = Boxes3D::from_half_sizes([triple(*size / 2.0)])
+                .with_colors([colour])
+                .with_fill_mode(FillMode::Solid);
+            rrd.add_static(entity, &solid)
+        }
+        SceneGeometry::Cylinder { radius, length } => {
+            let solid = Cylinders3D::from_lengths_and_radii([*length as f32], [*radius as f32])
+                .with_colors([colour])
+                .with_fill_mode(FillMode::Solid);
+            rrd.add_static(entity, &solid)
+        }
+        SceneGeometry::Sphere { radius } => {
+            let solid = Ellipsoids3D::from_radii([*radius as f32])
+                .with_colors([colour])
+                .with_fill_mode(FillMode::Solid);
+            rrd.add_static(entity, &solid)
+        }
+        SceneGeometry::Mesh {
+            vertices,
+            triangles,
+        } => {
+            let mesh = shade(vertices, triangles);
+            let solid = Mesh3D::new(mesh.positions)
+                .with_vertex_normals(mesh.normals)
+                .with_albedo_factor(*colour);
+            rrd.add_static(entity, &solid)
+        }
+    }
+}
+
+/// One strip per segment, so that each has its colour.
+fn write_edge_path(rrd: &mut RrdWriter, path: &EdgePath) -> Result<(), RrdError> {
+    let corners = path.points_in_world.windows(2);
+    let strips: Vec<[[f32; 3]; 2]> = corners
+        .map(|ends| [triple(ends[0]), triple(ends[1])])
+        .collect();
+    if strips.is_empty() {
+        return Ok(());
+    }
+    let errors = path.relative_force_error.iter();
+    let lines = LineStrips3D::new(strips)
+        .with_colors(errors.map(|error| rerun_colour(force_error_colour(*error))))
+        .with_radii([Radius::new_ui_points(EDGE_PATH_RADIUS)]);
+    rrd.add_static(EDGE_PATH, &lines)
+}
+
+/// The force that the workpiece takes, its tip beside the point of contact.
+fn write_contact_force(
+    rrd: &mut RrdWriter,
+    scene: &Scene,
+    times: Vec<TimeColumn>,
+    options: &RerunOptions,
+) -> Result<(), RrdError> {
+    let acts = |force: DVec3| force.length() > 0.0;
+    let arrows = &scene.contact_arrows;
+    let drawn: Vec<_> = arrows.iter().filter(|a| acts(a.force_in_world)).collect();
+    if drawn.is_empty() {
+        return Ok(());
+    }
+    let vectors: Vec<DVec3> = drawn
+        .iter()
+        .map(|arrow| arrow.force_in_world * options.arrow_metres_per_newton)
+        .collect();
+    let origins = drawn.iter().zip(&vectors).map(|(arrow, vector)| {
+        let sideways = options.eye_direction.cross(*vector).normalize_or_zero();
+        triple(arrow.point_in_world + ARROW_OFFSET * sideways - *vector)
+    });
+    let columns = Arrows3D::from_vectors(vectors.iter().map(|vector| triple(*vector)))
+        .with_origins(origins)
+        .columns(arrows.iter().map(|a| usize::from(acts(a.force_in_world))))?;
+    rrd.add_columns(CONTACT_FORCE, times, columns)?;
+    // The colour that the contact force has in its plot.
+    let look = Arrows3D::update_fields()
+        .with_colors([rerun_colour(SKY_BLUE)])
+        .with_radii([Radius::new_scene_units(ARROW_RADIUS)]);
+    rrd.add_static(CONTACT_FORCE, &look)
+}
+
+fn transform(pose: &DPose3) -> Transform3D {
+    Transform3D::new()
+        .with_translation(triple(pose.translation))
+        .with_quaternion(quaternion(pose.rotation))
+}
+
+fn triple(vector: DVec3) -> [f32; 3] {
+    vector.as_vec3().to_array()
+}
+
+fn quaternion(rotation: DQuat) -> Quaternion {
+    Quaternion::from_xyzw(rotation.as_quat().to_array())
+}

@@ -1,0 +1,315 @@
+//! Reads written files back with Rerun's own reader and looks for what was planted.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use ::rerun::external::re_tuid;
+use ::rerun::log::Chunk;
+use ::rerun::{Arrows3D, ChunkStore, ChunkStoreConfig, Scalars, StateChange, Transform3D};
+use glamx::DPose3;
+
+use super::timelines::{PATH_LENGTH, SIM_TIME};
+use super::*;
+use crate::recording::scene::{
+    ContactArrow, EdgePath, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
+};
+use crate::recording::{Channel, PhaseSpan, Unit, schema};
+
+const SAMPLES: usize = 2001;
+const FRAMES: usize = 101;
+
+/// Two seconds at 1 kHz: contact from 0.5 s on, 100 N with a ripple of 2 N, 50 mm a second.
+fn recording() -> Recording {
+    let time: Vec<f64> = (0..SAMPLES).map(|i| i as f64 * 1e-3).collect();
+    let after_contact = |value: f64, t: &f64| if *t < 0.5 { 0.0 } else { value };
+    let force = time
+        .iter()
+        .map(|t| after_contact(100.0 + 2.0 * (9.0 * t).sin(), t));
+    let path = time.iter().map(|t| after_contact(0.05 * (t - 0.5), t));
+    let channels = vec![
+        Channel::new(schema::PATH_LENGTH, Unit::Metre, path.collect()),
+        Channel::new(schema::CONTACT_FORCE, Unit::Newton, force.collect()),
+        Channel::new(schema::DESIRED_FORCE, Unit::Newton, vec![100.0; SAMPLES]),
+        Channel::new("joint_1_torque", Unit::NewtonMetre, vec![30.0; SAMPLES]),
+    ];
+    let span = |name: &str, start, end| PhaseSpan {
+        name: name.to_owned(),
+        start,
+        end,
+    };
+    let phases = vec![span("approach", 0.0, 0.5), span("follow", 0.5, 2.0)];
+    Recording::new(time, channels, phases).unwrap()
+}
+
+fn scene() -> Scene {
+    let frame_times: Vec<f64> = (0..FRAMES).map(|i| i as f64 * 0.02).collect();
+    let shape = |geometry| SceneShape {
+        body_from_shape: DPose3::from_translation(DVec3::new(0.0, 0.0, 0.25)),
+        geometry,
+        colour: [200, 120, 40, 255],
+    };
+    let poses = frame_times
+        .iter()
+        .map(|t| DPose3::from_translation(DVec3::X * *t));
+    let bodies = vec![
+        SceneBody {
+            entity: "arm/link_1".to_owned(),
+            shapes: vec![shape(SceneGeometry::Sphere { radius: 0.1 })],
+            world_from_body: ScenePoses::Moving(poses.collect()),
+        },
+        SceneBody {
+            entity: "workpiece".to_owned(),
+            shapes: vec![shape(SceneGeometry::Mesh {
+                vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+                triangles: vec![[0, 1, 2]],
+            })],
+            world_from_body: ScenePoses::Static(DPose3::IDENTITY),
+        },
+    ];
+    let arrow = |t: &f64| ContactArrow {
+        point_in_world: DVec3::Y,
+        force_in_world: if *t < 0.5 {
+            DVec3::ZERO
+        } else {
+            -100.0 * DVec3::Z
+        },
+    };
+    Scene {
+        title: "plate edge".to_owned(),
+        bodies,
+        frame_path_lengths: frame_times
+            .iter()
+            .map(|t| (0.05 * (t - 0.5)).max(0.0))
+            .collect(),
+        edge_path: EdgePath {
+            points_in_world: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0],
+            relative_force_error: vec![0.02, f64::NAN],
+        },
+        contact_arrows: frame_times.iter().map(arrow).collect(),
+        frame_times,
+        limits: SceneLimits {
+            stroke: Some([0.0, 0.05]),
+            joint_torque: vec![120.0],
+        },
+    }
+}
+
+fn options() -> RerunOptions {
+    RerunOptions {
+        summary_markdown: "| mean | 100 N |".to_owned(),
+        ..RerunOptions::default()
+    }
+}
+
+/// The recording's and the blueprint's stores of a file.
+fn read(path: &Path) -> (ChunkStore, ChunkStore) {
+    let mut file = fs::File::open(path).unwrap();
+    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut file).unwrap();
+    let mut by_kind: BTreeMap<bool, ChunkStore> = stores
+        .into_iter()
+        .map(|(id, store)| (id.is_recording(), store))
+        .collect();
+    (
+        by_kind.remove(&true).unwrap(),
+        by_kind.remove(&false).unwrap(),
+    )
+}
+
+fn chunks<'a>(store: &'a ChunkStore, entity: &str) -> Vec<&'a Chunk> {
+    store
+        .iter_physical_chunks()
+        .map(AsRef::as_ref)
+        .filter(|chunk| chunk.entity_path().to_string() == entity)
+        .collect()
+}
+
+/// The one chunk of an entity that changes with time.
+fn moving<'a>(store: &'a ChunkStore, entity: &str) -> &'a Chunk {
+    let moving: Vec<_> = chunks(store, entity)
+        .into_iter()
+        .filter(|c| !c.is_static())
+        .collect();
+    assert_eq!(moving.len(), 1, "{entity}");
+    moving[0]
+}
+
+fn times(chunk: &Chunk, timeline: &'static str) -> Vec<i64> {
+    chunk.timelines()[&timeline.into()].times_raw().to_vec()
+}
+
+fn scalars(chunk: &Chunk) -> Vec<f64> {
+    chunk
+        .iter_slices::<f64>(Scalars::descriptor_scalars().component)
+        .map(|row| row[0])
+        .collect()
+}
+
+fn written() -> (ChunkStore, ChunkStore) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("recording.rrd");
+    write_rrd(&path, &recording(), &scene(), &options()).unwrap();
+    read(&path)
+}
+
+#[test]
+fn every_sample_of_a_signal_is_there_on_both_timelines() {
+    let (data, _) = written();
+    let force = moving(&data, "/plots/force/contact_force");
+    assert_eq!(
+        scalars(force),
+        recording().values(schema::CONTACT_FORCE).unwrap()
+    );
+    let expected: Vec<i64> = (0..SAMPLES as i64).map(|i| i * 1_000_000).collect();
+    assert_eq!(times(force, SIM_TIME), expected);
+    // 0.05 m/s from 0.5 s on, seen at 0.5, 1.0 and 2.0 s.
+    let path = times(force, PATH_LENGTH);
+    assert_eq!([path[500], path[1000], path[2000]], [0, 25_000, 75_000]);
+}
+
+#[test]
+fn constants_are_two_points_in_the_units_of_the_plot() {
+    let (data, _) = written();
+    for (entity, value) in [
+        ("/plots/force/band_plus_5", 105.0),
+        ("/plots/force/band_minus_10", 90.0),
+        ("/plots/joint_torque/joint_1_torque", 25.0),
+        ("/plots/joint_torque/limit_plus", 100.0),
+    ] {
+        let chunk = moving(&data, entity);
+        assert_eq!(scalars(chunk), [value; 2], "{entity}");
+        assert_eq!(times(chunk, SIM_TIME), [0, 2_000_000_000], "{entity}");
+    }
+}
+
+#[test]
+fn bodies_move_at_frame_rate_and_the_arrow_shows_contact_only() {
+    let (data, _) = written();
+    let link = moving(&data, "/cell/arm/link_1");
+    let translations: Vec<f32> = link
+        .iter_slices::<[f32; 3]>(Transform3D::descriptor_translation().component)
+        .map(|row| row[0][0])
+        .collect();
+    assert_eq!(translations.len(), FRAMES);
+    assert!((translations[50] - 1.0).abs() < 1e-6);
+    assert!(
+        chunks(&data, "/cell/workpiece")
+            .iter()
+            .all(|chunk| chunk.is_static())
+    );
+    assert_eq!(chunks(&data, "/cell/workpiece/part_1").len(), 2);
+
+    let arrow = moving(&data, "/cell/contact_force");
+    let lengths: Vec<Vec<f32>> = arrow
+        .iter_slices::<[f32; 3]>(Arrows3D::descriptor_vectors().component)
+        .map(|row| row.iter().map(|vector| vector[2]).collect())
+        .collect();
+    assert_eq!(lengths.len(), FRAMES);
+    // No contact at 0.48 s, 100 N drawn as 0.1 m downwards at 0.5 s.
+    assert!(lengths[24].is_empty());
+    assert_eq!(lengths[25], [-0.1]);
+}
+
+#[test]
+fn phases_are_states_with_an_end() {
+    let (data, _) = written();
+    let phases = moving(&data, PHASES);
+    let names: Vec<String> = phases
+        .iter_slices::<String>(StateChange::descriptor_state().component)
+        .map(|row| row[0].to_string())
+        .collect();
+    assert_eq!(names, ["approach", "follow", ""]);
+    assert_eq!(times(phases, SIM_TIME), [0, 500_000_000, 2_000_000_000]);
+}
+
+#[test]
+fn nothing_is_on_a_clock() {
+    let (data, _) = written();
+    for chunk in data.iter_physical_chunks() {
+        for timeline in chunk.timelines().keys() {
+            assert!(
+                [SIM_TIME, PATH_LENGTH].contains(&timeline.as_str()),
+                "{timeline}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_layout_has_a_view_for_every_plot_and_one_root() {
+    let (data, layout) = written();
+    assert_eq!(data.id().application_id().as_str(), "idc-cell");
+    let entities: Vec<String> = layout
+        .iter_physical_chunks()
+        .map(|chunk| chunk.entity_path().to_string())
+        .collect();
+    let heads = |prefix: &str| {
+        let is_head = |e: &&String| e.starts_with(prefix) && e.matches('/').count() == 2;
+        entities.iter().filter(is_head).count()
+    };
+    // Cell, edge, phases, force, joint torque, summary.
+    assert_eq!(heads("/view/"), 6);
+    // The row of two columns, the left column, its lower row, the tabs.
+    assert_eq!(heads("/container/"), 5);
+    let eyes = entities.iter().filter(|e| e.ends_with("/EyeControls3D"));
+    assert_eq!(eyes.count(), 2);
+    let shared_axis = "/view/5c0dca6a-e63f-9cf7-f657-2602590474cc/TimeAxis";
+    assert!(entities.iter().any(|entity| entity == shared_axis));
+}
+
+#[test]
+fn equal_input_gives_equal_bytes_and_other_input_another_id() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, options: &RerunOptions| {
+        let path = directory.path().join(name);
+        write_rrd(&path, &recording(), &scene(), options).unwrap();
+        path
+    };
+    let [first, second] = ["a.rrd", "b.rrd"].map(|name| write(name, &options()));
+    assert!(fs::read(&first).unwrap() == fs::read(&second).unwrap());
+    let other = write("c.rrd", &RerunOptions::default());
+    assert_ne!(read(&first).0.id(), read(&other).0.id());
+}
+
+#[test]
+fn a_scene_that_does_not_fit_leaves_no_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("recording.rrd");
+    let mut scene = scene();
+    scene.contact_arrows.pop();
+    let message = write_rrd(&path, &recording(), &scene, &options())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("contact arrows is 100, expected 101"),
+        "{message}"
+    );
+    assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_directory_that_is_not_there_is_named() {
+    let path = Path::new("/nowhere/recording.rrd");
+    let message = write_rrd(path, &recording(), &scene(), &options())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.starts_with("cannot write /nowhere/recording.rrd"),
+        "{message}"
+    );
+}
+
+#[test]
+fn ids_within_a_store_differ() {
+    let (data, layout) = written();
+    for store in [&data, &layout] {
+        let mut ids: Vec<re_tuid::Tuid> = store
+            .iter_physical_chunks()
+            .map(|chunk| chunk.id().as_tuid())
+            .collect();
+        let count = ids.len();
+        ids.sort();
+        ids.dedup();
+        assert_eq!(ids.len(), count);
+    }
+}

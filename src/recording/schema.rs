@@ -1,0 +1,276 @@
+//! The signals that the simulated cell records: names, units and meanings.
+//!
+//! This is the one list. A real recording that uses the same names is drawn and compared the same
+//! way. In files a column is `<name>_<unit>` ([`super::unit::column_name`]).
+
+use super::Unit;
+
+/// Sample time; the recording's own column.
+pub const TIME: &str = "time";
+/// Name of the phase at each sample; the recording's own column, text.
+pub const PHASE: &str = "phase";
+/// Length of planned path behind the tool.
+pub const PATH_LENGTH: &str = "path_length";
+/// Force on the workpiece along the contact normal.
+pub const CONTACT_FORCE: &str = "contact_force";
+/// World x component of the force on the workpiece.
+pub const CONTACT_FORCE_X: &str = "contact_force_x";
+/// World y component of the force on the workpiece.
+pub const CONTACT_FORCE_Y: &str = "contact_force_y";
+/// World z component of the force on the workpiece.
+pub const CONTACT_FORCE_Z: &str = "contact_force_z";
+/// Size of the contact force's tangential part.
+pub const FRICTION_FORCE: &str = "friction_force";
+/// Contact force that the scenario asks for.
+pub const DESIRED_FORCE: &str = "desired_force";
+/// Force of air and seals on the device's moving part.
+pub const DEVICE_FORCE: &str = "device_force";
+/// Position of the device's slide.
+pub const STROKE: &str = "stroke";
+/// Velocity of the device's slide.
+pub const STROKE_VELOCITY: &str = "stroke_velocity";
+/// Pressure in the chamber that extends the slide.
+pub const CHAMBER_1_PRESSURE: &str = "chamber_1_pressure";
+/// Pressure in the chamber that retracts the slide.
+pub const CHAMBER_2_PRESSURE: &str = "chamber_2_pressure";
+/// Pressure at the regulator's outlet.
+pub const REGULATOR_PRESSURE: &str = "regulator_pressure";
+/// Pressure that the regulator is told to hold.
+pub const SET_PRESSURE: &str = "set_pressure";
+/// Air in chamber 1.
+pub const CHAMBER_1_MASS: &str = "chamber_1_mass";
+/// Air in chamber 2.
+pub const CHAMBER_2_MASS: &str = "chamber_2_mass";
+/// Air that has entered the chambers.
+pub const MASS_ENTERED: &str = "mass_entered";
+/// Air that has left the chambers.
+pub const MASS_LEFT: &str = "mass_left";
+/// Lateral distance of the tool from the planned path.
+pub const PATH_ERROR: &str = "path_error";
+/// Distance of the tool from the planned path along the contact normal.
+pub const PATH_ERROR_NORMAL: &str = "path_error_normal";
+/// Speed of the tool along the edge.
+pub const FEED: &str = "feed";
+
+/// The plot in which a signal is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum PlotGroup {
+    /// Contact force with its desired value and band.
+    Force,
+    /// Slide position with its end stops.
+    Stroke,
+    /// Pressures.
+    Pressure,
+    /// Distance from the planned path.
+    PathError,
+    /// Joint torques as a share of their limits.
+    JointTorque,
+    /// The force on the slide and the components of the contact force.
+    ForceBalance,
+}
+
+/// One signal of the cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SignalDefinition {
+    /// Name without unit.
+    pub quantity: &'static str,
+    /// Unit.
+    pub unit: Unit,
+    /// The plot it is drawn in; `None` if it is stored only.
+    pub group: Option<PlotGroup>,
+    /// Name in the plot's legend.
+    pub label: &'static str,
+    /// What it is, in one sentence.
+    pub meaning: &'static str,
+}
+
+const fn signal(
+    quantity: &'static str,
+    unit: Unit,
+    group: Option<PlotGroup>,
+    label: &'static str,
+    meaning: &'static str,
+) -> SignalDefinition {
+    SignalDefinition {
+        quantity,
+        unit,
+        group,
+        label,
+        meaning,
+    }
+}
+
+/// Signals that exist once, in the order of the table's columns.
+#[rustfmt::skip]
+pub const SIGNALS: [SignalDefinition; 21] = [
+    signal(PATH_LENGTH, Unit::Metre, None, "path length",
+        "Length of planned path behind the tool."),
+    signal(CONTACT_FORCE, Unit::Newton, Some(PlotGroup::Force), "contact force",
+        "Force of the tool on the workpiece along the contact normal, positive when pressing."),
+    signal(DESIRED_FORCE, Unit::Newton, Some(PlotGroup::Force), "desired force",
+        "Contact force that the scenario asks for."),
+    signal(CONTACT_FORCE_X, Unit::Newton, Some(PlotGroup::ForceBalance), "contact force x",
+        "World x component of the force of the tool on the workpiece, friction included."),
+    signal(CONTACT_FORCE_Y, Unit::Newton, Some(PlotGroup::ForceBalance), "contact force y",
+        "World y component of the force of the tool on the workpiece, friction included."),
+    signal(CONTACT_FORCE_Z, Unit::Newton, Some(PlotGroup::ForceBalance), "contact force z",
+        "World z component of the force of the tool on the workpiece, friction included."),
+    signal(FRICTION_FORCE, Unit::Newton, Some(PlotGroup::ForceBalance), "friction force",
+        "Size of the part of the contact force that lies across the contact normal."),
+    signal(DEVICE_FORCE, Unit::Newton, Some(PlotGroup::ForceBalance), "device force",
+        "Force of air and seals on the device's moving part, positive along extension."),
+    signal(STROKE, Unit::Metre, Some(PlotGroup::Stroke), "stroke",
+        "Position of the slide, zero when retracted, positive along extension."),
+    signal(STROKE_VELOCITY, Unit::MetrePerSecond, None, "stroke velocity",
+        "Velocity of the slide, positive along extension."),
+    signal(CHAMBER_1_PRESSURE, Unit::Pascal, Some(PlotGroup::Pressure), "chamber 1",
+        "Absolute pressure in the chamber that extends the slide."),
+    signal(CHAMBER_2_PRESSURE, Unit::Pascal, Some(PlotGroup::Pressure), "chamber 2",
+        "Absolute pressure in the chamber that retracts the slide."),
+    signal(REGULATOR_PRESSURE, Unit::Pascal, Some(PlotGroup::Pressure), "regulator",
+        "Absolute pressure at the regulator's outlet."),
+    signal(SET_PRESSURE, Unit::Pascal, Some(PlotGroup::Pressure), "set",
+        "Absolute pressure that the regulator is told to hold."),
+    signal(CHAMBER_1_MASS, Unit::Kilogram, None, "air in chamber 1",
+        "Mass of air in chamber 1."),
+    signal(CHAMBER_2_MASS, Unit::Kilogram, None, "air in chamber 2",
+        "Mass of air in chamber 2."),
+    signal(MASS_ENTERED, Unit::Kilogram, None, "air entered",
+        "Mass of air that has entered the chambers since the start."),
+    signal(MASS_LEFT, Unit::Kilogram, None, "air left",
+        "Mass of air that has left the chambers since the start."),
+    signal(PATH_ERROR, Unit::Metre, Some(PlotGroup::PathError), "lateral",
+        "Distance of the tool tip from the planned path, across the path and the contact normal."),
+    signal(PATH_ERROR_NORMAL, Unit::Metre, Some(PlotGroup::PathError), "along the normal",
+        "Distance of the tool tip from the planned path along the contact normal."),
+    signal(FEED, Unit::MetrePerSecond, None, "feed",
+        "Speed of the tool along the edge."),
+];
+
+/// A signal that every joint has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointSignal {
+    /// Measured angle.
+    Position,
+    /// Angle that the servo is told to hold.
+    Reference,
+    /// Measured angular velocity.
+    Velocity,
+    /// Torque of the drive.
+    Torque,
+}
+
+impl JointSignal {
+    /// Every joint signal, in the order of the table's columns.
+    pub const ALL: [Self; 4] = [
+        Self::Position,
+        Self::Reference,
+        Self::Velocity,
+        Self::Torque,
+    ];
+
+    /// What stands behind the joint's number.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Reference => "reference",
+            Self::Velocity => "velocity",
+            Self::Torque => "torque",
+        }
+    }
+
+    /// Its unit.
+    #[must_use]
+    pub const fn unit(self) -> Unit {
+        match self {
+            Self::Position | Self::Reference => Unit::Radian,
+            Self::Velocity => Unit::RadianPerSecond,
+            Self::Torque => Unit::NewtonMetre,
+        }
+    }
+
+    /// What it is, in one sentence.
+    #[must_use]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Position => "Angle of the joint.",
+            Self::Reference => "Angle that the joint's servo is told to hold.",
+            Self::Velocity => "Angular velocity of the joint.",
+            Self::Torque => "Torque of the joint's drive, gravity feed-forward included.",
+        }
+    }
+}
+
+/// Name of a joint's signal; joints are counted from 1, base first: `joint_1_torque`.
+#[must_use]
+pub fn joint_quantity(joint: usize, signal: JointSignal) -> String {
+    format!("joint_{joint}_{}", signal.name())
+}
+
+/// The joint (from 1) and signal of a name made by [`joint_quantity`].
+#[must_use]
+pub fn parse_joint_quantity(quantity: &str) -> Option<(usize, JointSignal)> {
+    let (number, name) = quantity.strip_prefix("joint_")?.split_once('_')?;
+    let joint: usize = number.parse().ok()?;
+    let signal = JointSignal::ALL.into_iter().find(|s| s.name() == name)?;
+    (joint_quantity(joint, signal) == quantity && joint > 0).then_some((joint, signal))
+}
+
+/// The definition of a signal that exists once.
+#[must_use]
+pub fn definition(quantity: &str) -> Option<&'static SignalDefinition> {
+    SIGNALS.iter().find(|signal| signal.quantity == quantity)
+}
+
+/// What a quantity is, in one sentence; `None` if the list does not know it.
+#[must_use]
+pub fn meaning(quantity: &str) -> Option<&'static str> {
+    match quantity {
+        TIME => Some("Time since the start of the run."),
+        PHASE => Some("Name of the phase of the job."),
+        _ => definition(quantity)
+            .map(|signal| signal.meaning)
+            .or_else(|| parse_joint_quantity(quantity).map(|(_, signal)| signal.meaning())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::{Channel, Recording};
+
+    #[test]
+    fn the_list_makes_a_recording() {
+        let joint = (1..=7).flat_map(|joint| {
+            JointSignal::ALL.map(|s| Channel::new(joint_quantity(joint, s), s.unit(), vec![0.0]))
+        });
+        let channels = SIGNALS
+            .iter()
+            .map(|s| Channel::new(s.quantity, s.unit, vec![0.0]))
+            .chain(joint)
+            .collect();
+        let recording = Recording::new(vec![0.0], channels, vec![]).unwrap();
+        for channel in recording.channels() {
+            assert!(meaning(&channel.quantity).is_some(), "{}", channel.quantity);
+        }
+    }
+
+    #[test]
+    fn joint_names_read_back() {
+        assert_eq!(joint_quantity(3, JointSignal::Torque), "joint_3_torque");
+        assert_eq!(
+            parse_joint_quantity("joint_12_reference"),
+            Some((12, JointSignal::Reference))
+        );
+        for other in [
+            "joint_0_torque",
+            "joint_01_torque",
+            "joint_1_power",
+            "joint_1",
+            "stroke",
+        ] {
+            assert_eq!(parse_joint_quantity(other), None, "{other}");
+        }
+    }
+}

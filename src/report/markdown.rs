@@ -1,0 +1,126 @@
+//! The results as Markdown, for the text panel of a recording.
+//!
+//! Timing is left out, so that the same scenario gives the same text.
+
+use super::number::{UNDEFINED, optional};
+use super::rows::{DIGITS, Row, comparison, rows, tally, tenth_decimals};
+use crate::metrics::{ForceTenth, Summary, Verdict};
+
+/// The results of a run as Markdown, with the scenario's expectations first.
+#[must_use]
+pub fn markdown(title: &str, summary: &Summary, verdicts: &[Verdict]) -> String {
+    let untimed = Summary {
+        timing: None,
+        ..summary.clone()
+    };
+    let mut out = format!("# {}\n", escape(title));
+    if !verdicts.is_empty() {
+        out.push_str(&format!("\n## {}\n\n", tally(verdicts)));
+        expectations(&mut out, verdicts);
+    }
+    let rows = rows(&untimed);
+    for part in rows.chunk_by(|before, after| before.part == after.part) {
+        results(&mut out, part);
+    }
+    tenths(&mut out, &untimed.force_by_tenth);
+    out
+}
+
+/// Text in which nothing is taken for Markdown or for the end of a cell.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        if letter.is_control() {
+            out.push(' ');
+            continue;
+        }
+        if "\\`*_[]<>|#~$&!".contains(letter) {
+            out.push('\\');
+        }
+        out.push(letter);
+    }
+    out
+}
+
+fn row(out: &mut String, cells: &[&str]) {
+    out.push_str(&format!("| {} |\n", cells.join(" | ")));
+}
+
+fn results(out: &mut String, part: &[Row]) {
+    let Some(first) = part.first() else {
+        return;
+    };
+    out.push_str(&format!("\n## {}\n\n", first.part));
+    row(out, &["", "", "", ""]);
+    row(out, &["---", "---:", "---", "---"]);
+    for entry in part {
+        if entry.metric.name == "real_time_factor" {
+            continue;
+        }
+        let unit = if entry.metric.unit == "1" { "" } else { entry.metric.unit };
+        let value = optional(entry.value, DIGITS);
+        row(out, &[&escape(entry.metric.label), &value, unit, &escape(&entry.note)]);
+    }
+}
+
+fn tenths(out: &mut String, tenths: &[ForceTenth]) {
+    if tenths.is_empty() {
+        return;
+    }
+    let decimals = tenth_decimals(tenths);
+    let number = |value: Option<f64>| match value {
+        Some(value) => format!("{value:.decimals$}"),
+        None => UNDEFINED.to_owned(),
+    };
+    out.push_str("\n## Force along the path\n\n");
+    row(out, &["from mm", "to mm", "mean N", "standard deviation N"]);
+    row(out, &["---:", "---:", "---:", "---:"]);
+    for tenth in tenths {
+        let cells = [
+            format!("{:.0}", tenth.from_mm),
+            format!("{:.0}", tenth.to_mm),
+            number(tenth.force_mean_n),
+            number(tenth.force_standard_deviation_n),
+        ];
+        row(out, &cells.each_ref().map(String::as_str));
+    }
+}
+
+fn expectations(out: &mut String, verdicts: &[Verdict]) {
+    row(out, &["", "expected", "value", "bound"]);
+    row(out, &["---", "---", "---:", "---"]);
+    for verdict in verdicts {
+        let word = if verdict.kept { "ok" } else { "**OUTSIDE**" };
+        let (value, bound) = comparison(verdict);
+        row(out, &[word, &escape(verdict.metric), &value, &bound]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_summaries::{judged, nominal};
+    use super::*;
+
+    #[test]
+    fn tables_are_rectangular_whatever_the_names() {
+        let mut summary = nominal();
+        summary.most_loaded_joint = Some("a|b\n*c*".into());
+        let out = markdown("edge | 1\n# two", &summary, &judged(&summary));
+        assert!(out.starts_with("# edge \\| 1 \\# two\n"), "{out}");
+        let cells = |line: &str| line.replace("\\|", "").matches('|').count();
+        for line in out.lines().filter(|line| line.starts_with('|')) {
+            assert_eq!(cells(line), 5, "{line}");
+        }
+        assert!(out.contains("a\\|b \\*c\\*"));
+        assert!(out.contains("| **OUTSIDE** | stroke\\_margin\\_mm |"), "{out}");
+    }
+
+    #[test]
+    fn it_does_not_depend_on_the_wall_clock() {
+        let timed = nominal();
+        let mut untimed = nominal();
+        untimed.timing = None;
+        assert!(timed.timing.is_some());
+        assert_eq!(markdown("x", &timed, &[]), markdown("x", &untimed, &[]));
+    }
+}

@@ -1,0 +1,185 @@
+//! The table that a user sees after a run, in at most 80 columns.
+
+use std::fmt::Write;
+
+use super::number::{UNDEFINED, optional};
+use super::rows::{DIGITS, Row, comparison, rows, tally, tenth_decimals};
+use crate::metrics::{ForceTenth, Summary, Verdict};
+
+const WIDTH: usize = 80;
+
+/// How the table is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Style {
+    /// Plain ASCII, for files and pipes.
+    #[default]
+    Plain,
+    /// With ANSI colours, for a terminal.
+    Coloured,
+}
+
+impl Style {
+    fn paint(self, code: &str, text: &str) -> String {
+        match self {
+            Self::Plain => text.to_owned(),
+            Self::Coloured => format!("\x1b[{code}m{text}\x1b[0m"),
+        }
+    }
+
+    fn heading(self, text: &str) -> String {
+        self.paint("1", text)
+    }
+
+    fn faint(self, text: &str) -> String {
+        self.paint("2", text)
+    }
+
+    fn verdict(self, kept: bool, text: &str) -> String {
+        self.paint(if kept { "32" } else { "1;31" }, text)
+    }
+}
+
+/// The results of a run as a table, with the scenario's expectations below it.
+#[must_use]
+pub fn text(title: &str, summary: &Summary, verdicts: &[Verdict], style: Style) -> String {
+    let rule = style.faint(&"-".repeat(WIDTH));
+    let mut out = format!("{}\n{rule}\n", style.heading(title));
+    let rows = rows(summary);
+    let mut part = "";
+    for row in &rows {
+        let opening = if row.part == part { "" } else { row.part };
+        part = row.part;
+        line(&mut out, opening, row, style);
+    }
+    tenths(&mut out, &summary.force_by_tenth, style);
+    if rows.iter().any(|row| row.value.is_none()) {
+        let note = format!("{UNDEFINED} not determined by this run; see docs/METRICS.md");
+        push(&mut out, &style.faint(&note));
+    }
+    if !verdicts.is_empty() {
+        push(&mut out, &rule);
+        expectations(&mut out, verdicts, style);
+    }
+    out
+}
+
+fn push(out: &mut String, line: &str) {
+    out.push_str(line.trim_end());
+    out.push('\n');
+}
+
+fn line(out: &mut String, opening: &str, row: &Row, style: Style) {
+    let value = optional(row.value, DIGITS);
+    let unit = if row.metric.unit == "1" { "" } else { row.metric.unit };
+    let text = format!(
+        "{} {:<24} {value:>9} {unit:<4}  {}",
+        style.heading(&format!("{opening:<7}")),
+        row.metric.label,
+        style.faint(&row.note),
+    );
+    push(out, &text);
+}
+
+fn tenths(out: &mut String, tenths: &[ForceTenth], style: Style) {
+    if tenths.is_empty() {
+        return;
+    }
+    let decimals = tenth_decimals(tenths);
+    let number = |value: Option<f64>| match value {
+        Some(value) => format!("{value:>7.decimals$}"),
+        None => format!("{UNDEFINED:>7}"),
+    };
+    let cells = |cell: &dyn Fn(&ForceTenth) -> String| tenths.iter().map(cell).collect::<String>();
+    let ends = cells(&|tenth| format!("{:>7.0}", tenth.to_mm));
+    let means = cells(&|tenth| number(tenth.force_mean_n));
+    let spreads = cells(&|tenth| number(tenth.force_standard_deviation_n));
+    let name = |name: &str| style.heading(&format!("{name:<7}"));
+    push(out, &format!("{}{}", name("To mm"), style.faint(&ends)));
+    push(out, &format!("{}{means}", name("Mean N")));
+    push(out, &format!("{}{spreads}", name("SD N")));
+}
+
+fn expectations(out: &mut String, verdicts: &[Verdict], style: Style) {
+    let lines: Vec<(&Verdict, String, String)> = verdicts
+        .iter()
+        .map(|verdict| {
+            let (value, bound) = comparison(verdict);
+            (verdict, value, bound)
+        })
+        .collect();
+    let name_width = widest(verdicts.iter().map(|verdict| verdict.metric));
+    let value_width = widest(lines.iter().map(|(_, value, _)| value.as_str()));
+    for (verdict, value, bound) in &lines {
+        let word = if verdict.kept { "ok" } else { "OUTSIDE" };
+        let word = style.verdict(verdict.kept, &format!("{word:<7}"));
+        let name = verdict.metric;
+        let text = format!("{word} {name:<name_width$} {value:>value_width$}  {bound}");
+        push(out, &text);
+    }
+    let kept = verdicts.iter().all(|verdict| verdict.kept);
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "{}", style.verdict(kept, &tally(verdicts)));
+}
+
+fn widest<'a>(texts: impl Iterator<Item = &'a str>) -> usize {
+    texts.map(str::len).max().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_summaries::{judged, nominal};
+    use super::*;
+
+    #[test]
+    fn it_fits_a_terminal_and_is_ascii() {
+        for summary in [nominal(), Summary::default()] {
+            let out = text("plate edge", &summary, &judged(&summary), Style::Plain);
+            for line in out.lines() {
+                assert!(line.len() <= WIDTH, "{} columns: {line}", line.len());
+                assert!(line.bytes().all(|byte| (b' '..=b'~').contains(&byte)), "{line}");
+                assert_eq!(line, line.trim_end());
+            }
+        }
+    }
+
+    #[test]
+    fn colours_change_nothing_but_the_colours() {
+        let summary = nominal();
+        let verdicts = judged(&summary);
+        let mut coloured = text("plate edge", &summary, &verdicts, Style::Coloured);
+        for code in ["1", "2", "32", "1;31", "0"] {
+            coloured = coloured.replace(&format!("\x1b[{code}m"), "");
+        }
+        let bare = |text: &str| text.lines().map(|l| l.trim_end().to_owned()).collect::<Vec<_>>();
+        let plain = text("plate edge", &summary, &verdicts, Style::Plain);
+        assert_eq!(bare(&coloured), bare(&plain));
+    }
+
+    #[test]
+    fn numbers_stand_in_their_rows() {
+        let summary = nominal();
+        let out = text("plate edge", &summary, &judged(&summary), Style::Plain);
+        let line = |part: &str| out.lines().find(|line| line.contains(part)).unwrap_or_default();
+        for (label, parts) in [
+            ("Force   mean", ["320.1 N", "desired 320.0 N"]),
+            ("coefficient of variation  ", ["0.3124 %", "standard deviation / mean"]),
+            ("joint torque, largest", ["61.20 %", "joint_2"]),
+            ("real-time factor", ["25.00", "computed in 0.480 s"]),
+            ("OUTSIDE", ["stroke_margin_mm", "at least 22"]),
+            ("1 of 2", ["expectations", "kept"]),
+        ] {
+            for part in parts {
+                assert!(line(label).contains(part), "{part} in: {}", line(label));
+            }
+        }
+        assert!(!out.contains("not determined"));
+    }
+
+    #[test]
+    fn what_is_undefined_is_a_dash_and_explained() {
+        let out = text("plate edge", &Summary::default(), &[], Style::Plain);
+        let peak = out.lines().find(|line| line.contains("peak")).unwrap_or_default();
+        assert!(peak.contains(" - N"), "{peak}");
+        assert!(out.contains("- not determined by this run"));
+    }
+}

@@ -1,0 +1,240 @@
+//! A TOML file with the place of each of its keys, so that every message can say `file:line:column`.
+
+use std::ops::Range;
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::de::{DeTable, DeValue};
+
+use super::error::{Place, ScenarioError};
+use super::suggestion::{Sections, advice};
+use super::units::Unit;
+
+/// A file that is valid TOML.
+#[derive(Debug)]
+pub(super) struct Document<'a> {
+    file: &'a Path,
+    text: &'a str,
+    /// Every key and list element, tables before what they hold.
+    entries: Vec<Entry>,
+}
+
+/// A key or list element.
+#[derive(Debug)]
+struct Entry {
+    /// Dotted key; list elements as in `arm.limit_overrides[0]`.
+    key: String,
+    key_span: Range<usize>,
+    value_span: Range<usize>,
+}
+
+/// Reads a file as text.
+pub(super) fn read_text(file: &Path) -> Result<String, ScenarioError> {
+    std::fs::read_to_string(file).map_err(|source| match source.kind() {
+        std::io::ErrorKind::NotFound => ScenarioError::NoSuchFile {
+            file: file.to_owned(),
+        },
+        _ => ScenarioError::Read {
+            file: file.to_owned(),
+            source,
+        },
+    })
+}
+
+impl<'a> Document<'a> {
+    /// Checks that a file's text is TOML of schema version `schema`, and notes where its keys stand.
+    pub fn new(file: &'a Path, text: &'a str, schema: u32) -> Result<Self, ScenarioError> {
+        let mut document = Self {
+            file,
+            text,
+            entries: Vec::new(),
+        };
+        let table = DeTable::parse(text).map_err(|error| ScenarioError::Syntax {
+            place: document.place_at(error.span().map_or(text.len(), |span| span.start)),
+            reason: error.message().to_owned(),
+        })?;
+        note_table("", table.get_ref(), &mut document.entries);
+        // Before anything else: a file of a later version is full of unknown keys.
+        if let Some(value) = table.get_ref().get("schema")
+            && let DeValue::Integer(integer) = value.get_ref()
+            && let Ok(found) = i64::from_str_radix(integer.as_str(), integer.radix())
+            && found != i64::from(schema)
+        {
+            return Err(ScenarioError::Schema {
+                place: document.place_at(value.span().start),
+                found,
+                expected: schema,
+            });
+        }
+        Ok(document)
+    }
+
+    /// Fills a type from the file; `sections` are the tables that the file may have.
+    pub fn parse<T: Deserialize<'a>>(&self, sections: &Sections) -> Result<T, ScenarioError> {
+        toml::from_str(self.text).map_err(|error| self.explain(&error, sections))
+    }
+
+    /// Folder that relative paths in the file start from.
+    pub fn folder(&self) -> &'a Path {
+        self.file.parent().unwrap_or(Path::new(""))
+    }
+
+    /// Place of a key, or of the file alone for a key that it leaves out.
+    pub fn place(&self, key: &str) -> Place {
+        match self.entries.iter().find(|entry| entry.key == key) {
+            Some(entry) => self.place_at(entry.key_span.start),
+            None => Place {
+                file: self.file.to_owned(),
+                position: None,
+            },
+        }
+    }
+
+    /// Lines and columns count from 1, columns in characters.
+    fn place_at(&self, offset: usize) -> Place {
+        let before = &self.text[..self.text.floor_char_boundary(offset)];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Place {
+            file: self.file.to_owned(),
+            position: Some((
+                before.matches('\n').count() + 1,
+                before[line_start..].chars().count() + 1,
+            )),
+        }
+    }
+
+    /// Turns a message of serde into one of ours. Its wording is serde's own and is pinned by the tests of this module's messages.
+    fn explain(&self, error: &toml::de::Error, sections: &Sections) -> ScenarioError {
+        let message = error.message();
+        let span = error.span().unwrap_or(0..0);
+        let place = self.place_at(span.start);
+        if message.starts_with("unknown field `") {
+            let key = self
+                .entries
+                .iter()
+                .find(|entry| entry.key_span == span)
+                .map_or(self.text[span].to_owned(), |entry| entry.key.clone());
+            let advice = advice(&key, sections);
+            return ScenarioError::UnknownKey { place, key, advice };
+        }
+        let owner = self.owner(&span);
+        if let Some(field) = message.strip_prefix("missing field `") {
+            let field = field.trim_end_matches('`');
+            let key = join(&owner, field);
+            let expected = expected_of_missing(&key, field, sections);
+            return ScenarioError::MissingKey {
+                place,
+                key,
+                expected,
+            };
+        }
+        let (_, expected) = message.rsplit_once("expected ").unwrap_or(("", message));
+        ScenarioError::Value {
+            place,
+            expected: expected_value(expected, &owner),
+            key: owner,
+            found: excerpt(&self.text[span]),
+        }
+    }
+
+    /// Key whose value stands at a span: that very value, else the smallest around it.
+    fn owner(&self, span: &Range<usize>) -> String {
+        let exact = self.entries.iter().rfind(|entry| entry.value_span == *span);
+        let around = || {
+            self.entries
+                .iter()
+                .filter(|e| e.value_span.start <= span.start && span.end <= e.value_span.end)
+                .min_by_key(|entry| entry.value_span.len())
+        };
+        // The whole document has an empty span at its start.
+        let found = exact.or_else(|| if span.is_empty() { None } else { around() });
+        found.map_or_else(String::new, |entry| entry.key.clone())
+    }
+}
+
+/// `table.key`, or `key` at top level.
+pub(super) fn join(table: &str, key: &str) -> String {
+    if table.is_empty() {
+        key.to_owned()
+    } else {
+        format!("{table}.{key}")
+    }
+}
+
+fn note_table(path: &str, table: &DeTable<'_>, entries: &mut Vec<Entry>) {
+    // The parser's map is ordered by key, so the order is the same each time.
+    for (key, value) in table {
+        note_value(join(path, key.get_ref()), key.span(), value, entries);
+    }
+}
+
+fn note_value(
+    key: String,
+    key_span: Range<usize>,
+    value: &toml::Spanned<DeValue<'_>>,
+    entries: &mut Vec<Entry>,
+) {
+    entries.push(Entry {
+        key: key.clone(),
+        key_span,
+        value_span: value.span(),
+    });
+    match value.get_ref() {
+        DeValue::Table(table) => note_table(&key, table, entries),
+        DeValue::Array(elements) => {
+            for (index, element) in elements.iter().enumerate() {
+                note_value(format!("{key}[{index}]"), element.span(), element, entries);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn expected_of_missing(key: &str, field: &str, sections: &Sections) -> String {
+    let unit = Unit::of_key(field);
+    if sections.iter().any(|(section, _)| *section == key) {
+        format!("a table [{key}]")
+    } else if unit.is_one() {
+        "it to be given, it has no default".to_owned()
+    } else {
+        format!(
+            "it to be given in {}, it has no default",
+            unit.symbol
+        )
+    }
+}
+
+/// What serde expected, in words for people.
+fn expected_value(expected: &str, key: &str) -> String {
+    let number = |kind: &str| {
+        let unit = Unit::of_key(key.split('[').next().unwrap_or(key));
+        if unit.is_one() {
+            kind.to_owned()
+        } else {
+            format!("{kind}, in {}", unit.symbol)
+        }
+    };
+    match expected {
+        "f64" => number("a number"),
+        "u32" | "u64" | "usize" => number("a whole number, 0 or more"),
+        "a boolean" => "true or false".to_owned(),
+        "a string" | "path string" => "a text in quotes".to_owned(),
+        "a sequence" if key.ends_with("limit_overrides") => "tables [[arm.limit_overrides]]".to_owned(),
+        "a sequence" => number("a list of numbers"),
+        "a map" => "a table".to_owned(),
+        other if other.starts_with("struct ") => "a table".to_owned(),
+        other if other.starts_with('`') => format!("one of {}", other.replace(" or ", ", ")),
+        other => other.to_owned(),
+    }
+}
+
+/// First line of a value as written, not too long.
+fn excerpt(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let line = text.lines().next().unwrap_or_default();
+    if line.chars().count() > LONGEST || line.len() < text.trim_end().len() {
+        format!("{}...", line.chars().take(LONGEST).collect::<String>())
+    } else {
+        line.to_owned()
+    }
+}

@@ -1,0 +1,103 @@
+//! What can be wrong with a scenario file or a device model file.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// A place in a file, as editors understand it: `file:line:column`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file.
+    pub file: PathBuf,
+    /// Line and column, both from 1; none for a value that the file leaves to its default.
+    pub position: Option<(usize, usize)>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}", self.file.display())?;
+        match self.position {
+            Some((line, column)) => write!(formatter, ":{line}:{column}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A scenario or device model that cannot be used. Keys are dotted, as in `process.force_n`.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScenarioError {
+    /// The file is not there.
+    #[error("there is no file {}", file.display())]
+    NoSuchFile {
+        /// File asked for.
+        file: PathBuf,
+    },
+    /// The file is there but cannot be read.
+    #[error("cannot read {}: {source}", file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
+    /// The file is not TOML.
+    #[error("{place}: not valid TOML: {reason}")]
+    Syntax {
+        /// Where.
+        place: Place,
+        /// What is wrong and what was expected.
+        reason: String,
+    },
+    /// The file is written for another version of this format.
+    #[error("{place}: schema is {found}, expected {expected}")]
+    Schema {
+        /// Where.
+        place: Place,
+        /// Version found.
+        found: i64,
+        /// Version that this program reads.
+        expected: u32,
+    },
+    /// A key that means nothing here.
+    #[error("{place}: unknown key `{key}`; {advice}")]
+    UnknownKey {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// Which key was probably meant.
+        advice: String,
+    },
+    /// A key without default is absent.
+    #[error("{place}: `{key}` is missing, expected {expected}")]
+    MissingKey {
+        /// The table that lacks it.
+        place: Place,
+        /// The key.
+        key: String,
+        /// What it should hold.
+        expected: String,
+    },
+    /// A value of another type, not among the choices, or at odds with another one.
+    #[error("{place}: `{key}` is {found}, expected {expected}")]
+    Value {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// The value as written, unit included.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+    /// A key that only has a meaning together with another one.
+    #[error("{place}: `{key}` cannot stand here: {reason}")]
+    Misplaced {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// Why not.
+        reason: String,
+    },
+}

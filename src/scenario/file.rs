@@ -1,0 +1,236 @@
+//! The TOML of a scenario file and of a device model file, key by key. Plain data: units, defaults and ranges are `load`'s business.
+//!
+//! A key that holds a physical number ends with its unit. What is optional here has a default, or is left out.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::Deserialize;
+
+/// Version of both formats.
+pub(super) const SCHEMA: u32 = 1;
+
+/// A scenario file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ScenarioFile {
+    pub schema: u32,
+    pub title: String,
+    pub arm: ArmKeys,
+    pub device: DeviceKeys,
+    pub workpiece: WorkpieceKeys,
+    #[serde(default)]
+    pub contact: ContactKeys,
+    pub process: ProcessKeys,
+    #[serde(default)]
+    pub simulation: SimulationKeys,
+    #[serde(default)]
+    pub expect: BTreeMap<String, BoundKeys>,
+}
+
+/// `[arm]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArmKeys {
+    pub urdf: PathBuf,
+    pub base_link: Option<String>,
+    pub flange_link: String,
+    #[serde(default)]
+    pub packages: BTreeMap<String, PathBuf>,
+    #[serde(default)]
+    pub limit_overrides: Vec<LimitKeys>,
+    pub base_position_mm: Option<Vec<f64>>,
+    pub base_rotation_deg: Option<Vec<f64>>,
+    pub seed_posture_deg: Option<Vec<f64>>,
+    #[serde(default)]
+    pub servo: ServoKeys,
+}
+
+/// `[[arm.limit_overrides]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LimitKeys {
+    pub joint: String,
+    pub effort_n_m: Option<f64>,
+    pub velocity_deg_per_s: Option<f64>,
+}
+
+/// `[arm.servo]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ServoKeys {
+    pub natural_frequency_hz: Option<f64>,
+    pub damping_ratio: Option<f64>,
+    pub integral_time_s: Option<f64>,
+    pub contact_feed_forward: Option<bool>,
+}
+
+/// `[device]` of a scenario.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DeviceKeys {
+    pub model: PathBuf,
+    pub locked: Option<bool>,
+    #[serde(default, rename = "override")]
+    pub overrides: ModelKeys,
+}
+
+/// A device model file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelFile {
+    pub schema: u32,
+    pub device: ModelKeys,
+}
+
+/// `[device]` of a device model file, and `[device.override]` of a scenario.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelKeys {
+    pub cylinder_count: Option<u32>,
+    pub bore_mm: Option<f64>,
+    pub rod_mm: Option<f64>,
+    pub stroke_mm: Option<f64>,
+    pub dead_volume_cm3: Option<f64>,
+    pub moving_mass_kg: Option<f64>,
+    pub supply_orifice_mm2: Option<f64>,
+    pub exhaust_orifice_mm2: Option<f64>,
+    pub discharge_coefficient: Option<f64>,
+    pub regulator_gain: Option<f64>,
+    pub regulator_time_constant_s: Option<f64>,
+    pub regulator_dead_time_ms: Option<f64>,
+    pub supply_pressure_bar_gauge: Option<f64>,
+    pub end_stop_stiffness_n_per_m: Option<f64>,
+    pub end_stop_damping_n_s_per_m: Option<f64>,
+    pub gas_constant_j_per_kg_k: Option<f64>,
+    pub gas_heat_capacity_ratio: Option<f64>,
+    pub gas_temperature_k: Option<f64>,
+    pub atmosphere_pa_absolute: Option<f64>,
+    pub lock_stiffness_n_per_m: Option<f64>,
+    pub tool_ball_radius_mm: Option<f64>,
+    pub tool_centre_mm: Option<f64>,
+    pub moving_centre_of_mass_mm: Option<f64>,
+    pub moving_radius_of_gyration_mm: Option<f64>,
+}
+
+/// `[workpiece]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WorkpieceKeys {
+    pub mesh: PathBuf,
+    pub mesh_unit: MeshUnit,
+    pub position_mm: Vec<f64>,
+    pub rotation_deg: Option<Vec<f64>>,
+    pub edge: EdgeKeys,
+    #[serde(default)]
+    pub misplacement: MisplacementKeys,
+    pub burr: Option<BurrKeys>,
+}
+
+/// Unit of a mesh file, which itself states none.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum MeshUnit {
+    /// Millimetre.
+    Mm,
+    /// Metre.
+    M,
+    /// Inch.
+    Inch,
+}
+
+/// `[workpiece.edge]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EdgeKeys {
+    pub edge: Option<usize>,
+    #[serde(rename = "loop")]
+    pub closed_loop: Option<usize>,
+    pub start_mm: Option<f64>,
+    pub end_mm: Option<f64>,
+    pub reversed: Option<bool>,
+    pub sharp_angle_deg: Option<f64>,
+}
+
+/// `[workpiece.misplacement]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MisplacementKeys {
+    pub shift_mm: Option<f64>,
+    pub tilt_deg: Option<f64>,
+}
+
+/// `[workpiece.burr]`: `kind` says which of the other keys there are.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BurrKeys {
+    pub kind: BurrKind,
+    pub height_mm: Option<f64>,
+    pub mean_height_mm: Option<f64>,
+    pub standard_deviation_mm: Option<f64>,
+    pub correlation_length_mm: Option<f64>,
+    pub seed: Option<u64>,
+    pub position_mm: Option<f64>,
+    pub width_mm: Option<f64>,
+    pub path: Option<PathBuf>,
+}
+
+/// Shape of a burr.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum BurrKind {
+    /// No burr.
+    None,
+    /// The same height everywhere.
+    Constant,
+    /// Seeded random height.
+    Random,
+    /// One bump.
+    Bump,
+    /// From a CSV file.
+    Table,
+}
+
+/// `[contact]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ContactKeys {
+    pub stiffness_n_per_m: Option<f64>,
+    pub damping_n_s_per_m: Option<f64>,
+    pub friction_coefficient: Option<f64>,
+}
+
+/// `[process]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ProcessKeys {
+    pub force_n: f64,
+    pub feed_mm_per_s: f64,
+    pub corner_feed_mm_per_s: Option<f64>,
+    pub acceleration_mm_per_s2: Option<f64>,
+    pub jerk_mm_per_s3: Option<f64>,
+    pub working_stroke_mm: Option<f64>,
+    pub lean_deg: Option<f64>,
+    pub approach_distance_mm: Option<f64>,
+    pub approach_speed_mm_per_s: Option<f64>,
+    pub engage_speed_mm_per_s: Option<f64>,
+    pub settle_time_s: Option<f64>,
+}
+
+/// `[simulation]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SimulationKeys {
+    pub step_ms: Option<f64>,
+    pub device_substeps: Option<usize>,
+    pub gravity_m_per_s2: Option<Vec<f64>>,
+    pub seed: Option<u64>,
+}
+
+/// A metric in `[expect]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BoundKeys {
+    pub min: Option<f64>,
+    pub max: Option<f64>,
+}

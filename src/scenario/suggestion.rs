@@ -1,0 +1,110 @@
+//! Which key was probably meant by one that does not exist.
+
+use super::units::{Unit, stem};
+
+/// Tables of a file, by dotted name, with their keys.
+pub(super) type Sections = [(&'static str, &'static [&'static str])];
+
+/// Words of which unit suffixes are made, ours and others that people write.
+const UNIT_WORDS: [&str; 52] = [
+    "per", "um", "mm", "cm", "m", "km", "in", "inch", "ft", "um2", "mm2", "cm2", "m2", "mm3",
+    "cm3", "m3", "l", "ml", "us", "ms", "s", "s2", "s3", "min", "h", "hz", "khz", "rpm", "deg",
+    "rad", "degrees", "radians", "g", "kg", "t", "n", "kn", "mn", "nm", "lbf", "pa", "kpa", "mpa",
+    "hpa", "bar", "mbar", "psi", "gauge", "absolute", "abs", "k", "c",
+];
+
+/// Similarity (Jaro-Winkler) from which a key counts as a slip of the pen.
+const SIMILAR: f64 = 0.85;
+
+/// Advice on an unknown dotted key.
+pub(super) fn advice(key: &str, sections: &Sections) -> String {
+    let (table, name) = split(key);
+    let known = sections
+        .iter()
+        .find(|(section, _)| *section == table)
+        .map_or(&[][..], |(_, keys)| keys);
+    if let Some(right) = known.iter().find(|right| differs_in_unit(name, right)) {
+        let symbol = Unit::of_key(right).symbol;
+        return format!("the key is `{right}`, in {symbol}");
+    }
+    if let Some((section, _)) = sections.iter().find(|(_, keys)| keys.contains(&name)) {
+        return match *section {
+            "" => format!("`{name}` belongs to the top of the file, before any table"),
+            section => format!("`{name}` belongs to [{section}]"),
+        };
+    }
+    let similarity = |right: &str| strsim::jaro_winkler(name, right);
+    let nearest = known
+        .iter()
+        .max_by(|a, b| similarity(a).total_cmp(&similarity(b)));
+    match nearest {
+        Some(nearest) if similarity(nearest) >= SIMILAR => format!("did you mean `{nearest}`?"),
+        _ => format!("known here are {}", known.join(", ")),
+    }
+}
+
+/// Table, without list indices, and name of a dotted key.
+fn split(key: &str) -> (String, &str) {
+    let (table, name) = key.rsplit_once('.').unwrap_or(("", key));
+    let table = table
+        .split('.')
+        .map(|part| part.split('[').next().unwrap_or(part))
+        .collect::<Vec<_>>()
+        .join(".");
+    (table, name)
+}
+
+/// Is it the right key but for its unit, as in `force` or `force_kn` for `force_n`?
+fn differs_in_unit(name: &str, right: &str) -> bool {
+    let stem = stem(right);
+    if Unit::of_key(right).is_one() || !name.starts_with(stem) {
+        return false;
+    }
+    let rest = &name[stem.len()..];
+    rest.is_empty()
+        || rest.strip_prefix('_').is_some_and(|words| {
+            words
+                .to_lowercase()
+                .split('_')
+                .all(|word| UNIT_WORDS.contains(&word))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SECTIONS: &Sections = &[
+        ("", &["schema", "process", "contact"]),
+        ("process", &["feed_mm_per_s", "corner_feed_mm_per_s", "force_n"]),
+        ("contact", &["stiffness_n_per_m", "friction_coefficient"]),
+    ];
+
+    #[test]
+    fn each_kind_of_slip_leads_to_the_right_key() {
+        for (key, expected) in [
+            ("process.force", "the key is `force_n`, in N"),
+            ("process.force_kN", "the key is `force_n`, in N"),
+            ("process.feed_m_per_min", "the key is `feed_mm_per_s`, in mm/s"),
+            ("contact.stiffness_n_per_mm", "the key is `stiffness_n_per_m`, in N/m"),
+            ("contact.force_n", "`force_n` belongs to [process]"),
+            ("process.schema", "`schema` belongs to the top of the file, before any table"),
+            ("process.froce_n", "did you mean `force_n`?"),
+            ("contact.friction", "did you mean `friction_coefficient`?"),
+            ("proces", "did you mean `process`?"),
+            (
+                "process.temperature",
+                "known here are feed_mm_per_s, corner_feed_mm_per_s, force_n",
+            ),
+        ] {
+            assert_eq!(advice(key, SECTIONS), expected, "{key}");
+        }
+    }
+
+    #[test]
+    fn what_follows_the_stem_must_be_a_unit() {
+        assert!(differs_in_unit("force_lbf", "force_n"));
+        assert!(!differs_in_unit("force_peak_n", "force_n"));
+        assert!(!differs_in_unit("friction", "friction_coefficient"));
+    }
+}

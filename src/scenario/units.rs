@@ -1,0 +1,140 @@
+//! Units of the numbers in a file: a key's suffix says its unit, and only here are units turned into SI.
+
+use std::f64::consts::PI;
+
+/// A unit that a key can carry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Unit {
+    /// End of the keys that carry it.
+    suffix: &'static str,
+    /// Symbol for people.
+    pub symbol: &'static str,
+    conversion: Conversion,
+}
+
+/// Way to SI. A division by a whole number gives the double nearest to the decimal that was written,
+/// so that 32 mm is the same number as a literal 0.032; a product with its inverse would not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Conversion {
+    Divide(f64),
+    Multiply(f64),
+}
+
+use Conversion::{Divide, Multiply};
+
+/// Longer suffixes before those that they end with.
+const UNITS: [Unit; 22] = [
+    unit("_n_s_per_m", "N s/m", Divide(1.0)),
+    unit("_n_per_m", "N/m", Divide(1.0)),
+    unit("_n_m", "N m", Divide(1.0)),
+    unit("_mm_per_s3", "mm/s3", Divide(1e3)),
+    unit("_mm_per_s2", "mm/s2", Divide(1e3)),
+    unit("_mm_per_s", "mm/s", Divide(1e3)),
+    unit("_m_per_s2", "m/s2", Divide(1.0)),
+    unit("_deg_per_s", "deg/s", Multiply(PI / 180.0)),
+    unit("_j_per_kg_k", "J/(kg K)", Divide(1.0)),
+    unit("_bar_gauge", "bar gauge", Multiply(1e5)),
+    unit("_pa_absolute", "Pa absolute", Divide(1.0)),
+    unit("_cm3", "cm3", Divide(1e6)),
+    unit("_mm2", "mm2", Divide(1e6)),
+    unit("_mm", "mm", Divide(1e3)),
+    unit("_deg", "deg", Multiply(PI / 180.0)),
+    unit("_hz", "Hz", Divide(1.0)),
+    unit("_kg", "kg", Divide(1.0)),
+    unit("_ms", "ms", Divide(1e3)),
+    unit("_n", "N", Divide(1.0)),
+    unit("_s", "s", Divide(1.0)),
+    unit("_k", "K", Divide(1.0)),
+    // A pure number: every key ends with nothing.
+    unit("", "", Divide(1.0)),
+];
+
+const fn unit(suffix: &'static str, symbol: &'static str, conversion: Conversion) -> Unit {
+    Unit {
+        suffix,
+        symbol,
+        conversion,
+    }
+}
+
+impl Unit {
+    /// Unit that a key carries; the pure number if it carries none.
+    pub fn of_key(key: &str) -> Self {
+        *UNITS
+            .iter()
+            .find(|unit| key.ends_with(unit.suffix))
+            .expect("the last suffix is empty, which ends every key")
+    }
+
+    /// Is it the pure number?
+    pub fn is_one(self) -> bool {
+        self.suffix.is_empty()
+    }
+
+    /// A value in this unit, in SI.
+    pub fn to_si(self, value: f64) -> f64 {
+        match self.conversion {
+            Divide(divisor) => value / divisor,
+            Multiply(factor) => value * factor,
+        }
+    }
+
+    /// The value with its symbol.
+    pub fn show(self, value: f64) -> String {
+        if self.is_one() {
+            value.to_string()
+        } else {
+            format!("{value} {}", self.symbol)
+        }
+    }
+}
+
+/// A key without its unit: `feed` for `feed_mm_per_s`.
+pub(super) fn stem(key: &str) -> &str {
+    &key[..key.len() - Unit::of_key(key).suffix.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_suffix_says_the_unit_and_the_number_is_the_si_literal() {
+        for (key, value, symbol, si) in [
+            ("bore_mm", 32.0, "mm", 0.032),
+            ("feed_mm_per_s", 20.0, "mm/s", 0.02),
+            ("acceleration_mm_per_s2", 500.0, "mm/s2", 0.5),
+            ("jerk_mm_per_s3", 5000.0, "mm/s3", 5.0),
+            ("supply_orifice_mm2", 2.5, "mm2", 2.5e-6),
+            ("dead_volume_cm3", 20.0, "cm3", 2e-5),
+            ("supply_pressure_bar_gauge", 6.0, "bar gauge", 6e5),
+            ("atmosphere_pa_absolute", 101_325.0, "Pa absolute", 101_325.0),
+            ("rotation_deg", 180.0, "deg", PI),
+            ("velocity_deg_per_s", 90.0, "deg/s", PI / 2.0),
+            ("dead_time_ms", 20.0, "ms", 0.02),
+            ("settle_time_s", 1.5, "s", 1.5),
+            ("damping_n_s_per_m", 400.0, "N s/m", 400.0),
+            ("stiffness_n_per_m", 1.5e5, "N/m", 1.5e5),
+            ("effort_n_m", 56.0, "N m", 56.0),
+            ("force_n", 150.0, "N", 150.0),
+            ("natural_frequency_hz", 40.0, "Hz", 40.0),
+            ("moving_mass_kg", 4.0, "kg", 4.0),
+            ("gas_temperature_k", 293.15, "K", 293.15),
+            ("gas_constant_j_per_kg_k", 287.05, "J/(kg K)", 287.05),
+            ("gravity_m_per_s2", -9.81, "m/s2", -9.81),
+            ("damping_ratio", 0.7, "", 0.7),
+            ("device_substeps", 2.0, "", 2.0),
+        ] {
+            let unit = Unit::of_key(key);
+            assert_eq!(unit.symbol, symbol, "{key}");
+            assert_eq!(unit.to_si(value), si, "{key}");
+        }
+    }
+
+    #[test]
+    fn a_stem_is_the_key_without_its_unit() {
+        assert_eq!(stem("feed_mm_per_s"), "feed");
+        assert_eq!(stem("force_n"), "force");
+        assert_eq!(stem("damping_ratio"), "damping_ratio");
+    }
+}

@@ -1,0 +1,266 @@
+//! Tool on part: Rapier's contact made to obey a stiffness and damping in N/m and N s/m, once per true contact.
+//!
+//!     F = k d + c d_dot, never pulling                                       d penetration of the ball [m]
+//!
+//! Rapier's contact is soft in terms of a natural frequency and a damping ratio of the constraint's own effective mass m, and takes one backward-Euler
+//! step of it (Catto's soft step): impulse = -h (k' (s + h v) + c' v), s separation at the start, v its rate at the end of the step, k' = m w^2, c' = 2 z m w.
+//! With m known, w and z follow from what k' and c' should be. k' = k: the static penetration is F/k. The position term is taken h v ahead, which damps a
+//! ringing contact by k h too much; so c' = c_h - (1 - theta) k h, where c_h = m (e^(h c / m) - 1) / h makes one step shrink the motion just as the
+//! continuous damper does, and theta in 0..1 gives back the implicit term when w h is too large for an explicit spring.
+//!
+//! The mesh's triangles meet the ball several times at one place: at an internal edge from the side (ghosts) and at a sharp edge from both faces (twice
+//! the stiffness). Only true contacts, local minima of the distance to the part, reach the solver: `ContactSurface` finds them, the hook drops the rest.
+
+use std::sync::Mutex;
+
+use glam::DVec3;
+use nalgebra::DVector;
+use rapier3d::prelude::*;
+
+use super::world::ToolBall;
+use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
+
+/// How far ahead of touching a contact is offered to the solver [m].
+const REACH: f64 = 1e-3;
+/// w h up to which an explicit spring is accurate.
+const EXPLICIT_LIMIT: f64 = 0.5;
+
+/// Contact law between tool and part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartContactParameters {
+    /// Stiffness [N/m].
+    pub stiffness: f64,
+    /// Damping [N s/m].
+    pub damping: f64,
+    /// Coulomb friction coefficient [1].
+    pub friction: f64,
+}
+
+/// Contact force over a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ContactReading {
+    /// Sum of the normal force magnitudes [N].
+    pub normal_force: f64,
+    /// Force on the tool in the world, friction included [N].
+    pub force_on_tool: DVec3,
+    /// Magnitude of the friction force [N].
+    pub friction_force: f64,
+    /// Deepest penetration at the start of the step [m]; negative when apart.
+    pub penetration: f64,
+    /// Outward normal of the deepest contact, zero where there is none [1].
+    pub normal: DVec3,
+}
+
+/// A true contact, as the hook hands it to the solver.
+#[derive(Debug, Clone, Copy)]
+struct Kept {
+    triangle: u32,
+    normal: DVec3,
+    /// Distance between the ball's and the part's surface, lift of a burr included [m].
+    separation: f64,
+}
+
+/// Keeps the true contacts and puts their geometry right.
+pub struct ContactHook {
+    part: ColliderHandle,
+    kept: Mutex<Vec<Kept>>,
+}
+
+impl PhysicsHooks for ContactHook {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let part_first = context.collider1 == self.part;
+        let Some(rigid) = context.rigid_mut() else {
+            return;
+        };
+        let triangle = if part_first { rigid.manifold.subshape1 } else { rigid.manifold.subshape2 };
+        let kept = self.kept.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        match kept.iter().find(|k| k.triangle == triangle) {
+            Some(kept) => {
+                *rigid.normal = if part_first { kept.normal } else { -kept.normal };
+                for contact in rigid.solver_contacts.iter_mut() {
+                    contact.dist = kept.separation;
+                }
+            }
+            None => rigid.solver_contacts.clear(),
+        }
+    }
+}
+
+/// The contact pair of tool and part.
+pub struct PartContact {
+    /// Handed to Rapier at each step.
+    pub hook: ContactHook,
+    surface: ContactSurface,
+    parameters: PartContactParameters,
+    tool: ToolBall,
+    tool_collider: ColliderHandle,
+    step: f64,
+    /// Height and slope of the burr under the ball.
+    lift: f64,
+    lift_gradient: DVec3,
+    found: Vec<SurfaceContact>,
+    jacobian: DVector<f64>,
+    response: DVector<f64>,
+}
+
+impl PartContact {
+    /// Puts the part and the tool's ball into the world.
+    pub(super) fn insert(
+        physics: &mut PhysicsWorld,
+        part_body: RigidBodyHandle,
+        tool_body: RigidBodyHandle,
+        part: &TriangleMesh,
+        tool: ToolBall,
+        parameters: PartContactParameters,
+        step: f64,
+    ) -> Self {
+        let mesh = ColliderBuilder::trimesh(part.vertices().to_vec(), part.triangles().to_vec())
+            .expect("a part's mesh holds at least one triangle")
+            .density(0.0)
+            .friction(parameters.friction)
+            .friction_combine_rule(CoefficientCombineRule::Average);
+        let part_collider = physics.insert_collider(mesh, Some(part_body));
+        let ball = ColliderBuilder::ball(tool.radius)
+            .translation(tool.centre_in_link)
+            .density(0.0)
+            .friction(parameters.friction)
+            .friction_combine_rule(CoefficientCombineRule::Average)
+            .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+        let tool_collider = physics.insert_collider(ball, Some(tool_body));
+        Self {
+            hook: ContactHook { part: part_collider, kept: Mutex::new(Vec::new()) },
+            surface: ContactSurface::new(part),
+            parameters,
+            tool,
+            tool_collider,
+            step,
+            lift: 0.0,
+            lift_gradient: DVec3::ZERO,
+            found: Vec::new(),
+            jacobian: DVector::zeros(0),
+            response: DVector::zeros(0),
+        }
+    }
+
+    /// Raises the part's surface under the ball along its normal, for the next steps: height [m] and its gradient along the part [m/m].
+    pub fn set_lift(&mut self, lift: f64, gradient: DVec3) {
+        self.lift = lift;
+        self.lift_gradient = gradient;
+    }
+
+    /// Finds the true contacts of the coming step and sets the solver's softness for them.
+    pub(super) fn prepare(
+        &mut self,
+        physics: &mut PhysicsWorld,
+        joint: MultibodyJointHandle,
+        tool_body: RigidBodyHandle,
+        centre: DVec3,
+    ) {
+        let reach = self.tool.radius + REACH + self.lift.max(0.0);
+        self.surface.genuine_contacts(centre, reach, &mut self.found);
+        let kept = self.hook.kept.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
+        kept.clear();
+        kept.extend(self.found.iter().map(|contact| {
+            // A rising burr leans the normal back against the motion.
+            let normal = (contact.normal - self.lift_gradient).normalize();
+            Kept {
+                triangle: contact.triangle,
+                normal,
+                separation: (contact.distance - self.tool.radius - self.lift) * normal.dot(contact.normal),
+            }
+        }));
+        let deepest = kept.iter().min_by(|a, b| a.separation.total_cmp(&b.separation));
+        if let Some(deepest) = deepest.copied() {
+            let point = centre - deepest.normal * self.tool.radius;
+            let mass = self.effective_mass(physics, joint, tool_body, deepest.normal, point);
+            physics.integration_parameters.static_contact_softness =
+                softness(&self.parameters, mass, self.step);
+        }
+    }
+
+    /// Mass that a push along `direction` at `point` feels, as Rapier's solver will see it [kg].
+    fn effective_mass(
+        &mut self,
+        physics: &PhysicsWorld,
+        joint: MultibodyJointHandle,
+        tool_body: RigidBodyHandle,
+        direction: DVec3,
+        point: DVec3,
+    ) -> f64 {
+        let Some((multibody, _)) = physics.multibody_joints.get(joint) else {
+            return 1.0;
+        };
+        let Some(link) = physics.multibody_joints.rigid_body_link(tool_body) else {
+            return 1.0;
+        };
+        let count = multibody.ndofs();
+        if self.jacobian.len() != count {
+            // Before the first step there is no factorised mass matrix yet.
+            self.jacobian = DVector::zeros(count);
+            self.response = DVector::zeros(count);
+            return 1.0;
+        }
+        let arm = point - physics.bodies[tool_body].mass_properties().world_com;
+        let torque = arm.cross(direction);
+        let wrench = nalgebra::Vector6::new(
+            direction.x,
+            direction.y,
+            direction.z,
+            torque.x,
+            torque.y,
+            torque.z,
+        );
+        self.jacobian.gemv_tr(1.0, multibody.body_jacobian(link.id), &wrench, 0.0);
+        self.response.copy_from(&self.jacobian);
+        multibody.inv_augmented_mass().solve_mut(&mut self.response);
+        1.0 / self.jacobian.dot(&self.response)
+    }
+
+    /// Reads the forces of the last step.
+    pub(super) fn read(&mut self, physics: &PhysicsWorld) -> ContactReading {
+        let mut reading = ContactReading { penetration: -f64::MAX, ..ContactReading::default() };
+        let kept = self.hook.kept.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if kept.is_empty() {
+            return ContactReading::default();
+        }
+        let part = self.hook.part;
+        for pair in physics.narrow_phase.contact_pairs_with(self.tool_collider) {
+            let part_first = pair.collider1 == part;
+            for manifold in pair.manifolds() {
+                let triangle = if part_first { manifold.subshape1 } else { manifold.subshape2 };
+                let Some(kept) = kept.iter().find(|k| k.triangle == triangle) else {
+                    continue;
+                };
+                if manifold.data.solver_contacts.is_empty() {
+                    continue;
+                }
+                for point in &manifold.points {
+                    let normal_force = point.data.impulse / self.step;
+                    let tangent = point.data.warmstart_tangent_world / self.step;
+                    let friction = if part_first { -tangent } else { tangent };
+                    reading.normal_force += normal_force;
+                    reading.friction_force += friction.length();
+                    reading.force_on_tool += kept.normal * normal_force + friction;
+                }
+                if -kept.separation > reading.penetration {
+                    reading.penetration = -kept.separation;
+                    reading.normal = kept.normal;
+                }
+            }
+        }
+        reading
+    }
+}
+
+/// Rapier's softness that obeys the law for an effective mass [kg] and a step [s].
+fn softness(parameters: &PartContactParameters, mass: f64, step: f64) -> SpringCoefficients<f64> {
+    let frequency = (parameters.stiffness / mass).sqrt();
+    let phase = frequency * step;
+    let theta = if phase <= EXPLICIT_LIMIT { 0.0 } else { 1.0 - (EXPLICIT_LIMIT / phase).powi(2) };
+    let discrete_damping = mass * ((step * parameters.damping / mass).exp_m1()) / step;
+    let damping = discrete_damping - (1.0 - theta) * parameters.stiffness * step;
+    SpringCoefficients::new(
+        frequency / std::f64::consts::TAU,
+        damping / (2.0 * mass * frequency),
+    )
+}

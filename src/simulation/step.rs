@@ -1,0 +1,414 @@
+//! One step of the coupled cell, read from top to bottom.
+
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use glamx::DPose3;
+
+use super::contact::PartContactParameters;
+use super::error::SimulationError;
+use super::sample::{FrameLog, SampleLog};
+use super::world::{JointLaw, ToolBall, World, WorldDescription};
+use crate::arm::chain::MAX_JOINTS;
+use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
+use crate::arm::kinematics::{jacobian_at, link_poses};
+use crate::cell::Cell;
+use crate::control::force::{ForceController, ForceObservation};
+use crate::control::servo::{AxisCommand, Servo, ServoParameters};
+use crate::device::{DeviceForce, DeviceState, PistonMotion};
+use crate::path::{Phase, Reference};
+
+/// Time between two frames of the picture [s].
+const FRAME_INTERVAL: f64 = 0.02;
+/// Distance from its reference at which an axis counts as lost [rad].
+const LOST: f64 = 0.05;
+/// Penetration of an end stop by the slide's own load that is not yet a stroke that ran out [m].
+const STOP_GIVE: f64 = 2e-3;
+
+/// Time spent in each part of the step, measured only on request [s].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct StepTimes {
+    /// Reference and set pressure.
+    pub reference: Duration,
+    /// Pneumatics.
+    pub device: Duration,
+    /// Joint laws: inverse dynamics, servo.
+    pub servo: Duration,
+    /// Rapier, contact included.
+    pub rigid_bodies: Duration,
+    /// Recording.
+    pub sample: Duration,
+}
+
+/// A running cell.
+pub struct Simulation<'a> {
+    cell: &'a Cell,
+    world: World,
+    device: DeviceState,
+    servo: Servo,
+    controller: ForceController,
+    steps: usize,
+    total_steps: usize,
+    laws: Vec<JointLaw>,
+    /// Axial contact force over the last step [N].
+    axial_force: f64,
+    slide_force: f64,
+    log: SampleLog,
+    frames: FrameLog,
+    next_frame: f64,
+}
+
+impl<'a> Simulation<'a> {
+    /// Puts the cell at the start of its job: the arm at rest, the slide out against its stop, the device at pressure.
+    pub fn new(cell: &'a Cell) -> Self {
+        let scenario = &cell.scenario;
+        let mut world = World::new(&WorldDescription {
+            chain: &cell.arm_with_slide,
+            world_from_base: scenario.arm.world_from_base,
+            gravity: scenario.simulation.gravity,
+            step: scenario.simulation.step,
+            tool: ToolBall {
+                radius: scenario.device.tool_radius,
+                centre_in_link: DVec3::new(0.0, 0.0, scenario.device.tool_centre),
+            },
+            part: &cell.part.mesh_in_world,
+            contact: PartContactParameters {
+                stiffness: scenario.contact.stiffness,
+                damping: scenario.contact.damping,
+                friction: scenario.contact.friction,
+            },
+        });
+        let reference = cell.plan.reference(0.0);
+        let mut controller = ForceController::pressure_map(&scenario.device.parameters);
+        let gravity = cell.gravity_along(reference.axis);
+        let desired = scenario.process.force * cell.axial_share();
+        let set_pressure = controller.set_pressure(&ForceObservation {
+            time: 0.0,
+            desired_axial_force: desired,
+            gravity_along_axis: gravity,
+            measured_axial_force: 0.0,
+            stroke: 0.0,
+            regulator_pressure: 0.0,
+        });
+        let parameters = &scenario.device.parameters;
+        let stroke = if scenario.device.locked {
+            scenario.process.working_stroke
+        } else {
+            // The stop carries what will later press on the edge.
+            parameters.full_stroke + desired.max(0.0) / parameters.end_stop.stiffness
+        };
+        let device = cell.device.at_rest(stroke, set_pressure);
+        let mut positions = cell.plan.start();
+        positions.push(stroke);
+        world.set_positions(&positions);
+        let count = positions.len();
+        let mut masses = nalgebra::DMatrix::zeros(count, count);
+        mass_matrix(&cell.arm_with_slide, &positions, &mut masses);
+        let inertias: Vec<f64> = (0..count - 1).map(|i| masses[(i, i)]).collect();
+        let servo = Servo::new(
+            &cell.arm.chain,
+            &inertias,
+            &ServoParameters {
+                natural_frequency: scenario.arm.servo.natural_frequency * std::f64::consts::TAU,
+                damping_ratio: scenario.arm.servo.damping_ratio,
+                integral_time: scenario.arm.servo.integral_time,
+            },
+        );
+        let total_steps = (cell.plan.duration() / scenario.simulation.step).ceil() as usize;
+        Self {
+            cell,
+            world,
+            device,
+            servo,
+            controller,
+            steps: 0,
+            total_steps,
+            laws: vec![JointLaw::default(); count],
+            axial_force: 0.0,
+            slide_force: 0.0,
+            log: SampleLog::new(count - 1, total_steps),
+            frames: FrameLog::default(),
+            next_frame: 0.0,
+        }
+    }
+
+    /// Steps done.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Steps of the whole job.
+    pub fn total_steps(&self) -> usize {
+        self.total_steps
+    }
+
+    /// Is the job done?
+    pub fn done(&self) -> bool {
+        self.steps >= self.total_steps
+    }
+
+    /// What was recorded so far.
+    pub fn into_logs(self) -> (SampleLog, FrameLog) {
+        (self.log, self.frames)
+    }
+
+    /// One step of the coupled cell.
+    ///
+    /// # Errors
+    /// What stopped the run; the last sample is recorded if it is finite.
+    pub fn step(&mut self) -> Result<(), SimulationError> {
+        self.step_timed(None)
+    }
+
+    /// One step, the time of its parts added to `times` if given.
+    ///
+    /// # Errors
+    /// As `step`.
+    pub fn step_timed(&mut self, mut times: Option<&mut StepTimes>) -> Result<(), SimulationError> {
+        let mut clock = times.as_ref().map(|_| Instant::now());
+        let mut lap = |part: fn(&mut StepTimes) -> &mut Duration| {
+            if let (Some(times), Some(clock)) = (times.as_deref_mut(), clock.as_mut()) {
+                let now = Instant::now();
+                *part(times) += now - *clock;
+                *clock = now;
+            }
+        };
+        let dt = self.cell.scenario.simulation.step;
+        let reference = self.cell.plan.reference((self.steps + 1) as f64 * dt);
+        let set_pressure = self.set_pressure(&reference);
+        lap(|t| &mut t.reference);
+        let force = self.advance_device(set_pressure, dt);
+        lap(|t| &mut t.device);
+        self.set_laws(&reference, force, dt);
+        lap(|t| &mut t.servo);
+        self.ride_burr(&reference);
+        self.world.step();
+        self.steps += 1;
+        lap(|t| &mut t.rigid_bodies);
+        let result = self.sample(&reference, set_pressure);
+        lap(|t| &mut t.sample);
+        result
+    }
+
+    fn slide(&self) -> usize {
+        self.laws.len() - 1
+    }
+
+    fn set_pressure(&mut self, reference: &Reference) -> f64 {
+        let observation = ForceObservation {
+            time: self.steps as f64 * self.cell.scenario.simulation.step,
+            desired_axial_force: self.cell.scenario.process.force * self.cell.axial_share(),
+            gravity_along_axis: self.cell.gravity_along(reference.axis),
+            measured_axial_force: self.axial_force,
+            stroke: self.world.positions()[self.slide()],
+            regulator_pressure: self.device.regulator.outlet,
+        };
+        self.controller.set_pressure(&observation)
+    }
+
+    fn advance_device(&mut self, set_pressure: f64, dt: f64) -> DeviceForce {
+        let slide = self.slide();
+        let motion = PistonMotion {
+            stroke: self.world.positions()[slide],
+            speed: self.world.velocities()[slide],
+        };
+        let substeps = self.cell.scenario.simulation.substeps;
+        self.cell.device.advance(&mut self.device, set_pressure, motion, dt, substeps)
+    }
+
+    /// Laws of all degrees of freedom: the axes' servo with feed-forward, the device on the slide.
+    fn set_laws(&mut self, reference: &Reference, device: DeviceForce, dt: f64) {
+        let n = self.slide();
+        let feed_forward = self.feed_forward(reference, device);
+        for (axis, &feed_forward) in feed_forward.iter().enumerate().take(n) {
+            let command = AxisCommand {
+                position: reference.position[axis],
+                velocity: reference.velocity[axis],
+                feed_forward,
+            };
+            let (position, velocity) = (self.world.positions()[axis], self.world.velocities()[axis]);
+            self.laws[axis] = self.servo.law(axis, &command, position, velocity, dt);
+        }
+        let device_scenario = &self.cell.scenario.device;
+        self.laws[n] = if device_scenario.locked {
+            let stiffness = device_scenario.parameters.lock_stiffness;
+            JointLaw {
+                force: 0.0,
+                stiffness,
+                rest: self.cell.scenario.process.working_stroke,
+                damping: 2.0 * (stiffness * device_scenario.parameters.moving_mass).sqrt(),
+            }
+        } else {
+            JointLaw {
+                force: device.force + device.damping * self.world.velocities()[n],
+                stiffness: 0.0,
+                rest: 0.0,
+                damping: device.damping,
+            }
+        };
+        self.world.set_laws(&self.laws);
+    }
+
+    /// Torques that the reference needs, with the contact force that the device's own force implies.
+    fn feed_forward(&self, reference: &Reference, device: DeviceForce) -> [f64; MAX_JOINTS] {
+        let (cell, n) = (self.cell, self.slide());
+        let chain = &cell.arm_with_slide;
+        let base = cell.scenario.arm.world_from_base;
+        let mut position = reference.position;
+        position[n] = self.world.positions()[n];
+        let mut torque = [0.0; MAX_JOINTS];
+        inverse_dynamics(
+            chain,
+            base.rotation,
+            cell.scenario.simulation.gravity,
+            &position[..=n],
+            &reference.velocity[..=n],
+            &reference.acceleration[..=n],
+            &mut torque[..=n],
+        );
+        if cell.scenario.arm.servo.contact_feed_forward {
+            let pushing = if cell.scenario.device.locked { self.slide_force } else { device.force };
+            let contact = (pushing - torque[n]) / cell.axial_share();
+            let force = (reference.normal * contact).to_array();
+            let mut links = [DPose3::IDENTITY; MAX_JOINTS];
+            link_poses(chain, base, &position[..=n], &mut links[..=n]);
+            let jacobian = jacobian_at(chain, &links[..=n], self.world.tool_centre());
+            for (axis, torque) in torque.iter_mut().enumerate().take(n) {
+                *torque -= (0..3).map(|row| jacobian[(row, axis)] * force[row]).sum::<f64>();
+            }
+        }
+        torque
+    }
+
+    /// Lifts the part's surface under the ball by the burr.
+    fn ride_burr(&mut self, reference: &Reference) {
+        let Some(ride) = &self.cell.part.ride else {
+            return;
+        };
+        // The ball is where the arm has really taken it: ahead of the reference's foot point by its error along the edge.
+        let along = (self.world.tool_centre() - reference.centre).dot(reference.tangent);
+        let place = (reference.edge_length + along).clamp(0.0, ride.length());
+        let gradient = reference.tangent * ride.slope(place);
+        self.world.part_contact_mut().set_lift(ride.lift(place), gradient);
+    }
+
+    fn sample(&mut self, reference: &Reference, set_pressure: f64) -> Result<(), SimulationError> {
+        let (cell, n) = (self.cell, self.slide());
+        let time = self.steps as f64 * cell.scenario.simulation.step;
+        let contact = *self.world.contact();
+        let stroke = self.world.positions()[n];
+        let gas = &cell.scenario.device.parameters.gas;
+        let pressures = cell.device.pressures(&self.device, stroke);
+        self.slide_force = self.world.applied_force(n);
+        let force_on_part = -contact.force_on_tool;
+        self.axial_force = force_on_part.dot(reference.axis);
+
+        let off = self.world.tool_centre() - reference.centre;
+        let across = off - reference.axis * off.dot(reference.axis);
+        let signals = [
+            reference.edge_length,
+            contact.normal_force,
+            cell.scenario.process.force,
+            force_on_part.x,
+            force_on_part.y,
+            force_on_part.z,
+            contact.friction_force,
+            self.slide_force,
+            stroke,
+            self.world.velocities()[n],
+            pressures[0],
+            pressures[1],
+            gas.atmosphere + self.device.regulator.outlet,
+            gas.atmosphere + set_pressure,
+            self.device.masses[0],
+            self.device.masses[1],
+            self.device.mass_entered,
+            self.device.mass_left,
+            across.length(),
+            off.dot(reference.axis),
+            reference.feed,
+        ];
+        let mut joints = [[0.0; 4]; MAX_JOINTS];
+        for (axis, joint) in joints.iter_mut().enumerate().take(n) {
+            let velocity = self.world.velocities()[axis];
+            let torque = self.servo.drive_torque(axis, self.world.applied_force(axis), velocity);
+            *joint = [self.world.positions()[axis], reference.position[axis], velocity, torque];
+        }
+        self.check_finite(&signals, &joints[..n], reference.phase, time)?;
+        self.log.push(time, reference.phase, &signals, &joints[..n]);
+        if time >= self.next_frame {
+            self.frame(time, reference, force_on_part, contact.normal);
+            self.next_frame += FRAME_INTERVAL;
+        }
+        self.check_axes(&joints[..n], reference.phase, time)?;
+        self.check_stroke(reference, stroke, time)
+    }
+
+    fn frame(&mut self, time: f64, reference: &Reference, force: DVec3, normal: DVec3) {
+        self.frames.times.push(time);
+        self.frames.path_lengths.push(reference.edge_length);
+        self.frames.links.push(self.world.link_poses());
+        let radius = self.cell.scenario.device.tool_radius;
+        self.frames.contact_points.push(self.world.tool_centre() - normal * radius);
+        self.frames.contact_forces.push(force);
+    }
+
+    fn check_finite(
+        &self,
+        signals: &[f64],
+        joints: &[[f64; 4]],
+        phase: Phase,
+        time: f64,
+    ) -> Result<(), SimulationError> {
+        let bad = signals.iter().zip(&crate::recording::schema::SIGNALS).find(|(value, _)| !value.is_finite());
+        let bad = bad.map(|(value, signal)| (signal.quantity, *value));
+        let bad = bad.or_else(|| joints.iter().flatten().find(|v| !v.is_finite()).map(|v| ("a joint", *v)));
+        match bad {
+            None => Ok(()),
+            Some((quantity, value)) => Err(SimulationError::NotFinite {
+                quantity,
+                value,
+                time,
+                phase: phase.name(),
+                step: self.cell.scenario.simulation.step,
+            }),
+        }
+    }
+
+    fn check_axes(&self, joints: &[[f64; 4]], phase: Phase, time: f64) -> Result<(), SimulationError> {
+        for (axis, joint) in joints.iter().enumerate() {
+            let error = joint[1] - joint[0];
+            if error.abs() > LOST {
+                let axis = &self.cell.arm.chain.joints[axis];
+                return Err(SimulationError::AxisLost {
+                    axis: axis.name.clone(),
+                    error: error.abs(),
+                    effort: axis.effort,
+                    time,
+                    phase: phase.name(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// On the edge the slide must be clear of both ends; the inner one must never be reached.
+    fn check_stroke(&self, reference: &Reference, stroke: f64, time: f64) -> Result<(), SimulationError> {
+        let scenario = &self.cell.scenario;
+        let full_stroke = scenario.device.parameters.full_stroke;
+        if scenario.device.locked {
+            return Ok(());
+        }
+        let on_edge = reference.phase == Phase::Follow;
+        if stroke < -STOP_GIVE || (on_edge && (stroke <= 0.0 || stroke >= full_stroke)) {
+            return Err(SimulationError::StrokeRanOut {
+                time,
+                phase: reference.phase.name(),
+                edge_length: reference.edge_length,
+                stroke,
+                full_stroke,
+            });
+        }
+        Ok(())
+    }
+}

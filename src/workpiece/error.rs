@@ -1,0 +1,167 @@
+//! What can be wrong with a part's mesh file, an edge that is asked for, or a burr.
+
+use std::path::PathBuf;
+
+/// Why a triangle mesh cannot stand for a part.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeshFault {
+    /// The file holds no triangle of non-zero area.
+    #[error("holds no triangle of non-zero area")]
+    Empty,
+    /// A triangle refers to a vertex that does not exist.
+    #[error("triangle {triangle} refers to vertex {vertex}, but there are only {count}")]
+    VertexIndex {
+        /// Triangle, counted from 0.
+        triangle: usize,
+        /// Vertex it names.
+        vertex: u32,
+        /// Number of vertices in the mesh.
+        count: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} has a coordinate that is not a finite number")]
+    NonFinite {
+        /// Vertex, counted from 0 in the file's order.
+        vertex: usize,
+    },
+    /// The triangles do not form a closed orientable surface.
+    #[error(
+        "is not a closed surface: {open} open edges (one triangle only), {non_manifold} non-manifold edges \
+         (more than two triangles), {misoriented} edges whose two triangles wind against each other; expected 0 of each"
+    )]
+    NotClosed {
+        /// Edges with one triangle.
+        open: usize,
+        /// Edges with more than two triangles.
+        non_manifold: usize,
+        /// Edges whose two triangles have opposite winding.
+        misoriented: usize,
+    },
+    /// A triangle without area that could not be taken out of the surface.
+    #[error("triangle {triangle} has no area, so its face has no direction")]
+    NoArea {
+        /// Triangle, counted from 0 after merging vertices.
+        triangle: usize,
+    },
+    /// The surface is closed, but its normals point into the part.
+    #[error(
+        "is inside out: its enclosed volume is {volume:e} m3, expected positive (triangles counter-clockwise seen from outside)"
+    )]
+    InsideOut {
+        /// Signed volume [m^3].
+        volume: f64,
+    },
+    /// The part is implausibly small or large.
+    #[error(
+        "is {extent} m long after scaling by {scale}, expected 0.001 m to 10 m; STL and OBJ carry no unit: \
+         a file in millimetres needs scale 0.001"
+    )]
+    Implausible {
+        /// Largest side of the bounding box [m].
+        extent: f64,
+        /// Scale that was applied [m per file unit].
+        scale: f64,
+    },
+}
+
+/// Errors of the workpiece module.
+#[derive(Debug, thiserror::Error)]
+pub enum WorkpieceError {
+    /// A file could not be opened or read.
+    #[error("cannot read {file}: {source}")]
+    Read {
+        /// File.
+        file: PathBuf,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
+    /// The file's name does not end in a format that is read here.
+    #[error("{file}: unknown mesh format, expected a name that ends in .stl, .obj or .dae")]
+    Format {
+        /// File.
+        file: PathBuf,
+    },
+    /// The file is not a well-formed mesh of its format.
+    #[error("{file}: malformed mesh: {reason}")]
+    Malformed {
+        /// File.
+        file: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The file states something that is not honoured, so that it is refused.
+    #[error("{file}: {feature} is not supported: {remedy}")]
+    Unsupported {
+        /// File.
+        file: PathBuf,
+        /// What the file asks for.
+        feature: String,
+        /// What to do instead.
+        remedy: &'static str,
+    },
+    /// The mesh was read but cannot stand for a part.
+    #[error("{file}: mesh {fault}")]
+    Mesh {
+        /// File.
+        file: PathBuf,
+        /// What is wrong with it.
+        fault: MeshFault,
+    },
+    /// A number is out of its range.
+    #[error("{quantity} is {value}, expected {expected}")]
+    Range {
+        /// Which quantity, with its unit.
+        quantity: &'static str,
+        /// Value found.
+        value: f64,
+        /// What is allowed.
+        expected: String,
+    },
+    /// No edge has this id.
+    #[error("no edge '{id}' on this part, expected one of {known}")]
+    UnknownEdge {
+        /// Id asked for.
+        id: String,
+        /// Ids there are.
+        known: String,
+    },
+    /// A line of a burr table is wrong.
+    #[error("{file}, line {line}: {reason}")]
+    BurrTable {
+        /// CSV file.
+        file: PathBuf,
+        /// Line, counted from 1.
+        line: u64,
+        /// What is wrong and what was expected.
+        reason: String,
+    },
+    /// A burr table is shorter than the path it lies on.
+    #[error(
+        "the burr table covers {from} m to {to} m of path length, expected it to cover 0 m to {length} m"
+    )]
+    BurrCoverage {
+        /// First position [m].
+        from: f64,
+        /// Last position [m].
+        to: f64,
+        /// Path length [m].
+        length: f64,
+    },
+}
+
+/// Refuses a number that is not finite or not in the range that `allowed` tests.
+pub(crate) fn require(
+    quantity: &'static str,
+    value: f64,
+    allowed: bool,
+    expected: &str,
+) -> Result<(), WorkpieceError> {
+    if value.is_finite() && allowed {
+        return Ok(());
+    }
+    Err(WorkpieceError::Range {
+        quantity,
+        value,
+        expected: expected.to_owned(),
+    })
+}
