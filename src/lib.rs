@@ -14,16 +14,20 @@
 //! - [`simulation`]: the coupled step
 //! - [`metrics`]: the numbers of a run
 //! - [`report`]: tables for people
+//! - [`app`]: the command line and the files that it writes
 // Units stand in square brackets, which rustdoc would take for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+pub mod app;
 pub mod arm;
 pub mod cell;
 pub mod control;
 pub mod device;
+pub mod metrics;
 pub mod path;
 pub mod physics;
 pub mod recording;
+pub mod report;
 pub mod scenario;
 pub mod simulation;
 pub mod workpiece;

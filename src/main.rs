@@ -1,1 +1,16 @@
-fn main(){}
+//! The `idc` program.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use idc_cell::app::{Cli, execute};
+
+fn main() -> ExitCode {
+    match execute(&Cli::parse()) {
+        Ok(code) => code.into(),
+        Err(error) => {
+            eprintln!("error: {error}");
+            idc_cell::app::ExitCode::BadInput.into()
+        }
+    }
+}

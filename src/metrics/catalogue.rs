@@ -80,8 +80,8 @@ pub const METRICS: &[Metric] = &[
         "length followed / its time", |s| s.feed_mean_mm_per_s),
     entry("follow_duration_s", "s", "time of following",
         "first to last sample of it", |s| s.follow_duration_s),
-    entry("joint_torque_share_percent", "%", "joint torque, largest",
-        "of the joint's effort limit", |s| s.joint_torque_share_percent),
+    entry("joint_torque_share_percent", "%", "joint torque / limit",
+        "largest of all joints", |s| s.joint_torque_share_percent),
     entry("air_mass_balance_relative", "1", "air balance, largest gap",
         "of the air in the chambers", |s| s.air_mass_balance_relative),
     entry("duration_s", "s", "simulated time",
@@ -112,7 +112,10 @@ mod tests {
     fn the_list_is_the_file_key_by_key() {
         let mut summary = summarise(&Builder::nominal().build(), &limits()).unwrap();
         summary.timing = Some(Timing::new(8.0, 2.0));
-        assert_eq!(metric("real_time_factor").and_then(|m| (m.value)(&summary)), Some(4.0));
+        assert_eq!(
+            metric("real_time_factor").and_then(|m| (m.value)(&summary)),
+            Some(4.0)
+        );
         let file = serde_json::to_value(&summary).unwrap();
         let timing = &file["timing"];
         for metric in METRICS {
@@ -130,7 +133,9 @@ mod tests {
     fn names_stand_in_the_order_of_the_file() {
         let summary = summarise(&Builder::nominal().build(), &limits()).unwrap();
         let text = serde_json::to_string(&summary).unwrap();
-        let places = METRICS.iter().filter_map(|m| text.find(&format!("\"{}\":", m.name)));
+        let places = METRICS
+            .iter()
+            .filter_map(|m| text.find(&format!("\"{}\":", m.name)));
         let places: Vec<usize> = places.collect();
         assert_eq!(places.len(), METRICS.len() - 2);
         assert!(places.is_sorted());
@@ -141,7 +146,11 @@ mod tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/METRICS.md");
         let document = std::fs::read_to_string(path).unwrap();
         for metric in METRICS {
-            assert!(document.contains(&format!("`{}`", metric.name)), "{}", metric.name);
+            assert!(
+                document.contains(&format!("`{}`", metric.name)),
+                "{}",
+                metric.name
+            );
         }
         for key in OTHER_KEYS {
             assert!(document.contains(&format!("`{key}`")), "{key}");

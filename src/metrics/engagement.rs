@@ -83,7 +83,13 @@ mod tests {
         assert_eq!(summary.engagement_overshoot_percent, Some(0.0));
 
         // A dip that is over by the end of the dwell only delays it.
-        builder.engage_with(1.0, |since| if (0.3..0.4).contains(&since) { 94.0 } else { 100.0 });
+        builder.engage_with(1.0, |since| {
+            if (0.3..0.4).contains(&since) {
+                94.0
+            } else {
+                100.0
+            }
+        });
         let settling = measured(&builder).settling_time_s.unwrap();
         assert!((settling - 0.4).abs() <= Builder::STEP, "{settling}");
     }

@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::catalogue::{METRICS, Metric, metric};
-use super::nearest::nearest;
 use super::{MetricsError, Summary};
 use crate::scenario::Expectation;
 
@@ -30,7 +29,9 @@ pub struct Verdict {
 /// Names the first metric that does not exist, with the nearest that does, or the first bounds that
 /// make no sense.
 pub fn validate(expectations: &[Expectation]) -> Result<(), MetricsError> {
-    expectations.iter().try_for_each(|expectation| find(expectation).map(|_| ()))
+    expectations
+        .iter()
+        .try_for_each(|expectation| find(expectation).map(|_| ()))
 }
 
 /// Compares results with their bounds, in the order of the expectations.
@@ -67,7 +68,7 @@ fn find(expectation: &Expectation) -> Result<&'static Metric, MetricsError> {
     let name = &expectation.metric;
     let found = metric(name).ok_or_else(|| MetricsError::UnknownMetric {
         metric: name.clone(),
-        nearest: nearest(name, METRICS.iter().map(|metric| metric.name)).unwrap_or_default(),
+        nearest: nearest(name),
     })?;
     let refuse = |found: String, expected| {
         Err(MetricsError::Bound {
@@ -85,6 +86,15 @@ fn find(expectation: &Expectation) -> Result<&'static Metric, MetricsError> {
         }
         _ => Ok(found),
     }
+}
+
+/// The metric whose name is most like a given one.
+fn nearest(name: &str) -> &'static str {
+    let likeness = |metric: &Metric| strsim::jaro_winkler(name, metric.name);
+    METRICS
+        .iter()
+        .max_by(|one, other| likeness(one).total_cmp(&likeness(other)))
+        .map_or("", |metric| metric.name)
 }
 
 #[cfg(test)]
@@ -120,11 +130,14 @@ mod tests {
     #[test]
     fn an_unknown_metric_is_refused_with_the_nearest() {
         for (given, near) in [
-            ("coefficient_of_variation", "coefficient_of_variation_percent"),
+            (
+                "coefficient_of_variation",
+                "coefficient_of_variation_percent",
+            ),
             ("force_mean", "force_mean_n"),
             ("settling_time_ms", "settling_time_s"),
             ("Stroke_margin_mm", "stroke_margin_mm"),
-            ("most_loaded_joint", "stroke_used_mm"),
+            ("froce_mean_n", "force_mean_n"),
         ] {
             let error = validate(&[expectation(given, None, Some(1.0))]).unwrap_err();
             let MetricsError::UnknownMetric { metric, nearest } = &error else {

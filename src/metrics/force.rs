@@ -77,7 +77,11 @@ mod tests {
         builder.follow_with(|share| mean + amplitude * (2.0 * PI * 5.0 * share).sin());
         let summary = measured(&builder);
         assert_near(summary.force_mean_n, mean, 1e-12);
-        assert_near(summary.force_standard_deviation_n, amplitude / SQRT_2, 1e-12);
+        assert_near(
+            summary.force_standard_deviation_n,
+            amplitude / SQRT_2,
+            1e-12,
+        );
         let variation = 100.0 * amplitude / (SQRT_2 * mean);
         assert_near(summary.coefficient_of_variation_percent, variation, 1e-12);
         assert_near(summary.largest_deviation_n, 5.0, 1e-4);
@@ -107,7 +111,13 @@ mod tests {
     #[test]
     fn lost_contact_is_seen_where_it_happens() {
         let mut builder = Builder::nominal();
-        builder.follow_with(|share| if (0.8..0.9).contains(&share) { 0.0 } else { 100.0 });
+        builder.follow_with(|share| {
+            if (0.8..0.9).contains(&share) {
+                0.0
+            } else {
+                100.0
+            }
+        });
         let summary = measured(&builder);
         assert!((summary.loss_of_contact_share_percent.unwrap() - 10.0).abs() < 0.1);
         assert_eq!(summary.force_by_tenth.len(), 10);

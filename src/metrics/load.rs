@@ -3,8 +3,8 @@
 use super::statistics::largest;
 use super::window::Window;
 use super::{JointTorqueShare, MetricsError, Summary, SummaryLimits};
-use crate::recording::schema::{self, JointSignal};
 use crate::recording::Unit;
+use crate::recording::schema::{self, JointSignal};
 
 /// Fills in joint torques and the balance of air.
 pub(super) fn measure(
@@ -76,7 +76,10 @@ mod tests {
         // Efforts are 200 and 20 N m: the small torque is the greater share. Signs do not matter,
         // and the whole run counts: the peak lies before following starts.
         let mut builder = Builder::nominal();
-        builder.torques = [vec![50.0; builder.force.len()], vec![-3.0; builder.force.len()]];
+        builder.torques = [
+            vec![50.0; builder.force.len()],
+            vec![-3.0; builder.force.len()],
+        ];
         builder.torques[1][3] = -15.0;
         let summary = summarise(&builder.build(), &limits()).unwrap();
         assert_eq!(summary.joints[0].joint, "base");

@@ -19,7 +19,10 @@ pub(crate) fn limits() -> SummaryLimits {
 pub(crate) fn assert_near(value: Option<f64>, expected: f64, relative: f64) {
     let value = value.expect("a defined value");
     let error = (value - expected).abs();
-    assert!(error <= relative * expected.abs(), "{value} instead of {expected}");
+    assert!(
+        error <= relative * expected.abs(),
+        "{value} instead of {expected}"
+    );
 }
 
 /// A run in the making: approach to 1 s, engage to 2 s, follow to 6 s, retract to 7 s.
@@ -42,7 +45,9 @@ impl Builder {
 
     /// Desired force from touch to retract, 200 mm at constant feed, air flowing through.
     pub(crate) fn nominal() -> Self {
-        let time: Vec<f64> = (0..=7 * 1024).map(|index| f64::from(index) * Self::STEP).collect();
+        let time: Vec<f64> = (0..=7 * 1024)
+            .map(|index| f64::from(index) * Self::STEP)
+            .collect();
         let constant = |value: f64| vec![value; time.len()];
         let by_time = |signal: fn(f64) -> f64| time.iter().map(|&t| signal(t)).collect::<Vec<_>>();
         let span = |name: &str, start, end| PhaseSpan {
@@ -101,8 +106,17 @@ impl Builder {
 
     /// Sets the force from a touch at `touch` [s] to the start of following.
     pub(crate) fn engage_with(&mut self, touch: f64, force: impl Fn(f64) -> f64) {
-        for (time, value) in self.time.iter().zip(&mut self.force).take(Self::FOLLOW.start) {
-            *value = if *time < touch { 0.0 } else { force(time - touch) };
+        for (time, value) in self
+            .time
+            .iter()
+            .zip(&mut self.force)
+            .take(Self::FOLLOW.start)
+        {
+            *value = if *time < touch {
+                0.0
+            } else {
+                force(time - touch)
+            };
         }
     }
 

@@ -61,7 +61,10 @@ impl<'a> Window<'a> {
             return Ok(None);
         };
         let values = &values[self.range.clone()];
-        Ok(values.iter().all(|value| value.is_finite()).then_some(values))
+        Ok(values
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some(values))
     }
 }
 

@@ -12,8 +12,8 @@ use crate::arm::dynamics::gravity_torques;
 use crate::arm::inverse_kinematics::{IkOptions, TipOrientation, distinct_solutions, solve};
 use crate::arm::kinematics::{jacobian_at, link_poses, smallest_singular_value, tip_pose};
 
-/// Newton steps to each pose; poses are near enough for two, the third is rounding.
-const STEPS: usize = 4;
+/// Newton steps to each pose; neighbouring poses need two or three, the coarse ones by which a posture is chosen up to six.
+const STEPS: usize = 6;
 /// Distance and angle up to which a pose counts as reached [m, rad].
 const TOLERANCE: f64 = 1e-8;
 /// Random starts for the first pose of each spin.

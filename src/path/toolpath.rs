@@ -11,7 +11,7 @@ use super::error::PlanError;
 use crate::workpiece::EdgeCurve;
 
 /// Path length per angle turned at a corner [m/rad].
-const CORNER_RADIUS: f64 = 0.01;
+const CORNER_RADIUS: f64 = 0.03;
 /// How far beside a corner the edge's directions are read [m].
 const BESIDE: f64 = 1e-6;
 

@@ -1,7 +1,8 @@
 //! Files that appear whole or not at all.
 //!
-//! The content goes to a temporary file in the target's directory, which is renamed onto the target
-//! once everything is on disk. A run that is killed or refused half-way leaves the old file or none.
+//! The content goes to a temporary file in the target's directory, which is renamed onto the
+//! target once everything is on disk. A run that is killed or refused half-way leaves the old file
+//! or none.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;

@@ -130,7 +130,10 @@ fn writer_properties(
 
 /// JSON object from column name to unit and meaning.
 fn column_meanings(recording: &Recording) -> String {
-    let entry = |quantity: &str, symbol: &str| serde_json::json!({ "unit": symbol, "meaning": schema::meaning(quantity) });
+    let entry = |quantity: &str, symbol: &str| {
+        let meaning = schema::meaning(quantity);
+        serde_json::json!({ "unit": symbol, "meaning": meaning })
+    };
     let mut columns = serde_json::Map::new();
     let time = column_name(schema::TIME, Unit::Second);
     columns.insert(time, entry(schema::TIME, Unit::Second.symbol()));

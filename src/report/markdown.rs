@@ -2,8 +2,7 @@
 //!
 //! Timing is left out, so that the same scenario gives the same text.
 
-use super::number::{UNDEFINED, optional};
-use super::rows::{DIGITS, Row, comparison, rows, tally, tenth_decimals};
+use super::rows::{Row, alike, comparison, rows, tally};
 use crate::metrics::{ForceTenth, Summary, Verdict};
 
 /// The results of a run as Markdown, with the scenario's expectations first.
@@ -50,16 +49,12 @@ fn results(out: &mut String, part: &[Row]) {
     let Some(first) = part.first() else {
         return;
     };
-    out.push_str(&format!("\n## {}\n\n", first.part));
-    row(out, &["", "", "", ""]);
+    out.push('\n');
+    row(out, &[first.part, "value", "unit", ""]);
     row(out, &["---", "---:", "---", "---"]);
     for entry in part {
-        if entry.metric.name == "real_time_factor" {
-            continue;
-        }
-        let unit = if entry.metric.unit == "1" { "" } else { entry.metric.unit };
-        let value = optional(entry.value, DIGITS);
-        row(out, &[&escape(entry.metric.label), &value, unit, &escape(&entry.note)]);
+        let (label, note) = (escape(entry.metric.label), escape(&entry.note));
+        row(out, &[&label, &escape(&entry.text()), entry.unit(), &note]);
     }
 }
 
@@ -67,22 +62,18 @@ fn tenths(out: &mut String, tenths: &[ForceTenth]) {
     if tenths.is_empty() {
         return;
     }
-    let decimals = tenth_decimals(tenths);
-    let number = |value: Option<f64>| match value {
-        Some(value) => format!("{value:.decimals$}"),
-        None => UNDEFINED.to_owned(),
+    let column = |value: fn(&ForceTenth) -> Option<f64>| {
+        alike(&tenths.iter().map(value).collect::<Vec<_>>())
     };
+    let means = column(|tenth| tenth.force_mean_n);
+    let spreads = column(|tenth| tenth.force_standard_deviation_n);
     out.push_str("\n## Force along the path\n\n");
     row(out, &["from mm", "to mm", "mean N", "standard deviation N"]);
     row(out, &["---:", "---:", "---:", "---:"]);
-    for tenth in tenths {
-        let cells = [
-            format!("{:.0}", tenth.from_mm),
-            format!("{:.0}", tenth.to_mm),
-            number(tenth.force_mean_n),
-            number(tenth.force_standard_deviation_n),
-        ];
-        row(out, &cells.each_ref().map(String::as_str));
+    for ((tenth, mean), spread) in tenths.iter().zip(&means).zip(&spreads) {
+        let from = format!("{:.0}", tenth.from_mm);
+        let to = format!("{:.0}", tenth.to_mm);
+        row(out, &[&from, &to, mean, spread]);
     }
 }
 
@@ -112,7 +103,10 @@ mod tests {
             assert_eq!(cells(line), 5, "{line}");
         }
         assert!(out.contains("a\\|b \\*c\\*"));
-        assert!(out.contains("| **OUTSIDE** | stroke\\_margin\\_mm |"), "{out}");
+        assert!(
+            out.contains("| **OUTSIDE** | stroke\\_margin\\_mm |"),
+            "{out}"
+        );
     }
 
     #[test]

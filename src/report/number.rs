@@ -30,6 +30,11 @@ pub(super) fn optional(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| UNDEFINED.to_owned(), |value| significant(value, digits))
 }
 
+/// A name from a file on one line, without anything that steers a terminal.
+pub(super) fn printable(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

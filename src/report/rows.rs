@@ -1,7 +1,7 @@
 //! The rows of the reports: which metrics, in which parts, with what beside them.
 
-use super::number::significant;
-use crate::metrics::{ForceTenth, METRICS, Metric, Summary, Verdict};
+use super::number::{UNDEFINED, optional, printable, significant};
+use crate::metrics::{Metric, Summary, Verdict, metric};
 
 /// Significant digits of a result; forces near the desired one differ in the fourth.
 pub(super) const DIGITS: usize = 4;
@@ -50,10 +50,34 @@ pub(super) struct Row {
     pub(super) note: String,
 }
 
-/// The rows in order.
+impl Row {
+    /// The value as it is printed.
+    pub(super) fn text(&self) -> String {
+        match self.value {
+            // A share that falls short must not read as the whole.
+            Some(value) if self.metric.unit == "%" && (99.995..100.0).contains(&value) => {
+                "<100".to_owned()
+            }
+            value => optional(value, DIGITS),
+        }
+    }
+
+    /// The unit as it is printed; nothing for a pure number.
+    pub(super) fn unit(&self) -> &'static str {
+        match self.metric.unit {
+            "1" => "",
+            unit => unit,
+        }
+    }
+}
+
+/// The rows in order; without that of the timing if there is none.
 pub(super) fn rows(summary: &Summary) -> Vec<Row> {
     let row = |part, name: &str| {
-        let metric = METRICS.iter().find(|metric| metric.name == name)?;
+        if name == "real_time_factor" && summary.timing.is_none() {
+            return None;
+        }
+        let metric = metric(name)?;
         Some(Row {
             part,
             metric,
@@ -82,23 +106,37 @@ fn fact(name: &str, summary: &Summary) -> Option<String> {
         }
         "path_length_mm" => format!("at {} mm/s on average", short(summary.feed_mean_mm_per_s?)),
         "joint_torque_share_percent" => {
-            format!("of its limit, {}", summary.most_loaded_joint.as_ref()?)
+            format!(
+                "largest, at {}",
+                printable(summary.most_loaded_joint.as_ref()?)
+            )
         }
         "duration_s" => format!("following {} s of it", short(summary.follow_duration_s?)),
-        "real_time_factor" => format!("computed in {} s", significant(summary.timing?.wall_time_s, 3)),
+        "real_time_factor" => format!(
+            "computed in {} s",
+            significant(summary.timing?.wall_time_s, 3)
+        ),
         _ => return None,
     })
 }
 
-/// Decimals that serve all tenths of the path alike: those of the finest spread.
-pub(super) fn tenth_decimals(tenths: &[ForceTenth]) -> usize {
-    let spread = tenths.iter().filter_map(|tenth| tenth.force_standard_deviation_n);
-    let largest = spread.fold(0.0, f64::max);
-    match largest {
-        spread if spread >= 10.0 => 0,
-        spread if spread >= 1.0 => 1,
-        _ => 2,
-    }
+/// Values as texts of one precision, five digits for the largest of them and at most three decimals.
+pub(super) fn alike(values: &[Option<f64>]) -> Vec<String> {
+    let largest = values
+        .iter()
+        .flatten()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let decimals = match largest {
+        largest if largest < 100.0 => 3,
+        largest if largest < 1000.0 => 2,
+        largest if largest < 10_000.0 => 1,
+        _ => 0,
+    };
+    let text = |value: &Option<f64>| match value {
+        Some(value) => format!("{value:.decimals$}"),
+        None => UNDEFINED.to_owned(),
+    };
+    values.iter().map(text).collect()
 }
 
 /// Value and bound of a verdict, with enough digits to tell them apart.
@@ -137,7 +175,7 @@ pub(super) fn tally(verdicts: &[Verdict]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::metric;
+    use crate::metrics::Timing;
 
     #[test]
     fn every_row_names_a_metric() {
@@ -145,7 +183,42 @@ mod tests {
             assert!(metric(name).is_some(), "{name}");
         }
         let count: usize = PARTS.iter().map(|(_, names)| names.len()).sum();
-        assert_eq!(rows(&Summary::default()).len(), count);
+        let untimed = Summary::default();
+        let timed = Summary {
+            timing: Some(Timing::new(1.0, 1.0)),
+            ..Summary::default()
+        };
+        assert_eq!(
+            (rows(&untimed).len(), rows(&timed).len()),
+            (count - 1, count)
+        );
+    }
+
+    #[test]
+    fn a_share_that_falls_short_does_not_read_as_the_whole() {
+        let shown = |share| {
+            let summary = Summary {
+                within_5_percent_share_percent: Some(share),
+                ..Summary::default()
+            };
+            let rows = rows(&summary);
+            let row = rows
+                .iter()
+                .find(|row| row.metric.label == "within 5 % of desired");
+            row.map(Row::text)
+        };
+        assert_eq!(shown(99.94).as_deref(), Some("99.94"));
+        assert_eq!(shown(99.996).as_deref(), Some("<100"));
+        assert_eq!(shown(100.0).as_deref(), Some("100.0"));
+    }
+
+    #[test]
+    fn neighbours_have_the_same_decimals() {
+        assert_eq!(
+            alike(&[Some(320.0), Some(5.125), None]),
+            ["320.00", "5.12", "-"]
+        );
+        assert_eq!(alike(&[Some(0.25)]), ["0.250"]);
     }
 
     #[test]

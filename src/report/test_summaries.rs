@@ -34,7 +34,7 @@ pub(super) fn nominal() -> Summary {
         feed_mean_mm_per_s: Some(49.3),
         follow_duration_s: Some(6.085),
         joint_torque_share_percent: Some(61.2),
-        most_loaded_joint: Some("joint_2".into()),
+        most_loaded_joint: Some("shoulder_lift_joint".into()),
         air_mass_balance_relative: Some(3.2e-14),
         duration_s: 12.0,
         joints: Vec::new(),

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::number::{UNDEFINED, optional};
-use super::rows::{DIGITS, Row, comparison, rows, tally, tenth_decimals};
+use super::number::{UNDEFINED, printable};
+use super::rows::{Row, alike, comparison, rows, tally};
 use crate::metrics::{ForceTenth, Summary, Verdict};
 
 const WIDTH: usize = 80;
@@ -43,7 +43,7 @@ impl Style {
 #[must_use]
 pub fn text(title: &str, summary: &Summary, verdicts: &[Verdict], style: Style) -> String {
     let rule = style.faint(&"-".repeat(WIDTH));
-    let mut out = format!("{}\n{rule}\n", style.heading(title));
+    let mut out = format!("{}\n{rule}\n", style.heading(&printable(title)));
     let rows = rows(summary);
     let mut part = "";
     for row in &rows {
@@ -69,12 +69,12 @@ fn push(out: &mut String, line: &str) {
 }
 
 fn line(out: &mut String, opening: &str, row: &Row, style: Style) {
-    let value = optional(row.value, DIGITS);
-    let unit = if row.metric.unit == "1" { "" } else { row.metric.unit };
     let text = format!(
-        "{} {:<24} {value:>9} {unit:<4}  {}",
+        "{} {:<24} {:>9} {:<4}  {}",
         style.heading(&format!("{opening:<7}")),
         row.metric.label,
+        row.text(),
+        row.unit(),
         style.faint(&row.note),
     );
     push(out, &text);
@@ -84,15 +84,19 @@ fn tenths(out: &mut String, tenths: &[ForceTenth], style: Style) {
     if tenths.is_empty() {
         return;
     }
-    let decimals = tenth_decimals(tenths);
-    let number = |value: Option<f64>| match value {
-        Some(value) => format!("{value:>7.decimals$}"),
-        None => format!("{UNDEFINED:>7}"),
+    let cells =
+        |texts: Vec<String>| -> String { texts.iter().map(|text| format!("{text:>7}")).collect() };
+    let column = |value: fn(&ForceTenth) -> Option<f64>| {
+        cells(alike(&tenths.iter().map(value).collect::<Vec<_>>()))
     };
-    let cells = |cell: &dyn Fn(&ForceTenth) -> String| tenths.iter().map(cell).collect::<String>();
-    let ends = cells(&|tenth| format!("{:>7.0}", tenth.to_mm));
-    let means = cells(&|tenth| number(tenth.force_mean_n));
-    let spreads = cells(&|tenth| number(tenth.force_standard_deviation_n));
+    let ends = cells(
+        tenths
+            .iter()
+            .map(|tenth| format!("{:.0}", tenth.to_mm))
+            .collect(),
+    );
+    let means = column(|tenth| tenth.force_mean_n);
+    let spreads = column(|tenth| tenth.force_standard_deviation_n);
     let name = |name: &str| style.heading(&format!("{name:<7}"));
     push(out, &format!("{}{}", name("To mm"), style.faint(&ends)));
     push(out, &format!("{}{means}", name("Mean N")));
@@ -136,7 +140,10 @@ mod tests {
             let out = text("plate edge", &summary, &judged(&summary), Style::Plain);
             for line in out.lines() {
                 assert!(line.len() <= WIDTH, "{} columns: {line}", line.len());
-                assert!(line.bytes().all(|byte| (b' '..=b'~').contains(&byte)), "{line}");
+                assert!(
+                    line.bytes().all(|byte| (b' '..=b'~').contains(&byte)),
+                    "{line}"
+                );
                 assert_eq!(line, line.trim_end());
             }
         }
@@ -150,7 +157,11 @@ mod tests {
         for code in ["1", "2", "32", "1;31", "0"] {
             coloured = coloured.replace(&format!("\x1b[{code}m"), "");
         }
-        let bare = |text: &str| text.lines().map(|l| l.trim_end().to_owned()).collect::<Vec<_>>();
+        let bare = |text: &str| {
+            text.lines()
+                .map(|l| l.trim_end().to_owned())
+                .collect::<Vec<_>>()
+        };
         let plain = text("plate edge", &summary, &verdicts, Style::Plain);
         assert_eq!(bare(&coloured), bare(&plain));
     }
@@ -159,11 +170,21 @@ mod tests {
     fn numbers_stand_in_their_rows() {
         let summary = nominal();
         let out = text("plate edge", &summary, &judged(&summary), Style::Plain);
-        let line = |part: &str| out.lines().find(|line| line.contains(part)).unwrap_or_default();
+        let line = |part: &str| {
+            out.lines()
+                .find(|line| line.contains(part))
+                .unwrap_or_default()
+        };
         for (label, parts) in [
             ("Force   mean", ["320.1 N", "desired 320.0 N"]),
-            ("coefficient of variation  ", ["0.3124 %", "standard deviation / mean"]),
-            ("joint torque, largest", ["61.20 %", "joint_2"]),
+            (
+                "coefficient of variation  ",
+                ["0.3124 %", "standard deviation / mean"],
+            ),
+            (
+                "joint torque / limit",
+                ["61.20 %", "largest, at shoulder_lift_joint"],
+            ),
             ("real-time factor", ["25.00", "computed in 0.480 s"]),
             ("OUTSIDE", ["stroke_margin_mm", "at least 22"]),
             ("1 of 2", ["expectations", "kept"]),
@@ -178,7 +199,10 @@ mod tests {
     #[test]
     fn what_is_undefined_is_a_dash_and_explained() {
         let out = text("plate edge", &Summary::default(), &[], Style::Plain);
-        let peak = out.lines().find(|line| line.contains("peak")).unwrap_or_default();
+        let peak = out
+            .lines()
+            .find(|line| line.contains("peak"))
+            .unwrap_or_default();
         assert!(peak.contains(" - N"), "{peak}");
         assert!(out.contains("- not determined by this run"));
     }

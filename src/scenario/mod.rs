@@ -1,4 +1,4 @@
-//! A scenario: what to simulate, in strict SI, checked. `file` mirrors the TOML file, `load` turns it into this.
+//! A scenario: what to simulate, in strict SI, checked. `file` mirrors the TOML file, `document` finds its way in it, `load` turns it into this.
 
 use std::path::PathBuf;
 
@@ -7,12 +7,22 @@ use glamx::DPose3;
 
 use crate::device::DeviceParameters;
 
+mod check;
+mod device;
+mod document;
 pub mod error;
 mod file;
 mod load;
+mod sections;
+mod suggestion;
+#[cfg(test)]
+mod tests;
+mod units;
+mod workpiece;
 
+pub use device::load_device;
 pub use error::ScenarioError;
-pub use load::{load, load_device};
+pub use load::load;
 
 /// A whole cell and its job.
 #[derive(Debug, Clone)]
@@ -167,7 +177,7 @@ pub enum BurrScenario {
         mean_height: f64,
         /// Standard deviation of the height [m].
         height_deviation: f64,
-        /// Length over which it changes [m].
+        /// Distance over which the correlation of its logarithm falls to exp(-1/2) [m].
         correlation_length: f64,
     },
     /// A single smooth bump.
@@ -176,7 +186,7 @@ pub enum BurrScenario {
         position: f64,
         /// Height [m].
         height: f64,
-        /// Width [m].
+        /// Width from foot to foot [m].
         width: f64,
     },
     /// Heights from a CSV file.

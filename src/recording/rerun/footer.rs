@@ -1,8 +1,8 @@
 //! Puts the footer of an `.rrd` file in order.
 //!
 //! The footer tells readers which stores and columns there are and where their chunks lie. Rerun's
-//! encoder lists stores and columns as its hash maps hold them, in another order at every run; sorted,
-//! equal content gives equal bytes.
+//! encoder lists stores and columns as its hash maps hold them, in another order at every run;
+//! sorted, equal content gives equal bytes.
 
 use ::rerun::external::re_log_encoding::{
     CodecError, Decodable as _, Encodable as _, MessageHeader, MessageKind, RawRrdManifest,

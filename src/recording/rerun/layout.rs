@@ -89,7 +89,7 @@ pub(super) fn screen(input: &LayoutInput) -> Panel {
 pub(super) fn time_panel(opening: Opening) -> TimePanelBlueprint {
     let panel = TimePanelBlueprint::new()
         .with_state(PanelState::Collapsed)
-        .with_timeline(TimelineName(super::timelines::PATH_LENGTH.into()));
+        .with_timeline(TimelineName(SIM_TIME.into()));
     match opening {
         Opening::Paused => panel.with_play_state(PlayState::Paused),
         Opening::Playing { span, speed } => {

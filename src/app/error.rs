@@ -1,0 +1,62 @@
+//! What ends a command early, and the exit code that goes with it.
+
+use crate::cell::CellError;
+use crate::metrics::MetricsError;
+use crate::recording::RecordingError;
+use crate::scenario::ScenarioError;
+use crate::workpiece::WorkpieceError;
+
+/// Exit codes of the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExitCode {
+    /// All is well.
+    Done = 0,
+    /// A result lies outside the bounds that the scenario states.
+    OutsideBounds = 1,
+    /// Bad input: nothing was simulated, nothing was written.
+    BadInput = 2,
+    /// The physics stopped the run; what was recorded up to there was written.
+    Stopped = 3,
+}
+
+impl From<ExitCode> for std::process::ExitCode {
+    fn from(code: ExitCode) -> Self {
+        Self::from(code as u8)
+    }
+}
+
+/// Bad input, or a file that cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum AppError {
+    /// The scenario file.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The cell.
+    #[error(transparent)]
+    Cell(#[from] CellError),
+    /// A mesh.
+    #[error(transparent)]
+    Workpiece(#[from] WorkpieceError),
+    /// A bound on a metric.
+    #[error("{file}: [expect]: {source}")]
+    Metrics {
+        /// Scenario file.
+        file: String,
+        /// What is wrong.
+        source: MetricsError,
+    },
+    /// A recording.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// The output folder.
+    #[error("cannot make the output folder {folder}: {source}")]
+    OutputFolder {
+        /// The folder.
+        folder: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Summary as JSON.
+    #[error("cannot write the summary as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}

@@ -1,0 +1,179 @@
+//! The scene that belongs to a run: arm, device, workpiece, edge, contact force.
+
+use glam::DVec3;
+use glamx::DPose3;
+
+use crate::arm::urdf::VisualShape;
+use crate::cell::Cell;
+use crate::recording::scene::{
+    Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
+};
+use crate::recording::{Recording, RecordingError, schema};
+use crate::simulation::FrameLog;
+
+/// Segments of the drawn edge.
+const EDGE_SEGMENTS: usize = 400;
+const HOUSING: Colour = [70, 80, 92, 255];
+const CYLINDER: Colour = [176, 184, 192, 255];
+const CARRIAGE: Colour = [222, 143, 5, 255];
+const TOOL: Colour = [60, 60, 60, 255];
+const PART: Colour = [150, 165, 178, 255];
+
+/// Builds the scene of a run.
+///
+/// # Errors
+/// The recording lacks a channel.
+pub fn scene_of(cell: &Cell, recording: &Recording, frames: &FrameLog) -> Result<Scene, RecordingError> {
+    let mut bodies = arm(cell, frames);
+    bodies.extend(device(cell, frames));
+    bodies.push(part(cell));
+    Ok(Scene {
+        title: cell.scenario.title.clone(),
+        bodies,
+        frame_times: frames.times.clone(),
+        frame_path_lengths: frames.path_lengths.clone(),
+        edge_path: edge_path(cell, recording)?,
+        contact_arrows: frames
+            .contact_points
+            .iter()
+            .zip(&frames.contact_forces)
+            .map(|(&point_in_world, &force_in_world)| ContactArrow { point_in_world, force_in_world })
+            .collect(),
+        limits: SceneLimits {
+            stroke: Some([0.0, cell.scenario.device.parameters.full_stroke]),
+            joint_torque: cell.arm.chain.joints.iter().map(|joint| joint.effort).collect(),
+        },
+    })
+}
+
+fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
+    let count = cell.arm.chain.len();
+    (0..=count)
+        .map(|index| SceneBody {
+            entity: format!("arm/{}", cell.arm.link_names[index]),
+            shapes: cell
+                .arm
+                .visuals
+                .iter()
+                .filter(|visual| visual.link_index == index)
+                .map(|visual| SceneShape {
+                    body_from_shape: visual.link_from_visual,
+                    geometry: geometry(&visual.shape),
+                    colour: visual.colour,
+                })
+                .collect(),
+            world_from_body: match index {
+                0 => ScenePoses::Static(cell.scenario.arm.world_from_base),
+                _ => ScenePoses::Moving(frames.links.iter().map(|links| links[index - 1]).collect()),
+            },
+        })
+        .collect()
+}
+
+fn geometry(shape: &VisualShape) -> SceneGeometry {
+    match shape {
+        VisualShape::Box { size } => SceneGeometry::Box { size: *size },
+        VisualShape::Cylinder { radius, length } => SceneGeometry::Cylinder { radius: *radius, length: *length },
+        VisualShape::Sphere { radius } => SceneGeometry::Sphere { radius: *radius },
+        VisualShape::Mesh { vertices, triangles } => {
+            SceneGeometry::Mesh { vertices: vertices.clone(), triangles: triangles.clone() }
+        }
+    }
+}
+
+fn along_z(radius: f64, length: f64, x: f64, middle: f64, colour: Colour) -> SceneShape {
+    SceneShape {
+        body_from_shape: DPose3::from_translation(DVec3::new(x, 0.0, middle)),
+        geometry: SceneGeometry::Cylinder { radius, length },
+        colour,
+    }
+}
+
+fn plate(size: DVec3, middle: f64, colour: Colour) -> SceneShape {
+    SceneShape {
+        body_from_shape: DPose3::from_translation(DVec3::new(0.0, 0.0, middle)),
+        geometry: SceneGeometry::Box { size },
+        colour,
+    }
+}
+
+/// The device to its own measures: cylinders on the flange, carriage, spindle and ball nose on the slide.
+fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
+    let scenario = &cell.scenario.device;
+    let parameters = &scenario.parameters;
+    let last = cell.arm.chain.len() - 1;
+    let barrel = 0.5 * parameters.bore + 0.004;
+    let spacing = barrel + 0.028;
+    let length = parameters.full_stroke.min(0.6 * scenario.tool_centre);
+    let sides: &[f64] = if parameters.cylinder_count > 1 { &[-1.0, 1.0] } else { &[0.0] };
+    let mut fixed = vec![plate(DVec3::new(2.0 * (spacing + barrel), 2.0 * barrel, 0.012), 0.006, HOUSING)];
+    let mut moving = vec![
+        plate(DVec3::new(2.0 * (spacing + barrel), 1.6 * barrel, 0.012), length + 0.02, CARRIAGE),
+    ];
+    for side in sides {
+        fixed.push(along_z(barrel, length, side * spacing, 0.012 + 0.5 * length, CYLINDER));
+        moving.push(along_z(0.5 * parameters.rod, length, side * spacing, 0.5 * length + 0.016, TOOL));
+    }
+    let spindle_end = scenario.tool_centre - 0.03;
+    moving.push(along_z(0.019, spindle_end - length, 0.0, 0.5 * (spindle_end + length), HOUSING));
+    moving.push(along_z(0.5 * scenario.tool_radius, 0.03, 0.0, spindle_end + 0.015, TOOL));
+    moving.push(SceneShape {
+        body_from_shape: DPose3::from_translation(DVec3::new(0.0, 0.0, scenario.tool_centre)),
+        geometry: SceneGeometry::Sphere { radius: scenario.tool_radius },
+        colour: CARRIAGE,
+    });
+    let flange = |links: &Vec<DPose3>| links[last] * cell.arm.chain.tip_from_last;
+    [
+        SceneBody {
+            entity: "device/cylinders".into(),
+            shapes: fixed,
+            world_from_body: ScenePoses::Moving(frames.links.iter().map(flange).collect()),
+        },
+        SceneBody {
+            entity: "device/slide".into(),
+            shapes: moving,
+            world_from_body: ScenePoses::Moving(frames.links.iter().map(|links| links[last + 1]).collect()),
+        },
+    ]
+}
+
+fn part(cell: &Cell) -> SceneBody {
+    SceneBody {
+        entity: "workpiece".into(),
+        shapes: vec![SceneShape {
+            body_from_shape: DPose3::IDENTITY,
+            geometry: SceneGeometry::Mesh {
+                vertices: cell.part.mesh.vertices().to_vec(),
+                triangles: cell.part.mesh.triangles().to_vec(),
+            },
+            colour: PART,
+        }],
+        world_from_body: ScenePoses::Static(cell.part.world_from_part),
+    }
+}
+
+/// The edge as it was planned, with the mean relative error of the force over each segment while following.
+fn edge_path(cell: &Cell, recording: &Recording) -> Result<EdgePath, RecordingError> {
+    let edge = &cell.part.edge;
+    let points_in_world = (0..=EDGE_SEGMENTS)
+        .map(|i| {
+            let place = edge.length * i as f64 / EDGE_SEGMENTS as f64;
+            cell.scenario.workpiece.world_from_part.transform_point(edge.at(place).point)
+        })
+        .collect();
+    let mut sums = vec![(0.0, 0usize); EDGE_SEGMENTS];
+    if let Some(span) = recording.phase(crate::metrics::FOLLOW_PHASE) {
+        let force = recording.values(schema::CONTACT_FORCE)?;
+        let place = recording.values(schema::PATH_LENGTH)?;
+        let desired = cell.scenario.process.force;
+        for i in recording.samples_in(span).filter(|&i| force[i] > 0.0) {
+            let segment = (place[i] / edge.length * EDGE_SEGMENTS as f64) as usize;
+            let sum = &mut sums[segment.min(EDGE_SEGMENTS - 1)];
+            sum.0 += (force[i] - desired) / desired;
+            sum.1 += 1;
+        }
+    }
+    let relative_force_error =
+        sums.into_iter().map(|(sum, count)| if count == 0 { f64::NAN } else { sum / count as f64 }).collect();
+    Ok(EdgePath { points_in_world, relative_force_error })
+}

@@ -1,0 +1,232 @@
+//! From a scenario file to the checked scenario in SI. Each number's default and range stand here, in the key's own unit; scenarios/README.md repeats them.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::check::Section;
+use super::device::load_with_overrides;
+use super::document::{Document, read_text};
+use super::error::ScenarioError;
+use super::file::{self, ScenarioFile};
+use super::sections::scenario_sections;
+use super::workpiece::workpiece;
+use super::{
+    ArmScenario, ContactScenario, DeviceScenario, Expectation, LimitOverride, ProcessScenario,
+    Scenario, ServoScenario, SimulationScenario,
+};
+
+/// Reads and checks a scenario file and the device model file that it names.
+pub fn load(path: &Path) -> Result<Scenario, ScenarioError> {
+    from_text(path, &read_text(path)?)
+}
+
+/// As `load`, of a text that stands, or could stand, in the file at `path`.
+pub(super) fn from_text(path: &Path, text: &str) -> Result<Scenario, ScenarioError> {
+    let document = Document::new(path, text, file::SCHEMA)?;
+    let file: ScenarioFile = document.parse(&scenario_sections())?;
+    debug_assert_eq!(file.schema, file::SCHEMA, "other schemas are refused by Document::new");
+    let section = |table: &str| Section::new(&document, table);
+    let device = device(&section("device"), &file.device)?;
+    let contact = contact(&section("contact"), &file.contact)?;
+    check_lock(&section("contact"), &file.contact, &device, &contact)?;
+    Ok(Scenario {
+        path: path.to_owned(),
+        title: section("").text("title", &file.title)?,
+        arm: arm(&section("arm"), &file.arm)?,
+        workpiece: workpiece(&section("workpiece"), &file.workpiece)?,
+        process: process(&section("process"), &file.process, &device)?,
+        simulation: simulation(&section("simulation"), &file.simulation)?,
+        expect: expectations(&section("expect"), &file.expect)?,
+        device,
+        contact,
+    })
+}
+
+fn arm(section: &Section<'_>, keys: &file::ArmKeys) -> Result<ArmScenario, ScenarioError> {
+    let packages = Section::new(section.document(), "arm.packages");
+    let folder = |(name, folder): (&String, &std::path::PathBuf)| {
+        Ok((name.clone(), packages.directory(name, folder)?))
+    };
+    let base_link = keys.base_link.as_deref();
+    let posture = keys.seed_posture_deg.as_deref();
+    Ok(ArmScenario {
+        urdf: section.file("urdf", &keys.urdf)?,
+        base_link: base_link.map(|name| section.text("base_link", name)).transpose()?,
+        flange_link: section.text("flange_link", &keys.flange_link)?,
+        package_directories: keys.packages.iter().map(folder).collect::<Result<_, _>>()?,
+        limit_overrides: limit_overrides(section.document(), &keys.limit_overrides)?,
+        world_from_base: section.pose(
+            ("base_position_mm", keys.base_position_mm.as_deref()),
+            ("base_rotation_deg", keys.base_rotation_deg.as_deref()),
+        )?,
+        seed_posture: posture
+            .map(|angles| section.numbers("seed_posture_deg", angles, -360.0..=360.0))
+            .transpose()?,
+        servo: servo(&Section::new(section.document(), "arm.servo"), &keys.servo)?,
+    })
+}
+
+fn limit_overrides(
+    document: &Document<'_>,
+    overrides: &[file::LimitKeys],
+) -> Result<Vec<LimitOverride>, ScenarioError> {
+    let mut joints = BTreeSet::new();
+    let mut limits = Vec::with_capacity(overrides.len());
+    for (index, keys) in overrides.iter().enumerate() {
+        let section = Section::new(document, format!("arm.limit_overrides[{index}]"));
+        let joint = section.text("joint", &keys.joint)?;
+        if !joints.insert(&keys.joint) {
+            let expected = "each joint once".to_owned();
+            return Err(section.refuse("joint", format!("\"{joint}\" again"), expected));
+        }
+        if keys.effort_n_m.is_none() && keys.velocity_deg_per_s.is_none() {
+            return Err(section.missing("effort_n_m", "it or velocity_deg_per_s to be given"));
+        }
+        let effort = keys.effort_n_m;
+        let velocity = keys.velocity_deg_per_s;
+        limits.push(LimitOverride {
+            joint,
+            effort: effort
+                .map(|value| section.number("effort_n_m", value, 0.1..=10_000.0))
+                .transpose()?,
+            velocity: velocity
+                .map(|value| section.number("velocity_deg_per_s", value, 1.0..=2000.0))
+                .transpose()?,
+        });
+    }
+    Ok(limits)
+}
+
+#[rustfmt::skip] // A table: one key a line.
+fn servo(section: &Section<'_>, keys: &file::ServoKeys) -> Result<ServoScenario, ScenarioError> {
+    Ok(ServoScenario {
+        natural_frequency: section.number("natural_frequency_hz", keys.natural_frequency_hz.unwrap_or(40.0), 1.0..=200.0)?,
+        damping_ratio: section.number("damping_ratio", keys.damping_ratio.unwrap_or(1.0), 0.1..=10.0)?,
+        integral_time: section.number("integral_time_s", keys.integral_time_s.unwrap_or(0.1), 0.001..=f64::INFINITY)?,
+        contact_feed_forward: keys.contact_feed_forward.unwrap_or(true),
+    })
+}
+
+fn device(section: &Section<'_>, keys: &file::DeviceKeys) -> Result<DeviceScenario, ScenarioError> {
+    let overrides = Section::new(section.document(), "device.override");
+    let model = section.file("model", &keys.model)?;
+    let mut device = load_with_overrides(&model, Some((overrides, &keys.overrides)))?;
+    device.locked = keys.locked.unwrap_or(false);
+    Ok(device)
+}
+
+#[rustfmt::skip] // A table: one key a line.
+fn contact(section: &Section<'_>, keys: &file::ContactKeys) -> Result<ContactScenario, ScenarioError> {
+    Ok(ContactScenario {
+        stiffness: section.number("stiffness_n_per_m", keys.stiffness_n_per_m.unwrap_or(1.5e5), 1e3..=1e8)?,
+        damping: section.number("damping_n_s_per_m", keys.damping_n_s_per_m.unwrap_or(4e2), 0.0..=1e6)?,
+        friction: section.number("friction_coefficient", keys.friction_coefficient.unwrap_or(0.15), 0.0..=2.0)?,
+    })
+}
+
+/// A clamp that yields as much as the contact would not lock the device.
+fn check_lock(
+    section: &Section<'_>,
+    keys: &file::ContactKeys,
+    device: &DeviceScenario,
+    contact: &ContactScenario,
+) -> Result<(), ScenarioError> {
+    const LEAST_RATIO: f64 = 10.0;
+    let largest = device.parameters.lock_stiffness / LEAST_RATIO;
+    if device.locked && contact.stiffness > largest {
+        let value = keys.stiffness_n_per_m.unwrap_or(contact.stiffness);
+        let expected = format!(
+            "at most {largest} N/m, a tenth of the device's lock_stiffness_n_per_m, as the device is locked"
+        );
+        return Err(section.refuse_number("stiffness_n_per_m", value, expected));
+    }
+    Ok(())
+}
+
+#[rustfmt::skip] // A table: one key a line.
+fn process(
+    section: &Section<'_>,
+    keys: &file::ProcessKeys,
+    device: &DeviceScenario,
+) -> Result<ProcessScenario, ScenarioError> {
+    let corner_feed = keys.corner_feed_mm_per_s.unwrap_or(keys.feed_mm_per_s / 2.0);
+    let process = ProcessScenario {
+        force: section.number("force_n", keys.force_n, 0.1..=5000.0)?,
+        feed: section.number("feed_mm_per_s", keys.feed_mm_per_s, 0.1..=1000.0)?,
+        corner_feed: section.number("corner_feed_mm_per_s", corner_feed, 0.05..=1000.0)?,
+        acceleration: section.number("acceleration_mm_per_s2", keys.acceleration_mm_per_s2.unwrap_or(500.0), 1.0..=20_000.0)?,
+        jerk: section.number("jerk_mm_per_s3", keys.jerk_mm_per_s3.unwrap_or(5000.0), 10.0..=1_000_000.0)?,
+        working_stroke: working_stroke(section, keys, device.parameters.full_stroke)?,
+        lean: section.number("lean_deg", keys.lean_deg.unwrap_or(0.0), -60.0..=60.0)?,
+        approach_distance: section.number("approach_distance_mm", keys.approach_distance_mm.unwrap_or(50.0), 1.0..=1000.0)?,
+        approach_speed: section.number("approach_speed_mm_per_s", keys.approach_speed_mm_per_s.unwrap_or(100.0), 1.0..=2000.0)?,
+        engage_speed: section.number("engage_speed_mm_per_s", keys.engage_speed_mm_per_s.unwrap_or(20.0), 0.1..=200.0)?,
+        settle_time: section.number("settle_time_s", keys.settle_time_s.unwrap_or(1.0), 0.0..=60.0)?,
+    };
+    if process.corner_feed > process.feed {
+        let expected = format!("at most feed_mm_per_s, {} mm/s", keys.feed_mm_per_s);
+        return Err(section.refuse_number("corner_feed_mm_per_s", corner_feed, expected));
+    }
+    Ok(process)
+}
+
+/// Half the full stroke unless given; strictly between the end stops.
+fn working_stroke(
+    section: &Section<'_>,
+    keys: &file::ProcessKeys,
+    full_stroke: f64,
+) -> Result<f64, ScenarioError> {
+    let Some(value) = keys.working_stroke_mm else {
+        return Ok(full_stroke / 2.0);
+    };
+    let stroke = section.number("working_stroke_mm", value, 0.1..=500.0)?;
+    if stroke >= full_stroke {
+        let expected = format!("less than the device's stroke_mm, {} mm", full_stroke * 1e3);
+        return Err(section.refuse_number("working_stroke_mm", value, expected));
+    }
+    Ok(stroke)
+}
+
+fn simulation(
+    section: &Section<'_>,
+    keys: &file::SimulationKeys,
+) -> Result<SimulationScenario, ScenarioError> {
+    const STANDARD_GRAVITY: DVec3 = DVec3::new(0.0, 0.0, -9.81);
+    let substeps = keys.device_substeps.unwrap_or(2);
+    let gravity = keys.gravity_m_per_s2.as_deref();
+    Ok(SimulationScenario {
+        step: section.number("step_ms", keys.step_ms.unwrap_or(1.0), 0.01..=10.0)?,
+        substeps: section.count("device_substeps", substeps, 1..=1000)?,
+        gravity: section.vector("gravity_m_per_s2", gravity, STANDARD_GRAVITY, -30.0..=30.0)?,
+        seed: keys.seed.unwrap_or(1),
+    })
+}
+
+/// Whether a metric of this name exists is for whoever computes them to say.
+fn expectations(
+    section: &Section<'_>,
+    bounds: &std::collections::BTreeMap<String, file::BoundKeys>,
+) -> Result<Vec<Expectation>, ScenarioError> {
+    bounds
+        .iter()
+        .map(|(metric, bound)| {
+            let finite = |value: Option<f64>| value.is_none_or(f64::is_finite);
+            let found = match (bound.min, bound.max) {
+                (None, None) => "empty".to_owned(),
+                (Some(min), Some(max)) if min > max => format!("{{ min = {min}, max = {max} }}"),
+                (min, max) if finite(min) && finite(max) => {
+                    return Ok(Expectation {
+                        metric: metric.clone(),
+                        min,
+                        max,
+                    });
+                }
+                _ => "not finite".to_owned(),
+            };
+            let expected = "min, max or both, finite and min not above max".to_owned();
+            Err(section.refuse(metric, found, expected))
+        })
+        .collect()
+}

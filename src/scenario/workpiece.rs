@@ -1,0 +1,150 @@
+//! The workpiece's part of a scenario file.
+
+use super::check::Section;
+use super::error::ScenarioError;
+use super::file::{self, BurrKind, MeshUnit};
+use super::{BurrScenario, EdgeChoice, EdgeSelection, Misplacement, WorkpieceScenario};
+
+/// `[workpiece]` and the tables in it.
+pub(super) fn workpiece(
+    section: &Section<'_>,
+    keys: &file::WorkpieceKeys,
+) -> Result<WorkpieceScenario, ScenarioError> {
+    let table = |name: &str| Section::new(section.document(), format!("workpiece.{name}"));
+    Ok(WorkpieceScenario {
+        mesh: section.file("mesh", &keys.mesh)?,
+        mesh_scale: match keys.mesh_unit {
+            MeshUnit::Mm => 1e-3,
+            MeshUnit::M => 1.0,
+            MeshUnit::Inch => 0.0254,
+        },
+        world_from_part: section.pose(
+            ("position_mm", Some(&keys.position_mm)),
+            ("rotation_deg", keys.rotation_deg.as_deref()),
+        )?,
+        edge: edge(&table("edge"), &keys.edge)?,
+        misplacement: misplacement(&table("misplacement"), &keys.misplacement)?,
+        burr: match &keys.burr {
+            None => BurrScenario::None,
+            Some(keys) => burr(&table("burr"), keys)?,
+        },
+    })
+}
+
+fn edge(section: &Section<'_>, keys: &file::EdgeKeys) -> Result<EdgeChoice, ScenarioError> {
+    let selection = match (keys.edge, keys.closed_loop) {
+        (Some(edge), None) => EdgeSelection::Edge(edge),
+        (None, Some(number)) => EdgeSelection::Loop(number),
+        (None, None) => {
+            return Err(section.missing("edge", "edge or loop, a number from `idc edges`"));
+        }
+        (Some(_), Some(_)) => {
+            let reason = "`workpiece.edge.edge` is given too, expected one of the two".to_owned();
+            return Err(section.misplaced("loop", reason));
+        }
+    };
+    let start = keys.start_mm.unwrap_or(0.0);
+    if let Some(end) = keys.end_mm
+        && end <= start
+    {
+        let expected = format!("more than start_mm, {start} mm");
+        return Err(section.refuse_number("end_mm", end, expected));
+    }
+    let end = keys.end_mm;
+    Ok(EdgeChoice {
+        selection,
+        start: section.number("start_mm", start, 0.0..=100_000.0)?,
+        end: end
+            .map(|value| section.number("end_mm", value, 0.0..=100_000.0))
+            .transpose()?,
+        reversed: keys.reversed.unwrap_or(false),
+        sharp_angle: section.number(
+            "sharp_angle_deg",
+            keys.sharp_angle_deg.unwrap_or(30.0),
+            1.0..=170.0,
+        )?,
+    })
+}
+
+fn misplacement(
+    section: &Section<'_>,
+    keys: &file::MisplacementKeys,
+) -> Result<Misplacement, ScenarioError> {
+    Ok(Misplacement {
+        shift: section.number("shift_mm", keys.shift_mm.unwrap_or(0.0), -50.0..=50.0)?,
+        tilt: section.number("tilt_deg", keys.tilt_deg.unwrap_or(0.0), -10.0..=10.0)?,
+    })
+}
+
+/// Keys of each kind of burr: all are needed but those with a default, and no other may be given.
+fn keys_of(kind: BurrKind) -> (&'static str, &'static [&'static str]) {
+    match kind {
+        BurrKind::None => ("none", &[]),
+        BurrKind::Constant => ("constant", &["height_mm"]),
+        BurrKind::Random => (
+            "random",
+            &["mean_height_mm", "standard_deviation_mm", "correlation_length_mm", "seed"],
+        ),
+        BurrKind::Bump => ("bump", &["position_mm", "height_mm", "width_mm"]),
+        BurrKind::Table => ("table", &["path"]),
+    }
+}
+
+fn burr(section: &Section<'_>, keys: &file::BurrKeys) -> Result<BurrScenario, ScenarioError> {
+    let (kind, allowed) = keys_of(keys.kind);
+    for (key, given) in [
+        ("height_mm", keys.height_mm.is_some()),
+        ("mean_height_mm", keys.mean_height_mm.is_some()),
+        ("standard_deviation_mm", keys.standard_deviation_mm.is_some()),
+        ("correlation_length_mm", keys.correlation_length_mm.is_some()),
+        ("seed", keys.seed.is_some()),
+        ("position_mm", keys.position_mm.is_some()),
+        ("width_mm", keys.width_mm.is_some()),
+        ("path", keys.path.is_some()),
+    ] {
+        if given && !allowed.contains(&key) {
+            let others = match allowed {
+                [] => "no other key".to_owned(),
+                _ => allowed.join(", "),
+            };
+            return Err(section.misplaced(key, format!("kind = \"{kind}\" has {others}")));
+        }
+    }
+    let needed = |key: &str, value: Option<f64>, range| match value {
+        Some(value) => section.number(key, value, range),
+        None => Err(section.missing(key, &format!("it to be given with kind = \"{kind}\""))),
+    };
+    Ok(match keys.kind {
+        BurrKind::None => BurrScenario::None,
+        BurrKind::Constant => BurrScenario::Constant {
+            height: needed("height_mm", keys.height_mm, 0.0..=10.0)?,
+        },
+        BurrKind::Random => {
+            let mean_height = needed("mean_height_mm", keys.mean_height_mm, 0.001..=10.0)?;
+            let deviation = keys.standard_deviation_mm;
+            BurrScenario::Random {
+                seed: keys.seed.unwrap_or(1),
+                mean_height,
+                height_deviation: deviation
+                    .map(|value| section.number("standard_deviation_mm", value, 0.0..=10.0))
+                    .unwrap_or(Ok(mean_height / 3.0))?,
+                correlation_length: needed(
+                    "correlation_length_mm",
+                    keys.correlation_length_mm,
+                    0.1..=1000.0,
+                )?,
+            }
+        }
+        BurrKind::Bump => BurrScenario::Bump {
+            position: needed("position_mm", keys.position_mm, 0.0..=100_000.0)?,
+            height: needed("height_mm", keys.height_mm, 0.0..=10.0)?,
+            width: needed("width_mm", keys.width_mm, 0.1..=1000.0)?,
+        },
+        BurrKind::Table => match &keys.path {
+            Some(path) => BurrScenario::Table {
+                path: section.file("path", path)?,
+            },
+            None => return Err(section.missing("path", "a CSV file with kind = \"table\"")),
+        },
+    })
+}
