@@ -8,8 +8,8 @@
 //! The proportional and derivative parts go to the engine as an implicit law, so a stiff servo is stable at any step; a law whose torque would leave the
 //! effort limit is replaced by the constant torque at the limit, and the integral waits.
 
+use super::law::JointLaw;
 use crate::arm::chain::Chain;
-use crate::simulation::world::JointLaw;
 
 /// Gains of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]

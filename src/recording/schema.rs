@@ -45,10 +45,10 @@ pub const CHAMBER_2_MASS: &str = "chamber_2_mass";
 pub const MASS_ENTERED: &str = "mass_entered";
 /// Air that has left the chambers.
 pub const MASS_LEFT: &str = "mass_left";
-/// Lateral distance of the tool from the planned path.
+/// Distance of the tool from the planned path across its axis.
 pub const PATH_ERROR: &str = "path_error";
-/// Distance of the tool from the planned path along the contact normal.
-pub const PATH_ERROR_NORMAL: &str = "path_error_normal";
+/// Distance of the flange from its planned path along the tool's axis.
+pub const PATH_ERROR_AXIAL: &str = "path_error_axial";
 /// Speed of the tool along the edge.
 pub const FEED: &str = "feed";
 
@@ -140,9 +140,9 @@ pub const SIGNALS: [SignalDefinition; 21] = [
     signal(MASS_LEFT, Unit::Kilogram, None, "air left",
         "Mass of air that has left the chambers since the start."),
     signal(PATH_ERROR, Unit::Metre, Some(PlotGroup::PathError), "lateral",
-        "Distance of the tool tip from the planned path, across the path and the contact normal."),
-    signal(PATH_ERROR_NORMAL, Unit::Metre, Some(PlotGroup::PathError), "along the normal",
-        "Distance of the tool tip from the planned path along the contact normal."),
+        "Distance of the tool tip from the planned path, across the tool's axis; lag along the edge included."),
+    signal(PATH_ERROR_AXIAL, Unit::Metre, Some(PlotGroup::PathError), "axial",
+        "Distance of the flange from its planned path along the tool's axis, positive towards the part."),
     signal(FEED, Unit::MetrePerSecond, None, "feed",
         "Speed of the tool along the edge."),
 ];

@@ -197,10 +197,7 @@ fn expected_of_missing(key: &str, field: &str, sections: &Sections) -> String {
     } else if unit.is_one() {
         "it to be given, it has no default".to_owned()
     } else {
-        format!(
-            "it to be given in {}, it has no default",
-            unit.symbol
-        )
+        format!("it to be given in {}, it has no default", unit.symbol)
     }
 }
 
@@ -219,7 +216,9 @@ fn expected_value(expected: &str, key: &str) -> String {
         "u32" | "u64" | "usize" => number("a whole number, 0 or more"),
         "a boolean" => "true or false".to_owned(),
         "a string" | "path string" => "a text in quotes".to_owned(),
-        "a sequence" if key.ends_with("limit_overrides") => "tables [[arm.limit_overrides]]".to_owned(),
+        "a sequence" if key.ends_with("limit_overrides") => {
+            "tables [[arm.limit_overrides]]".to_owned()
+        }
         "a sequence" => number("a list of numbers"),
         "a map" => "a table".to_owned(),
         other if other.starts_with("struct ") => "a table".to_owned(),

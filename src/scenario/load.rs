@@ -26,7 +26,11 @@ pub fn load(path: &Path) -> Result<Scenario, ScenarioError> {
 pub(super) fn from_text(path: &Path, text: &str) -> Result<Scenario, ScenarioError> {
     let document = Document::new(path, text, file::SCHEMA)?;
     let file: ScenarioFile = document.parse(&scenario_sections())?;
-    debug_assert_eq!(file.schema, file::SCHEMA, "other schemas are refused by Document::new");
+    debug_assert_eq!(
+        file.schema,
+        file::SCHEMA,
+        "other schemas are refused by Document::new"
+    );
     let section = |table: &str| Section::new(&document, table);
     let device = device(&section("device"), &file.device)?;
     let contact = contact(&section("contact"), &file.contact)?;
@@ -53,7 +57,9 @@ fn arm(section: &Section<'_>, keys: &file::ArmKeys) -> Result<ArmScenario, Scena
     let posture = keys.seed_posture_deg.as_deref();
     Ok(ArmScenario {
         urdf: section.file("urdf", &keys.urdf)?,
-        base_link: base_link.map(|name| section.text("base_link", name)).transpose()?,
+        base_link: base_link
+            .map(|name| section.text("base_link", name))
+            .transpose()?,
         flange_link: section.text("flange_link", &keys.flange_link)?,
         package_directories: keys.packages.iter().map(folder).collect::<Result<_, _>>()?,
         limit_overrides: limit_overrides(section.document(), &keys.limit_overrides)?,

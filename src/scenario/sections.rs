@@ -5,7 +5,7 @@ use serde::de::{Deserializer, Error, Visitor};
 
 use super::file;
 
-/// Tables of a scenario file with their keys.
+/// Tables of a scenario file with their keys; `*` stands for a name that the user gives.
 pub(super) fn scenario_sections() -> Vec<(&'static str, &'static [&'static str])> {
     vec![
         ("", keys::<file::ScenarioFile>()),
@@ -21,6 +21,7 @@ pub(super) fn scenario_sections() -> Vec<(&'static str, &'static [&'static str])
         ("contact", keys::<file::ContactKeys>()),
         ("process", keys::<file::ProcessKeys>()),
         ("simulation", keys::<file::SimulationKeys>()),
+        ("expect.*", keys::<file::BoundKeys>()),
     ]
 }
 

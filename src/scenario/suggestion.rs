@@ -19,9 +19,13 @@ const SIMILAR: f64 = 0.85;
 /// Advice on an unknown dotted key.
 pub(super) fn advice(key: &str, sections: &Sections) -> String {
     let (table, name) = split(key);
+    let is_of = |section: &str| match section.strip_suffix('*') {
+        Some(start) => table.starts_with(start),
+        None => table == section,
+    };
     let known = sections
         .iter()
-        .find(|(section, _)| *section == table)
+        .find(|(section, _)| is_of(section))
         .map_or(&[][..], |(_, keys)| keys);
     if let Some(right) = known.iter().find(|right| differs_in_unit(name, right)) {
         let symbol = Unit::of_key(right).symbol;
@@ -76,7 +80,10 @@ mod tests {
 
     const SECTIONS: &Sections = &[
         ("", &["schema", "process", "contact"]),
-        ("process", &["feed_mm_per_s", "corner_feed_mm_per_s", "force_n"]),
+        (
+            "process",
+            &["feed_mm_per_s", "corner_feed_mm_per_s", "force_n"],
+        ),
         ("contact", &["stiffness_n_per_m", "friction_coefficient"]),
     ];
 
@@ -85,10 +92,19 @@ mod tests {
         for (key, expected) in [
             ("process.force", "the key is `force_n`, in N"),
             ("process.force_kN", "the key is `force_n`, in N"),
-            ("process.feed_m_per_min", "the key is `feed_mm_per_s`, in mm/s"),
-            ("contact.stiffness_n_per_mm", "the key is `stiffness_n_per_m`, in N/m"),
+            (
+                "process.feed_m_per_min",
+                "the key is `feed_mm_per_s`, in mm/s",
+            ),
+            (
+                "contact.stiffness_n_per_mm",
+                "the key is `stiffness_n_per_m`, in N/m",
+            ),
             ("contact.force_n", "`force_n` belongs to [process]"),
-            ("process.schema", "`schema` belongs to the top of the file, before any table"),
+            (
+                "process.schema",
+                "`schema` belongs to the top of the file, before any table",
+            ),
             ("process.froce_n", "did you mean `force_n`?"),
             ("contact.friction", "did you mean `friction_coefficient`?"),
             ("proces", "did you mean `process`?"),

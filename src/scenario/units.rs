@@ -108,7 +108,12 @@ mod tests {
             ("supply_orifice_mm2", 2.5, "mm2", 2.5e-6),
             ("dead_volume_cm3", 20.0, "cm3", 2e-5),
             ("supply_pressure_bar_gauge", 6.0, "bar gauge", 6e5),
-            ("atmosphere_pa_absolute", 101_325.0, "Pa absolute", 101_325.0),
+            (
+                "atmosphere_pa_absolute",
+                101_325.0,
+                "Pa absolute",
+                101_325.0,
+            ),
             ("rotation_deg", 180.0, "deg", PI),
             ("velocity_deg_per_s", 90.0, "deg/s", PI / 2.0),
             ("dead_time_ms", 20.0, "ms", 0.02),

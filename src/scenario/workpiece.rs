@@ -43,20 +43,20 @@ fn edge(section: &Section<'_>, keys: &file::EdgeKeys) -> Result<EdgeChoice, Scen
             return Err(section.misplaced("loop", reason));
         }
     };
-    let start = keys.start_mm.unwrap_or(0.0);
-    if let Some(end) = keys.end_mm
-        && end <= start
+    let start_mm = keys.start_mm.unwrap_or(0.0);
+    let start = section.number("start_mm", start_mm, 0.0..=100_000.0)?;
+    let end_of = |value| section.number("end_mm", value, 0.0..=100_000.0);
+    let end = keys.end_mm.map(end_of).transpose()?;
+    if let Some(end_mm) = keys.end_mm
+        && end_mm <= start_mm
     {
-        let expected = format!("more than start_mm, {start} mm");
-        return Err(section.refuse_number("end_mm", end, expected));
+        let expected = format!("more than start_mm, {start_mm} mm");
+        return Err(section.refuse_number("end_mm", end_mm, expected));
     }
-    let end = keys.end_mm;
     Ok(EdgeChoice {
         selection,
-        start: section.number("start_mm", start, 0.0..=100_000.0)?,
-        end: end
-            .map(|value| section.number("end_mm", value, 0.0..=100_000.0))
-            .transpose()?,
+        start,
+        end,
         reversed: keys.reversed.unwrap_or(false),
         sharp_angle: section.number(
             "sharp_angle_deg",
@@ -83,7 +83,12 @@ fn keys_of(kind: BurrKind) -> (&'static str, &'static [&'static str]) {
         BurrKind::Constant => ("constant", &["height_mm"]),
         BurrKind::Random => (
             "random",
-            &["mean_height_mm", "standard_deviation_mm", "correlation_length_mm", "seed"],
+            &[
+                "mean_height_mm",
+                "standard_deviation_mm",
+                "correlation_length_mm",
+                "seed",
+            ],
         ),
         BurrKind::Bump => ("bump", &["position_mm", "height_mm", "width_mm"]),
         BurrKind::Table => ("table", &["path"]),
@@ -95,8 +100,14 @@ fn burr(section: &Section<'_>, keys: &file::BurrKeys) -> Result<BurrScenario, Sc
     for (key, given) in [
         ("height_mm", keys.height_mm.is_some()),
         ("mean_height_mm", keys.mean_height_mm.is_some()),
-        ("standard_deviation_mm", keys.standard_deviation_mm.is_some()),
-        ("correlation_length_mm", keys.correlation_length_mm.is_some()),
+        (
+            "standard_deviation_mm",
+            keys.standard_deviation_mm.is_some(),
+        ),
+        (
+            "correlation_length_mm",
+            keys.correlation_length_mm.is_some(),
+        ),
         ("seed", keys.seed.is_some()),
         ("position_mm", keys.position_mm.is_some()),
         ("width_mm", keys.width_mm.is_some()),

@@ -8,12 +8,13 @@ use glamx::DPose3;
 use super::contact::PartContactParameters;
 use super::error::SimulationError;
 use super::sample::{FrameLog, SampleLog};
-use super::world::{JointLaw, ToolBall, World, WorldDescription};
+use super::world::{ToolBall, World, WorldDescription};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::{jacobian_at, link_poses};
 use crate::cell::Cell;
 use crate::control::force::{ForceController, ForceObservation};
+use crate::control::law::JointLaw;
 use crate::control::servo::{AxisCommand, Servo, ServoParameters};
 use crate::device::{DeviceForce, DeviceState, PistonMotion};
 use crate::path::{Phase, Reference};
@@ -325,7 +326,7 @@ impl<'a> Simulation<'a> {
             self.device.mass_entered,
             self.device.mass_left,
             across.length(),
-            off.dot(reference.axis),
+            off.dot(reference.axis) - (stroke - cell.scenario.process.working_stroke),
             reference.feed,
         ];
         let mut joints = [[0.0; 4]; MAX_JOINTS];

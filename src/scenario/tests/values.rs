@@ -1,0 +1,206 @@
+//! Each key reaches its own field, in SI.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec3;
+
+use super::super::{
+    BurrScenario, EdgeSelection, Expectation, LimitOverride, Misplacement, ProcessScenario,
+    ServoScenario, SimulationScenario,
+};
+use super::{MINIMAL, edited, read, scenarios};
+
+#[test]
+fn every_key_of_the_process_reaches_its_field() {
+    let text = edited(
+        "feed_mm_per_s = 20\n",
+        "feed_mm_per_s = 21\ncorner_feed_mm_per_s = 7\nacceleration_mm_per_s2 = 600\njerk_mm_per_s3 = 7000\nworking_stroke_mm = 18\nlean_deg = -45\n\
+         approach_distance_mm = 60\napproach_speed_mm_per_s = 110\nengage_speed_mm_per_s = 25\nsettle_time_s = 1.5\n",
+    );
+    let expected = ProcessScenario {
+        force: 150.0,
+        feed: 0.021,
+        corner_feed: 0.007,
+        acceleration: 0.6,
+        jerk: 7.0,
+        working_stroke: 0.018,
+        lean: -PI / 4.0,
+        approach_distance: 0.06,
+        approach_speed: 0.11,
+        engage_speed: 0.025,
+        settle_time: 1.5,
+    };
+    assert_eq!(read(&text).unwrap().process, expected);
+}
+
+#[test]
+fn defaults_that_depend_on_other_values_follow_them() {
+    let text = format!("{MINIMAL}[device.override]\nstroke_mm = 40\n");
+    let process = read(&text).unwrap().process;
+    assert_eq!(process.corner_feed, 0.01);
+    assert_eq!(process.working_stroke, 0.02);
+}
+
+#[test]
+fn every_key_of_the_arm_reaches_its_field() {
+    let text = edited(
+        "flange_link = \"flange\"\n",
+        "flange_link = \"tool0\"\nbase_link = \"base\"\npackages = { b = \".\", a = \"../models\" }\nbase_position_mm = [1, 2, 3]\n\
+         base_rotation_deg = [90, 0, 90]\nseed_posture_deg = [0, 180, -90]\n\
+         servo = { natural_frequency_hz = 30, damping_ratio = 0.8, integral_time_s = inf, contact_feed_forward = false }\n\
+         limit_overrides = [{ joint = \"a\", effort_n_m = 12 }, { joint = \"b\", velocity_deg_per_s = 90 }]\n",
+    );
+    let arm = read(&text).unwrap().arm;
+    assert_eq!(arm.flange_link, "tool0");
+    assert_eq!(arm.base_link.as_deref(), Some("base"));
+    let packages: Vec<_> = arm.package_directories.into_iter().collect();
+    let folder = |name: &str, path: &str| (name.to_owned(), scenarios().join(path));
+    assert_eq!(packages, [folder("a", "../models"), folder("b", ".")]);
+    assert_eq!(
+        arm.world_from_base.translation,
+        DVec3::new(0.001, 0.002, 0.003)
+    );
+    assert_eq!(arm.seed_posture, Some(vec![0.0, PI, -FRAC_PI_2]));
+    let servo = ServoScenario {
+        natural_frequency: 30.0,
+        damping_ratio: 0.8,
+        integral_time: f64::INFINITY,
+        contact_feed_forward: false,
+    };
+    assert_eq!(arm.servo, servo);
+    let limit = |joint: &str, effort, velocity| LimitOverride {
+        joint: joint.to_owned(),
+        effort,
+        velocity,
+    };
+    assert_eq!(
+        arm.limit_overrides,
+        [
+            limit("a", Some(12.0), None),
+            limit("b", None, Some(FRAC_PI_2))
+        ]
+    );
+}
+
+#[test]
+fn rotations_are_roll_then_pitch_then_yaw_about_fixed_axes() {
+    let text = edited(
+        "[workpiece.edge]",
+        "rotation_deg = [90, 0, 90]\n[workpiece.edge]",
+    );
+    let rotation = read(&text).unwrap().workpiece.world_from_part.rotation;
+    // Rolled first, z lies along -y; yawed then, along +x. About moving axes it would lie along -y.
+    assert!((rotation * DVec3::Z - DVec3::X).length() < 1e-15);
+    let text = edited(
+        "[workpiece.edge]",
+        "rotation_deg = [90, 90, 0]\n[workpiece.edge]",
+    );
+    let rotation = read(&text).unwrap().workpiece.world_from_part.rotation;
+    assert!((rotation * DVec3::Z + DVec3::Y).length() < 1e-15);
+    assert!((rotation * DVec3::Y - DVec3::X).length() < 1e-15);
+}
+
+#[test]
+fn every_key_of_the_workpiece_reaches_its_field() {
+    let text = edited(
+        "edge = 1\n",
+        "loop = 3\nstart_mm = 4\nend_mm = 5\nreversed = true\nsharp_angle_deg = 45\n[workpiece.misplacement]\nshift_mm = 2\ntilt_deg = -9\n",
+    )
+    .replace("mesh_unit = \"mm\"", "mesh_unit = \"inch\"");
+    let workpiece = read(&text).unwrap().workpiece;
+    assert_eq!(workpiece.mesh, scenarios().join("../assets/plate.stl"));
+    assert_eq!(workpiece.mesh_scale, 0.0254);
+    assert_eq!(
+        workpiece.world_from_part.translation,
+        DVec3::new(0.75, 0.0, 0.2)
+    );
+    let edge = &workpiece.edge;
+    assert_eq!(edge.selection, EdgeSelection::Loop(3));
+    assert_eq!((edge.start, edge.end), (0.004, Some(0.005)));
+    assert!(edge.reversed);
+    assert!((edge.sharp_angle - PI / 4.0).abs() < 1e-15);
+    let misplacement = Misplacement {
+        shift: 0.002,
+        tilt: -PI / 20.0,
+    };
+    assert_eq!(workpiece.misplacement, misplacement);
+}
+
+#[test]
+fn every_kind_of_burr_is_read() {
+    for (keys, expected) in [
+        ("kind = \"none\"", BurrScenario::None),
+        (
+            "kind = \"constant\"\nheight_mm = 0.3",
+            BurrScenario::Constant { height: 0.3e-3 },
+        ),
+        (
+            "kind = \"random\"\nmean_height_mm = 0.3\nstandard_deviation_mm = 0.2\ncorrelation_length_mm = 4\nseed = 5",
+            BurrScenario::Random {
+                seed: 5,
+                mean_height: 0.3e-3,
+                height_deviation: 0.2e-3,
+                correlation_length: 4e-3,
+            },
+        ),
+        (
+            "kind = \"random\"\nmean_height_mm = 6\ncorrelation_length_mm = 4",
+            BurrScenario::Random {
+                seed: 1,
+                mean_height: 6e-3,
+                height_deviation: 2e-3,
+                correlation_length: 4e-3,
+            },
+        ),
+        (
+            "kind = \"bump\"\nposition_mm = 140\nheight_mm = 0.4\nwidth_mm = 20",
+            BurrScenario::Bump {
+                position: 0.14,
+                height: 0.4e-3,
+                width: 0.02,
+            },
+        ),
+        (
+            "kind = \"table\"\npath = \"README.md\"",
+            BurrScenario::Table {
+                path: scenarios().join("README.md"),
+            },
+        ),
+    ] {
+        let text = format!("{MINIMAL}[workpiece.burr]\n{keys}\n");
+        assert_eq!(read(&text).unwrap().workpiece.burr, expected);
+    }
+}
+
+#[test]
+fn every_other_key_reaches_its_field() {
+    let text = format!(
+        "{MINIMAL}[contact]\nstiffness_n_per_m = 2e5\ndamping_n_s_per_m = 300\nfriction_coefficient = 0.3\n\
+         [simulation]\nstep_ms = 0.5\ndevice_substeps = 4\ngravity_m_per_s2 = [1, 2, -3]\nseed = 9\n\
+         [expect]\nb_n = {{ max = 2 }}\na_n = {{ min = -1, max = 1 }}\n"
+    );
+    let scenario = read(&text).unwrap();
+    let contact = scenario.contact;
+    assert_eq!(contact.stiffness, 2e5);
+    assert_eq!(contact.damping, 300.0);
+    assert_eq!(contact.friction, 0.3);
+    let simulation = SimulationScenario {
+        step: 5e-4,
+        substeps: 4,
+        gravity: DVec3::new(1.0, 2.0, -3.0),
+        seed: 9,
+    };
+    assert_eq!(scenario.simulation, simulation);
+    let bound = |metric: &str, min, max| Expectation {
+        metric: metric.to_owned(),
+        min,
+        max,
+    };
+    assert_eq!(
+        scenario.expect,
+        [
+            bound("a_n", Some(-1.0), Some(1.0)),
+            bound("b_n", None, Some(2.0))
+        ]
+    );
+}

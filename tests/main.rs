@@ -1,0 +1,13 @@
+//! Tests of the whole: one binary, because each links the engine and the recorder.
+
+mod air;
+mod balance;
+mod bad_input;
+mod common;
+mod contact;
+mod convergence;
+mod determinism;
+mod layers;
+mod real_robots;
+mod stops;
+mod uniformity;
