@@ -27,7 +27,7 @@ fn guarded(name: &str, disturb: fn(&mut Scenario)) {
 /// A coarse burr that the slide's mass cannot follow quietly.
 fn coarse_burr(scenario: &mut Scenario) {
     scenario.workpiece.burr =
-        BurrScenario::Random { seed: 3, mean_height: 1e-3, height_deviation: 0.6e-3, correlation_length: 3e-3 };
+        BurrScenario::Random { seed: 3, mean_height: 0.4e-3, height_deviation: 0.15e-3, correlation_length: 1.5e-3 };
 }
 
 fn clamped_slide(scenario: &mut Scenario) {
@@ -45,6 +45,11 @@ fn plate_edge_is_uniform_unless_a_tilted_part_meets_a_clamped_slide() {
         clamped_slide(scenario);
         scenario.workpiece.misplacement.tilt = 1e-3;
     });
+}
+
+#[test]
+fn slow_regulator_is_uniform_unless_the_burr_is_coarse() {
+    guarded("slow_regulator", coarse_burr);
 }
 
 #[test]

@@ -7,9 +7,12 @@ use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::error::{AppError, ExitCode};
-use super::run::{Finished, run_cell, write_outputs};
+use super::files::{NAMES, OutputFolder, SummaryDocument};
+use super::output::say;
+use super::run::run_cell;
 use crate::cell::Cell;
-use crate::metrics;
+use crate::metrics::{self, Verdict};
+use crate::recording::rerun::Opening;
 use crate::report::{Style, text};
 use crate::scenario;
 
@@ -42,9 +45,12 @@ struct RunArguments {
     /// Print nothing but errors.
     #[arg(long)]
     quiet: bool,
-    /// Print the summary as JSON instead of the table.
-    #[arg(long)]
+    /// Print what summary.json holds instead of the table.
+    #[arg(long, conflicts_with = "quiet")]
     json: bool,
+    /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
+    #[arg(long, hide = true)]
+    hold_at_s: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -55,7 +61,7 @@ pub(super) struct EdgesArguments {
     #[arg(long, default_value = "mm")]
     pub(super) unit: MeshUnit,
     /// Dihedral angle above which an edge counts as sharp [deg].
-    #[arg(long, default_value_t = 30.0)]
+    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
     pub(super) sharp_angle_deg: f64,
 }
 
@@ -83,6 +89,8 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let metrics_error = |source| AppError::Metrics { file: file.clone(), source };
     metrics::validate(&scenario.expect).map_err(metrics_error)?;
     let cell = Cell::new(scenario)?;
+    let chosen = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scenario));
+    let folder = OutputFolder::prepare(&chosen)?;
     let quiet = arguments.quiet || arguments.json;
     if !quiet {
         for note in &cell.notes {
@@ -93,47 +101,47 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let finished = run_cell(&cell, &mut |done, total| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
-    })?;
+    });
     bar.finish_and_clear();
+    let finished = finished?;
     let verdicts = metrics::check(&finished.summary, &cell.scenario.expect).map_err(metrics_error)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scenario));
-    write_outputs(&folder, &cell, &finished, &verdicts)?;
-    print(arguments, &cell, &finished, &verdicts, &folder)?;
+    let document = SummaryDocument::new(&cell, &finished, &verdicts);
+    folder.write(&cell, &finished, &document, opening(arguments))?;
+    if arguments.json {
+        say(&(document.text()? + "\n"))?;
+    } else if !arguments.quiet {
+        say(&text(&cell.scenario.title, &finished.summary, &verdicts, style()))?;
+        say(&format!("written to {}: {}\n", folder.path().display(), NAMES.join(", ")))?;
+    }
     if let Some(stop) = &finished.stop {
         eprintln!("stopped: {stop}");
         return Ok(ExitCode::Stopped);
     }
-    let outside = verdicts.iter().filter(|verdict| !verdict.kept).count();
-    if outside > 0 {
-        if arguments.quiet {
-            for verdict in verdicts.iter().filter(|verdict| !verdict.kept) {
-                eprintln!("outside its bounds: {} = {:?}", verdict.metric, verdict.value);
-            }
-        }
-        return Ok(ExitCode::OutsideBounds);
-    }
-    Ok(ExitCode::Done)
+    Ok(judge(&verdicts))
 }
 
-fn print(
-    arguments: &RunArguments,
-    cell: &Cell,
-    finished: &Finished,
-    verdicts: &[metrics::Verdict],
-    folder: &Path,
-) -> Result<(), AppError> {
-    if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&finished.summary)?);
-    } else if !arguments.quiet {
-        let style = if std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
-            Style::Coloured
-        } else {
-            Style::Plain
-        };
-        print!("{}", text(&cell.scenario.title, &finished.summary, verdicts, style));
-        println!("written to {}: recording.rrd, samples.parquet, summary.json", folder.display());
+/// Says on standard error which results lie outside their bounds, whatever else is printed.
+fn judge(verdicts: &[Verdict]) -> ExitCode {
+    let mut code = ExitCode::Done;
+    for verdict in verdicts.iter().filter(|verdict| !verdict.kept) {
+        code = ExitCode::OutsideBounds;
+        let bound = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {bound}"));
+        let bounds = [bound("at least", verdict.min), bound("at most", verdict.max)];
+        let bounds = bounds.into_iter().flatten().collect::<Vec<_>>().join(" and ");
+        let value = verdict.value.map_or("not determined by this run".to_owned(), |value| format!("{value:.6}"));
+        eprintln!("outside its bounds: {} is {value}, expected {bounds}", verdict.metric);
     }
-    Ok(())
+    code
+}
+
+fn style() -> Style {
+    let plain = !std::io::stdout().is_terminal() || std::env::var_os("NO_COLOR").is_some();
+    if plain { Style::Plain } else { Style::Coloured }
+}
+
+fn opening(arguments: &RunArguments) -> Opening {
+    // A short span played fast: the viewer stands still for the eye.
+    arguments.hold_at_s.map_or(Opening::Paused, |time| Opening::Playing { span: [time, time + 0.04], speed: 50.0 })
 }
 
 fn default_folder(scenario: &Path) -> PathBuf {

@@ -4,6 +4,7 @@ use crate::cell::CellError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
+use crate::simulation::SimulationError;
 use crate::workpiece::WorkpieceError;
 
 /// Exit codes of the program.
@@ -38,7 +39,7 @@ pub enum AppError {
     #[error(transparent)]
     Workpiece(#[from] WorkpieceError),
     /// A bound on a metric.
-    #[error("{file}: [expect]: {source}")]
+    #[error("{file}: {source}")]
     Metrics {
         /// Scenario file.
         file: String,
@@ -49,14 +50,40 @@ pub enum AppError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
     /// The output folder.
-    #[error("cannot make the output folder {folder}: {source}")]
+    #[error("cannot write into the output folder {folder}: {reason}; expected a folder, there or to be made, that can be written (--out names another)")]
     OutputFolder {
         /// The folder.
         folder: String,
         /// Why.
-        source: std::io::Error,
+        reason: String,
     },
+    /// The physics stopped the run before there was anything to record.
+    #[error("{0}; nothing was recorded, it is the first step")]
+    StoppedAtOnce(SimulationError),
+    /// A number on the command line.
+    #[error("--{option} is {value}, expected {expected}")]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// The terminal, or whatever is in its place.
+    #[error("cannot print: {0}")]
+    Print(std::io::Error),
     /// Summary as JSON.
     #[error("cannot write the summary as JSON: {0}")]
     Json(#[from] serde_json::Error),
+}
+
+impl AppError {
+    /// Exit code that goes with it.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::StoppedAtOnce(_) => ExitCode::Stopped,
+            _ => ExitCode::BadInput,
+        }
+    }
 }

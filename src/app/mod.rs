@@ -3,6 +3,8 @@
 mod cli;
 mod edges;
 mod error;
+mod files;
+mod output;
 mod picture;
 mod run;
 

@@ -17,10 +17,10 @@ pub enum CellError {
     #[error(transparent)]
     Workpiece(#[from] WorkpieceError),
     /// The chosen edge is not there.
-    #[error("{}: workpiece.edge: {chosen} does not exist; the part has {edges} edges and {loops} loops (list them with `idc edges {}`)",
-        file.display(), mesh.display())]
+    #[error("{}: `workpiece.edge` is {chosen}, which does not exist; the part has edges 0 to {} and loops 0 to {} (list them with `idc edges {}`)",
+        file.display(), *edges as isize - 1, *loops as isize - 1, mesh.display())]
     EdgeUnknown {
-        /// Scenario file or mesh that the choice belongs to.
+        /// Scenario file.
         file: PathBuf,
         /// The mesh.
         mesh: PathBuf,
@@ -32,8 +32,11 @@ pub enum CellError {
         loops: usize,
     },
     /// The chosen edge is not one that a tool can ride.
-    #[error("{}: {chosen} is {convexity}: only an edge that sticks out everywhere can be deburred from outside", mesh.display())]
+    #[error("{}: `workpiece.edge` is {chosen}, {convexity}; expected one that sticks out everywhere, as a tool can ride it from outside (side convex in `idc edges {}`)",
+        file.display(), mesh.display())]
     EdgeNotConvex {
+        /// Scenario file.
+        file: PathBuf,
         /// The mesh.
         mesh: PathBuf,
         /// What was chosen.
@@ -41,16 +44,46 @@ pub enum CellError {
         /// How it is.
         convexity: &'static str,
     },
+    /// Start or end of the chosen stretch does not lie on the edge.
+    #[error("{}: `workpiece.edge.{key}` is {} mm, expected {expected}", file.display(), millimetres(*value))]
+    EdgeStretch {
+        /// Scenario file.
+        file: PathBuf,
+        /// Which of the two.
+        key: &'static str,
+        /// Its value [m].
+        value: f64,
+        /// What was expected.
+        expected: String,
+    },
+    /// The burr.
+    #[error("{}: `workpiece.burr`: {source}", file.display())]
+    Burr {
+        /// Scenario file.
+        file: PathBuf,
+        /// What is wrong with it.
+        source: WorkpieceError,
+    },
+    /// A posture for another number of axes.
+    #[error("{}: `arm.seed_posture_deg` is a list of {found}, expected a list of {axes}, one angle an axis", file.display())]
+    SeedPosture {
+        /// Scenario file.
+        file: PathBuf,
+        /// Angles given.
+        found: usize,
+        /// Axes of the arm.
+        axes: usize,
+    },
     /// The path.
     #[error("{}: {source}", file.display())]
     Plan {
         /// Scenario file.
         file: PathBuf,
         /// What stands in the way.
-        source: PlanError,
+        source: Box<PlanError>,
     },
     /// The supply cannot give the force.
-    #[error("{}: process.force_n = {force:.1} N needs {:.2} bar gauge at the regulator at {:.1} mm along the edge; the supply gives 0 to {:.2} bar, which is {:.1} to {:.1} N there",
+    #[error("{}: `process.force_n` is {force} N, which needs {:.2} bar gauge at the regulator at {:.1} mm along the edge; the supply gives 0 to {:.2} bar, expected {:.1} to {:.1} N there",
         file.display(), needed / 1e5, 1e3 * edge_length, supply / 1e5, attainable[0].max(0.0), attainable[1])]
     Supply {
         /// Scenario file.
@@ -68,8 +101,13 @@ pub enum CellError {
     },
 }
 
+/// A length in millimetres without the last digits, which a conversion may have spoilt.
+pub(super) fn millimetres(metres: f64) -> f64 {
+    (metres * 1e9).round() / 1e6
+}
+
 impl CellError {
     pub(super) fn plan(scenario: &Scenario, source: PlanError) -> Self {
-        Self::Plan { file: scenario.path.clone(), source }
+        Self::Plan { file: scenario.path.clone(), source: Box::new(source) }
     }
 }

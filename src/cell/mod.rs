@@ -42,8 +42,9 @@ impl Cell {
     /// What is missing, refused or out of reach, by file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
         let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario))?;
+        check_seed_posture(&scenario, &arm.chain)?;
         let arm_with_slide = with_slide(&arm.chain, &scenario);
-        let part = Part::load(&scenario.workpiece, scenario.device.tool_radius)?;
+        let part = Part::load(&scenario)?;
         let device = Device::new(scenario.device.parameters.clone());
         let tool_path = ToolPath::along(
             part.edge.clone(),
@@ -81,6 +82,17 @@ fn arm_options(scenario: &Scenario) -> ArmOptions {
             .map(|o| (o.joint.clone(), LimitOverride { effort: o.effort, velocity: o.velocity }))
             .collect(),
         skip_visuals: false,
+    }
+}
+
+fn check_seed_posture(scenario: &Scenario, arm: &Chain) -> Result<(), CellError> {
+    match &scenario.arm.seed_posture {
+        Some(posture) if posture.len() != arm.len() => Err(CellError::SeedPosture {
+            file: scenario.path.clone(),
+            found: posture.len(),
+            axes: arm.len(),
+        }),
+        _ => Ok(()),
     }
 }
 
@@ -132,6 +144,7 @@ fn plan_request<'a>(
         working_stroke: process.working_stroke,
         push_back,
         force: process.force,
+        friction: scenario.contact.friction,
         feed: process.feed,
         corner_feed: process.corner_feed,
         limits: MotionLimits { acceleration: process.acceleration, jerk: process.jerk },

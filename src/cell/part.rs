@@ -3,8 +3,8 @@
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
-use super::error::CellError;
-use crate::scenario::{BurrScenario, EdgeSelection, Misplacement, WorkpieceScenario};
+use super::error::{CellError, millimetres};
+use crate::scenario::{BurrScenario, EdgeChoice, EdgeSelection, Misplacement, Scenario, WorkpieceScenario};
 use crate::workpiece::{
     BurrProfile, Convexity, EdgeCurve, EdgeSearch, RiddenProfile, TriangleMesh, WorkpieceError, list_edges, load_mesh,
 };
@@ -27,28 +27,26 @@ pub struct Part {
 }
 
 impl Part {
-    /// Loads the mesh, finds the edge and prepares the burr for a ball of a radius [m].
+    /// Loads the mesh, finds the edge and prepares the burr for the tool's ball.
     ///
     /// # Errors
     /// What is wrong with the mesh, the choice of the edge or the burr.
-    pub fn load(workpiece: &WorkpieceScenario, ball_radius: f64) -> Result<Self, CellError> {
+    pub fn load(scenario: &Scenario) -> Result<Self, CellError> {
+        let workpiece = &scenario.workpiece;
         let mesh = load_mesh(&workpiece.mesh, workpiece.mesh_scale)?;
-        let edge = choose_edge(workpiece, &mesh)?;
+        let edge = choose_edge(scenario, &mesh)?;
         let world_from_part = real_pose(workpiece, &edge);
         let vertices = mesh.vertices().iter().map(|&v| world_from_part.transform_point(v)).collect();
         let mesh_in_world = TriangleMesh::new(vertices, mesh.triangles().to_vec())
             .expect("a rigid motion keeps a mesh closed and outward");
-        let ride = burr(&workpiece.burr)?
-            .map(|profile| {
-                profile.require_cover(edge.length)?;
-                profile.ridden_by_ball(ball_radius, edge.length, RIDE_STEP)
-            })
-            .transpose()?;
+        let ride = ride(&workpiece.burr, scenario.device.tool_radius, edge.length)
+            .map_err(|source| CellError::Burr { file: scenario.path.clone(), source })?;
         Ok(Self { mesh, mesh_in_world, world_from_part, edge, ride })
     }
 }
 
-fn choose_edge(workpiece: &WorkpieceScenario, mesh: &TriangleMesh) -> Result<EdgeCurve, CellError> {
+fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, CellError> {
+    let workpiece = &scenario.workpiece;
     let choice = &workpiece.edge;
     let search = EdgeSearch { sharp_angle: choice.sharp_angle, ..EdgeSearch::default() };
     let list = list_edges(mesh, &search);
@@ -57,7 +55,7 @@ fn choose_edge(workpiece: &WorkpieceScenario, mesh: &TriangleMesh) -> Result<Edg
         EdgeSelection::Loop(number) => (format!("loop {number}"), list.loops.get(number)),
     };
     let curve = found.ok_or_else(|| CellError::EdgeUnknown {
-        file: workpiece.mesh.clone(),
+        file: scenario.path.clone(),
         mesh: workpiece.mesh.clone(),
         chosen: chosen.clone(),
         edges: list.edges.len(),
@@ -69,13 +67,37 @@ fn choose_edge(workpiece: &WorkpieceScenario, mesh: &TriangleMesh) -> Result<Edg
         Convexity::Mixed => Some("an inside edge in places"),
     };
     if let Some(convexity) = convexity {
-        return Err(CellError::EdgeNotConvex { mesh: workpiece.mesh.clone(), chosen, convexity });
+        let file = scenario.path.clone();
+        return Err(CellError::EdgeNotConvex { file, mesh: workpiece.mesh.clone(), chosen, convexity });
     }
     let curve = if choice.reversed { curve.reversed() } else { curve.clone() };
+    check_stretch(scenario, choice, &curve)?;
     match (choice.start, choice.end) {
         (start, None) if start == 0.0 => Ok(curve),
         (start, None) if curve.closed => Ok(curve.started_at(start)?),
         (start, end) => Ok(curve.trim(start, end.unwrap_or(curve.length))?),
+    }
+}
+
+/// The stretch must lie on the edge, up to once round a closed one.
+fn check_stretch(scenario: &Scenario, choice: &EdgeChoice, curve: &EdgeCurve) -> Result<(), CellError> {
+    let refuse = |key, value, expected| {
+        Err(CellError::EdgeStretch { file: scenario.path.clone(), key, value, expected })
+    };
+    let length = millimetres(curve.length);
+    if choice.start >= curve.length {
+        return refuse("start_mm", choice.start, format!("less than the edge's length, {length} mm"));
+    }
+    let (last, what) = if curve.closed {
+        (choice.start + curve.length, "once round from start_mm")
+    } else {
+        (curve.length, "the edge's length")
+    };
+    match choice.end {
+        Some(end) if end > last + 1e-9 => {
+            refuse("end_mm", end, format!("at most {what}, {} mm", millimetres(last)))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -92,6 +114,15 @@ fn real_pose(workpiece: &WorkpieceScenario, edge: &EdgeCurve) -> DPose3 {
         * DPose3::from_rotation(turn)
         * DPose3::from_translation(-pivot)
         * believed
+}
+
+/// How the ball's centre is lifted along an edge of a length [m].
+fn ride(scenario: &BurrScenario, ball_radius: f64, length: f64) -> Result<Option<RiddenProfile>, WorkpieceError> {
+    let Some(profile) = burr(scenario)? else {
+        return Ok(None);
+    };
+    profile.require_cover(length)?;
+    profile.ridden_by_ball(ball_radius, length, RIDE_STEP).map(Some)
 }
 
 fn burr(scenario: &BurrScenario) -> Result<Option<BurrProfile>, WorkpieceError> {

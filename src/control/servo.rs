@@ -42,6 +42,8 @@ pub struct Servo {
     gains: Vec<Gains>,
     integrals: Vec<f64>,
     saturated: Vec<bool>,
+    /// The joint's own damping and friction in each axis's last law.
+    losses: Vec<JointLaw>,
 }
 
 /// What the servo is to do for one axis.
@@ -74,7 +76,13 @@ impl Servo {
                 }
             })
             .collect::<Vec<_>>();
-        Self { integrals: vec![0.0; gains.len()], saturated: vec![false; gains.len()], gains }
+        let count = gains.len();
+        Self {
+            gains,
+            integrals: vec![0.0; count],
+            saturated: vec![false; count],
+            losses: vec![JointLaw::default(); count],
+        }
     }
 
     /// Law of an axis over the coming step of length `dt` [s], joint damping and friction included.
@@ -97,26 +105,28 @@ impl Servo {
                 damping: gains.derivative,
             }
         };
-        self.add_joint_losses(axis, velocity, &mut law);
+        let losses = self.joint_losses(axis, velocity);
+        law.force += losses.force;
+        law.damping += losses.damping;
+        self.losses[axis] = losses;
         law
     }
 
     /// The joint's own viscous and dry friction, the latter linear about the present speed.
-    fn add_joint_losses(&self, axis: usize, velocity: f64, law: &mut JointLaw) {
+    fn joint_losses(&self, axis: usize, velocity: f64) -> JointLaw {
         let gains = &self.gains[axis];
-        law.damping += gains.joint_damping;
-        if gains.joint_friction > 0.0 {
-            let level = (velocity / FRICTION_SPEED).tanh();
-            let slope = gains.joint_friction / FRICTION_SPEED * (1.0 - level * level);
-            law.force += slope * velocity - gains.joint_friction * level;
-            law.damping += slope;
+        let level = (velocity / FRICTION_SPEED).tanh();
+        let slope = gains.joint_friction / FRICTION_SPEED * (1.0 - level * level);
+        JointLaw {
+            force: slope * velocity - gains.joint_friction * level,
+            damping: gains.joint_damping + slope,
+            ..JointLaw::default()
         }
     }
 
-    /// Torque of the drive alone, from the law's total at a speed [rad/s].
+    /// Torque of the drive alone, from the last law's total at a speed [rad/s].
     pub fn drive_torque(&self, axis: usize, total: f64, velocity: f64) -> f64 {
-        let gains = &self.gains[axis];
-        total + gains.joint_damping * velocity + gains.joint_friction * (velocity / FRICTION_SPEED).tanh()
+        total - self.losses[axis].at(0.0, velocity)
     }
 
     /// Is the axis at its effort limit?
@@ -154,6 +164,19 @@ mod tests {
         let command = AxisCommand { position: 0.0, velocity: 0.0, feed_forward: 7.0 };
         let law = servo().law(0, &command, 0.0, 0.0, 1e-3);
         assert_eq!((law.stiffness, law.damping, law.force), (2e4, 400.0, 7.0));
+    }
+
+    #[test]
+    fn the_drive_torque_leaves_out_the_joint_losses_that_acted() {
+        let mut servo = servo();
+        servo.gains[0].joint_damping = 3.0;
+        servo.gains[0].joint_friction = 2.0;
+        // Asked for more than it can; the joint speeds up during the step.
+        let command = AxisCommand { position: 0.1, velocity: 0.0, feed_forward: 0.0 };
+        let law = servo.law(0, &command, 0.0, 2e-4, 1e-3);
+        let total = law.at(1e-5, 0.05);
+        assert!(total < 50.0 - 3.0 * 0.05);
+        assert!((servo.drive_torque(0, total, 0.05) - 50.0).abs() < 1e-12);
     }
 
     #[test]

@@ -43,7 +43,7 @@ fn singularities(standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// Speeds and torques at a time, the contact force pressing while the tool is on the edge.
+/// Speeds and torques at a time, contact force and friction pressing while the tool is on the edge; joint losses included.
 fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError> {
     let reference = plan.reference(time);
     let n = request.arm.len();
@@ -63,17 +63,20 @@ fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError
         let mut links = [DPose3::IDENTITY; MAX_JOINTS];
         link_poses(request.arm_with_slide, request.world_from_base, &position[..=n], &mut links[..=n]);
         let jacobian = jacobian_at(request.arm_with_slide, &links[..=n], reference.centre);
-        let force = (reference.normal * request.force).to_array();
+        let force = request.force_on_tool(reference.normal, reference.tangent).to_array();
         for (joint, torque) in torque.iter_mut().enumerate().take(n) {
             *torque -= (0..3).map(|row| jacobian[(row, joint)] * force[row]).sum::<f64>();
         }
     }
     for (joint, axis) in request.arm.joints.iter().enumerate() {
+        // A joint's dry friction may load its drive either way, also at rest.
+        let moving = torque[joint] + axis.damping * reference.velocity[joint];
+        let needed = moving + axis.friction.copysign(moving);
         let obstacle = if reference.velocity[joint].abs() > axis.velocity {
             let value = reference.velocity[joint];
             Obstacle::Velocity { axis: axis.name.clone(), value, limit: axis.velocity }
-        } else if torque[joint].abs() > axis.effort {
-            Obstacle::Effort { axis: axis.name.clone(), value: torque[joint], limit: axis.effort }
+        } else if needed.abs() > axis.effort {
+            Obstacle::Effort { axis: axis.name.clone(), value: needed, limit: axis.effort }
         } else {
             continue;
         };

@@ -58,7 +58,7 @@ impl std::fmt::Display for Obstacle {
                 if let Some((axis, value, limit)) = axis {
                     write!(
                         f,
-                        "; axis {axis} stands at {:.1} deg, its limit is {:.1} deg",
+                        "; in the nearest pose axis {axis} is at {:.1} deg, its limit is {:.1} deg",
                         value.to_degrees(),
                         limit.to_degrees()
                     )?;
@@ -73,12 +73,12 @@ impl std::fmt::Display for Obstacle {
             ),
             Self::Velocity { axis, value, limit } => write!(
                 f,
-                "axis {axis} would need {:.1} deg/s, its limit is {:.1} deg/s",
-                value.to_degrees(),
+                "axis {axis} would need {:.2} deg/s, its limit is {:.2} deg/s",
+                value.abs().to_degrees(),
                 limit.to_degrees()
             ),
             Self::Effort { axis, value, limit } => {
-                write!(f, "axis {axis} would need {value:.1} N m, its limit is {limit:.1} N m")
+                write!(f, "axis {axis} would need {:.2} N m, its limit is {limit:.2} N m", value.abs())
             }
             Self::Singular { value, limit, axis } => write!(
                 f,

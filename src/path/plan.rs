@@ -75,6 +75,8 @@ pub struct PlanRequest<'a> {
     pub push_back: f64,
     /// Desired force along the contact normal [N].
     pub force: f64,
+    /// Coulomb friction coefficient between tool and part [1].
+    pub friction: f64,
     /// Feed along the edge [m/s].
     pub feed: f64,
     /// Feed past corners [m/s].
@@ -93,6 +95,13 @@ pub struct PlanRequest<'a> {
     pub seed_posture: Option<&'a [f64]>,
     /// Seed of the search.
     pub seed: u64,
+}
+
+impl PlanRequest<'_> {
+    /// Force of the part on the tool while it follows the edge: contact force and friction against the motion [N].
+    pub(super) fn force_on_tool(&self, normal: DVec3, tangent: DVec3) -> DVec3 {
+        self.force * (normal - self.friction * tangent)
+    }
 }
 
 /// Where the arm and the tool should be at a time.
@@ -160,47 +169,16 @@ impl Plan {
     pub fn new(request: &PlanRequest) -> Result<Self, PlanError> {
         let standing = Standing {
             chain: request.arm,
+            loaded: request.arm_with_slide,
+            stroke: request.working_stroke,
             world_from_base: request.world_from_base,
             gravity: request.gravity,
         };
         let far = request.push_back + request.approach_distance;
-        let length = request.tool_path.length();
-        let coarse = |spin: f64| {
-            let places = places(length, COARSE_SPACING);
-            let follow = poses_along(request, &places, spin);
-            let first = backed_off(follow[0], far);
-            let last = backed_off(follow[follow.len() - 1], far);
-            let mut poses: Vec<DPose3> = places_between(0.0, far, COARSE_SPACING)
-                .into_iter()
-                .map(|back| backed_off(first, -back))
-                .collect();
-            let unloaded = poses.len();
-            poses.extend(follow);
-            let loaded = poses.len();
-            poses.push(last);
-            let push = |index: usize| {
-                let place = places[(index - unloaded).min(places.len() - 1)];
-                request.tool_path.at(place).normal * request.force
-            };
-            let forces = (0..poses.len())
-                .map(|i| if (unloaded..loaded).contains(&i) { push(i) } else { DVec3::ZERO })
-                .collect();
-            (poses, forces)
-        };
-        let coarse_failure = |(index, obstacle): (usize, Obstacle)| {
-            let before = places_between(0.0, far, COARSE_SPACING).len();
-            let places = places(length, COARSE_SPACING);
-            let (phase, waypoint, count) = if index < before {
-                (Phase::Approach, index, before)
-            } else {
-                (Phase::Follow, (index - before).min(places.len() - 1), places.len())
-            };
-            let place = if phase == Phase::Follow { places[waypoint] } else { 0.0 };
-            waypoint_error(&request.tool_path, phase, waypoint, count, place, obstacle)
-        };
+        let coarse = Coarse::new(request, far);
         let (spin, start) = standing
-            .choose(coarse, request.seed_posture, request.seed)
-            .map_err(coarse_failure)?;
+            .choose(|spin| coarse.poses(request, spin), request.seed_posture, request.seed)
+            .map_err(|(index, obstacle)| coarse.failure(request, index, obstacle))?;
         let mut plan = Self {
             legs: Vec::new(),
             tool_path: request.tool_path.clone(),
@@ -241,7 +219,9 @@ impl Plan {
         let profile = Profile::through(&sections, request.limits);
         let q = spline.values().last().cloned().unwrap_or(q);
         self.push(Phase::Follow, Way::Edge, spline, profile, 0.0);
-        axial(self, Phase::Retract, length, last, 0.0, far, request.approach_speed, 0.2, &q)?;
+        // Gently until the slide stands at its outer stop again: there it takes the tool off the edge with a jolt.
+        let q = axial(self, Phase::Retract, length, last, 0.0, near, request.engage_speed, 0.0, &q)?;
+        axial(self, Phase::Retract, length, last, near, far, request.approach_speed, 0.2, &q)?;
         Ok(())
     }
 
@@ -398,6 +378,51 @@ impl Plan {
             tangent: station.tangent,
             centre: station.point + station.normal * self.offset - station.axis * back,
         }
+    }
+}
+
+/// Widely spaced poses of the whole job, by which a posture is chosen: approach, follow, retract.
+struct Coarse {
+    /// Distances backed off along the tool's axis, from far to touching.
+    backs: Vec<f64>,
+    /// Places along the path.
+    places: Vec<f64>,
+}
+
+impl Coarse {
+    fn new(request: &PlanRequest, far: f64) -> Self {
+        Self {
+            backs: places_between(far, 0.0, COARSE_SPACING),
+            places: places(request.tool_path.length(), COARSE_SPACING),
+        }
+    }
+
+    /// Flange poses for a spin [rad], with the force on the tool at each [N].
+    fn poses(&self, request: &PlanRequest, spin: f64) -> (Vec<DPose3>, Vec<DVec3>) {
+        let follow = poses_along(request, &self.places, spin);
+        let (first, last) = (follow[0], follow[follow.len() - 1]);
+        let approach = self.backs.iter().map(|&back| backed_off(first, back));
+        let retract = self.backs.iter().rev().map(|&back| backed_off(last, back));
+        let idle = vec![DVec3::ZERO; self.backs.len()];
+        let mut forces = idle.clone();
+        forces.extend(self.places.iter().map(|&place| {
+            let station = request.tool_path.at(place);
+            request.force_on_tool(station.normal, station.tangent)
+        }));
+        forces.extend(idle);
+        (approach.chain(follow.iter().copied()).chain(retract).collect(), forces)
+    }
+
+    fn failure(&self, request: &PlanRequest, index: usize, obstacle: Obstacle) -> PlanError {
+        let (before, after) = (self.backs.len(), self.backs.len() + self.places.len());
+        let (phase, waypoint, count, place) = if index < before {
+            (Phase::Approach, index, before, 0.0)
+        } else if index < after {
+            (Phase::Follow, index - before, self.places.len(), self.places[index - before])
+        } else {
+            (Phase::Retract, index - after, before, request.tool_path.length())
+        };
+        waypoint_error(&request.tool_path, phase, waypoint, count, place, obstacle)
     }
 }
 

@@ -10,10 +10,12 @@ use super::error::Obstacle;
 use crate::arm::chain::{Chain, MAX_JOINTS};
 use crate::arm::dynamics::gravity_torques;
 use crate::arm::inverse_kinematics::{IkOptions, TipOrientation, distinct_solutions, solve};
-use crate::arm::kinematics::{jacobian_at, link_poses, smallest_singular_value, tip_pose};
+use crate::arm::kinematics::{Jacobian, jacobian_at, link_poses, smallest_singular_value, tip_pose};
 
 /// Newton steps to each pose; neighbouring poses need two or three, the coarse ones by which a posture is chosen up to six.
 const STEPS: usize = 6;
+/// Shortest part of the way between two neighbouring poses that is tried [1].
+const SHORTEST: f64 = 1e-6;
 /// Distance and angle up to which a pose counts as reached [m, rad].
 const TOLERANCE: f64 = 1e-8;
 /// Random starts for the first pose of each spin.
@@ -28,6 +30,10 @@ const FLOOR: f64 = -0.05;
 pub struct Standing<'a> {
     /// The arm, base to flange.
     pub chain: &'a Chain,
+    /// The arm with the device's slide as its last joint.
+    pub loaded: &'a Chain,
+    /// Stroke at which the slide stands [m].
+    pub stroke: f64,
     /// Its base in the world.
     pub world_from_base: DPose3,
     /// Gravity in the world [m/s2].
@@ -40,14 +46,27 @@ impl Standing<'_> {
         0.25 * self.chain.reach()
     }
 
-    /// Smallest singular value of the scaled Jacobian at joint angles [1], and the axis that would move most there.
+    /// Smallest singular value of the scaled Jacobian at joint angles [1].
     pub fn singularity(&self, q: &[f64]) -> f64 {
+        smallest_singular_value(&self.task_jacobian(q), self.chain.len(), self.characteristic_length())
+    }
+
+    /// Jacobian of the flange; of an arm with five axes or less without the turning about the tool's axis, which it need not master.
+    fn task_jacobian(&self, q: &[f64]) -> Jacobian {
         let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
         let poses = &mut poses[..self.chain.len()];
         link_poses(self.chain, self.world_from_base, q, poses);
         let tip = tip_pose(self.chain, self.world_from_base, q);
-        let jacobian = jacobian_at(self.chain, poses, tip.translation);
-        smallest_singular_value(&jacobian, self.chain.len(), self.characteristic_length())
+        let mut jacobian = jacobian_at(self.chain, poses, tip.translation);
+        if self.chain.len() < 6 {
+            let axis = tip.rotation * DVec3::Z;
+            for mut column in jacobian.column_iter_mut() {
+                let turning = DVec3::new(column[3], column[4], column[5]);
+                let kept = turning - axis * axis.dot(turning);
+                (column[3], column[4], column[5]) = kept.into();
+            }
+        }
+        jacobian
     }
 
     /// Goes through all poses from `start`, which is near the first.
@@ -58,13 +77,9 @@ impl Standing<'_> {
         let mut q = start.to_vec();
         let mut angles = Vec::with_capacity(poses.len());
         for (index, pose) in poses.iter().enumerate() {
-            let mut error = f64::INFINITY;
-            for _ in 0..STEPS {
-                error = self.newton(pose, &mut q);
-            }
-            let distance = (tip_pose(self.chain, self.world_from_base, &q).translation - pose.translation).length();
-            if !(error < TOLERANCE) || !(distance < TOLERANCE) {
-                return Err((index, self.explain(pose, &angles.last().cloned().unwrap_or_else(|| start.to_vec()))));
+            let before = q.clone();
+            if !self.reach(pose, &mut q) {
+                q = self.walk(pose, &before).map_err(|obstacle| (index, obstacle))?;
             }
             if let Some(obstacle) = self.over_limit(&q) {
                 return Err((index, obstacle));
@@ -72,6 +87,38 @@ impl Standing<'_> {
             angles.push(q.clone());
         }
         Ok(angles)
+    }
+
+    /// Newton steps to a pose; whether they led there.
+    fn reach(&self, pose: &DPose3, q: &mut [f64]) -> bool {
+        let mut error = f64::INFINITY;
+        for _ in 0..STEPS {
+            error = self.newton(pose, q);
+        }
+        let distance = (tip_pose(self.chain, self.world_from_base, q).translation - pose.translation).length();
+        error < TOLERANCE && distance < TOLERANCE
+    }
+
+    /// Goes to a pose that Newton steps did not lead to, along the straight way there, in steps as short as it takes.
+    fn walk(&self, pose: &DPose3, start: &[f64]) -> Result<Vec<f64>, Obstacle> {
+        let from = tip_pose(self.chain, self.world_from_base, start);
+        let (mut q, mut done, mut step) = (start.to_vec(), 0.0, 0.125f64);
+        while done < 1.0 {
+            let next = (done + step).min(1.0);
+            let between = DPose3::from_parts(
+                from.translation.lerp(pose.translation, next),
+                from.rotation.slerp(pose.rotation, next),
+            );
+            let mut tried = q.clone();
+            if self.reach(&between, &mut tried) {
+                (q, done) = (tried, next);
+            } else if step > SHORTEST {
+                step *= 0.5;
+            } else {
+                return Err(self.explain(pose, &q));
+            }
+        }
+        Ok(q)
     }
 
     /// One step; returns the error before it, angles scaled by 1 rad to 1 m.
@@ -83,7 +130,11 @@ impl Standing<'_> {
         let tip = links.last().copied().unwrap_or(self.world_from_base) * self.chain.tip_from_last;
         let jacobian = jacobian_at(self.chain, links, tip.translation);
         let shift = pose.translation - tip.translation;
-        let turn = rotation_vector(pose.rotation * tip.rotation.inverse());
+        let turn = if count < 6 {
+            tilt(tip.rotation * DVec3::Z, pose.rotation * DVec3::Z)
+        } else {
+            rotation_vector(pose.rotation * tip.rotation.inverse())
+        };
         // A five-axis arm cannot choose the spin about the tool's axis, and need not.
         let axes: &[DVec3] = if count < 6 {
             &[pose.rotation * DVec3::X, pose.rotation * DVec3::Y]
@@ -157,12 +208,7 @@ impl Standing<'_> {
 
     /// The axis that moves most along the direction in which the arm is weakest.
     pub fn weakest_axis(&self, q: &[f64]) -> String {
-        let count = self.chain.len();
-        let mut links = [DPose3::IDENTITY; MAX_JOINTS];
-        let links = &mut links[..count];
-        link_poses(self.chain, self.world_from_base, q, links);
-        let tip = tip_pose(self.chain, self.world_from_base, q);
-        let jacobian = jacobian_at(self.chain, links, tip.translation);
+        let (count, jacobian) = (self.chain.len(), self.task_jacobian(q));
         let svd = DMatrix::from_fn(6, count, |row, column| jacobian[(row, column)]).svd(false, true);
         let (smallest, _) = svd.singular_values.argmin();
         let row = svd.v_t.map(|v_t| v_t.row(smallest).iter().map(|x| x.abs()).collect::<Vec<f64>>());
@@ -170,34 +216,39 @@ impl Standing<'_> {
         most.map_or_else(String::new, |joint| self.chain.joints[joint].name.clone())
     }
 
-    /// How comfortable joint angles are, 0 to 1 for the worst of: distance from singularity, from position limits, from torque limits under gravity
-    /// and `tip_force` [N, world]; negative below the floor.
-    fn comfort(&self, q: &[f64], tip_force: DVec3) -> f64 {
-        let mut links = [DPose3::IDENTITY; MAX_JOINTS];
+    /// How comfortable joint angles are, 0 to 1 for the worst of: distance from singularity, from position limits, from torque limits under gravity,
+    /// the device's included, and `tool_force` on the tool [N, world]; negative below the floor.
+    fn comfort(&self, q: &[f64], tool_force: DVec3) -> f64 {
         let count = self.chain.len();
-        let links = &mut links[..count];
-        link_poses(self.chain, self.world_from_base, q, links);
-        let tip = tip_pose(self.chain, self.world_from_base, q);
-        let jacobian = jacobian_at(self.chain, links, tip.translation);
+        let mut position = [0.0; MAX_JOINTS];
+        position[..count].copy_from_slice(q);
+        position[count] = self.stroke;
+        let position = &position[..=count];
+        let mut links = [DPose3::IDENTITY; MAX_JOINTS];
+        let links = &mut links[..=count];
+        link_poses(self.loaded, self.world_from_base, position, links);
+        let tool = links[count] * self.loaded.tip_from_last;
+        let jacobian = jacobian_at(self.loaded, links, tool.translation);
         let mut comfort = (self.singularity(q) / 0.15).min(1.0);
         let mut torques = [0.0; MAX_JOINTS];
-        gravity_torques(self.chain, self.world_from_base.rotation, self.gravity, q, &mut torques[..count]);
+        gravity_torques(self.loaded, self.world_from_base.rotation, self.gravity, position, &mut torques[..=count]);
         for (index, joint) in self.chain.joints.iter().enumerate() {
             let margin = (q[index] - joint.lower).min(joint.upper - q[index]);
-            let push = DVec3::new(jacobian[(0, index)], jacobian[(1, index)], jacobian[(2, index)]).dot(tip_force);
-            let spare = 1.0 - (torques[index] - push).abs() / joint.effort;
+            let push = DVec3::new(jacobian[(0, index)], jacobian[(1, index)], jacobian[(2, index)]).dot(tool_force);
+            let spare = 1.0 - ((torques[index] - push).abs() + joint.friction) / joint.effort;
             comfort = comfort.min((margin / 0.5).min(1.0)).min((spare / 0.3).min(1.0));
         }
         let up = -self.gravity.normalize_or_zero();
         let lowest = links
             .iter()
+            .take(count)
             .skip(1)
             .map(|pose| up.dot(pose.translation - self.world_from_base.translation))
             .fold(f64::INFINITY, f64::min);
         if lowest < FLOOR { comfort.min(0.0) - 1.0 } else { comfort }
     }
 
-    /// Chooses spin and posture: `poses_at` gives the coarse poses of the whole job for a spin [rad], with the force on the tip at each.
+    /// Chooses spin and posture: `poses_at` gives the coarse poses of the whole job for a spin [rad], with the force on the tool at each.
     ///
     /// # Errors
     /// The best try's pose that is not reached, and why.
@@ -257,6 +308,13 @@ impl Standing<'_> {
             (None, None) => Err((0, Obstacle::OutOfReach { distance: f64::NAN, axis: None })),
         }
     }
+}
+
+/// Axis times angle of the shortest turn of one unit vector onto another.
+fn tilt(from: DVec3, to: DVec3) -> DVec3 {
+    let across = from.cross(to);
+    let sine = across.length();
+    if sine < 1e-300 { across } else { across * (sine.atan2(from.dot(to)) / sine) }
 }
 
 /// Axis times angle of a rotation, the shorter way round; exact for small angles, unlike glam's `to_scaled_axis`.

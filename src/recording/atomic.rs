@@ -5,9 +5,9 @@
 //! or none.
 
 use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
+use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::RecordingError;
 
@@ -42,6 +42,45 @@ pub fn write_atomic<E: std::fmt::Display>(
 /// As [`write_atomic`].
 pub fn write_text(path: &Path, text: &str) -> Result<(), RecordingError> {
     write_atomic(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// A folder within another in which files that belong together are written, to appear together.
+pub struct UnfinishedFolder {
+    temporary: TempDir,
+    target: PathBuf,
+}
+
+impl UnfinishedFolder {
+    /// Begins one for files that are to stand in `target`. Dropped unfinished, it leaves nothing.
+    ///
+    /// # Errors
+    /// [`RecordingError::Write`] if `target` cannot be written.
+    pub fn within(target: &Path) -> Result<Self, RecordingError> {
+        let temporary = Builder::new().prefix(".unfinished-").tempdir_in(target);
+        Ok(Self {
+            temporary: temporary.map_err(|e| RecordingError::write(target, e))?,
+            target: target.to_owned(),
+        })
+    }
+
+    /// Where to write.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
+    /// Puts the files of these names where they belong.
+    ///
+    /// # Errors
+    /// [`RecordingError::Write`] with the file that cannot be put there.
+    pub fn finish(self, names: &[&str]) -> Result<(), RecordingError> {
+        for name in names {
+            let target = self.target.join(name);
+            std::fs::rename(self.path().join(name), &target)
+                .map_err(|e| RecordingError::write(&target, e))?;
+        }
+        Ok(())
+    }
 }
 
 fn temporary_file_in(directory: &Path) -> std::io::Result<NamedTempFile> {
@@ -84,6 +123,28 @@ mod tests {
         write_text(&path, "old").unwrap();
         write_text(&path, "new").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+    }
+
+    #[test]
+    fn files_that_belong_together_appear_together() {
+        let directory = tempfile::tempdir().unwrap();
+        let names = || {
+            let entries = fs::read_dir(directory.path()).unwrap();
+            let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name()).collect();
+            names.sort();
+            names
+        };
+        let unfinished = UnfinishedFolder::within(directory.path()).unwrap();
+        write_text(&unfinished.path().join("a"), "").unwrap();
+        drop(unfinished);
+        assert!(names().is_empty());
+        let unfinished = UnfinishedFolder::within(directory.path()).unwrap();
+        for name in ["a", "b"] {
+            write_text(&unfinished.path().join(name), "").unwrap();
+        }
+        unfinished.finish(&["a", "b"]).unwrap();
+        assert_eq!(names(), ["a", "b"]);
+        assert!(UnfinishedFolder::within(&directory.path().join("nowhere")).is_err());
     }
 
     #[cfg(unix)]

@@ -165,7 +165,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses a number given in SI, shown in its key's unit by the caller's `value`.
+    /// Refuses a number as the file gives it, in its key's unit.
     pub fn refuse_number(&self, key: &str, value: f64, expected: String) -> ScenarioError {
         self.refuse(key, Unit::of_key(key).show(value), expected)
     }

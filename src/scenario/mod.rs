@@ -222,7 +222,7 @@ pub struct ProcessScenario {
     pub jerk: f64,
     /// Stroke at which the device is to work [m].
     pub working_stroke: f64,
-    /// Lean of the tool axis about the edge, away from the bisector towards the edge's first face [rad].
+    /// Lean of the tool axis about the edge, from the bisector towards the face on the left of the direction of travel [rad].
     pub lean: f64,
     /// Distance in front of the edge at which the motion starts [m].
     pub approach_distance: f64,

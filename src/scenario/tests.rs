@@ -2,6 +2,7 @@
 
 mod messages;
 mod readme;
+mod refusals;
 mod shipped;
 mod values;
 
@@ -56,4 +57,14 @@ fn message(text: &str) -> String {
     };
     assert!(!message.contains('\n'), "more than one line: {message}");
     message
+}
+
+/// Refuses `to` in place of `from`, at a line and column, with these words.
+fn refused(from: &str, to: &str, place: &str, words: &str) {
+    let message = message(&edited(from, to));
+    let expected = format!("scenarios/test.toml:{place}: {words}");
+    assert!(
+        message.ends_with(&expected),
+        "{message}\nexpected {expected}"
+    );
 }

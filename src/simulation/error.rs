@@ -4,8 +4,8 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// The slide ran into an end of its stroke.
-    #[error("the stroke ran out at {time:.3} s in phase {phase}, {:.1} mm along the edge: the slide is at {:.2} mm of 0 to {:.1} mm; the part lies farther off than the stroke allows",
-        1e3 * edge_length, 1e3 * stroke, 1e3 * full_stroke)]
+    #[error("the stroke ran out at {time:.3} s in phase {phase}, {:.1} mm along the edge: the slide is at {:.2} mm of 0 to {:.1} mm; the part lies {} than the stroke allows",
+        1e3 * edge_length, 1e3 * stroke, 1e3 * full_stroke, if *stroke <= 0.0 { "nearer to the arm" } else { "farther from the arm" })]
     StrokeRanOut {
         /// When [s].
         time: f64,
@@ -18,7 +18,22 @@ pub enum SimulationError {
         /// Full stroke [m].
         full_stroke: f64,
     },
-    /// A state is not a number any more.
+    /// The tool left the edge sideways.
+    #[error("the tool slipped off the edge at {time:.3} s, {:.1} mm along the edge: it stands {:.1} mm beside its path, its ball's radius is {:.1} mm, the contact force was {force:.0} N",
+        1e3 * edge_length, 1e3 * off, 1e3 * radius)]
+    SlippedOff {
+        /// When [s].
+        time: f64,
+        /// Where [m].
+        edge_length: f64,
+        /// Distance from the path across the tool's axis [m].
+        off: f64,
+        /// Radius of the ball [m].
+        radius: f64,
+        /// Contact force [N].
+        force: f64,
+    },
+    /// A state is not a number any more, or an amount of air is negative.
     #[error("{quantity} became {value} at {time:.3} s in phase {phase}; the step of {:.3} ms is too long for this cell, or a parameter is far out of range", 1e3 * step)]
     NotFinite {
         /// What.
@@ -33,12 +48,17 @@ pub enum SimulationError {
         step: f64,
     },
     /// An axis could not hold its reference.
-    #[error("axis {axis} fell {:.2} deg behind its reference at {time:.3} s in phase {phase}: its effort limit of {effort:.1} N m is not enough", error.to_degrees())]
+    #[error("axis {axis} lost its path at {time:.3} s in phase {phase}: it is {:.2} deg from its reference, at most {:.2} deg are accepted; its drive gives {torque:.1} of at most {effort:.1} N m",
+        error.to_degrees(), accepted.to_degrees())]
     AxisLost {
         /// Axis.
         axis: String,
         /// Distance from the reference [rad].
         error: f64,
+        /// Largest distance that is accepted [rad].
+        accepted: f64,
+        /// Torque of its drive [N m].
+        torque: f64,
         /// Its limit [N m].
         effort: f64,
         /// When [s].

@@ -18,13 +18,12 @@ use crate::control::law::JointLaw;
 use crate::control::servo::{AxisCommand, Servo, ServoParameters};
 use crate::device::{DeviceForce, DeviceState, PistonMotion};
 use crate::path::{Phase, Reference};
+use crate::recording::Unit;
 
 /// Time between two frames of the picture [s].
 const FRAME_INTERVAL: f64 = 0.02;
 /// Distance from its reference at which an axis counts as lost [rad].
 const LOST: f64 = 0.05;
-/// Penetration of an end stop by the slide's own load that is not yet a stroke that ran out [m].
-const STOP_GIVE: f64 = 2e-3;
 
 /// Time spent in each part of the step, measured only on request [s].
 #[derive(Debug, Clone, Copy, Default)]
@@ -341,6 +340,16 @@ impl<'a> Simulation<'a> {
             self.frame(time, reference, force_on_part, contact.normal);
             self.next_frame += FRAME_INTERVAL;
         }
+        let radius = cell.scenario.device.tool_radius;
+        if reference.phase == Phase::Follow && across.length() > radius {
+            return Err(SimulationError::SlippedOff {
+                time,
+                edge_length: reference.edge_length,
+                off: across.length(),
+                radius,
+                force: contact.normal_force,
+            });
+        }
         self.check_axes(&joints[..n], reference.phase, time)?;
         self.check_stroke(reference, stroke, time)
     }
@@ -361,7 +370,8 @@ impl<'a> Simulation<'a> {
         phase: Phase,
         time: f64,
     ) -> Result<(), SimulationError> {
-        let bad = signals.iter().zip(&crate::recording::schema::SIGNALS).find(|(value, _)| !value.is_finite());
+        let mut named = signals.iter().zip(&crate::recording::schema::SIGNALS);
+        let bad = named.find(|(value, signal)| !value.is_finite() || (signal.unit == Unit::Kilogram && **value < 0.0));
         let bad = bad.map(|(value, signal)| (signal.quantity, *value));
         let bad = bad.or_else(|| joints.iter().flatten().find(|v| !v.is_finite()).map(|v| ("a joint", *v)));
         match bad {
@@ -384,6 +394,8 @@ impl<'a> Simulation<'a> {
                 return Err(SimulationError::AxisLost {
                     axis: axis.name.clone(),
                     error: error.abs(),
+                    accepted: LOST,
+                    torque: joint[3].abs(),
                     effort: axis.effort,
                     time,
                     phase: phase.name(),
@@ -393,7 +405,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// On the edge the slide must be clear of both ends; the inner one must never be reached.
+    /// The slide must never reach its inner end, and on the edge not its outer one either.
     fn check_stroke(&self, reference: &Reference, stroke: f64, time: f64) -> Result<(), SimulationError> {
         let scenario = &self.cell.scenario;
         let full_stroke = scenario.device.parameters.full_stroke;
@@ -401,7 +413,7 @@ impl<'a> Simulation<'a> {
             return Ok(());
         }
         let on_edge = reference.phase == Phase::Follow;
-        if stroke < -STOP_GIVE || (on_edge && (stroke <= 0.0 || stroke >= full_stroke)) {
+        if stroke <= 0.0 || (on_edge && stroke >= full_stroke) {
             return Err(SimulationError::StrokeRanOut {
                 time,
                 phase: reference.phase.name(),

@@ -131,7 +131,10 @@ impl BurrProfile {
         };
         let csv_fault = |error: csv::Error| {
             let line = error.position().map_or(1, csv::Position::line);
-            fault(line, error.to_string())
+            match error.kind() {
+                csv::ErrorKind::UnequalLengths { len, .. } => fault(line, format!("{len} fields, expected 2")),
+                _ => fault(line, error.to_string()),
+            }
         };
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
@@ -211,16 +214,23 @@ impl BurrProfile {
         }
     }
 
-    /// Refuses a table that does not cover a path of this length [m].
+    /// Refuses a table that does not cover a path of this length [m], and a bump that does not touch it.
     pub fn require_cover(&self, length: f64) -> Result<(), WorkpieceError> {
         // A table written in millimetres to three decimals may miss the end by a rounding.
         const SLACK: f64 = 1e-6;
-        let Self::FromTable(table) = self else {
-            return Ok(());
+        let (from, to, expected, fits) = match self {
+            Self::FromTable(table) => {
+                let (from, to) = (table.rows[0].0, table.rows[table.rows.len() - 1].0);
+                (from, to, "it to cover", from <= SLACK && to >= length - SLACK)
+            }
+            Self::Bump { position, width, .. } => {
+                let (from, to) = (position - width / 2.0, position + width / 2.0);
+                (from, to, "it to lie within", from < length && to > 0.0)
+            }
+            Self::Constant { .. } | Self::SeededRandom(_) => return Ok(()),
         };
-        let (from, to) = (table.rows[0].0, table.rows[table.rows.len() - 1].0);
-        if from > SLACK || to < length - SLACK {
-            return Err(WorkpieceError::BurrCoverage { from, to, length });
+        if !fits {
+            return Err(WorkpieceError::BurrCoverage { from, to, length, expected });
         }
         Ok(())
     }
@@ -325,7 +335,11 @@ mod tests {
         }
         burr.require_cover(0.3).unwrap();
         let message = burr.require_cover(0.301).unwrap_err().to_string();
-        assert!(message.contains("0.301 m"), "{message}");
+        assert!(message.ends_with("expected it to cover 0 mm to 301.000 mm"), "{message}");
+        let bump = BurrProfile::bump(0.4, 1e-4, 0.02).unwrap();
+        bump.require_cover(0.391).unwrap();
+        let message = bump.require_cover(0.389).unwrap_err().to_string();
+        assert!(message.contains("390.000 mm to 410.000 mm"), "{message}");
     }
 
     #[test]

@@ -53,8 +53,8 @@ pub enum MeshFault {
     },
     /// The part is implausibly small or large.
     #[error(
-        "is {extent} m long after scaling by {scale}, expected 0.001 m to 10 m; STL and OBJ carry no unit: \
-         a file in millimetres needs scale 0.001"
+        "is {extent} m long when its unit is {scale} m, expected 0.001 m to 10 m; STL and OBJ carry no unit: \
+         is the one given (mesh_unit, --unit) right?"
     )]
     Implausible {
         /// Largest side of the bounding box [m].
@@ -135,9 +135,10 @@ pub enum WorkpieceError {
         /// What is wrong and what was expected.
         reason: String,
     },
-    /// A burr table is shorter than the path it lies on.
+    /// A burr table is shorter than the path it lies on, or a bump lies beside it.
     #[error(
-        "the burr table covers {from} m to {to} m of path length, expected it to cover 0 m to {length} m"
+        "the burr covers {:.3} mm to {:.3} mm of the followed edge, expected {expected} 0 mm to {:.3} mm",
+        1e3 * from, 1e3 * to, 1e3 * length
     )]
     BurrCoverage {
         /// First position [m].
@@ -146,6 +147,8 @@ pub enum WorkpieceError {
         to: f64,
         /// Path length [m].
         length: f64,
+        /// What it was expected to do with the path, a verb.
+        expected: &'static str,
     },
 }
 

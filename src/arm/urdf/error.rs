@@ -13,6 +13,14 @@ pub enum ArmError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// The file is no URDF, or not all of one.
+    #[error("{file}: not a valid URDF file: {fault}")]
+    Incomplete {
+        /// The URDF file.
+        file: PathBuf,
+        /// What it lacks.
+        fault: &'static str,
+    },
     /// The file is not URDF.
     #[error("{file}: not a valid URDF file: {source}")]
     Malformed {
