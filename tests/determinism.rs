@@ -1,1 +1,48 @@
-//! To come.
+//! The same scenario gives the same bytes, again and with any number of threads.
+
+use crate::program::{Bench, FILES};
+
+/// Bytes of a run's files, the summary without its timing.
+fn files(bench: &Bench, threads: Option<&str>) -> [Vec<u8>; 3] {
+    let environment: Vec<(&str, &str)> = threads.map(|count| ("RAYON_NUM_THREADS", count)).into_iter().collect();
+    let outcome = bench.idc(&["run", "scenario.toml", "--out", "out", "--quiet"], &environment);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    FILES.map(|name| match name {
+        "summary.json" => {
+            let mut summary = bench.summary();
+            let timing = summary["summary"].as_object_mut().unwrap().remove("timing").unwrap();
+            assert!(timing["wall_time_s"].as_f64().unwrap() > 0.0);
+            summary.to_string().into_bytes()
+        }
+        _ => std::fs::read(bench.path("out").join(name)).unwrap(),
+    })
+}
+
+fn assert_equal(name: &str, expected: &[Vec<u8>; 3], found: &[Vec<u8>; 3]) {
+    for ((file, expected), found) in FILES.iter().zip(expected).zip(found) {
+        assert!(expected == found, "{name}: {file} differs");
+    }
+}
+
+#[test]
+fn a_scenario_gives_the_same_bytes_again_and_with_any_number_of_threads() {
+    for name in ["plate_edge", "burred_edge"] {
+        let bench = Bench::new(name);
+        let first = files(&bench, None);
+        for threads in [None, Some("1"), Some("4")] {
+            assert_equal(name, &first, &files(&bench, threads));
+        }
+        // Nor does it matter where the job stands.
+        assert_equal(name, &first, &files(&Bench::new(name), None));
+    }
+}
+
+#[test]
+fn another_burr_gives_other_bytes() {
+    let bench = Bench::new("burred_edge");
+    let first = files(&bench, None);
+    bench.replace("scenario.toml", "seed = 1", "seed = 2");
+    for ((file, one), other) in FILES.iter().zip(&first).zip(&files(&bench, None)) {
+        assert!(one != other, "{file}");
+    }
+}

@@ -8,6 +8,7 @@ mod contact;
 mod convergence;
 mod determinism;
 mod layers;
+mod program;
 mod real_robots;
 mod stops;
 mod uniformity;

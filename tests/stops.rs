@@ -1,1 +1,136 @@
-//! To come.
+//! Runs that the physics stops: exit code 3, one line that says why, and the recording up to there, whole and readable.
+
+use idc_cell::recording::parquet::read_parquet;
+use idc_cell::recording::schema;
+use rerun::{ChunkStore, ChunkStoreConfig, StoreKind};
+
+use crate::program::{Bench, FILES, Outcome};
+
+fn misplaced(shift_mm: f64) -> Bench {
+    let bench = Bench::new("plate_edge");
+    let table = format!("[workpiece.misplacement]\nshift_mm = {shift_mm}\n[process]");
+    bench.replace("scenario.toml", "[process]", &table);
+    bench
+}
+
+/// Air that leaves a chamber faster than the integrator's step can follow: the mass overshoots zero.
+fn leaky(dead_volume_cm3: f64) -> Bench {
+    let bench = Bench::new("plate_edge");
+    let keys = format!("dead_volume_cm3 = {dead_volume_cm3}\nsupply_orifice_mm2 = 50\nexhaust_orifice_mm2 = 50");
+    bench.replace("scenario.toml", "[workpiece]", &format!("[device.override]\n{keys}\n[workpiece]"));
+    bench
+}
+
+/// The reason given, after checking what every stop has in common.
+fn stopped(outcome: &Outcome) -> &str {
+    let line = outcome.only_line("stopped: ");
+    assert_eq!(outcome.code, 3, "{line}");
+    assert!(!outcome.err.contains("error: "), "{}", outcome.err);
+    &line["stopped: ".len()..]
+}
+
+/// Checks that the files hold the run up to the sample of `steps` milliseconds, and no more.
+fn holds_up_to(bench: &Bench, steps: usize, reason: &str) {
+    assert_eq!(bench.names_in("out"), FILES);
+    let samples = read_parquet(&bench.path("out/samples.parquet")).unwrap().recording;
+    assert_eq!(samples.sample_count(), steps);
+    for (index, time) in samples.time().iter().enumerate() {
+        assert!((time - 1e-3 * (index + 1) as f64).abs() < 1e-9);
+    }
+    for channel in samples.channels() {
+        assert!(channel.values.iter().all(|value| value.is_finite()), "{}", channel.quantity);
+    }
+    let last = samples.phases().last().unwrap();
+    assert_eq!(last.end, *samples.time().last().unwrap());
+
+    let summary = bench.summary();
+    assert_eq!(summary["stopped"], reason);
+    assert_eq!(summary["samples"], steps);
+    assert_eq!(summary["summary"]["duration_s"].as_f64().unwrap(), last.end - samples.time()[0]);
+
+    let force = samples.values(schema::CONTACT_FORCE).unwrap();
+    assert_eq!(recorded_forces(bench), force.len());
+}
+
+/// Rows of the contact force in recording.rrd, as Rerun's own reader finds them.
+fn recorded_forces(bench: &Bench) -> usize {
+    let mut file = std::io::BufReader::new(std::fs::File::open(bench.path("out/recording.rrd")).unwrap());
+    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut file).unwrap();
+    let (_, store) = stores.into_iter().find(|(id, _)| id.kind() == StoreKind::Recording).unwrap();
+    store
+        .iter_physical_chunks()
+        .filter(|chunk| chunk.entity_path().to_string().ends_with("/contact_force") && !chunk.is_static())
+        .map(|chunk| chunk.num_rows())
+        .max()
+        .unwrap()
+}
+
+#[test]
+fn a_part_nearer_than_the_stroke_allows() {
+    let bench = misplaced(40.0);
+    let outcome = bench.run();
+    let reason = stopped(&outcome);
+    for words in ["the stroke ran out at ", "in phase engage", "of 0 to 50.0 mm", "nearer to the arm"] {
+        assert!(reason.contains(words), "{reason}");
+    }
+    let steps = milliseconds(reason);
+    holds_up_to(&bench, steps, reason);
+    // The slide has just met its inner end, the sample before it had not.
+    let samples = read_parquet(&bench.path("out/samples.parquet")).unwrap().recording;
+    let stroke = samples.values(schema::STROKE).unwrap();
+    assert!(stroke[steps - 1] <= 0.0 && stroke[steps - 2] > 0.0);
+}
+
+#[test]
+fn a_part_farther_than_the_stroke_allows() {
+    let bench = misplaced(-40.0);
+    let outcome = bench.run();
+    let reason = stopped(&outcome);
+    for words in ["the stroke ran out at ", "in phase follow", "0.0 mm along the edge", "farther from the arm"] {
+        assert!(reason.contains(words), "{reason}");
+    }
+    holds_up_to(&bench, milliseconds(reason), reason);
+    let samples = read_parquet(&bench.path("out/samples.parquet")).unwrap().recording;
+    assert!(samples.values(schema::CONTACT_FORCE).unwrap().iter().all(|force| *force == 0.0));
+}
+
+#[test]
+fn an_arm_that_runs_its_locked_tool_into_the_part() {
+    let bench = misplaced(30.0);
+    bench.replace("scenario.toml", "[device]", "[device]\nlocked = true");
+    let outcome = bench.run();
+    let reason = stopped(&outcome);
+    for words in ["axis wrist_1 lost its path at ", "in phase approach", "2.86 deg are accepted", "56.0 of at most 56.0 N m"] {
+        assert!(reason.contains(words), "{reason}");
+    }
+    holds_up_to(&bench, milliseconds(reason), reason);
+}
+
+#[test]
+fn a_state_that_cannot_be() {
+    let bench = leaky(2.0);
+    let outcome = bench.run();
+    let reason = stopped(&outcome);
+    for words in ["chamber_2_mass became -", "in phase approach", "step_ms = 1 is too long"] {
+        assert!(reason.contains(words), "{reason}");
+    }
+    // What cannot be is not recorded.
+    holds_up_to(&bench, milliseconds(reason) - 1, reason);
+}
+
+#[test]
+fn a_state_that_cannot_be_at_the_first_step_leaves_nothing_to_record() {
+    let bench = leaky(0.1);
+    let outcome = bench.run();
+    let reason = stopped(&outcome);
+    assert!(reason.contains("chamber_2_mass became -"), "{reason}");
+    assert!(reason.ends_with("nothing was recorded, it is the first step"), "{reason}");
+    assert!(bench.names_in("out").is_empty());
+}
+
+/// The time that a reason names, `at 1.234 s`.
+fn milliseconds(reason: &str) -> usize {
+    let mut words = reason.split(' ').skip_while(|word| *word != "at").skip(1);
+    let seconds: f64 = words.next().unwrap().parse().unwrap();
+    (1e3 * seconds).round() as usize
+}

@@ -73,7 +73,7 @@ fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, Ce
     let curve = if choice.reversed { curve.reversed() } else { curve.clone() };
     check_stretch(scenario, choice, &curve)?;
     match (choice.start, choice.end) {
-        (start, None) if start == 0.0 => Ok(curve),
+        (0.0, None) => Ok(curve),
         (start, None) if curve.closed => Ok(curve.started_at(start)?),
         (start, end) => Ok(curve.trim(start, end.unwrap_or(curve.length))?),
     }

@@ -39,6 +39,15 @@ pub enum Obstacle {
         /// Its limit.
         limit: f64,
     },
+    /// The pose is within reach, but not from the one before without a change of posture.
+    PostureChange {
+        /// Axis that would have to jump.
+        axis: String,
+        /// Its position in the pose before [rad].
+        value: f64,
+        /// Its position in the pose [rad].
+        needed: f64,
+    },
     /// The arm is all but singular.
     Singular {
         /// Smallest singular value of the scaled Jacobian [1].
@@ -80,9 +89,15 @@ impl std::fmt::Display for Obstacle {
             Self::Effort { axis, value, limit } => {
                 write!(f, "axis {axis} would need {:.2} N m, its limit is {limit:.2} N m", value.abs())
             }
+            Self::PostureChange { axis, value, needed } => write!(
+                f,
+                "within reach only after a change of posture: axis {axis} would have to jump from {:.1} to {:.1} deg",
+                value.to_degrees(),
+                needed.to_degrees()
+            ),
             Self::Singular { value, limit, axis } => write!(
                 f,
-                "the arm is all but singular (smallest singular value {value:.4}, least accepted {limit:.4}); axis {axis} would move most"
+                "the arm is all but singular (smallest singular value {value:.5}, least accepted {limit}); axis {axis} would move most"
             ),
         }
     }

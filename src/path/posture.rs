@@ -195,9 +195,18 @@ impl Standing<'_> {
     /// Why a pose is not reached.
     fn explain(&self, pose: &DPose3, start: &[f64]) -> Obstacle {
         match solve(self.chain, self.world_from_base, pose, start, &self.options(1)) {
-            Ok(_) => {
-                let value = self.singularity(start);
-                Obstacle::Singular { value, limit: super::check::SINGULAR_LIMIT, axis: self.weakest_axis(start) }
+            Ok(solution) => {
+                let (value, limit) = (self.singularity(start), super::check::SINGULAR_LIMIT);
+                if value < limit {
+                    return Obstacle::Singular { value, limit, axis: self.weakest_axis(start) };
+                }
+                let jump = |&index: &usize| (solution.q[index] - start[index]).abs();
+                let most = (0..self.chain.len()).max_by(|a, b| jump(a).total_cmp(&jump(b))).unwrap_or(0);
+                Obstacle::PostureChange {
+                    axis: self.chain.joints[most].name.clone(),
+                    value: start[most],
+                    needed: solution.q[most],
+                }
             }
             Err(failure) => Obstacle::OutOfReach {
                 distance: failure.position_error,

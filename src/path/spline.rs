@@ -29,8 +29,9 @@ impl Spline {
             }
         }
         for i in (1..count.saturating_sub(1)).rev() {
-            for j in 0..width {
-                bends[i][j] += upper[i] * bends[i + 1][j];
+            let (before, after) = bends.split_at_mut(i + 1);
+            for (bend, next) in before[i].iter_mut().zip(&after[0]) {
+                *bend += upper[i] * next;
             }
         }
         Self { knots, values, bends }

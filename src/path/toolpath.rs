@@ -160,3 +160,69 @@ impl ToolPath {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_1_SQRT_2;
+
+    use super::*;
+    use crate::workpiece::{EdgeSearch, TriangleMesh, list_edges};
+
+    /// A cube of 0.1 m whose top outline is a closed loop with four corners.
+    fn cube() -> TriangleMesh {
+        let corner = |i: usize| {
+            DVec3::new(0.1 * (i & 1) as f64, 0.1 * (i >> 1 & 1) as f64, 0.1 * (i >> 2 & 1) as f64)
+        };
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap()
+    }
+
+    fn round_the_top(lean: f64) -> ToolPath {
+        let list = list_edges(&cube(), &EdgeSearch::default());
+        let top = list.loops.iter().find(|l| l.points.iter().all(|p| p.z > 0.099)).unwrap();
+        ToolPath::along(top.clone(), DPose3::IDENTITY, lean).unwrap()
+    }
+
+    #[test]
+    fn the_axis_leans_by_what_was_asked_and_the_normal_is_the_bisector() {
+        for lean in [0.0, 0.2, -0.3] {
+            let station = round_the_top(lean).at(0.05);
+            assert!((station.normal.z - FRAC_1_SQRT_2).abs() < 1e-12);
+            assert!((station.axis.dot(-station.normal) - f64::cos(lean)).abs() < 1e-12);
+            assert!(station.axis.dot(station.tangent).abs() < 1e-12);
+            // Positive lean stands the tool up, away from the side face.
+            assert!((station.axis.z + (std::f64::consts::FRAC_PI_4 - lean).cos()).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn corners_are_turned_on_the_spot_and_everything_is_continuous() {
+        let path = round_the_top(0.0);
+        let corners = path.sections().iter().filter(|s| matches!(s.stretch, Stretch::Corner { .. })).count();
+        assert_eq!(corners, 3, "the loop starts and ends at the fourth");
+        // Two bisectors of a cube's corner stand 60 degrees apart.
+        let expected = 0.4 + 3.0 * CORNER_RADIUS * std::f64::consts::FRAC_PI_3;
+        assert!((path.length() - expected).abs() < 1e-4, "{}", path.length());
+        let steps = 20_000;
+        let mut before = path.at(0.0);
+        for i in 1..=steps {
+            let now = path.at(path.length() * i as f64 / steps as f64);
+            let bound = 1.5 * path.length() / steps as f64;
+            assert!((now.point - before.point).length() < bound + 2e-6);
+            assert!(now.axis.angle_between(before.axis) < bound / CORNER_RADIUS + 1e-5);
+            before = now;
+        }
+    }
+
+    #[test]
+    fn a_corner_that_turns_inwards_is_refused() {
+        let mut curve = round_the_top(0.0).curve;
+        // Walls whose outside is their inside make every corner an inside corner.
+        for (_, wall) in &mut curve.normals {
+            *wall = -*wall;
+        }
+        let refused = ToolPath::along(curve, DPose3::IDENTITY, 0.0).unwrap_err();
+        assert!(matches!(refused, PlanError::InwardCorner { .. }), "{refused}");
+    }
+}

@@ -34,7 +34,7 @@ pub enum SimulationError {
         force: f64,
     },
     /// A state is not a number any more, or an amount of air is negative.
-    #[error("{quantity} became {value} at {time:.3} s in phase {phase}; the step of {:.3} ms is too long for this cell, or a parameter is far out of range", 1e3 * step)]
+    #[error("{quantity} became {value:.3e} at {time:.3} s in phase {phase}; step_ms = {} is too long for this cell, or device_substeps are too few, or a parameter is far out of range", 1e3 * step)]
     NotFinite {
         /// What.
         quantity: &'static str,

@@ -82,6 +82,9 @@ impl World {
                     .additional_mass_properties(properties)
                     .can_sleep(false),
             );
+            // Or the engine would not know the mass before its first step.
+            let colliders = &physics.colliders;
+            physics.bodies[link].recompute_mass_properties_from_colliders(colliders);
             // Rapier's one free axis is x (linear or angular); a basis turns it onto the joint's axis.
             let basis = DPose3::from_rotation(GenericJoint::complete_ang_frame(joint.axis));
             let (locked, axis) = match joint.kind {
@@ -262,6 +265,22 @@ impl World {
     /// The contact, to shift it while the run goes on (burr under the ball).
     pub fn part_contact_mut(&mut self) -> &mut PartContact {
         &mut self.pipeline_contact
+    }
+
+    /// Torques that hold Rapier's bodies still against gravity at the current positions [N m or N]: minus the sum of J^T m g.
+    pub fn gravity_torques(&self) -> nalgebra::DVector<f64> {
+        let multibody = self.multibody();
+        let mut torques = nalgebra::DVector::zeros(self.joints.len());
+        for link in multibody.links() {
+            let body = &self.physics.bodies[link.rigid_body_handle()];
+            if !body.is_dynamic() {
+                continue;
+            }
+            let weight = (self.physics.gravity * body.mass()).to_array();
+            let jacobian = multibody.body_jacobian(link.link_id());
+            torques -= jacobian.fixed_rows::<3>(0).tr_mul(&nalgebra::Vector3::from(weight));
+        }
+        torques
     }
 
     /// Joint-space mass matrix of Rapier's bodies, row-major, at the current positions: sum of J^T diag(m, I) J.
