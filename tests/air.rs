@@ -13,7 +13,10 @@ const TOLERANCE: f64 = 1e-9;
 /// Largest gap in the balance against the first sample, of the mass in the chambers [1].
 fn gap(recording: &Recording) -> f64 {
     let values = |name| recording.values(name).unwrap();
-    let (first, second) = (values(schema::CHAMBER_1_MASS), values(schema::CHAMBER_2_MASS));
+    let (first, second) = (
+        values(schema::CHAMBER_1_MASS),
+        values(schema::CHAMBER_2_MASS),
+    );
     let (entered, left) = (values(schema::MASS_ENTERED), values(schema::MASS_LEFT));
     let inside = |i: usize| first[i] + second[i];
     let brought = |i: usize| entered[i] - left[i];
@@ -30,7 +33,12 @@ fn tampered(recording: &Recording, name: &str, change: fn(f64) -> f64) -> Record
         },
         ..channel.clone()
     });
-    Recording::new(recording.time().to_vec(), channels.collect(), recording.phases().to_vec()).unwrap()
+    Recording::new(
+        recording.time().to_vec(),
+        channels.collect(),
+        recording.phases().to_vec(),
+    )
+    .unwrap()
 }
 
 #[test]
@@ -42,16 +50,36 @@ fn air_balances_at_every_sample_of_a_run() {
         println!("{name}: air balances within {found:.1e} of the mass in the chambers");
         assert!(found < TOLERANCE, "{name}: {found:e}");
         let reported = finished.summary.air_mass_balance_relative.unwrap();
-        assert!(reported < TOLERANCE && (reported > 0.0) == (found > 0.0), "{name}: {reported:e}");
+        assert!(
+            reported < TOLERANCE && (reported > 0.0) == (found > 0.0),
+            "{name}: {reported:e}"
+        );
 
         // Air did move: the test is not of two empty columns.
-        let moved = |channel: &str| recording.values(channel).unwrap().last().unwrap() / recording.values(schema::CHAMBER_1_MASS).unwrap()[0];
-        assert!(moved(schema::MASS_ENTERED) > 0.01 && moved(schema::MASS_LEFT) > 0.01, "{name}");
+        let moved = |channel: &str| {
+            recording.values(channel).unwrap().last().unwrap()
+                / recording.values(schema::CHAMBER_1_MASS).unwrap()[0]
+        };
+        assert!(
+            moved(schema::MASS_ENTERED) > 0.01 && moved(schema::MASS_LEFT) > 0.01,
+            "{name}"
+        );
 
         // A contribution that is left out, or short by a millionth of it, is seen.
-        for channel in [schema::MASS_ENTERED, schema::MASS_LEFT, schema::CHAMBER_1_MASS, schema::CHAMBER_2_MASS] {
-            assert!(gap(&tampered(recording, channel, |_| 0.0)) > 1e-2, "{name}: {channel}");
-            assert!(gap(&tampered(recording, channel, |mass| mass * (1.0 - 1e-6))) > TOLERANCE, "{name}: {channel}");
+        for channel in [
+            schema::MASS_ENTERED,
+            schema::MASS_LEFT,
+            schema::CHAMBER_1_MASS,
+            schema::CHAMBER_2_MASS,
+        ] {
+            assert!(
+                gap(&tampered(recording, channel, |_| 0.0)) > 1e-2,
+                "{name}: {channel}"
+            );
+            assert!(
+                gap(&tampered(recording, channel, |mass| mass * (1.0 - 1e-6))) > TOLERANCE,
+                "{name}: {channel}"
+            );
         }
     }
 }
@@ -70,7 +98,10 @@ fn recorded_masses_are_those_of_the_recorded_pressures_and_stroke() {
     for (index, (pressure, mass)) in names.into_iter().enumerate() {
         for ((&pressure, &mass), &stroke) in values(pressure).iter().zip(values(mass)).zip(stroke) {
             let expected = mass_of(&parameters, index, pressure, stroke);
-            assert!((mass / expected - 1.0).abs() < 1e-12, "{mass} against {expected}");
+            assert!(
+                (mass / expected - 1.0).abs() < 1e-12,
+                "{mass} against {expected}"
+            );
         }
     }
 }
@@ -81,14 +112,20 @@ fn mass_of(parameters: &DeviceParameters, chamber: usize, pressure: f64, stroke:
     let count = f64::from(parameters.cylinder_count);
     let displaced = match chamber {
         0 => count * disc(parameters.bore) * stroke,
-        _ => count * (disc(parameters.bore) - disc(parameters.rod)) * (parameters.full_stroke - stroke),
+        _ => {
+            count
+                * (disc(parameters.bore) - disc(parameters.rod))
+                * (parameters.full_stroke - stroke)
+        }
     };
     let gas = &parameters.gas;
     pressure * (parameters.dead_volume + displaced) / (gas.specific_gas_constant * gas.temperature)
 }
 
 fn parameters() -> DeviceParameters {
-    load_device(&project("models/device.toml")).unwrap().parameters
+    load_device(&project("models/device.toml"))
+        .unwrap()
+        .parameters
 }
 
 fn inside(state: &DeviceState) -> f64 {
@@ -96,7 +133,13 @@ fn inside(state: &DeviceState) -> f64 {
 }
 
 /// Advances by steps of 1 ms, the stroke swinging about the middle, and returns the largest gap in the balance.
-fn gap_over(device: &Device, state: &mut DeviceState, set_pressure: f64, seconds: f64, swing: f64) -> f64 {
+fn gap_over(
+    device: &Device,
+    state: &mut DeviceState,
+    set_pressure: f64,
+    seconds: f64,
+    swing: f64,
+) -> f64 {
     let start = inside(state);
     let (entered, left) = (state.mass_entered, state.mass_left);
     let mut worst = 0.0f64;
@@ -115,12 +158,19 @@ fn gap_over(device: &Device, state: &mut DeviceState, set_pressure: f64, seconds
 
 #[test]
 fn a_closed_chamber_keeps_its_air_and_follows_boyle() {
-    let closed = DeviceParameters { supply_orifice: 0.0, exhaust_orifice: 0.0, ..parameters() };
+    let closed = DeviceParameters {
+        supply_orifice: 0.0,
+        exhaust_orifice: 0.0,
+        ..parameters()
+    };
     let device = Device::new(closed.clone());
     let mut state = device.at_rest(0.025, 2e5);
     let before = state.clone();
     gap_over(&device, &mut state, 2e5, 1.3, 0.02);
-    assert_eq!((state.masses, state.mass_entered, state.mass_left), (before.masses, 0.0, 0.0));
+    assert_eq!(
+        (state.masses, state.mass_entered, state.mass_left),
+        (before.masses, 0.0, 0.0)
+    );
     // Compressed to the far end: p V stays.
     for stroke in [0.001, 0.049] {
         for chamber in 0..2 {
@@ -141,14 +191,20 @@ fn chambers_filled_from_empty_and_vented_keep_count() {
     let gas = &parameters.gas;
     let full = |chamber, gauge: f64| mass_of(&parameters, chamber, gas.atmosphere + gauge, 0.025);
     for (chamber, gauge) in [(0, 2e5), (1, 0.0)] {
-        assert!((state.masses[chamber] / full(chamber, gauge) - 1.0).abs() < 1e-6, "chamber {chamber}");
+        assert!(
+            (state.masses[chamber] / full(chamber, gauge) - 1.0).abs() < 1e-6,
+            "chamber {chamber}"
+        );
     }
     assert_eq!(state.mass_left, 0.0);
     // The valve turned round: chamber 1 vents, chamber 2 fills, and the slide pumps meanwhile.
     state.valve = ValvePosition::Retract;
     let vented = gap_over(&device, &mut state, 2e5, 2.0, 0.0);
     for (chamber, gauge) in [(0, 0.0), (1, 2e5)] {
-        assert!((state.masses[chamber] / full(chamber, gauge) - 1.0).abs() < 1e-6, "chamber {chamber}");
+        assert!(
+            (state.masses[chamber] / full(chamber, gauge) - 1.0).abs() < 1e-6,
+            "chamber {chamber}"
+        );
     }
     let pumped = gap_over(&device, &mut state, 2e5, 3.0, 0.02);
     assert!(state.mass_left > full(0, 1e5));

@@ -16,8 +16,8 @@ const fn refusal(spoil: fn(&Bench), says: &'static [&'static str]) -> Refusal {
 }
 
 /// Spoils a key of the scenario file.
-fn edit<'a>(bench: &'a Bench, from: &str, to: &str) -> &'a Bench {
-    bench.replace("scenario.toml", from, to)
+fn edit(bench: &Bench, from: &str, to: &str) {
+    bench.replace("scenario.toml", from, to);
 }
 
 fn check(refusals: &[Refusal]) {
@@ -43,51 +43,79 @@ fn the_job_that_the_refusals_spoil_is_done() {
     let outcome = bench.run();
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert_eq!(bench.names_in("out"), FILES);
-    assert!(outcome.out.contains("Plate edge, nominal"), "{}", outcome.out);
+    assert!(
+        outcome.out.contains("Plate edge, nominal"),
+        "{}",
+        outcome.out
+    );
 }
 
 #[test]
 fn scenario_files() {
     check(&[
-        refusal(|b| std::fs::remove_file(b.path("scenario.toml")).unwrap(), &["there is no file scenario.toml"]),
-        refusal(|b| drop(b.write("scenario.toml", [0xff, 0xfe])), &["cannot read scenario.toml", "UTF-8"]),
         refusal(
-            |b| drop(edit(b, "force_n = 150", "force_n = = 150")),
+            |b| std::fs::remove_file(b.path("scenario.toml")).unwrap(),
+            &["there is no file scenario.toml"],
+        ),
+        refusal(
+            |b| b.write("scenario.toml", [0xff, 0xfe]),
+            &["cannot read scenario.toml", "UTF-8"],
+        ),
+        refusal(
+            |b| edit(b, "force_n = 150", "force_n = = 150"),
             &["scenario.toml:28:11: not valid TOML"],
         ),
-        refusal(|b| drop(b.write("scenario.toml", "")), &["scenario.toml", "`schema` is missing"]),
-        refusal(|b| drop(edit(b, "schema = 1", "schema = 2")), &["scenario.toml:4:10: schema is 2, expected 1"]),
         refusal(
-            |b| drop(edit(b, "force_n", "froce_n")),
+            |b| b.write("scenario.toml", ""),
+            &["scenario.toml", "`schema` is missing"],
+        ),
+        refusal(
+            |b| edit(b, "schema = 1", "schema = 2"),
+            &["scenario.toml:4:10: schema is 2, expected 1"],
+        ),
+        refusal(
+            |b| edit(b, "force_n", "froce_n"),
             &["scenario.toml:28:1: unknown key `process.froce_n`; did you mean `force_n`?"],
         ),
         refusal(
-            |b| drop(edit(b, "force_n = 150", "force_kn = 0.15")),
+            |b| edit(b, "force_n = 150", "force_kn = 0.15"),
             &["scenario.toml:28:1: unknown key `process.force_kn`; the key is `force_n`, in N"],
         ),
         refusal(
-            |b| drop(edit(b, "force_n = 150", "force_n = -150")),
+            |b| edit(b, "force_n = 150", "force_n = -150"),
             &["scenario.toml:28:1: `process.force_n` is -150 N, expected 0.1 to 5000 N"],
         ),
         refusal(
-            |b| drop(edit(b, "force_n = 150", "force_n = nan")),
+            |b| edit(b, "force_n = 150", "force_n = nan"),
             &["`process.force_n` is NaN N, expected 0.1 to 5000 N"],
         ),
         refusal(
-            |b| drop(edit(b, "force_n = 150\n", "")),
+            |b| edit(b, "force_n = 150\n", ""),
             &["scenario.toml:27:1: `process.force_n` is missing", "in N"],
         ),
         refusal(
-            |b| drop(b.replace("device.toml", "bore_mm = 32", "bore_mm = 320")),
-            &["device.toml:", "`device.bore_mm` is 320 mm, expected 4 to 200 mm"],
+            |b| b.replace("device.toml", "bore_mm = 32", "bore_mm = 320"),
+            &[
+                "device.toml:",
+                "`device.bore_mm` is 320 mm, expected 4 to 200 mm",
+            ],
         ),
         refusal(
-            |b| drop(edit(b, "flange_link = \"flange\"", "flange_link = \"flange\"\nseed_posture_deg = [0, 0]")),
+            |b| {
+                edit(
+                    b,
+                    "flange_link = \"flange\"",
+                    "flange_link = \"flange\"\nseed_posture_deg = [0, 0]",
+                )
+            },
             &["scenario.toml: `arm.seed_posture_deg` is a list of 2, expected a list of 6"],
         ),
         refusal(
-            |b| drop(edit(b, "[expect]", "[expect]\nforce_mean = { max = 3 }")),
-            &["scenario.toml: [expect] names `force_mean`", "nearest is `force_mean_n`"],
+            |b| edit(b, "[expect]", "[expect]\nforce_mean = { max = 3 }"),
+            &[
+                "scenario.toml: [expect] names `force_mean`",
+                "nearest is `force_mean_n`",
+            ],
         ),
     ]);
 }
@@ -97,33 +125,56 @@ fn robot_files() {
     const ELBOW: &str = "<joint name=\"elbow\" type=\"revolute\">";
     check(&[
         refusal(
-            |b| drop(edit(b, "arm.urdf", "nowhere.urdf")),
+            |b| edit(b, "arm.urdf", "nowhere.urdf"),
             &["scenario.toml:8:1: `arm.urdf` is \"nowhere.urdf\", expected an existing file"],
         ),
-        refusal(|b| drop(b.write("arm.urdf", "a robot")), &["arm.urdf: not a valid URDF file: it has no <robot>"]),
-        refusal(|b| drop(b.replace("arm.urdf", "</robot>", "")), &["arm.urdf", "cut off before </robot>"]),
         refusal(
-            |b| drop(b.replace("arm.urdf", "effort=\"150\"", "effort=\"150")),
+            |b| b.write("arm.urdf", "a robot"),
+            &["arm.urdf: not a valid URDF file: it has no <robot>"],
+        ),
+        refusal(
+            |b| b.replace("arm.urdf", "</robot>", ""),
+            &["arm.urdf", "cut off before </robot>"],
+        ),
+        refusal(
+            |b| b.replace("arm.urdf", "effort=\"150\"", "effort=\"150"),
             &["arm.urdf: not a valid URDF file", "Line: 112"],
         ),
         refusal(
-            |b| drop(b.replace("arm.urdf", ELBOW, &format!("{ELBOW}<mimic joint=\"shoulder_pan\"/>"))),
+            |b| {
+                b.replace(
+                    "arm.urdf",
+                    ELBOW,
+                    &format!("{ELBOW}<mimic joint=\"shoulder_pan\"/>"),
+                )
+            },
             &["arm.urdf: joint `elbow`", "mimics joint `shoulder_pan`"],
         ),
         refusal(
-            |b| drop(b.replace("arm.urdf", ELBOW, "<joint name=\"elbow\" type=\"planar\">")),
-            &["arm.urdf: joint `elbow` is planar; expected revolute, continuous, prismatic or fixed"],
+            |b| b.replace("arm.urdf", ELBOW, "<joint name=\"elbow\" type=\"planar\">"),
+            &[
+                "arm.urdf: joint `elbow` is planar; expected revolute, continuous, prismatic or fixed",
+            ],
         ),
         refusal(
-            |b| drop(b.replace("arm.urdf", "effort=\"150\"", "")),
+            |b| b.replace("arm.urdf", "effort=\"150\"", ""),
             &["arm.urdf: joint `elbow` has effort limit 0; expected a positive number"],
         ),
         refusal(
-            |b| drop(edit(b, "\"flange\"", "\"tool0\"")),
-            &["arm.urdf: there is no link `tool0`", "the links are base_link, flange"],
+            |b| edit(b, "\"flange\"", "\"tool0\""),
+            &[
+                "arm.urdf: there is no link `tool0`",
+                "the links are base_link, flange",
+            ],
         ),
         refusal(
-            |b| drop(edit(b, "[device]", "[[arm.limit_overrides]]\njoint = \"elbo\"\neffort_n_m = 30\n[device]")),
+            |b| {
+                edit(
+                    b,
+                    "[device]",
+                    "[[arm.limit_overrides]]\njoint = \"elbo\"\neffort_n_m = 30\n[device]",
+                )
+            },
             &["limit override names joint `elbo`"],
         ),
     ]);
@@ -140,10 +191,13 @@ fn meshes() {
     }
     check(&[
         refusal(
-            |b| drop(edit(b, "part.stl", "nowhere.stl")),
+            |b| edit(b, "part.stl", "nowhere.stl"),
             &["scenario.toml:17:1: `workpiece.mesh` is \"nowhere.stl\", expected an existing file"],
         ),
-        refusal(|b| part(b, |bytes| bytes.truncate(400)), &["part.stl: malformed mesh", "12 triangles", "316 bytes"]),
+        refusal(
+            |b| part(b, |bytes| bytes.truncate(400)),
+            &["part.stl: malformed mesh", "12 triangles", "316 bytes"],
+        ),
         refusal(
             // The last triangle is left out.
             |b| {
@@ -152,11 +206,18 @@ fn meshes() {
                     bytes[80] = 11;
                 });
             },
-            &["part.stl: mesh is not a closed surface: 3 open edges", "expected 0 of each"],
+            &[
+                "part.stl: mesh is not a closed surface: 3 open edges",
+                "expected 0 of each",
+            ],
         ),
         refusal(
-            |b| drop(edit(b, "mesh_unit = \"mm\"", "mesh_unit = \"m\"")),
-            &["part.stl: mesh is 300 m long", "expected 0.001 m to 10 m", "mesh_unit"],
+            |b| edit(b, "mesh_unit = \"mm\"", "mesh_unit = \"m\""),
+            &[
+                "part.stl: mesh is 300 m long",
+                "expected 0.001 m to 10 m",
+                "mesh_unit",
+            ],
         ),
     ]);
 }
@@ -164,35 +225,68 @@ fn meshes() {
 #[test]
 fn edges_and_burrs() {
     fn burr_table(b: &Bench, rows: &str) {
-        edit(b, "[process]", "[workpiece.burr]\nkind = \"table\"\npath = \"burr.csv\"\n[process]");
+        edit(
+            b,
+            "[process]",
+            "[workpiece.burr]\nkind = \"table\"\npath = \"burr.csv\"\n[process]",
+        );
         b.write("burr.csv", format!("position_mm,height_mm\n{rows}"));
     }
     check(&[
         refusal(
-            |b| drop(edit(b, "edge = 1 ", "edge = 99 ")),
-            &["scenario.toml: `workpiece.edge` is edge 99", "edges 0 to 11", "`idc edges part.stl`"],
+            |b| edit(b, "edge = 1 ", "edge = 99 "),
+            &[
+                "scenario.toml: `workpiece.edge` is edge 99",
+                "edges 0 to 11",
+                "`idc edges part.stl`",
+            ],
         ),
         refusal(
-            |b| drop(edit(b, "end_mm = 290", "end_mm = 390")),
-            &["scenario.toml: `workpiece.edge.end_mm` is 390 mm, expected at most the edge's length, 300 mm"],
+            |b| edit(b, "end_mm = 290", "end_mm = 390"),
+            &[
+                "scenario.toml: `workpiece.edge.end_mm` is 390 mm, expected at most the edge's length, 300 mm",
+            ],
         ),
         refusal(
-            |b| drop(edit(b, "start_mm = 10\nend_mm = 290", "start_mm = 310")),
-            &["scenario.toml: `workpiece.edge.start_mm` is 310 mm, expected less than the edge's length, 300 mm"],
+            |b| edit(b, "start_mm = 10\nend_mm = 290", "start_mm = 310"),
+            &[
+                "scenario.toml: `workpiece.edge.start_mm` is 310 mm, expected less than the edge's length, 300 mm",
+            ],
         ),
-        refusal(|b| burr_table(b, "0,0.1\n10,x\n"), &["`workpiece.burr`: burr.csv, line 3: height_mm is 'x'"]),
-        refusal(|b| burr_table(b, "0,0.1\n9,1,1\n"), &["burr.csv, line 3: 3 fields, expected 2"]),
-        refusal(|b| burr_table(b, "0,0.1\n300,-1\n"), &["burr.csv, line 3: height_mm is -1, expected 0 or more"]),
+        refusal(
+            |b| burr_table(b, "0,0.1\n10,x\n"),
+            &["`workpiece.burr`: burr.csv, line 3: height_mm is 'x'"],
+        ),
+        refusal(
+            |b| burr_table(b, "0,0.1\n9,1,1\n"),
+            &["burr.csv, line 3: 3 fields, expected 2"],
+        ),
+        refusal(
+            |b| burr_table(b, "0,0.1\n300,-1\n"),
+            &["burr.csv, line 3: height_mm is -1, expected 0 or more"],
+        ),
         refusal(
             |b| burr_table(b, "0,0.1\n100,0.1\n"),
-            &["scenario.toml: `workpiece.burr`", "0.000 mm to 100.000 mm", "0 mm to 280.000 mm"],
+            &[
+                "scenario.toml: `workpiece.burr`",
+                "0.000 mm to 100.000 mm",
+                "0 mm to 280.000 mm",
+            ],
         ),
         refusal(
             |b| {
                 let keys = "kind = \"bump\"\nposition_mm = 400\nheight_mm = 1\nwidth_mm = 5";
-                edit(b, "[process]", &format!("[workpiece.burr]\n{keys}\n[process]"));
+                edit(
+                    b,
+                    "[process]",
+                    &format!("[workpiece.burr]\n{keys}\n[process]"),
+                );
             },
-            &["scenario.toml: `workpiece.burr`", "397.500 mm to 402.500 mm", "0 mm to 280.000 mm"],
+            &[
+                "scenario.toml: `workpiece.burr`",
+                "397.500 mm to 402.500 mm",
+                "0 mm to 280.000 mm",
+            ],
         ),
     ]);
 }
@@ -200,38 +294,75 @@ fn edges_and_burrs() {
 #[test]
 fn paths_and_forces_beyond_the_cell() {
     fn limit(b: &Bench, limit: &str) {
-        edit(b, "[device]", &format!("[[arm.limit_overrides]]\njoint = \"elbow\"\n{limit}\n[device]"));
+        edit(
+            b,
+            "[device]",
+            &format!("[[arm.limit_overrides]]\njoint = \"elbow\"\n{limit}\n[device]"),
+        );
     }
     check(&[
         refusal(
-            |b| drop(edit(b, "[750, 0, 200]", "[3750, 0, 200]")),
-            &["scenario.toml: approach, waypoint 1 of", "(3750.0, 140.0, 200.0) mm", "out of reach by", "axis ", "its limit is "],
+            |b| edit(b, "[750, 0, 200]", "[3750, 0, 200]"),
+            &[
+                "scenario.toml: approach, waypoint 1 of",
+                "(3750.0, 140.0, 200.0) mm",
+                "out of reach by",
+                "axis ",
+                "its limit is ",
+            ],
         ),
         refusal(
             // The wrist's first and last axes in line all along the edge.
             |b| {
                 edit(b, "[750, 0, 200]", "[600, 470, 350]");
                 edit(b, "[0, 0, -90]", "[45, 0, 0]");
-                edit(b, "[device]", "seed_posture_deg = [180, -60, 90, -30, 175, 0]\n[device]");
+                edit(
+                    b,
+                    "[device]",
+                    "seed_posture_deg = [180, -60, 90, -30, 175, 0]\n[device]",
+                );
             },
-            &["scenario.toml: ", "waypoint ", "all but singular", "least accepted 0.015", "axis wrist_3 would move most"],
+            &[
+                "scenario.toml: ",
+                "waypoint ",
+                "all but singular",
+                "least accepted 0.015",
+                "axis wrist_3 would move most",
+            ],
         ),
         refusal(
             |b| limit(b, "velocity_deg_per_s = 1"),
-            &["scenario.toml: approach, waypoint ", "axis elbow would need ", "deg/s, its limit is 1.00 deg/s"],
+            &[
+                "scenario.toml: approach, waypoint ",
+                "axis elbow would need ",
+                "deg/s, its limit is 1.00 deg/s",
+            ],
         ),
         refusal(
             |b| limit(b, "effort_n_m = 30"),
-            &["scenario.toml: ", "waypoint ", "axis elbow would need ", "N m, its limit is 30.00 N m"],
+            &[
+                "scenario.toml: ",
+                "waypoint ",
+                "axis elbow would need ",
+                "N m, its limit is 30.00 N m",
+            ],
         ),
         refusal(
-            |b| drop(edit(b, "force_n = 150", "force_n = 2000")),
-            &["scenario.toml: `process.force_n` is 2000 N", "12.26 bar gauge", "expected 27.7 to 992.8 N"],
+            |b| edit(b, "force_n = 150", "force_n = 2000"),
+            &[
+                "scenario.toml: `process.force_n` is 2000 N",
+                "12.26 bar gauge",
+                "expected 27.7 to 992.8 N",
+            ],
         ),
         refusal(
             // Less than the part of the tool's weight that presses.
-            |b| drop(edit(b, "force_n = 150", "force_n = 5")),
-            &["scenario.toml: `process.force_n` is 5 N", "-0.14 bar gauge", "expected 27.7 to 992.8 N"],
+            |b| edit(b, "force_n = 150", "force_n = 5"),
+            &[
+                "scenario.toml: `process.force_n` is 5 N",
+                "-0.14 bar gauge",
+                "expected 27.7 to 992.8 N",
+            ],
         ),
     ]);
 }
@@ -239,7 +370,10 @@ fn paths_and_forces_beyond_the_cell() {
 #[test]
 fn output_folders_that_cannot_be_written() {
     check(&[
-        refusal(|b| drop(b.write("out", "in the way")), &["output folder out: there is a file of that name", "--out"]),
+        refusal(
+            |b| b.write("out", "in the way"),
+            &["output folder out: there is a file of that name", "--out"],
+        ),
         refusal(
             |b| std::fs::create_dir_all(b.path("out/recording.rrd")).unwrap(),
             &["output folder out: recording.rrd in it is a folder"],
@@ -260,17 +394,27 @@ fn a_refused_run_leaves_the_files_of_the_last_one() {
 #[test]
 fn a_result_outside_its_bounds_is_named_and_kept() {
     let bench = Bench::new("plate_edge");
-    edit(&bench, "force_mean_n = { min = 148.5, max = 151.5 }", "force_mean_n = { min = 1, max = 100 }");
+    edit(
+        &bench,
+        "force_mean_n = { min = 148.5, max = 151.5 }",
+        "force_mean_n = { min = 1, max = 100 }",
+    );
     for flag in ["--quiet", "--json"] {
         let outcome = bench.idc(&["run", "scenario.toml", "--out", "out", flag], &[]);
         assert_eq!(outcome.code, 1);
         let line = outcome.only_line("outside its bounds: force_mean_n is 1");
-        assert!(line.ends_with("expected at least 1 and at most 100"), "{line}");
+        assert!(
+            line.ends_with("expected at least 1 and at most 100"),
+            "{line}"
+        );
         assert_eq!(bench.names_in("out"), FILES);
     }
     let verdicts = &bench.summary()["expectations"];
     let kept = |verdict: &&serde_json::Value| verdict["kept"] == true;
-    assert_eq!(verdicts.as_array().unwrap().iter().filter(kept).count() + 1, verdicts.as_array().unwrap().len());
+    assert_eq!(
+        verdicts.as_array().unwrap().iter().filter(kept).count() + 1,
+        verdicts.as_array().unwrap().len()
+    );
 }
 
 #[test]
@@ -278,20 +422,36 @@ fn json_is_what_the_summary_file_holds_and_quiet_is_quiet() {
     let bench = Bench::new("plate_edge");
     let outcome = bench.idc(&["run", "scenario.toml", "--out", "out", "--json"], &[]);
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
-    assert_eq!(serde_json::from_str::<serde_json::Value>(&outcome.out).unwrap(), bench.summary());
+    assert_eq!(
+        serde_json::from_str::<serde_json::Value>(&outcome.out).unwrap(),
+        bench.summary()
+    );
     let outcome = bench.idc(&["run", "scenario.toml", "--quiet"], &[]);
-    assert_eq!((outcome.code, outcome.out.as_str(), outcome.err.as_str()), (0, "", ""));
+    assert_eq!(
+        (outcome.code, outcome.out.as_str(), outcome.err.as_str()),
+        (0, "", "")
+    );
     assert_eq!(bench.names_in("runs/scenario"), FILES);
 }
 
 #[test]
 fn the_edges_of_the_plate_are_listed() {
     let bench = Bench::new("plate_edge");
-    let outcome = bench.idc(&["edges", project("assets/plate.stl").to_str().unwrap()], &[]);
+    let outcome = bench.idc(
+        &["edges", project("assets/plate.stl").to_str().unwrap()],
+        &[],
+    );
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
-    let edges: Vec<&str> = outcome.out.lines().filter(|line| line.starts_with("edge-")).collect();
+    let edges: Vec<&str> = outcome
+        .out
+        .lines()
+        .filter(|line| line.starts_with("edge-"))
+        .collect();
     assert_eq!(edges.len(), 12, "{}", outcome.out);
-    let long = edges.iter().filter(|line| line.contains(" 300.000 ")).count();
+    let long = edges
+        .iter()
+        .filter(|line| line.contains(" 300.000 "))
+        .count();
     assert_eq!(long, 4, "{}", outcome.out);
 }
 
@@ -300,13 +460,30 @@ fn what_cannot_be_listed_is_refused() {
     let bench = Bench::new("plate_edge");
     for (arguments, words) in [
         (&["edges", "nowhere.stl"][..], "cannot read nowhere.stl"),
-        (&["edges", "part.stl", "--unit", "m"], "part.stl: mesh is 300 m long"),
-        (&["edges", "part.stl", "--sharp-angle-deg", "nan"], "--sharp-angle-deg is NaN, expected 1 to 170"),
-        (&["edges", "part.stl", "--sharp-angle-deg", "-5"], "--sharp-angle-deg is -5, expected 1 to 170"),
+        (
+            &["edges", "part.stl", "--unit", "m"],
+            "part.stl: mesh is 300 m long",
+        ),
+        (
+            &["edges", "part.stl", "--sharp-angle-deg", "nan"],
+            "--sharp-angle-deg is NaN, expected 1 to 170",
+        ),
+        (
+            &["edges", "part.stl", "--sharp-angle-deg", "-5"],
+            "--sharp-angle-deg is -5, expected 1 to 170",
+        ),
     ] {
         let outcome = bench.idc(arguments, &[]);
-        assert_eq!((outcome.code, outcome.out.as_str()), (2, ""), "{arguments:?}");
-        assert!(outcome.only_line("error: ").contains(words), "{}", outcome.err);
+        assert_eq!(
+            (outcome.code, outcome.out.as_str()),
+            (2, ""),
+            "{arguments:?}"
+        );
+        assert!(
+            outcome.only_line("error: ").contains(words),
+            "{}",
+            outcome.err
+        );
     }
 }
 

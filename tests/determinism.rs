@@ -4,13 +4,23 @@ use crate::program::{Bench, FILES};
 
 /// Bytes of a run's files, the summary without its timing.
 fn files(bench: &Bench, threads: Option<&str>) -> [Vec<u8>; 3] {
-    let environment: Vec<(&str, &str)> = threads.map(|count| ("RAYON_NUM_THREADS", count)).into_iter().collect();
-    let outcome = bench.idc(&["run", "scenario.toml", "--out", "out", "--quiet"], &environment);
+    let environment: Vec<(&str, &str)> = threads
+        .map(|count| ("RAYON_NUM_THREADS", count))
+        .into_iter()
+        .collect();
+    let outcome = bench.idc(
+        &["run", "scenario.toml", "--out", "out", "--quiet"],
+        &environment,
+    );
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     FILES.map(|name| match name {
         "summary.json" => {
             let mut summary = bench.summary();
-            let timing = summary["summary"].as_object_mut().unwrap().remove("timing").unwrap();
+            let timing = summary["summary"]
+                .as_object_mut()
+                .unwrap()
+                .remove("timing")
+                .unwrap();
             assert!(timing["wall_time_s"].as_f64().unwrap() > 0.0);
             summary.to_string().into_bytes()
         }

@@ -10,15 +10,24 @@ type Layer = (String, Vec<String>);
 
 /// Cells of the rows below the heading that begins with this word, without their backticks.
 fn table(text: &str, heading: &str) -> Vec<Vec<String>> {
-    let rows = text.lines().skip_while(|line| !line.starts_with(&format!("| {heading} |")));
+    let rows = text
+        .lines()
+        .skip_while(|line| !line.starts_with(&format!("| {heading} |")));
     let rows = rows.skip(2).take_while(|line| line.starts_with('|'));
-    let cells = |line: &str| line.trim_matches('|').split('|').map(|cell| cell.trim().replace('`', "")).collect();
+    let cells = |line: &str| {
+        line.trim_matches('|')
+            .split('|')
+            .map(|cell| cell.trim().replace('`', ""))
+            .collect()
+    };
     rows.map(cells).collect()
 }
 
 fn list(cell: &str) -> Vec<String> {
     let names = cell.split(',').map(|name| name.trim().to_owned());
-    names.filter(|name| !name.is_empty() && name != "-").collect()
+    names
+        .filter(|name| !name.is_empty() && name != "-")
+        .collect()
 }
 
 fn architecture() -> String {
@@ -27,12 +36,25 @@ fn architecture() -> String {
 
 fn layers() -> Vec<Layer> {
     let rows = table(&architecture(), "module");
-    rows.iter().map(|row| (row[0].trim_start_matches("src/").trim_end_matches('/').to_owned(), list(&row[2]))).collect()
+    rows.iter()
+        .map(|row| {
+            (
+                row[0]
+                    .trim_start_matches("src/")
+                    .trim_end_matches('/')
+                    .to_owned(),
+                list(&row[2]),
+            )
+        })
+        .collect()
 }
 
 /// Rust files under a folder, with their text, in order.
 fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
-    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     paths.sort();
     let mut found = Vec::new();
     for path in paths {
@@ -48,8 +70,14 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
 
 /// The lines of code: no comments, and no unit tests, which stand at the end of a file.
 fn code(text: &str) -> String {
-    let product = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
-    product.lines().map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
+    let product = text
+        .split("#[cfg(test)]\nmod tests")
+        .next()
+        .unwrap_or_default();
+    product
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n")
+        .collect()
 }
 
 /// Modules of this crate that a text names: after `crate::`, alone or in braces.
@@ -83,7 +111,9 @@ fn modules_used(text: &str) -> BTreeSet<String> {
 
 /// The identifier that a text begins with.
 fn word(text: &str) -> String {
-    text.chars().take_while(|letter| letter.is_alphanumeric() || *letter == '_').collect()
+    text.chars()
+        .take_while(|letter| letter.is_alphanumeric() || *letter == '_')
+        .collect()
 }
 
 /// Is this external crate named as the head of a path, `name::` or `::name::`, or in a `use` of itself?
@@ -92,9 +122,13 @@ fn names_crate(text: &str, name: &str) -> bool {
         let (before, after) = (&text[..place], &text[place + name.len()..]);
         let part = |letter: char| letter.is_alphanumeric() || letter == '_';
         let whole = !before.ends_with(part) && !after.starts_with(part);
-        let inner = before.strip_suffix("::").is_some_and(|head| head.ends_with(part));
+        let inner = before
+            .strip_suffix("::")
+            .is_some_and(|head| head.ends_with(part));
         let used = before.trim_end().ends_with("use") || before.trim_end().ends_with("use ::");
-        whole && !inner && (after.starts_with("::") || (used && after.trim_start().starts_with([';', 'a'])))
+        whole
+            && !inner
+            && (after.starts_with("::") || (used && after.trim_start().starts_with([';', 'a'])))
     })
 }
 
@@ -113,7 +147,9 @@ fn product() -> Vec<(String, PathBuf, String)> {
             let part = part.to_string_lossy();
             part == "tests" || part == "tests.rs" || part.starts_with("test_")
         });
-        if let (Some(module), true, false) = (inside.iter().next(), inside.iter().count() > 1, is_test) {
+        if let (Some(module), true, false) =
+            (inside.iter().next(), inside.iter().count() > 1, is_test)
+        {
             found.push((module.to_string_lossy().into_owned(), inside, code(&text)));
         }
     }
@@ -140,22 +176,36 @@ fn modules_use_what_the_table_allows_them_and_all_of_it() {
             );
         }
         let depth = path.iter().count() - usize::from(path.ends_with("mod.rs"));
-        assert!(!climbs_out(&text, depth), "src/{} leaves its module by super::", path.display());
+        assert!(
+            !climbs_out(&text, depth),
+            "src/{} leaves its module by super::",
+            path.display()
+        );
     }
-    assert!(unused.is_empty(), "allowed in ARCHITECTURE.md, but not used: {unused:?}");
+    assert!(
+        unused.is_empty(),
+        "allowed in ARCHITECTURE.md, but not used: {unused:?}"
+    );
 }
 
 #[test]
 fn the_table_lists_every_module_and_has_no_cycle() {
     let layers = layers();
     let library = std::fs::read_to_string(project("src/lib.rs")).unwrap();
-    let declared: BTreeSet<String> = library.lines().filter_map(|line| line.strip_prefix("pub mod ")).map(word).collect();
+    let declared: BTreeSet<String> = library
+        .lines()
+        .filter_map(|line| line.strip_prefix("pub mod "))
+        .map(word)
+        .collect();
     let listed: BTreeSet<String> = layers.iter().map(|(module, _)| module.clone()).collect();
     assert_eq!(declared, listed);
     for (row, (module, allowed)) in layers.iter().enumerate() {
         for other in allowed {
             let before = layers[..row].iter().any(|(name, _)| name == other);
-            assert!(before, "`{module}` may use `{other}`, which must stand in a row above it");
+            assert!(
+                before,
+                "`{module}` may use `{other}`, which must stand in a row above it"
+            );
         }
     }
 }
@@ -164,18 +214,31 @@ fn the_table_lists_every_module_and_has_no_cycle() {
 fn external_crates_stay_behind_their_doors() {
     let rows = table(&architecture(), "crate");
     let manifest = std::fs::read_to_string(project("Cargo.toml")).unwrap();
+    let program = (
+        PathBuf::from("main.rs"),
+        code(&std::fs::read_to_string(project("src/main.rs")).unwrap()),
+    );
     assert!(rows.len() >= 8, "{rows:?}");
     for row in &rows {
         for name in list(&row[0]) {
             let package = name.replace('_', "-");
-            assert!(manifest.contains(&format!("\n{package} = ")), "{package} is no dependency");
+            assert!(
+                manifest.contains(&format!("\n{package} = ")),
+                "{package} is no dependency"
+            );
             let doors = list(&row[1]);
             let mut seen = BTreeSet::new();
-            for (path, text) in sources(&project("src")) {
-                let inside = path.strip_prefix(project("")).unwrap().to_string_lossy().into_owned();
-                if names_crate(&code(&text), &name) {
+            for (path, text) in product()
+                .into_iter()
+                .map(|(_, path, text)| (path, text))
+                .chain([program.clone()])
+            {
+                let inside = format!("src/{}", path.display());
+                if names_crate(&text, &name) {
                     let door = doors.iter().find(|door| inside.starts_with(door.as_str()));
-                    seen.insert(door.unwrap_or_else(|| panic!("{inside} names `{name}`; it may stand in {doors:?}")));
+                    seen.insert(door.unwrap_or_else(|| {
+                        panic!("{inside} names `{name}`; it may stand in {doors:?}")
+                    }));
                 }
             }
             assert_eq!(seen.len(), doors.len(), "`{name}` is used only in {seen:?}");
@@ -188,11 +251,17 @@ fn paths_in_the_documents_exist() {
     for document in ["ARCHITECTURE.md", "CONVENTIONS.md"] {
         let text = std::fs::read_to_string(project(document)).unwrap();
         let quoted = text.split('`').skip(1).step_by(2);
-        let is_path = |quote: &&str| !quote.contains([' ', '<', ':']) && (quote.contains('/') || quote.contains(".md") || quote.ends_with(".toml"));
+        let is_path = |quote: &&str| {
+            !quote.contains([' ', '<', ':'])
+                && (quote.contains('/') || quote.contains(".md") || quote.ends_with(".toml"))
+        };
         let paths: Vec<&str> = quoted.filter(is_path).collect();
         assert!(!paths.is_empty(), "{document}");
         for path in paths {
-            assert!(project(path).exists(), "{document} names {path}, which does not exist");
+            assert!(
+                project(path).exists(),
+                "{document} names {path}, which does not exist"
+            );
         }
     }
 }
@@ -201,7 +270,10 @@ fn paths_in_the_documents_exist() {
 fn the_checkers_see_what_they_look_for() {
     let used = |text: &str| modules_used(&code(text)).into_iter().collect::<Vec<_>>();
     assert_eq!(used("use crate::app::Cli;"), ["app"]);
-    assert_eq!(used("use crate::{arm::{chain, urdf}, path::Plan, cell};"), ["arm", "cell", "path"]);
+    assert_eq!(
+        used("use crate::{arm::{chain, urdf}, path::Plan, cell};"),
+        ["arm", "cell", "path"]
+    );
     assert_eq!(used("let x = crate::metrics::FOLLOW_PHASE;"), ["metrics"]);
     assert!(used("// crate::app\n/// [`crate::app`]\n").is_empty());
     assert!(used("fn f() {}\n#[cfg(test)]\nmod tests {\n use crate::app;\n}").is_empty());
@@ -221,6 +293,9 @@ fn the_checkers_see_what_they_look_for() {
     assert!(!climbs_out("use super::app;", 2));
     assert!(climbs_out("use super::app;", 1));
 
-    let rows = table("| module | x |\n| --- | --- |\n| `a` | b, c |\n\n| d | e |", "module");
+    let rows = table(
+        "| module | x |\n| --- | --- |\n| `a` | b, c |\n\n| d | e |",
+        "module",
+    );
     assert_eq!(rows, [["a", "b, c"]]);
 }

@@ -20,7 +20,11 @@ impl Outcome {
     /// The only line of standard error that begins with this word; no line may speak of a panic.
     pub fn only_line(&self, word: &str) -> &str {
         assert!(!self.err.contains("panicked"), "{}", self.err);
-        let lines: Vec<&str> = self.err.lines().filter(|line| line.starts_with(word)).collect();
+        let lines: Vec<&str> = self
+            .err
+            .lines()
+            .filter(|line| line.starts_with(word))
+            .collect();
         assert_eq!(lines.len(), 1, "lines with {word:?} in:\n{}", self.err);
         lines[0]
     }
@@ -34,7 +38,9 @@ pub struct Bench {
 impl Bench {
     /// The job of `scenarios/<name>.toml`.
     pub fn new(name: &str) -> Self {
-        let bench = Self { folder: tempfile::tempdir().unwrap() };
+        let bench = Self {
+            folder: tempfile::tempdir().unwrap(),
+        };
         let text = std::fs::read_to_string(project(&format!("scenarios/{name}.toml"))).unwrap();
         let mut local = text;
         for (source, file) in [
@@ -55,17 +61,15 @@ impl Bench {
     }
 
     /// Puts other words in place of the first such words of a file, which must be there.
-    pub fn replace(&self, file: &str, from: &str, to: &str) -> &Self {
+    pub fn replace(&self, file: &str, from: &str, to: &str) {
         let text = std::fs::read_to_string(self.path(file)).unwrap();
         assert!(text.contains(from), "{file} holds no {from:?}");
         std::fs::write(self.path(file), text.replacen(from, to, 1)).unwrap();
-        self
     }
 
     /// Writes a file.
-    pub fn write(&self, file: &str, content: impl AsRef<[u8]>) -> &Self {
+    pub fn write(&self, file: &str, content: impl AsRef<[u8]>) {
         std::fs::write(self.path(file), content).unwrap();
-        self
     }
 
     /// Runs the program in the folder.
@@ -98,8 +102,9 @@ impl Bench {
     /// Names in a folder, sorted.
     pub fn names_in(&self, folder: &str) -> Vec<String> {
         let entries = std::fs::read_dir(self.path(folder)).unwrap();
-        let mut names: Vec<String> =
-            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
         names.sort();
         names
     }

@@ -16,8 +16,14 @@ fn misplaced(shift_mm: f64) -> Bench {
 /// Air that leaves a chamber faster than the integrator's step can follow: the mass overshoots zero.
 fn leaky(dead_volume_cm3: f64) -> Bench {
     let bench = Bench::new("plate_edge");
-    let keys = format!("dead_volume_cm3 = {dead_volume_cm3}\nsupply_orifice_mm2 = 50\nexhaust_orifice_mm2 = 50");
-    bench.replace("scenario.toml", "[workpiece]", &format!("[device.override]\n{keys}\n[workpiece]"));
+    let keys = format!(
+        "dead_volume_cm3 = {dead_volume_cm3}\nsupply_orifice_mm2 = 50\nexhaust_orifice_mm2 = 50"
+    );
+    bench.replace(
+        "scenario.toml",
+        "[workpiece]",
+        &format!("[device.override]\n{keys}\n[workpiece]"),
+    );
     bench
 }
 
@@ -32,13 +38,19 @@ fn stopped(outcome: &Outcome) -> &str {
 /// Checks that the files hold the run up to the sample of `steps` milliseconds, and no more.
 fn holds_up_to(bench: &Bench, steps: usize, reason: &str) {
     assert_eq!(bench.names_in("out"), FILES);
-    let samples = read_parquet(&bench.path("out/samples.parquet")).unwrap().recording;
+    let samples = read_parquet(&bench.path("out/samples.parquet"))
+        .unwrap()
+        .recording;
     assert_eq!(samples.sample_count(), steps);
     for (index, time) in samples.time().iter().enumerate() {
         assert!((time - 1e-3 * (index + 1) as f64).abs() < 1e-9);
     }
     for channel in samples.channels() {
-        assert!(channel.values.iter().all(|value| value.is_finite()), "{}", channel.quantity);
+        assert!(
+            channel.values.iter().all(|value| value.is_finite()),
+            "{}",
+            channel.quantity
+        );
     }
     let last = samples.phases().last().unwrap();
     assert_eq!(last.end, *samples.time().last().unwrap());
@@ -46,20 +58,26 @@ fn holds_up_to(bench: &Bench, steps: usize, reason: &str) {
     let summary = bench.summary();
     assert_eq!(summary["stopped"], reason);
     assert_eq!(summary["samples"], steps);
-    assert_eq!(summary["summary"]["duration_s"].as_f64().unwrap(), last.end - samples.time()[0]);
+    assert_eq!(
+        summary["summary"]["duration_s"].as_f64().unwrap(),
+        last.end - samples.time()[0]
+    );
 
-    let force = samples.values(schema::CONTACT_FORCE).unwrap();
-    assert_eq!(recorded_forces(bench), force.len());
+    assert_eq!(drawn_strokes(bench), steps);
 }
 
-/// Rows of the contact force in recording.rrd, as Rerun's own reader finds them.
-fn recorded_forces(bench: &Bench) -> usize {
-    let mut file = std::io::BufReader::new(std::fs::File::open(bench.path("out/recording.rrd")).unwrap());
+/// Points of the stroke's plot in recording.rrd, as Rerun's own reader finds them.
+fn drawn_strokes(bench: &Bench) -> usize {
+    let mut file =
+        std::io::BufReader::new(std::fs::File::open(bench.path("out/recording.rrd")).unwrap());
     let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut file).unwrap();
-    let (_, store) = stores.into_iter().find(|(id, _)| id.kind() == StoreKind::Recording).unwrap();
+    let (_, store) = stores
+        .into_iter()
+        .find(|(id, _)| id.kind() == StoreKind::Recording)
+        .unwrap();
     store
         .iter_physical_chunks()
-        .filter(|chunk| chunk.entity_path().to_string().ends_with("/contact_force") && !chunk.is_static())
+        .filter(|chunk| chunk.entity_path().to_string().ends_with("/stroke") && !chunk.is_static())
         .map(|chunk| chunk.num_rows())
         .max()
         .unwrap()
@@ -70,13 +88,20 @@ fn a_part_nearer_than_the_stroke_allows() {
     let bench = misplaced(40.0);
     let outcome = bench.run();
     let reason = stopped(&outcome);
-    for words in ["the stroke ran out at ", "in phase engage", "of 0 to 50.0 mm", "nearer to the arm"] {
+    for words in [
+        "the stroke ran out at ",
+        "in phase engage",
+        "of 0 to 50.0 mm",
+        "nearer to the arm",
+    ] {
         assert!(reason.contains(words), "{reason}");
     }
     let steps = milliseconds(reason);
     holds_up_to(&bench, steps, reason);
     // The slide has just met its inner end, the sample before it had not.
-    let samples = read_parquet(&bench.path("out/samples.parquet")).unwrap().recording;
+    let samples = read_parquet(&bench.path("out/samples.parquet"))
+        .unwrap()
+        .recording;
     let stroke = samples.values(schema::STROKE).unwrap();
     assert!(stroke[steps - 1] <= 0.0 && stroke[steps - 2] > 0.0);
 }
@@ -86,12 +111,25 @@ fn a_part_farther_than_the_stroke_allows() {
     let bench = misplaced(-40.0);
     let outcome = bench.run();
     let reason = stopped(&outcome);
-    for words in ["the stroke ran out at ", "in phase follow", "0.0 mm along the edge", "farther from the arm"] {
+    for words in [
+        "the stroke ran out at ",
+        "in phase follow",
+        "0.0 mm along the edge",
+        "farther from the arm",
+    ] {
         assert!(reason.contains(words), "{reason}");
     }
     holds_up_to(&bench, milliseconds(reason), reason);
-    let samples = read_parquet(&bench.path("out/samples.parquet")).unwrap().recording;
-    assert!(samples.values(schema::CONTACT_FORCE).unwrap().iter().all(|force| *force == 0.0));
+    let samples = read_parquet(&bench.path("out/samples.parquet"))
+        .unwrap()
+        .recording;
+    assert!(
+        samples
+            .values(schema::CONTACT_FORCE)
+            .unwrap()
+            .iter()
+            .all(|force| *force == 0.0)
+    );
 }
 
 #[test]
@@ -100,7 +138,12 @@ fn an_arm_that_runs_its_locked_tool_into_the_part() {
     bench.replace("scenario.toml", "[device]", "[device]\nlocked = true");
     let outcome = bench.run();
     let reason = stopped(&outcome);
-    for words in ["axis wrist_1 lost its path at ", "in phase approach", "2.86 deg are accepted", "56.0 of at most 56.0 N m"] {
+    for words in [
+        "axis wrist_1 lost its path at ",
+        "in phase approach",
+        "2.86 deg are accepted",
+        "56.0 of at most 56.0 N m",
+    ] {
         assert!(reason.contains(words), "{reason}");
     }
     holds_up_to(&bench, milliseconds(reason), reason);
@@ -111,7 +154,11 @@ fn a_state_that_cannot_be() {
     let bench = leaky(2.0);
     let outcome = bench.run();
     let reason = stopped(&outcome);
-    for words in ["chamber_2_mass became -", "in phase approach", "step_ms = 1 is too long"] {
+    for words in [
+        "chamber_2_mass became -",
+        "in phase approach",
+        "step_ms = 1 is too long",
+    ] {
         assert!(reason.contains(words), "{reason}");
     }
     // What cannot be is not recorded.
@@ -124,7 +171,10 @@ fn a_state_that_cannot_be_at_the_first_step_leaves_nothing_to_record() {
     let outcome = bench.run();
     let reason = stopped(&outcome);
     assert!(reason.contains("chamber_2_mass became -"), "{reason}");
-    assert!(reason.ends_with("nothing was recorded, it is the first step"), "{reason}");
+    assert!(
+        reason.ends_with("nothing was recorded, it is the first step"),
+        "{reason}"
+    );
     assert!(bench.names_in("out").is_empty());
 }
 

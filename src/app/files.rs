@@ -27,7 +27,10 @@ pub(super) struct OutputFolder {
 impl OutputFolder {
     /// Makes the folder and tries it, so that a long run does not end with nothing.
     pub(super) fn prepare(path: &Path) -> Result<Self, AppError> {
-        let refuse = |reason: String| AppError::OutputFolder { folder: path.display().to_string(), reason };
+        let refuse = |reason: String| AppError::OutputFolder {
+            folder: path.display().to_string(),
+            reason,
+        };
         if path.exists() && !path.is_dir() {
             return Err(refuse("there is a file of that name".to_owned()));
         }
@@ -36,7 +39,9 @@ impl OutputFolder {
             return Err(refuse(format!("{name} in it is a folder")));
         }
         drop(UnfinishedFolder::within(path)?);
-        Ok(Self { path: path.to_owned() })
+        Ok(Self {
+            path: path.to_owned(),
+        })
     }
 
     /// Its path.
@@ -56,16 +61,28 @@ impl OutputFolder {
         let title = &cell.scenario.title;
         let metadata = BTreeMap::from([
             ("title".to_owned(), title.clone()),
-            ("program".to_owned(), format!("idc {}", env!("CARGO_PKG_VERSION"))),
+            (
+                "program".to_owned(),
+                format!("idc {}", env!("CARGO_PKG_VERSION")),
+            ),
         ]);
-        write_parquet(&unfinished.path().join(SAMPLES), &finished.recording, &metadata)?;
+        write_parquet(
+            &unfinished.path().join(SAMPLES),
+            &finished.recording,
+            &metadata,
+        )?;
         let options = RerunOptions {
             summary_markdown: markdown(title, &finished.summary, document.expectations),
             opening,
             ..RerunOptions::default()
         };
         let scene = scene_of(cell, &finished.recording, &finished.frames)?;
-        write_rrd(&unfinished.path().join(RECORDING), &finished.recording, &scene, &options)?;
+        write_rrd(
+            &unfinished.path().join(RECORDING),
+            &finished.recording,
+            &scene,
+            &options,
+        )?;
         write_text(&unfinished.path().join(SUMMARY), &document.text()?)?;
         unfinished.finish(&NAMES)?;
         Ok(())
@@ -97,7 +114,13 @@ impl<'a> SummaryDocument<'a> {
             stopped: finished.stop.as_ref().map(ToString::to_string),
             summary: &finished.summary,
             expectations,
-            joint_names: cell.arm.chain.joints.iter().map(|joint| joint.name.as_str()).collect(),
+            joint_names: cell
+                .arm
+                .chain
+                .joints
+                .iter()
+                .map(|joint| joint.name.as_str())
+                .collect(),
             samples: finished.recording.sample_count(),
             notes: &cell.notes,
         }

@@ -7,7 +7,10 @@ use super::error::AppError;
 /// Prints a text. A reader that has seen enough, such as `head`, is no error.
 pub(super) fn say(text: &str) -> Result<(), AppError> {
     let mut output = std::io::stdout().lock();
-    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+    match output
+        .write_all(text.as_bytes())
+        .and_then(|()| output.flush())
+    {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(AppError::Print(error)),
         _ => Ok(()),
     }

@@ -33,7 +33,7 @@ pub fn run_cell(cell: &Cell, progress: &mut dyn FnMut(usize, usize)) -> Result<F
     let mut stop = None;
     while !simulation.done() && stop.is_none() {
         stop = simulation.step().err();
-        if simulation.steps() % PROGRESS_STEPS == 0 {
+        if simulation.steps().is_multiple_of(PROGRESS_STEPS) {
             progress(simulation.steps(), simulation.total_steps());
         }
     }

@@ -22,6 +22,8 @@ use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
 
 /// How far ahead of touching a contact is offered to the solver [m].
 const REACH: f64 = 1e-3;
+/// Steps for which an effective mass is kept while the contact lasts: the arm turns by 1e-3 rad at most meanwhile.
+const MASS_STEPS: u32 = 8;
 /// w h up to which an explicit spring is accurate.
 const EXPLICIT_LIMIT: f64 = 0.5;
 
@@ -99,6 +101,8 @@ pub struct PartContact {
     lift: f64,
     lift_gradient: DVec3,
     found: Vec<SurfaceContact>,
+    /// Steps until the effective mass is computed anew.
+    mass_steps_left: u32,
     jacobian: DVector<f64>,
     response: DVector<f64>,
 }
@@ -137,6 +141,7 @@ impl PartContact {
             lift: 0.0,
             lift_gradient: DVec3::ZERO,
             found: Vec::new(),
+            mass_steps_left: 0,
             jacobian: DVector::zeros(0),
             response: DVector::zeros(0),
         }
@@ -170,15 +175,23 @@ impl PartContact {
             }
         }));
         let deepest = kept.iter().min_by(|a, b| a.separation.total_cmp(&b.separation));
-        if let Some(deepest) = deepest.copied() {
+        let Some(deepest) = deepest.copied() else {
+            self.mass_steps_left = 0;
+            return;
+        };
+        if self.mass_steps_left > 0 {
+            self.mass_steps_left -= 1;
+        } else {
             let point = centre - deepest.normal * self.tool.radius;
             let mass = self.effective_mass(physics, joint, tool_body, deepest.normal, point);
+            self.mass_steps_left = if mass.is_some() { MASS_STEPS - 1 } else { 0 };
+            let mass = mass.unwrap_or(1.0);
             physics.integration_parameters.static_contact_softness =
                 softness(&self.parameters, mass, self.step);
         }
     }
 
-    /// Mass that a push along `direction` at `point` feels, as Rapier's solver will see it [kg].
+    /// Mass that a push along `direction` at `point` feels, as Rapier's solver will see it [kg]; unknown before the first step.
     fn effective_mass(
         &mut self,
         physics: &PhysicsWorld,
@@ -186,19 +199,15 @@ impl PartContact {
         tool_body: RigidBodyHandle,
         direction: DVec3,
         point: DVec3,
-    ) -> f64 {
-        let Some((multibody, _)) = physics.multibody_joints.get(joint) else {
-            return 1.0;
-        };
-        let Some(link) = physics.multibody_joints.rigid_body_link(tool_body) else {
-            return 1.0;
-        };
+    ) -> Option<f64> {
+        let (multibody, _) = physics.multibody_joints.get(joint)?;
+        let link = physics.multibody_joints.rigid_body_link(tool_body)?;
         let count = multibody.ndofs();
         if self.jacobian.len() != count {
-            // Before the first step there is no factorised mass matrix yet.
+            // There is no factorised mass matrix before the first step.
             self.jacobian = DVector::zeros(count);
             self.response = DVector::zeros(count);
-            return 1.0;
+            return None;
         }
         let arm = point - physics.bodies[tool_body].mass_properties().world_com;
         let torque = arm.cross(direction);
@@ -213,7 +222,7 @@ impl PartContact {
         self.jacobian.gemv_tr(1.0, multibody.body_jacobian(link.id), &wrench, 0.0);
         self.response.copy_from(&self.jacobian);
         multibody.inv_augmented_mass().solve_mut(&mut self.response);
-        1.0 / self.jacobian.dot(&self.response)
+        Some(1.0 / self.jacobian.dot(&self.response))
     }
 
     /// Reads the forces of the last step.

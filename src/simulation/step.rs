@@ -11,7 +11,7 @@ use super::sample::{FrameLog, SampleLog};
 use super::world::{ToolBall, World, WorldDescription};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
-use crate::arm::kinematics::{jacobian_at, link_poses};
+use crate::arm::kinematics::jacobian_at;
 use crate::cell::Cell;
 use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::JointLaw;
@@ -271,7 +271,9 @@ impl<'a> Simulation<'a> {
             let contact = (pushing - torque[n]) / cell.axial_share();
             let force = (reference.normal * contact).to_array();
             let mut links = [DPose3::IDENTITY; MAX_JOINTS];
-            link_poses(chain, base, &position[..=n], &mut links[..=n]);
+            for (joint, pose) in links.iter_mut().enumerate().take(n + 1) {
+                *pose = self.world.link_pose(joint);
+            }
             let jacobian = jacobian_at(chain, &links[..=n], self.world.tool_centre());
             for (axis, torque) in torque.iter_mut().enumerate().take(n) {
                 *torque -= (0..3).map(|row| jacobian[(row, axis)] * force[row]).sum::<f64>();
@@ -357,7 +359,7 @@ impl<'a> Simulation<'a> {
     fn frame(&mut self, time: f64, reference: &Reference, force: DVec3, normal: DVec3) {
         self.frames.times.push(time);
         self.frames.path_lengths.push(reference.edge_length);
-        self.frames.links.push(self.world.link_poses());
+        self.frames.links.push((0..self.laws.len()).map(|joint| self.world.link_pose(joint)).collect());
         let radius = self.cell.scenario.device.tool_radius;
         self.frames.contact_points.push(self.world.tool_centre() - normal * radius);
         self.frames.contact_forces.push(force);

@@ -253,13 +253,13 @@ impl World {
             .transform_point(self.tool.centre_in_link)
     }
 
-    /// Poses of the moving links, after each joint in turn.
-    pub fn link_poses(&self) -> Vec<DPose3> {
-        let multibody = self.multibody();
-        self.links
-            .iter()
-            .map(|&link| *multibody.link(link).expect("each joint has its link").local_to_world())
-            .collect()
+    /// Pose of the link behind a joint in the world.
+    pub fn link_pose(&self, joint: usize) -> DPose3 {
+        *self
+            .multibody()
+            .link(self.links[joint])
+            .expect("each joint has its link")
+            .local_to_world()
     }
 
     /// The contact, to shift it while the run goes on (burr under the ball).
