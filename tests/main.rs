@@ -3,6 +3,7 @@
 mod air;
 mod balance;
 mod bad_input;
+mod command_line;
 mod common;
 mod contact;
 mod convergence;

@@ -7,25 +7,28 @@ use crate::path::Phase;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
 use crate::recording::{Channel, PhaseSpan, Recording, RecordingError};
 
-/// Signals of all steps, a column each, in the order of `schema::SIGNALS` and then of the joints.
+/// Signals of all steps, in the order of `schema::SIGNALS` and then of the joints. Kept by rows, which a step writes in one go, until the run has ended.
 #[derive(Debug, Clone)]
 pub struct SampleLog {
     joints: usize,
     time: Vec<f64>,
-    columns: Vec<Vec<f64>>,
+    rows: Vec<f64>,
     phases: Vec<PhaseSpan>,
 }
 
 impl SampleLog {
     /// An empty log for an arm of `joints` axes, with room for `capacity` samples.
     pub fn new(joints: usize, capacity: usize) -> Self {
-        let columns = schema::SIGNALS.len() + JointSignal::ALL.len() * joints;
         Self {
             joints,
             time: Vec::with_capacity(capacity),
-            columns: (0..columns).map(|_| Vec::with_capacity(capacity)).collect(),
+            rows: Vec::with_capacity(capacity * Self::width(joints)),
             phases: Vec::new(),
         }
+    }
+
+    fn width(joints: usize) -> usize {
+        schema::SIGNALS.len() + JointSignal::ALL.len() * joints
     }
 
     /// Adds a sample: `signals` in the order of `schema::SIGNALS`, then position, reference, velocity and torque of each joint.
@@ -40,13 +43,11 @@ impl SampleLog {
             }
         }
         self.time.push(time);
-        let values = signals.iter().chain(joints.iter().flatten());
-        for (column, value) in self.columns.iter_mut().zip(values) {
-            column.push(*value);
-        }
+        self.rows.extend_from_slice(signals);
+        self.rows.extend_from_slice(joints.as_flattened());
     }
 
-    /// The recording; values that are not finite end it.
+    /// The recording.
     ///
     /// # Errors
     /// Nothing was recorded.
@@ -54,22 +55,14 @@ impl SampleLog {
         let singles = schema::SIGNALS.iter().map(|signal| (signal.quantity.to_owned(), signal.unit));
         let joints = (1..=self.joints)
             .flat_map(|joint| JointSignal::ALL.map(|signal| (joint_quantity(joint, signal), signal.unit())));
+        let width = Self::width(self.joints);
+        let column = |index: usize| self.rows.iter().skip(index).step_by(width).copied().collect();
         let channels = singles
             .chain(joints)
-            .zip(self.columns)
-            .map(|((quantity, unit), values)| Channel::new(quantity, unit, values))
+            .enumerate()
+            .map(|(index, (quantity, unit))| Channel::new(quantity, unit, column(index)))
             .collect();
         Recording::new(self.time, channels, self.phases)
-    }
-
-    /// Number of samples.
-    pub fn len(&self) -> usize {
-        self.time.len()
-    }
-
-    /// Is there no sample?
-    pub fn is_empty(&self) -> bool {
-        self.time.is_empty()
     }
 }
 

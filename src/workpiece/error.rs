@@ -54,7 +54,7 @@ pub enum MeshFault {
     /// The part is implausibly small or large.
     #[error(
         "is {extent} m long when its unit is {scale} m, expected 0.001 m to 10 m; STL and OBJ carry no unit: \
-         is the one given (mesh_unit, --unit) right?"
+         a file in millimetres needs mesh_unit (or --unit) mm"
     )]
     Implausible {
         /// Largest side of the bounding box [m].

@@ -226,6 +226,6 @@ mod tests {
         assert_eq!(fault, MeshFault::NonFinite { vertex: 2 });
         let fault = TriangleMesh::from_loose_triangles(&vertices, &[[0, 2, 1]], 300.0).unwrap_err();
         assert!(fault.to_string().contains("300 m"));
-        assert!(fault.to_string().contains("scale 0.001"));
+        assert!(fault.to_string().contains("mesh_unit"));
     }
 }

@@ -364,12 +364,12 @@ fn links_and_joints_named_by_the_user_must_exist() {
 fn unreadable_files_are_told_apart() {
     let missing = load_arm(Path::new("/nowhere/arm.urdf"), &options());
     assert!(matches!(missing, Err(ArmError::Unreadable { .. })));
-    for text in ["", "<robot", "<robot name='x'><link/></robot>", "\u{0}"] {
-        assert!(matches!(
-            load(text, &options()),
-            Err(ArmError::Malformed { .. })
-        ));
+    for text in ["", "<robot", "\u{0}"] {
+        let cut = load(text, &options());
+        assert!(matches!(cut, Err(ArmError::Incomplete { .. })));
     }
+    let nameless = load("<robot name='x'><link/></robot>", &options());
+    assert!(matches!(nameless, Err(ArmError::Malformed { .. })));
 }
 
 /// A tetrahedron wound outwards, one unit along each axis.

@@ -1,0 +1,115 @@
+//! What the program prints, and with what exit code it ends.
+
+use std::process::Stdio;
+
+use crate::common::project;
+use crate::program::{Bench, FILES};
+
+#[test]
+fn a_result_outside_its_bounds_is_named_and_kept() {
+    let bench = Bench::new("plate_edge");
+    bench.replace(
+        "scenario.toml",
+        "force_mean_n = { min = 148.5, max = 151.5 }",
+        "force_mean_n = { min = 1, max = 100 }",
+    );
+    for flag in ["--quiet", "--json"] {
+        let outcome = bench.idc(&["run", "scenario.toml", "--out", "out", flag], &[]);
+        assert_eq!(outcome.code, 1);
+        let line = outcome.only_line("outside its bounds: force_mean_n is 1");
+        assert!(
+            line.ends_with("expected at least 1 and at most 100"),
+            "{line}"
+        );
+        assert_eq!(bench.names_in("out"), FILES);
+    }
+    let verdicts = &bench.summary()["expectations"];
+    let kept = |verdict: &&serde_json::Value| verdict["kept"] == true;
+    assert_eq!(
+        verdicts.as_array().unwrap().iter().filter(kept).count() + 1,
+        verdicts.as_array().unwrap().len()
+    );
+}
+
+#[test]
+fn json_is_what_the_summary_file_holds_and_quiet_is_quiet() {
+    let bench = Bench::new("plate_edge");
+    let outcome = bench.idc(&["run", "scenario.toml", "--out", "out", "--json"], &[]);
+    assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
+    assert_eq!(
+        serde_json::from_str::<serde_json::Value>(&outcome.out).unwrap(),
+        bench.summary()
+    );
+    let outcome = bench.idc(&["run", "scenario.toml", "--quiet"], &[]);
+    assert_eq!(
+        (outcome.code, outcome.out.as_str(), outcome.err.as_str()),
+        (0, "", "")
+    );
+    assert_eq!(bench.names_in("runs/scenario"), FILES);
+}
+
+#[test]
+fn the_edges_of_the_plate_are_listed() {
+    let bench = Bench::new("plate_edge");
+    let outcome = bench.idc(
+        &["edges", project("assets/plate.stl").to_str().unwrap()],
+        &[],
+    );
+    assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
+    let edges: Vec<&str> = outcome
+        .out
+        .lines()
+        .filter(|line| line.starts_with("edge-"))
+        .collect();
+    assert_eq!(edges.len(), 12, "{}", outcome.out);
+    let long = edges
+        .iter()
+        .filter(|line| line.contains(" 300.000 "))
+        .count();
+    assert_eq!(long, 4, "{}", outcome.out);
+}
+
+#[test]
+fn what_cannot_be_listed_is_refused() {
+    let bench = Bench::new("plate_edge");
+    for (arguments, words) in [
+        (&["edges", "nowhere.stl"][..], "cannot read nowhere.stl"),
+        (
+            &["edges", "part.stl", "--unit", "m"],
+            "part.stl: mesh is 300 m long",
+        ),
+        (
+            &["edges", "part.stl", "--sharp-angle-deg", "nan"],
+            "--sharp-angle-deg is NaN, expected 1 to 170",
+        ),
+        (
+            &["edges", "part.stl", "--sharp-angle-deg", "-5"],
+            "--sharp-angle-deg is -5, expected 1 to 170",
+        ),
+    ] {
+        let outcome = bench.idc(arguments, &[]);
+        assert_eq!(
+            (outcome.code, outcome.out.as_str()),
+            (2, ""),
+            "{arguments:?}"
+        );
+        assert!(
+            outcome.only_line("error: ").contains(words),
+            "{}",
+            outcome.err
+        );
+    }
+}
+
+#[test]
+fn a_reader_that_has_gone_is_no_error() {
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_idc"))
+        .args(["edges", project("assets/plate.stl").to_str().unwrap()])
+        .stdout(Stdio::from(writer))
+        .output()
+        .unwrap();
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+    assert_eq!(output.status.code(), Some(0));
+}

@@ -1,0 +1,133 @@
+"""MuJoCo stepping the same arm with the same load, for benches/step: its speed, and that it does the same job.
+
+Reads one line of JSON (the scene, written by benches/step/peer.rs; SI units, all in the arm's base frame) and
+answers with one: the static contact force and penetration. Then answers each line `round` with the time that
+following the edge took. Steps run in mujoco.rollout's loop in C; nothing of Python is inside the time.
+
+The same URDF; the slide, the moving mass and the ball are added to it. The axes have position servos of the same
+gains, MuJoCo's own gravity compensation, and the rest of the feed-forward as given torques. The device is a given
+force on the slide: its pneumatics, the inverse dynamics and the planned path cost MuJoCo nothing.
+"""
+
+import json
+import sys
+import time
+
+import mujoco
+import numpy as np
+from mujoco import rollout
+
+# Impedance of the contact: with a given stiffness it only says how MuJoCo splits it into its two parameters.
+IMPEDANCE = 0.95
+SETTLING_STEPS = 3000
+
+
+def model_of(scene: dict, solref: list[float]) -> mujoco.MjModel:
+    spec = mujoco.MjSpec.from_file(scene["urdf"])
+    option = spec.option
+    option.timestep = scene["step"]
+    option.gravity = scene["gravity"]
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    for body in spec.bodies:
+        body.gravcomp = 1.0
+    axes = [joint.name for joint in spec.joints]
+
+    device = scene["device"]
+    tool = spec.body(scene["flange"]).add_body(name="tool", gravcomp=0.0)
+    tool.explicitinertial = True
+    tool.mass = device["mass"]
+    tool.ipos = [0, 0, device["centre_of_mass"]]
+    tool.inertia = [device["inertia"]] * 3
+    tool.add_joint(name="slide", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
+    centre, radius = [0, 0, device["ball_centre"]], device["ball_radius"]
+    ball = dict(name="ball", type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=centre)
+    tool.add_geom(contype=0, conaffinity=0, **ball)
+    tool.add_site(name="nose", type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[2 * radius, 0, 0], pos=centre)
+
+    part, contact = scene["part"], scene["contact"]
+    box = dict(name="part", type=mujoco.mjtGeom.mjGEOM_BOX, size=part["half_size"])
+    spec.worldbody.add_geom(pos=part["centre"], quat=part["rotation"], contype=0, conaffinity=0, **box)
+    friction = [contact["friction"]] * 2 + [0.0] * 3
+    solimp = [IMPEDANCE, IMPEDANCE, 1e-3, 0.5, 2]
+    pair = dict(geomname1="ball", geomname2="part", condim=3, friction=friction)
+    spec.add_pair(solref=solref, solimp=solimp, **pair)
+    spec.add_sensor(type=mujoco.mjtSensor.mjSENS_TOUCH, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="nose")
+
+    servo = scene["servo"]
+    for axis, stiffness, damping in zip(axes, servo["stiffness"], servo["damping"], strict=True):
+        actuator = spec.add_actuator(name=axis, target=axis, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+        actuator.set_to_position(kp=stiffness, kv=damping)
+    return spec.compile()
+
+
+def true_contact(scene: dict) -> mujoco.MjModel:
+    """The model whose contact has the scene's stiffness and damping, in N/m and N s/m.
+
+    MuJoCo's force at rest is k r / R with R = (1 - d) / d A, d the impedance and A its estimate of the
+    contact's inverse mass; in the direct format solref is (-k d, -b d). (MuJoCo documentation, Computation.)
+    """
+    model = model_of(scene, [-1.0, -1.0])
+    data = mujoco.MjData(model)
+    data.qpos[:] = scene["start"]["position"]
+    mujoco.mj_forward(model, data)
+    if data.ncon != 1:
+        raise SystemExit(f"mujoco_peer: the ball should touch the part once at the start, not {data.ncon} times")
+    inverse_mass = data.efc_diagApprox[data.contact[0].efc_address]
+    scale = (1.0 - IMPEDANCE) * inverse_mass
+    contact = scene["contact"]
+    return model_of(scene, [-contact["stiffness"] * scale, -contact["damping"] * scale])
+
+
+def controls(model: mujoco.MjModel, rows: dict) -> np.ndarray:
+    """Servo references, then the applied joint forces, a row a step."""
+    servo = np.atleast_2d(rows["position"])
+    applied = np.atleast_2d(rows["applied"])
+    assert servo.shape[1] == model.nu and applied.shape[1] == model.nv, (servo.shape, applied.shape)
+    return np.hstack([servo, applied])[None]
+
+
+def main() -> None:
+    scene = json.loads(sys.stdin.readline())
+    model = true_contact(scene)
+    data = mujoco.MjData(model)
+    spec = int(mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_QFRC_APPLIED)
+    whole = mujoco.mjtState.mjSTATE_FULLPHYSICS
+
+    def run(state: np.ndarray, control: np.ndarray, steps: int) -> tuple[np.ndarray, np.ndarray]:
+        states, sensors = rollout.rollout(model, data, state, control, control_spec=spec, nstep=steps)
+        return states[0], sensors[0, :, 0]
+
+    data.qpos[:] = scene["start"]["position"]
+    start = np.zeros(mujoco.mj_stateSize(model, whole))
+    mujoco.mj_getState(model, data, start, whole)
+    states, forces = run(start[None], controls(model, scene["start"]["hold"]), SETTLING_STEPS)
+    settled = states[-1]
+    # rollout leaves the last state in data.
+    mujoco.mj_forward(model, data)
+    print(
+        json.dumps(
+            dict(
+                version=mujoco.__version__,
+                static_force=float(forces[-500:].mean()),
+                penetration=float(-data.contact[0].dist) if data.ncon else 0.0,
+            )
+        ),
+        flush=True,
+    )
+
+    follow = controls(model, scene["follow"])
+    steps = follow.shape[1]
+    for line in sys.stdin:
+        if line.strip() != "round":
+            break
+        started = time.perf_counter()
+        states, forces = run(settled[None], follow, steps)
+        seconds = time.perf_counter() - started
+        late = forces[steps // 5 :]
+        reply = dict(seconds=seconds, steps=steps, force_mean=float(late.mean()), force_deviation=float(late.std()))
+        print(json.dumps(reply), flush=True)
+
+
+if __name__ == "__main__":
+    main()
