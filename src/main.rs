@@ -10,7 +10,11 @@ fn main() -> ExitCode {
         Ok(code) => code.into(),
         Err(error) => {
             let code = error.exit_code();
-            let word = if code == Code::Stopped { "stopped" } else { "error" };
+            let word = if code == Code::Stopped {
+                "stopped"
+            } else {
+                "error"
+            };
             eprintln!("{word}: {error}");
             code.into()
         }

@@ -15,8 +15,12 @@ fn balance(scenario: Scenario) -> (f64, f64) {
     let span = recording.phase("follow").unwrap();
     let parameters = &cell.scenario.device.parameters;
     let areas = parameters.areas();
-    let [force, p1, p2] = [schema::CONTACT_FORCE, schema::CHAMBER_1_PRESSURE, schema::CHAMBER_2_PRESSURE]
-        .map(|quantity| recording.values(quantity).unwrap());
+    let [force, p1, p2] = [
+        schema::CONTACT_FORCE,
+        schema::CHAMBER_1_PRESSURE,
+        schema::CHAMBER_2_PRESSURE,
+    ]
+    .map(|quantity| recording.values(quantity).unwrap());
     let (mut measured, mut expected, mut count) = (0.0, 0.0, 0.0);
     for i in recording.samples_in(span) {
         let axis = cell.plan.reference(recording.time()[i]).axis;
@@ -48,7 +52,10 @@ fn contact_force_balances_pressures_and_gravity_in_five_orientations() {
         scenario.process.lean += f64::to_radians(lean);
         let (measured, expected) = balance(scenario);
         let off = measured / expected - 1.0;
-        println!("{name} turned {about_edge}, {about_vertical}, leaned {lean} deg: {measured:.3} N, balance {expected:.3} N, off {:.4} %", 100.0 * off);
+        println!(
+            "{name} turned {about_edge}, {about_vertical}, leaned {lean} deg: {measured:.3} N, balance {expected:.3} N, off {:.4} %",
+            100.0 * off
+        );
         assert!(off.abs() < 0.005, "{measured} against {expected}");
     }
 }
@@ -60,7 +67,8 @@ fn without_gravity_in_the_balance_it_does_not_close() {
     scenario.workpiece.edge.end = Some(scenario.workpiece.edge.start + 0.05);
     let weight = {
         let cell = Cell::new(scenario.clone()).unwrap();
-        cell.scenario.device.parameters.moving_mass * cell.gravity_along(cell.plan.reference(5.0).axis)
+        cell.scenario.device.parameters.moving_mass
+            * cell.gravity_along(cell.plan.reference(5.0).axis)
     };
     let (measured, expected) = balance(scenario);
     assert!((measured / (expected - weight) - 1.0).abs() > 0.05);

@@ -42,13 +42,19 @@ fn press(part: &TriangleMesh, mass: f64, contact: PartContactParameters) -> Worl
     let down = DQuat::from_rotation_x(PI);
     let cross = slide(JointKind::Prismatic, DVec3::X, 20.0, DPose3::IDENTITY);
     let vertical = slide(JointKind::Prismatic, DVec3::Z, mass, DPose3::IDENTITY);
-    let chain = Chain { joints: vec![cross, vertical], tip_from_last: DPose3::IDENTITY };
+    let chain = Chain {
+        joints: vec![cross, vertical],
+        tip_from_last: DPose3::IDENTITY,
+    };
     World::new(&WorldDescription {
         chain: &chain,
         world_from_base: DPose3::from_parts(DVec3::new(0.0, 0.0, BALL + TOUCH), down),
         gravity: DVec3::new(0.0, 0.0, -GRAVITY),
         step: 1e-3,
-        tool: ToolBall { radius: BALL, centre_in_link: DVec3::ZERO },
+        tool: ToolBall {
+            radius: BALL,
+            centre_in_link: DVec3::ZERO,
+        },
         part,
         contact,
     })
@@ -56,7 +62,10 @@ fn press(part: &TriangleMesh, mass: f64, contact: PartContactParameters) -> Worl
 
 /// The plate with its edge along x at the origin, its bisector up.
 fn knife_edge() -> TriangleMesh {
-    turned(&plate(), DPose3::from_rotation(DQuat::from_rotation_x(-FRAC_PI_4)))
+    turned(
+        &plate(),
+        DPose3::from_rotation(DQuat::from_rotation_x(-FRAC_PI_4)),
+    )
 }
 
 fn plate() -> TriangleMesh {
@@ -64,7 +73,11 @@ fn plate() -> TriangleMesh {
 }
 
 fn turned(mesh: &TriangleMesh, pose: DPose3) -> TriangleMesh {
-    let vertices = mesh.vertices().iter().map(|&v| pose.transform_point(v)).collect();
+    let vertices = mesh
+        .vertices()
+        .iter()
+        .map(|&v| pose.transform_point(v))
+        .collect();
     TriangleMesh::new(vertices, mesh.triangles().to_vec()).unwrap()
 }
 
@@ -77,7 +90,11 @@ fn block_of_many_triangles() -> TriangleMesh {
         for i in 0..=cells {
             for j in 0..=cells {
                 let inner = i > 0 && i < cells && j > 0 && j < cells;
-                let shift = if inner { 0.0011 * ((7 * i + 3 * j) as f64).sin() } else { 0.0 };
+                let shift = if inner {
+                    0.0011 * ((7 * i + 3 * j) as f64).sin()
+                } else {
+                    0.0
+                };
                 vertices.push(DVec3::new(at(i) + shift, at(j) - shift, z));
             }
         }
@@ -88,19 +105,54 @@ fn block_of_many_triangles() -> TriangleMesh {
     let mut quad = |a: u32, b: u32, c: u32, d: u32| triangles.extend([[a, b, c], [a, c, d]]);
     for i in 0..cells {
         for j in 0..cells {
-            quad(index(0, i, j), index(0, i + 1, j), index(0, i + 1, j + 1), index(0, i, j + 1));
-            quad(index(1, i, j), index(1, i, j + 1), index(1, i + 1, j + 1), index(1, i + 1, j));
+            quad(
+                index(0, i, j),
+                index(0, i + 1, j),
+                index(0, i + 1, j + 1),
+                index(0, i, j + 1),
+            );
+            quad(
+                index(1, i, j),
+                index(1, i, j + 1),
+                index(1, i + 1, j + 1),
+                index(1, i + 1, j),
+            );
         }
-        quad(index(0, i, 0), index(1, i, 0), index(1, i + 1, 0), index(0, i + 1, 0));
-        quad(index(0, i + 1, cells), index(1, i + 1, cells), index(1, i, cells), index(0, i, cells));
-        quad(index(0, 0, i + 1), index(1, 0, i + 1), index(1, 0, i), index(0, 0, i));
-        quad(index(0, cells, i), index(1, cells, i), index(1, cells, i + 1), index(0, cells, i + 1));
+        quad(
+            index(0, i, 0),
+            index(1, i, 0),
+            index(1, i + 1, 0),
+            index(0, i + 1, 0),
+        );
+        quad(
+            index(0, i + 1, cells),
+            index(1, i + 1, cells),
+            index(1, i, cells),
+            index(0, i, cells),
+        );
+        quad(
+            index(0, 0, i + 1),
+            index(1, 0, i + 1),
+            index(1, 0, i),
+            index(0, 0, i),
+        );
+        quad(
+            index(0, cells, i),
+            index(1, cells, i),
+            index(1, cells, i + 1),
+            index(0, cells, i + 1),
+        );
     }
     TriangleMesh::new(vertices, triangles).unwrap()
 }
 
 fn hold_cross_slide(position: f64) -> JointLaw {
-    JointLaw { force: 0.0, stiffness: 1e9, rest: position, damping: 1e5 }
+    JointLaw {
+        force: 0.0,
+        stiffness: 1e9,
+        rest: position,
+        damping: 1e5,
+    }
 }
 
 /// Presses with `force` beyond the ball's own weight until at rest.
@@ -113,7 +165,11 @@ fn settle(world: &mut World, force: f64, steps: usize) {
 
 #[test]
 fn static_penetration_is_force_over_stiffness() {
-    let contact = PartContactParameters { stiffness: 1.5e5, damping: 400.0, friction: 0.15 };
+    let contact = PartContactParameters {
+        stiffness: 1.5e5,
+        damping: 400.0,
+        friction: 0.15,
+    };
     let mut worst: f64 = 0.0;
     for mass in [1.0, 4.0] {
         for part in [knife_edge(), block_of_many_triangles()] {
@@ -124,8 +180,14 @@ fn static_penetration_is_force_over_stiffness() {
                 let penetration = world.positions()[1] - TOUCH;
                 let reading = world.contact();
                 worst = worst.max((penetration / (total / contact.stiffness) - 1.0).abs());
-                assert!((reading.normal_force / total - 1.0).abs() < 1e-4, "{reading:?}");
-                assert!((reading.penetration - penetration).abs() < 1e-9, "{reading:?}");
+                assert!(
+                    (reading.normal_force / total - 1.0).abs() < 1e-4,
+                    "{reading:?}"
+                );
+                assert!(
+                    (reading.penetration - penetration).abs() < 1e-9,
+                    "{reading:?}"
+                );
             }
         }
     }
@@ -160,21 +222,42 @@ fn ringing(mass: f64, contact: PartContactParameters, preload: f64) -> f64 {
 
 #[test]
 fn ringing_after_a_tap_has_the_closed_form_frequency() {
-    for (mass, stiffness, damping) in [(4.0, 1.5e5, 100.0), (1.0, 1.5e5, 50.0), (4.0, 1e6, 200.0), (2.0, 5e4, 40.0)] {
-        let contact = PartContactParameters { stiffness, damping, friction: 0.0 };
+    for (mass, stiffness, damping) in [
+        (4.0, 1.5e5, 100.0),
+        (1.0, 1.5e5, 50.0),
+        (4.0, 1e6, 200.0),
+        (2.0, 5e4, 40.0),
+    ] {
+        let contact = PartContactParameters {
+            stiffness,
+            damping,
+            friction: 0.0,
+        };
         let natural = (stiffness / mass).sqrt();
         let ratio = damping / (2.0 * mass * natural);
         let expected = natural * (1.0 - ratio * ratio).sqrt() / TAU;
         let measured = ringing(mass, contact, 100.0);
-        println!("ringing at {mass} kg, {stiffness} N/m, {damping} N s/m: {measured:.2} Hz, closed form {expected:.2} Hz");
-        assert!((measured / expected - 1.0).abs() < 0.05, "{measured} Hz, expected {expected} Hz");
+        println!(
+            "ringing at {mass} kg, {stiffness} N/m, {damping} N s/m: {measured:.2} Hz, closed form {expected:.2} Hz"
+        );
+        assert!(
+            (measured / expected - 1.0).abs() < 0.05,
+            "{measured} Hz, expected {expected} Hz"
+        );
     }
 }
 
 #[test]
 fn ringing_decays_as_the_damper_says() {
     // Amplitude falls by exp(-c/(2 m) T) a period; 0.3 s hold about nine periods of 31 Hz.
-    let (mass, contact) = (4.0, PartContactParameters { stiffness: 1.5e5, damping: 100.0, friction: 0.0 });
+    let (mass, contact) = (
+        4.0,
+        PartContactParameters {
+            stiffness: 1.5e5,
+            damping: 100.0,
+            friction: 0.0,
+        },
+    );
     let part = knife_edge();
     let mut world = press(&part, mass, contact);
     world.set_positions(&[0.0, TOUCH]);
@@ -196,23 +279,38 @@ fn ringing_decays_as_the_damper_says() {
     let ratio = contact.damping / (2.0 * mass * natural);
     let period = TAU / (natural * (1.0 - ratio * ratio).sqrt());
     let expected = (-contact.damping / (2.0 * mass) * 6.0 * period).exp();
-    assert!((swing[1] / swing[0] / expected - 1.0).abs() < 0.1, "{} against {expected}", swing[1] / swing[0]);
+    assert!(
+        (swing[1] / swing[0] / expected - 1.0).abs() < 0.1,
+        "{} against {expected}",
+        swing[1] / swing[0]
+    );
 }
 
 /// Drags the pressed ball along x and returns normal and friction forces at each step once it slides.
 fn drag(part: &TriangleMesh, friction: f64, speed: f64) -> Vec<(f64, f64, f64)> {
-    let contact = PartContactParameters { stiffness: 1.5e5, damping: 400.0, friction };
+    let contact = PartContactParameters {
+        stiffness: 1.5e5,
+        damping: 400.0,
+        friction,
+    };
     let mass = 4.0;
     let mut world = press(part, mass, contact);
     world.set_positions(&[-0.05, TOUCH]);
     let mut out = Vec::new();
     for step in 0..4000 {
         let along = -0.05 + speed * 1e-3 * (step as f64 - 1000.0).max(0.0);
-        world.set_laws(&[hold_cross_slide(along), JointLaw::constant(150.0 - mass * GRAVITY)]);
+        world.set_laws(&[
+            hold_cross_slide(along),
+            JointLaw::constant(150.0 - mass * GRAVITY),
+        ]);
         world.step();
         if step > 1200 {
             let reading = world.contact();
-            out.push((reading.normal_force, reading.friction_force, reading.force_on_tool.x));
+            out.push((
+                reading.normal_force,
+                reading.friction_force,
+                reading.force_on_tool.x,
+            ));
         }
     }
     out
@@ -222,7 +320,10 @@ fn drag(part: &TriangleMesh, friction: f64, speed: f64) -> Vec<(f64, f64, f64)> 
 fn sliding_over_many_triangles_meets_no_ghosts() {
     for (name, part) in [("block", block_of_many_triangles()), ("edge", knife_edge())] {
         let forces = drag(&part, 0.0, 0.02);
-        let worst = forces.iter().map(|f| (f.0 - 150.0).abs()).fold(0.0, f64::max);
+        let worst = forces
+            .iter()
+            .map(|f| (f.0 - 150.0).abs())
+            .fold(0.0, f64::max);
         println!("{name}: largest deviation from 150 N while sliding {worst:.2e} N");
         assert!(worst < 0.05, "{name}: {worst}");
     }
@@ -232,7 +333,10 @@ fn sliding_over_many_triangles_meets_no_ghosts() {
 fn friction_is_its_coefficient_times_the_normal_force_against_the_motion() {
     for friction in [0.15, 0.4] {
         for (normal, tangential, x) in drag(&block_of_many_triangles(), friction, 0.02) {
-            assert!((tangential / normal - friction).abs() < 0.01 * friction, "{tangential} of {normal}");
+            assert!(
+                (tangential / normal - friction).abs() < 0.01 * friction,
+                "{tangential} of {normal}"
+            );
             assert!(x < 0.0, "friction pushes along the motion: {x}");
         }
     }

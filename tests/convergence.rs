@@ -23,7 +23,12 @@ fn halving_both_steps_moves_nothing_that_matters() {
         let force = change(|s| s.force_mean_n);
         let stroke = change(|s| s.stroke_max_mm).max(change(|s| s.stroke_min_mm));
         let [a, b] = [&coarse, &fine].map(|s| s.coefficient_of_variation_percent.unwrap());
-        println!("{name}: mean force moves {:.4} %, stroke {:.4} %, coefficient of variation {:.5} points", 100.0 * force, 100.0 * stroke, (a - b).abs());
+        println!(
+            "{name}: mean force moves {:.4} %, stroke {:.4} %, coefficient of variation {:.5} points",
+            100.0 * force,
+            100.0 * stroke,
+            (a - b).abs()
+        );
         assert!(force < 0.002 && stroke < 0.002, "{force} {stroke}");
         assert!((a - b).abs() < 0.05, "{a} against {b}");
     }

@@ -1,8 +1,8 @@
 //! Tests of the whole: one binary, because each links the engine and the recorder.
 
 mod air;
-mod balance;
 mod bad_input;
+mod balance;
 mod command_line;
 mod common;
 mod contact;

@@ -11,7 +11,11 @@ fn broken_bounds(scenario: Scenario) -> Vec<&'static str> {
     assert!(!expectations.is_empty());
     let summary = run(scenario).summary;
     let verdicts = check(&summary, &expectations).unwrap();
-    verdicts.iter().filter(|v| !v.kept).map(|v| v.metric).collect()
+    verdicts
+        .iter()
+        .filter(|v| !v.kept)
+        .map(|v| v.metric)
+        .collect()
 }
 
 /// The guard holds on the scenario as it is, and breaks on the force's variation when `disturb` has been at it.
@@ -21,13 +25,20 @@ fn guarded(name: &str, disturb: fn(&mut Scenario)) {
     disturb(&mut disturbed);
     assert_eq!(broken_bounds(nominal), Vec::<&str>::new(), "{name}");
     let broken = broken_bounds(disturbed);
-    assert!(broken.contains(&"force_standard_deviation_n"), "{name}: the disturbance went unseen: {broken:?}");
+    assert!(
+        broken.contains(&"force_standard_deviation_n"),
+        "{name}: the disturbance went unseen: {broken:?}"
+    );
 }
 
 /// A coarse burr that the slide's mass cannot follow quietly.
 fn coarse_burr(scenario: &mut Scenario) {
-    scenario.workpiece.burr =
-        BurrScenario::Random { seed: 3, mean_height: 0.4e-3, height_deviation: 0.15e-3, correlation_length: 1.5e-3 };
+    scenario.workpiece.burr = BurrScenario::Random {
+        seed: 3,
+        mean_height: 0.4e-3,
+        height_deviation: 0.15e-3,
+        correlation_length: 1.5e-3,
+    };
 }
 
 fn clamped_slide(scenario: &mut Scenario) {
@@ -82,8 +93,16 @@ fn locked_tool_is_uneven_unless_it_is_freed() {
 
 #[test]
 fn a_free_device_evens_out_a_misplaced_part_at_least_twentyfold() {
-    let deviation = |name| run(scenario(name)).summary.force_standard_deviation_n.unwrap();
+    let deviation = |name| {
+        run(scenario(name))
+            .summary
+            .force_standard_deviation_n
+            .unwrap()
+    };
     let (free, locked) = (deviation("misplaced_part"), deviation("locked_tool"));
-    println!("standard deviation locked {locked:.3} N, free {free:.4} N: {:.0} times", locked / free);
+    println!(
+        "standard deviation locked {locked:.3} N, free {free:.4} N: {:.0} times",
+        locked / free
+    );
     assert!(locked > 20.0 * free, "{locked} N against {free} N");
 }

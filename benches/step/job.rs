@@ -21,7 +21,9 @@ const LEAD: f64 = 0.5;
 
 /// The cell of a scenario of the project.
 pub fn cell(name: &str) -> Result<Cell, Box<dyn Error>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenarios")
+        .join(name);
     Ok(Cell::new(load(&path)?)?)
 }
 
@@ -51,7 +53,12 @@ impl<'a> Following<'a> {
         let first = ((start + LEAD) / step).ceil() as usize;
         let last = (end / step).floor() as usize;
         assert!(first < last, "the following phase is too short to be timed");
-        let mut following = Self { cell, simulation: Simulation::new(cell), first, last };
+        let mut following = Self {
+            cell,
+            simulation: Simulation::new(cell),
+            first,
+            last,
+        };
         following.restart();
         following
     }
@@ -59,7 +66,9 @@ impl<'a> Following<'a> {
     fn restart(&mut self) {
         self.simulation = Simulation::new(self.cell);
         while self.simulation.steps() < self.first {
-            self.simulation.step().unwrap_or_else(|error| panic!("{error}"));
+            self.simulation
+                .step()
+                .unwrap_or_else(|error| panic!("{error}"));
         }
     }
 
@@ -106,7 +115,9 @@ pub fn feed_forward(cell: &Cell, reference: &Reference) -> [f64; MAX_JOINTS] {
     let jacobian = jacobian_at(chain, &links[..count], reference.centre);
     let force = (reference.normal * scenario.process.force).to_array();
     for (joint, torque) in torque.iter_mut().enumerate().take(count) {
-        *torque -= (0..3).map(|row| jacobian[(row, joint)] * force[row]).sum::<f64>();
+        *torque -= (0..3)
+            .map(|row| jacobian[(row, joint)] * force[row])
+            .sum::<f64>();
     }
     torque
 }
@@ -120,8 +131,15 @@ pub fn servo_gains(cell: &Cell) -> Vec<(f64, f64)> {
     position.push(cell.scenario.process.working_stroke);
     let mut masses = nalgebra::DMatrix::zeros(chain.len(), chain.len());
     mass_matrix(chain, &position, &mut masses);
-    let gains = |inertia: f64| (inertia * frequency.powi(2), 2.0 * servo.damping_ratio * frequency * inertia);
-    (0..chain.len() - 1).map(|axis| gains(masses[(axis, axis)])).collect()
+    let gains = |inertia: f64| {
+        (
+            inertia * frequency.powi(2),
+            2.0 * servo.damping_ratio * frequency * inertia,
+        )
+    };
+    (0..chain.len() - 1)
+        .map(|axis| gains(masses[(axis, axis)]))
+        .collect()
 }
 
 /// The rigid-body world alone, holding the arm where following is under way; the ball on the edge, or `lift` [m] off it.
@@ -162,7 +180,12 @@ pub fn holding_world(cell: &Cell, lift: f64) -> World {
         .collect();
     let slide = if lift > 0.0 {
         let stiffness = scenario.device.parameters.lock_stiffness;
-        JointLaw { force: 0.0, stiffness, rest: stroke, damping: 0.0 }
+        JointLaw {
+            force: 0.0,
+            stiffness,
+            rest: stroke,
+            damping: 0.0,
+        }
     } else {
         JointLaw::constant(force[count - 1])
     };

@@ -42,13 +42,17 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Puts this process and those that it starts on the last core that it may use; says what came of it.
 fn pin_to_one_core() -> String {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let allowed = status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:"));
+    let allowed = status
+        .lines()
+        .find_map(|line| line.strip_prefix("Cpus_allowed_list:"));
     let last = allowed.and_then(|list| list.trim().rsplit([',', '-']).next());
     let Some(core) = last else {
         return "not pinned to a core: /proc/self/status is not readable".to_owned();
     };
     let pid = std::process::id().to_string();
-    let pinned = Command::new("taskset").args(["--cpu-list", "--pid", core, &pid]).output();
+    let pinned = Command::new("taskset")
+        .args(["--cpu-list", "--pid", core, &pid])
+        .output();
     match pinned {
         Ok(output) if output.status.success() => format!("pinned to core {core}"),
         _ => "not pinned to a core: taskset failed".to_owned(),
@@ -83,7 +87,13 @@ fn compare(cell: &Cell) -> Result<(), Box<dyn Error>> {
         rounds.whole.push(per_step(following.run(STEPS, None)));
         let mut times = StepTimes::default();
         following.run(STEPS, Some(&mut times));
-        let parts = [times.reference, times.device, times.servo, times.rigid_bodies, times.sample];
+        let parts = [
+            times.reference,
+            times.device,
+            times.servo,
+            times.rigid_bodies,
+            times.sample,
+        ];
         for (values, part) in rounds.parts.iter_mut().zip(parts) {
             values.push(per_step(part));
         }
@@ -111,19 +121,33 @@ fn per_step(time: Duration) -> f64 {
 }
 
 fn print_ours(rounds: &mut Rounds) {
-    println!("\nplate_edge, following, one core; medians of {ROUNDS} interleaved rounds of {STEPS} steps");
-    println!("{:<40} {:>10} {:>12} {:>22}", "", "us/step", "steps/s", "range of steps/s");
+    println!(
+        "\nplate_edge, following, one core; medians of {ROUNDS} interleaved rounds of {STEPS} steps"
+    );
+    println!(
+        "{:<40} {:>10} {:>12} {:>22}",
+        "", "us/step", "steps/s", "range of steps/s"
+    );
     row("whole coupled cell", &mut rounds.whole);
     for (name, values) in PARTS.iter().zip(&mut rounds.parts) {
         println!("  {name:<38} {:>10.3}", median(values) * 1e6);
     }
-    row("rigid bodies alone, arm held", &mut rounds.rigid_bodies_alone);
+    row(
+        "rigid bodies alone, arm held",
+        &mut rounds.rigid_bodies_alone,
+    );
 }
 
 fn print_peer(cell: &Cell, rounds: &mut Rounds, peer: &Peer, last: Option<&peer::Round>) {
     let ready = &peer.ready;
-    row(&format!("MuJoCo {}, same arm, load, path", ready.version), &mut rounds.mujoco);
-    println!("\nMuJoCo / whole coupled cell: {:.2} times the steps/s", median(&mut rounds.whole) / median(&mut rounds.mujoco));
+    row(
+        &format!("MuJoCo {}, same arm, load, path", ready.version),
+        &mut rounds.mujoco,
+    );
+    println!(
+        "\nMuJoCo / whole coupled cell: {:.2} times the steps/s",
+        median(&mut rounds.whole) / median(&mut rounds.mujoco)
+    );
     println!(
         "MuJoCo / rigid bodies alone: {:.2} times the steps/s",
         median(&mut rounds.rigid_bodies_alone) / median(&mut rounds.mujoco)
@@ -137,7 +161,10 @@ fn print_peer(cell: &Cell, rounds: &mut Rounds, peer: &Peer, last: Option<&peer:
         desired / cell.scenario.contact.stiffness * 1e3,
     );
     if let Some(round) = last {
-        println!("and following with {:.3} N, standard deviation {:.4} N", round.force_mean, round.force_deviation);
+        println!(
+            "and following with {:.3} N, standard deviation {:.4} N",
+            round.force_mean, round.force_deviation
+        );
     }
 }
 

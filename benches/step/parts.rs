@@ -47,7 +47,9 @@ fn rigid_bodies(criterion: &mut Criterion, cell: &Cell) {
         let mut world = holding_world(cell, lift);
         let touching = world.contact().normal_force > 0.0;
         assert_eq!(touching, lift == 0.0, "the ball must be {name}");
-        group.bench_function(BenchmarkId::new("step", name), |bencher| bencher.iter(|| world.step()));
+        group.bench_function(BenchmarkId::new("step", name), |bencher| {
+            bencher.iter(|| world.step())
+        });
     }
     group.finish();
 }
@@ -65,7 +67,13 @@ fn device(criterion: &mut Criterion, cell: &Cell) {
             bencher.iter(|| {
                 // Back and forth, so that air flows and the stroke stays.
                 speed = -speed;
-                device.advance(&mut state, pressure, PistonMotion { stroke, speed }, scenario.simulation.step, substeps)
+                device.advance(
+                    &mut state,
+                    pressure,
+                    PistonMotion { stroke, speed },
+                    scenario.simulation.step,
+                    substeps,
+                )
             });
         });
     }
@@ -79,7 +87,11 @@ fn path_and_servo(criterion: &mut Criterion, cell: &Cell) {
     let mut time = start;
     group.bench_function("reference", |bencher| {
         bencher.iter(|| {
-            time = if time + step < end { time + step } else { start };
+            time = if time + step < end {
+                time + step
+            } else {
+                start
+            };
             cell.plan.reference(black_box(time))
         });
     });
@@ -92,8 +104,20 @@ fn path_and_servo(criterion: &mut Criterion, cell: &Cell) {
         bencher.iter(|| {
             let reference = black_box(&reference);
             let mut torque = [0.0; MAX_JOINTS];
-            let (q, qd, qdd) = (&reference.position, &reference.velocity, &reference.acceleration);
-            inverse_dynamics(chain, base, gravity, &q[..count], &qd[..count], &qdd[..count], &mut torque[..count]);
+            let (q, qd, qdd) = (
+                &reference.position,
+                &reference.velocity,
+                &reference.acceleration,
+            );
+            inverse_dynamics(
+                chain,
+                base,
+                gravity,
+                &q[..count],
+                &qd[..count],
+                &qdd[..count],
+                &mut torque[..count],
+            );
             torque
         });
     });
@@ -107,7 +131,9 @@ fn contact_search(criterion: &mut Criterion, cell: &Cell) {
     let step = cell.scenario.simulation.step;
     // Places along the path, so that it is not always the same triangles.
     let count = ((end - start) / step) as usize;
-    let centres: Vec<_> = (0..count).map(|i| cell.plan.reference(start + i as f64 * step).centre).collect();
+    let centres: Vec<_> = (0..count)
+        .map(|i| cell.plan.reference(start + i as f64 * step).centre)
+        .collect();
     let mut found = Vec::new();
     let mut group = criterion.benchmark_group("contact search");
     let id = BenchmarkId::new("triangles", cell.part.mesh_in_world.triangles().len());

@@ -77,9 +77,16 @@ impl Peer {
         let desired = cell.scenario.process.force;
         if (ready.static_force / desired - 1.0).abs() > FORCE_TOLERANCE {
             let force = ready.static_force;
-            return Err(format!("it presses with {force:.3} N at rest instead of {desired} N, so it does another job"));
+            return Err(format!(
+                "it presses with {force:.3} N at rest instead of {desired} N, so it does another job"
+            ));
         }
-        Ok(Self { child, requests, replies, ready })
+        Ok(Self {
+            child,
+            requests,
+            replies,
+            ready,
+        })
     }
 
     /// Lets it follow the edge once.
@@ -100,7 +107,9 @@ impl Drop for Peer {
 
 fn reply<T: for<'a> Deserialize<'a>>(replies: &mut BufReader<ChildStdout>) -> Result<T, String> {
     let mut line = String::new();
-    replies.read_line(&mut line).map_err(|error| error.to_string())?;
+    replies
+        .read_line(&mut line)
+        .map_err(|error| error.to_string())?;
     serde_json::from_str(&line).map_err(|_| format!("mujoco_peer.py said: {}", line.trim()))
 }
 
@@ -124,7 +133,9 @@ fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
     let count = cell.arm_with_slide.len();
     let mut start_position = start.position[..count].to_vec();
     start_position[count - 1] = scenario.process.working_stroke;
-    let rows: Vec<_> = (1..=steps).map(|i| Row::at(cell, follow + i as f64 * step, &gains)).collect();
+    let rows: Vec<_> = (1..=steps)
+        .map(|i| Row::at(cell, follow + i as f64 * step, &gains))
+        .collect();
     let hold = Row::at(cell, follow, &gains);
     Ok(json!({
         "urdf": scenario.arm.urdf,
@@ -185,10 +196,19 @@ impl Row {
         let mut weight = [0.0; MAX_JOINTS];
         let base = scenario.arm.world_from_base.rotation;
         let gravity = scenario.simulation.gravity;
-        gravity_torques(&cell.arm.chain, base, gravity, &reference.position[..axes], &mut weight[..axes]);
+        gravity_torques(
+            &cell.arm.chain,
+            base,
+            gravity,
+            &reference.position[..axes],
+            &mut weight[..axes],
+        );
         for axis in 0..axes {
             applied[axis] += gains[axis].1 * reference.velocity[axis] - weight[axis];
         }
-        Self { position: reference.position[..axes].to_vec(), applied }
+        Self {
+            position: reference.position[..axes].to_vec(),
+            applied,
+        }
     }
 }

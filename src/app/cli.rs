@@ -18,8 +18,13 @@ use crate::scenario;
 
 /// Simulate a robot deburring cell with a pneumatic constant-force end effector.
 #[derive(Debug, Parser)]
-#[command(name = "idc", version, about, after_help = "Exit codes: 0 done, 1 a result lies outside the scenario's [expect] bounds, \
-2 bad input, 3 the physics stopped the run (the recording up to there is kept).")]
+#[command(
+    name = "idc",
+    version,
+    about,
+    after_help = "Exit codes: 0 done, 1 a result lies outside the scenario's [expect] bounds, \
+2 bad input, 3 the physics stopped the run (the recording up to there is kept)."
+)]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -86,10 +91,16 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
 fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let scenario = scenario::load(&arguments.scenario)?;
     let file = arguments.scenario.display().to_string();
-    let metrics_error = |source| AppError::Metrics { file: file.clone(), source };
+    let metrics_error = |source| AppError::Metrics {
+        file: file.clone(),
+        source,
+    };
     metrics::validate(&scenario.expect).map_err(metrics_error)?;
     let cell = Cell::new(scenario)?;
-    let chosen = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scenario));
+    let chosen = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| default_folder(&arguments.scenario));
     let folder = OutputFolder::prepare(&chosen)?;
     let quiet = arguments.quiet || arguments.json;
     if !quiet {
@@ -104,14 +115,24 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     });
     bar.finish_and_clear();
     let finished = finished?;
-    let verdicts = metrics::check(&finished.summary, &cell.scenario.expect).map_err(metrics_error)?;
+    let verdicts =
+        metrics::check(&finished.summary, &cell.scenario.expect).map_err(metrics_error)?;
     let document = SummaryDocument::new(&cell, &finished, &verdicts);
     folder.write(&cell, &finished, &document, opening(arguments))?;
     if arguments.json {
         say(&(document.text()? + "\n"))?;
     } else if !arguments.quiet {
-        say(&text(&cell.scenario.title, &finished.summary, &verdicts, style()))?;
-        say(&format!("written to {}: {}\n", folder.path().display(), NAMES.join(", ")))?;
+        say(&text(
+            &cell.scenario.title,
+            &finished.summary,
+            &verdicts,
+            style(),
+        ))?;
+        say(&format!(
+            "written to {}: {}\n",
+            folder.path().display(),
+            NAMES.join(", ")
+        ))?;
     }
     if let Some(stop) = &finished.stop {
         eprintln!("stopped: {stop}");
@@ -126,10 +147,24 @@ fn judge(verdicts: &[Verdict]) -> ExitCode {
     for verdict in verdicts.iter().filter(|verdict| !verdict.kept) {
         code = ExitCode::OutsideBounds;
         let bound = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {bound}"));
-        let bounds = [bound("at least", verdict.min), bound("at most", verdict.max)];
-        let bounds = bounds.into_iter().flatten().collect::<Vec<_>>().join(" and ");
-        let value = verdict.value.map_or("not determined by this run".to_owned(), |value| format!("{value:.6}"));
-        eprintln!("outside its bounds: {} is {value}, expected {bounds}", verdict.metric);
+        let bounds = [
+            bound("at least", verdict.min),
+            bound("at most", verdict.max),
+        ];
+        let bounds = bounds
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(" and ");
+        let value = verdict
+            .value
+            .map_or("not determined by this run".to_owned(), |value| {
+                format!("{value:.6}")
+            });
+        eprintln!(
+            "outside its bounds: {} is {value}, expected {bounds}",
+            verdict.metric
+        );
     }
     code
 }
@@ -141,7 +176,12 @@ fn style() -> Style {
 
 fn opening(arguments: &RunArguments) -> Opening {
     // A short span played fast: the viewer stands still for the eye.
-    arguments.hold_at_s.map_or(Opening::Paused, |time| Opening::Playing { span: [time, time + 0.04], speed: 50.0 })
+    arguments
+        .hold_at_s
+        .map_or(Opening::Paused, |time| Opening::Playing {
+            span: [time, time + 0.04],
+            speed: 50.0,
+        })
 }
 
 fn default_folder(scenario: &Path) -> PathBuf {

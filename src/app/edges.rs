@@ -13,10 +13,17 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     };
     let angle = arguments.sharp_angle_deg;
     if !(1.0..=170.0).contains(&angle) {
-        return Err(AppError::Option { option: "sharp-angle-deg", value: angle, expected: "1 to 170" });
+        return Err(AppError::Option {
+            option: "sharp-angle-deg",
+            value: angle,
+            expected: "1 to 170",
+        });
     }
     let mesh = load_mesh(&arguments.mesh, scale)?;
-    let search = EdgeSearch { sharp_angle: angle.to_radians(), ..EdgeSearch::default() };
+    let search = EdgeSearch {
+        sharp_angle: angle.to_radians(),
+        ..EdgeSearch::default()
+    };
     say(&list_edges(&mesh, &search).table())?;
     Ok(ExitCode::Done)
 }

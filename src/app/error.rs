@@ -50,7 +50,9 @@ pub enum AppError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
     /// The output folder.
-    #[error("cannot write into the output folder {folder}: {reason}; expected a folder, there or to be made, that can be written (--out names another)")]
+    #[error(
+        "cannot write into the output folder {folder}: {reason}; expected a folder, there or to be made, that can be written (--out names another)"
+    )]
     OutputFolder {
         /// The folder.
         folder: String,

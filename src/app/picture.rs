@@ -6,7 +6,8 @@ use glamx::DPose3;
 use crate::arm::urdf::VisualShape;
 use crate::cell::Cell;
 use crate::recording::scene::{
-    Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
+    Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits, ScenePoses,
+    SceneShape,
 };
 use crate::recording::{Recording, RecordingError, schema};
 use crate::simulation::FrameLog;
@@ -23,7 +24,11 @@ const PART: Colour = [150, 165, 178, 255];
 ///
 /// # Errors
 /// The recording lacks a channel.
-pub fn scene_of(cell: &Cell, recording: &Recording, frames: &FrameLog) -> Result<Scene, RecordingError> {
+pub fn scene_of(
+    cell: &Cell,
+    recording: &Recording,
+    frames: &FrameLog,
+) -> Result<Scene, RecordingError> {
     let mut bodies = arm(cell, frames);
     bodies.extend(device(cell, frames));
     bodies.push(part(cell));
@@ -37,11 +42,20 @@ pub fn scene_of(cell: &Cell, recording: &Recording, frames: &FrameLog) -> Result
             .contact_points
             .iter()
             .zip(&frames.contact_forces)
-            .map(|(&point_in_world, &force_in_world)| ContactArrow { point_in_world, force_in_world })
+            .map(|(&point_in_world, &force_in_world)| ContactArrow {
+                point_in_world,
+                force_in_world,
+            })
             .collect(),
         limits: SceneLimits {
             stroke: Some([0.0, cell.scenario.device.parameters.full_stroke]),
-            joint_torque: cell.arm.chain.joints.iter().map(|joint| joint.effort).collect(),
+            joint_torque: cell
+                .arm
+                .chain
+                .joints
+                .iter()
+                .map(|joint| joint.effort)
+                .collect(),
         },
     })
 }
@@ -64,7 +78,9 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
                 .collect(),
             world_from_body: match index {
                 0 => ScenePoses::Static(cell.scenario.arm.world_from_base),
-                _ => ScenePoses::Moving(frames.links.iter().map(|links| links[index - 1]).collect()),
+                _ => {
+                    ScenePoses::Moving(frames.links.iter().map(|links| links[index - 1]).collect())
+                }
             },
         })
         .collect()
@@ -73,11 +89,18 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
 fn geometry(shape: &VisualShape) -> SceneGeometry {
     match shape {
         VisualShape::Box { size } => SceneGeometry::Box { size: *size },
-        VisualShape::Cylinder { radius, length } => SceneGeometry::Cylinder { radius: *radius, length: *length },
+        VisualShape::Cylinder { radius, length } => SceneGeometry::Cylinder {
+            radius: *radius,
+            length: *length,
+        },
         VisualShape::Sphere { radius } => SceneGeometry::Sphere { radius: *radius },
-        VisualShape::Mesh { vertices, triangles } => {
-            SceneGeometry::Mesh { vertices: vertices.clone(), triangles: triangles.clone() }
-        }
+        VisualShape::Mesh {
+            vertices,
+            triangles,
+        } => SceneGeometry::Mesh {
+            vertices: vertices.clone(),
+            triangles: triangles.clone(),
+        },
     }
 }
 
@@ -105,21 +128,57 @@ fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
     let barrel = 0.5 * parameters.bore + 0.004;
     let spacing = barrel + 0.028;
     let length = parameters.full_stroke.min(0.6 * scenario.tool_centre);
-    let sides: &[f64] = if parameters.cylinder_count > 1 { &[-1.0, 1.0] } else { &[0.0] };
-    let mut fixed = vec![plate(DVec3::new(2.0 * (spacing + barrel), 2.0 * barrel, 0.012), 0.006, HOUSING)];
-    let mut moving = vec![
-        plate(DVec3::new(2.0 * (spacing + barrel), 1.6 * barrel, 0.012), length + 0.02, CARRIAGE),
-    ];
+    let sides: &[f64] = if parameters.cylinder_count > 1 {
+        &[-1.0, 1.0]
+    } else {
+        &[0.0]
+    };
+    let mut fixed = vec![plate(
+        DVec3::new(2.0 * (spacing + barrel), 2.0 * barrel, 0.012),
+        0.006,
+        HOUSING,
+    )];
+    let mut moving = vec![plate(
+        DVec3::new(2.0 * (spacing + barrel), 1.6 * barrel, 0.012),
+        length + 0.02,
+        CARRIAGE,
+    )];
     for side in sides {
-        fixed.push(along_z(barrel, length, side * spacing, 0.012 + 0.5 * length, CYLINDER));
-        moving.push(along_z(0.5 * parameters.rod, length, side * spacing, 0.5 * length + 0.016, TOOL));
+        fixed.push(along_z(
+            barrel,
+            length,
+            side * spacing,
+            0.012 + 0.5 * length,
+            CYLINDER,
+        ));
+        moving.push(along_z(
+            0.5 * parameters.rod,
+            length,
+            side * spacing,
+            0.5 * length + 0.016,
+            TOOL,
+        ));
     }
     let spindle_end = scenario.tool_centre - 0.03;
-    moving.push(along_z(0.019, spindle_end - length, 0.0, 0.5 * (spindle_end + length), HOUSING));
-    moving.push(along_z(0.5 * scenario.tool_radius, 0.03, 0.0, spindle_end + 0.015, TOOL));
+    moving.push(along_z(
+        0.019,
+        spindle_end - length,
+        0.0,
+        0.5 * (spindle_end + length),
+        HOUSING,
+    ));
+    moving.push(along_z(
+        0.5 * scenario.tool_radius,
+        0.03,
+        0.0,
+        spindle_end + 0.015,
+        TOOL,
+    ));
     moving.push(SceneShape {
         body_from_shape: DPose3::from_translation(DVec3::new(0.0, 0.0, scenario.tool_centre)),
-        geometry: SceneGeometry::Sphere { radius: scenario.tool_radius },
+        geometry: SceneGeometry::Sphere {
+            radius: scenario.tool_radius,
+        },
         colour: CARRIAGE,
     });
     let flange = |links: &Vec<DPose3>| links[last] * cell.arm.chain.tip_from_last;
@@ -132,7 +191,9 @@ fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
         SceneBody {
             entity: "device/slide".into(),
             shapes: moving,
-            world_from_body: ScenePoses::Moving(frames.links.iter().map(|links| links[last + 1]).collect()),
+            world_from_body: ScenePoses::Moving(
+                frames.links.iter().map(|links| links[last + 1]).collect(),
+            ),
         },
     ]
 }
@@ -158,7 +219,10 @@ fn edge_path(cell: &Cell, recording: &Recording) -> Result<EdgePath, RecordingEr
     let points_in_world = (0..=EDGE_SEGMENTS)
         .map(|i| {
             let place = edge.length * i as f64 / EDGE_SEGMENTS as f64;
-            cell.scenario.workpiece.world_from_part.transform_point(edge.at(place).point)
+            cell.scenario
+                .workpiece
+                .world_from_part
+                .transform_point(edge.at(place).point)
         })
         .collect();
     let mut sums = vec![(0.0, 0usize); EDGE_SEGMENTS];
@@ -173,7 +237,18 @@ fn edge_path(cell: &Cell, recording: &Recording) -> Result<EdgePath, RecordingEr
             sum.1 += 1;
         }
     }
-    let relative_force_error =
-        sums.into_iter().map(|(sum, count)| if count == 0 { f64::NAN } else { sum / count as f64 }).collect();
-    Ok(EdgePath { points_in_world, relative_force_error })
+    let relative_force_error = sums
+        .into_iter()
+        .map(|(sum, count)| {
+            if count == 0 {
+                f64::NAN
+            } else {
+                sum / count as f64
+            }
+        })
+        .collect();
+    Ok(EdgePath {
+        points_in_world,
+        relative_force_error,
+    })
 }

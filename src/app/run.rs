@@ -39,16 +39,23 @@ pub fn run_cell(cell: &Cell, progress: &mut dyn FnMut(usize, usize)) -> Result<F
     }
     let wall = start.elapsed().as_secs_f64();
     let (samples, frames) = simulation.into_logs();
-    let recording = samples.into_recording().map_err(|error| match (error, &stop) {
-        (RecordingError::Empty, Some(stop)) => AppError::StoppedAtOnce(stop.clone()),
-        (error, _) => error.into(),
-    })?;
+    let recording = samples
+        .into_recording()
+        .map_err(|error| match (error, &stop) {
+            (RecordingError::Empty, Some(stop)) => AppError::StoppedAtOnce(stop.clone()),
+            (error, _) => error.into(),
+        })?;
     let mut summary = summarise(&recording, &limits(cell)).map_err(|source| AppError::Metrics {
         file: cell.scenario.path.display().to_string(),
         source,
     })?;
     summary.timing = Some(Timing::new(summary.duration_s, wall));
-    Ok(Finished { recording, frames, summary, stop })
+    Ok(Finished {
+        recording,
+        frames,
+        summary,
+        stop,
+    })
 }
 
 fn limits(cell: &Cell) -> SummaryLimits {

@@ -111,9 +111,15 @@ pub fn load_arm(path: &Path, options: &ArmOptions) -> Result<Arm, ArmError> {
         source,
     })?;
     // The parser says of both that there are no elements.
-    for (part, fault) in [("<robot", "it has no <robot> element"), ("</robot>", "it is cut off before </robot>")] {
+    for (part, fault) in [
+        ("<robot", "it has no <robot> element"),
+        ("</robot>", "it is cut off before </robot>"),
+    ] {
         if !text.contains(part) {
-            return Err(ArmError::Incomplete { file: path.to_path_buf(), fault });
+            return Err(ArmError::Incomplete {
+                file: path.to_path_buf(),
+                fault,
+            });
         }
     }
     let robot = urdf_rs::read_from_string(&text).map_err(|source| ArmError::Malformed {

@@ -108,6 +108,9 @@ pub(super) fn millimetres(metres: f64) -> f64 {
 
 impl CellError {
     pub(super) fn plan(scenario: &Scenario, source: PlanError) -> Self {
-        Self::Plan { file: scenario.path.clone(), source: Box::new(source) }
+        Self::Plan {
+            file: scenario.path.clone(),
+            source: Box::new(source),
+        }
     }
 }

@@ -53,10 +53,23 @@ impl Cell {
         )
         .map_err(|error| CellError::plan(&scenario, error))?;
         check_supply(&scenario, &tool_path)?;
-        let plan = Plan::new(&plan_request(&scenario, &arm.chain, &arm_with_slide, tool_path))
-            .map_err(|error| CellError::plan(&scenario, error))?;
+        let plan = Plan::new(&plan_request(
+            &scenario,
+            &arm.chain,
+            &arm_with_slide,
+            tool_path,
+        ))
+        .map_err(|error| CellError::plan(&scenario, error))?;
         let notes = arm.notes.iter().chain(&plan.notes).cloned().collect();
-        Ok(Self { scenario, arm, arm_with_slide, device, part, plan, notes })
+        Ok(Self {
+            scenario,
+            arm,
+            arm_with_slide,
+            device,
+            part,
+            plan,
+            notes,
+        })
     }
 
     /// Component of gravity along the tool's axis [m/s2].
@@ -79,7 +92,15 @@ fn arm_options(scenario: &Scenario) -> ArmOptions {
         limit_overrides: arm
             .limit_overrides
             .iter()
-            .map(|o| (o.joint.clone(), LimitOverride { effort: o.effort, velocity: o.velocity }))
+            .map(|o| {
+                (
+                    o.joint.clone(),
+                    LimitOverride {
+                        effort: o.effort,
+                        velocity: o.velocity,
+                    },
+                )
+            })
             .collect(),
         skip_visuals: false,
     }
@@ -131,7 +152,11 @@ fn plan_request<'a>(
 ) -> PlanRequest<'a> {
     let (process, device) = (&scenario.process, &scenario.device);
     // A free slide stands at its outer end until the tool touches; a locked one does not move.
-    let push_back = if device.locked { 0.0 } else { device.parameters.full_stroke - process.working_stroke };
+    let push_back = if device.locked {
+        0.0
+    } else {
+        device.parameters.full_stroke - process.working_stroke
+    };
     PlanRequest {
         arm,
         arm_with_slide,
@@ -147,7 +172,10 @@ fn plan_request<'a>(
         friction: scenario.contact.friction,
         feed: process.feed,
         corner_feed: process.corner_feed,
-        limits: MotionLimits { acceleration: process.acceleration, jerk: process.jerk },
+        limits: MotionLimits {
+            acceleration: process.acceleration,
+            jerk: process.jerk,
+        },
         approach_distance: process.approach_distance,
         approach_speed: process.approach_speed,
         engage_speed: process.engage_speed,

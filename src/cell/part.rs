@@ -4,9 +4,12 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
 use super::error::{CellError, millimetres};
-use crate::scenario::{BurrScenario, EdgeChoice, EdgeSelection, Misplacement, Scenario, WorkpieceScenario};
+use crate::scenario::{
+    BurrScenario, EdgeChoice, EdgeSelection, Misplacement, Scenario, WorkpieceScenario,
+};
 use crate::workpiece::{
-    BurrProfile, Convexity, EdgeCurve, EdgeSearch, RiddenProfile, TriangleMesh, WorkpieceError, list_edges, load_mesh,
+    BurrProfile, Convexity, EdgeCurve, EdgeSearch, RiddenProfile, TriangleMesh, WorkpieceError,
+    list_edges, load_mesh,
 };
 
 /// Spacing at which the ball's ride over the burr is tabulated [m].
@@ -36,19 +39,37 @@ impl Part {
         let mesh = load_mesh(&workpiece.mesh, workpiece.mesh_scale)?;
         let edge = choose_edge(scenario, &mesh)?;
         let world_from_part = real_pose(workpiece, &edge);
-        let vertices = mesh.vertices().iter().map(|&v| world_from_part.transform_point(v)).collect();
+        let vertices = mesh
+            .vertices()
+            .iter()
+            .map(|&v| world_from_part.transform_point(v))
+            .collect();
         let mesh_in_world = TriangleMesh::new(vertices, mesh.triangles().to_vec())
             .expect("a rigid motion keeps a mesh closed and outward");
-        let ride = ride(&workpiece.burr, scenario.device.tool_radius, edge.length)
-            .map_err(|source| CellError::Burr { file: scenario.path.clone(), source })?;
-        Ok(Self { mesh, mesh_in_world, world_from_part, edge, ride })
+        let ride =
+            ride(&workpiece.burr, scenario.device.tool_radius, edge.length).map_err(|source| {
+                CellError::Burr {
+                    file: scenario.path.clone(),
+                    source,
+                }
+            })?;
+        Ok(Self {
+            mesh,
+            mesh_in_world,
+            world_from_part,
+            edge,
+            ride,
+        })
     }
 }
 
 fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, CellError> {
     let workpiece = &scenario.workpiece;
     let choice = &workpiece.edge;
-    let search = EdgeSearch { sharp_angle: choice.sharp_angle, ..EdgeSearch::default() };
+    let search = EdgeSearch {
+        sharp_angle: choice.sharp_angle,
+        ..EdgeSearch::default()
+    };
     let list = list_edges(mesh, &search);
     let (chosen, found) = match choice.selection {
         EdgeSelection::Edge(number) => (format!("edge {number}"), list.edges.get(number)),
@@ -68,9 +89,18 @@ fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, Ce
     };
     if let Some(convexity) = convexity {
         let file = scenario.path.clone();
-        return Err(CellError::EdgeNotConvex { file, mesh: workpiece.mesh.clone(), chosen, convexity });
+        return Err(CellError::EdgeNotConvex {
+            file,
+            mesh: workpiece.mesh.clone(),
+            chosen,
+            convexity,
+        });
     }
-    let curve = if choice.reversed { curve.reversed() } else { curve.clone() };
+    let curve = if choice.reversed {
+        curve.reversed()
+    } else {
+        curve.clone()
+    };
     check_stretch(scenario, choice, &curve)?;
     match (choice.start, choice.end) {
         (0.0, None) => Ok(curve),
@@ -80,13 +110,26 @@ fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, Ce
 }
 
 /// The stretch must lie on the edge, up to once round a closed one.
-fn check_stretch(scenario: &Scenario, choice: &EdgeChoice, curve: &EdgeCurve) -> Result<(), CellError> {
+fn check_stretch(
+    scenario: &Scenario,
+    choice: &EdgeChoice,
+    curve: &EdgeCurve,
+) -> Result<(), CellError> {
     let refuse = |key, value, expected| {
-        Err(CellError::EdgeStretch { file: scenario.path.clone(), key, value, expected })
+        Err(CellError::EdgeStretch {
+            file: scenario.path.clone(),
+            key,
+            value,
+            expected,
+        })
     };
     let length = millimetres(curve.length);
     if choice.start >= curve.length {
-        return refuse("start_mm", choice.start, format!("less than the edge's length, {length} mm"));
+        return refuse(
+            "start_mm",
+            choice.start,
+            format!("less than the edge's length, {length} mm"),
+        );
     }
     let (last, what) = if curve.closed {
         (choice.start + curve.length, "once round from start_mm")
@@ -94,9 +137,11 @@ fn check_stretch(scenario: &Scenario, choice: &EdgeChoice, curve: &EdgeCurve) ->
         (curve.length, "the edge's length")
     };
     match choice.end {
-        Some(end) if end > last + 1e-9 => {
-            refuse("end_mm", end, format!("at most {what}, {} mm", millimetres(last)))
-        }
+        Some(end) if end > last + 1e-9 => refuse(
+            "end_mm",
+            end,
+            format!("at most {what}, {} mm", millimetres(last)),
+        ),
         _ => Ok(()),
     }
 }
@@ -106,7 +151,10 @@ fn real_pose(workpiece: &WorkpieceScenario, edge: &EdgeCurve) -> DPose3 {
     let Misplacement { shift, tilt } = workpiece.misplacement;
     let believed = workpiece.world_from_part;
     let middle = edge.at(0.5 * edge.length);
-    let (pivot, bisector) = (believed.transform_point(middle.point), believed.rotation * middle.bisector);
+    let (pivot, bisector) = (
+        believed.transform_point(middle.point),
+        believed.rotation * middle.bisector,
+    );
     let tangent = believed.rotation * middle.tangent;
     // Turning the tangent towards the bisector lifts the far end towards the tool.
     let turn = DQuat::from_axis_angle(tangent.cross(bisector).normalize_or(DVec3::X), tilt);
@@ -117,22 +165,40 @@ fn real_pose(workpiece: &WorkpieceScenario, edge: &EdgeCurve) -> DPose3 {
 }
 
 /// How the ball's centre is lifted along an edge of a length [m].
-fn ride(scenario: &BurrScenario, ball_radius: f64, length: f64) -> Result<Option<RiddenProfile>, WorkpieceError> {
+fn ride(
+    scenario: &BurrScenario,
+    ball_radius: f64,
+    length: f64,
+) -> Result<Option<RiddenProfile>, WorkpieceError> {
     let Some(profile) = burr(scenario)? else {
         return Ok(None);
     };
     profile.require_cover(length)?;
-    profile.ridden_by_ball(ball_radius, length, RIDE_STEP).map(Some)
+    profile
+        .ridden_by_ball(ball_radius, length, RIDE_STEP)
+        .map(Some)
 }
 
 fn burr(scenario: &BurrScenario) -> Result<Option<BurrProfile>, WorkpieceError> {
     Ok(match scenario {
         BurrScenario::None => None,
         BurrScenario::Constant { height } => Some(BurrProfile::constant(*height)?),
-        BurrScenario::Random { seed, mean_height, height_deviation, correlation_length } => {
-            Some(BurrProfile::seeded_random(*seed, *mean_height, *height_deviation, *correlation_length)?)
-        }
-        BurrScenario::Bump { position, height, width } => Some(BurrProfile::bump(*position, *height, *width)?),
+        BurrScenario::Random {
+            seed,
+            mean_height,
+            height_deviation,
+            correlation_length,
+        } => Some(BurrProfile::seeded_random(
+            *seed,
+            *mean_height,
+            *height_deviation,
+            *correlation_length,
+        )?),
+        BurrScenario::Bump {
+            position,
+            height,
+            width,
+        } => Some(BurrProfile::bump(*position, *height, *width)?),
         BurrScenario::Table { path } => Some(BurrProfile::from_csv(path)?),
     })
 }

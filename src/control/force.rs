@@ -37,9 +37,10 @@ impl ForceController {
     /// Set pressure for the coming step [Pa gauge].
     pub fn set_pressure(&mut self, observation: &ForceObservation) -> f64 {
         match self {
-            Self::PressureMap(map) => {
-                map.set_pressure(observation.desired_axial_force, observation.gravity_along_axis)
-            }
+            Self::PressureMap(map) => map.set_pressure(
+                observation.desired_axial_force,
+                observation.gravity_along_axis,
+            ),
         }
     }
 }

@@ -16,7 +16,10 @@ pub struct JointLaw {
 impl JointLaw {
     /// A constant force.
     pub fn constant(force: f64) -> Self {
-        Self { force, ..Self::default() }
+        Self {
+            force,
+            ..Self::default()
+        }
     }
 
     /// Force at a position and speed [N or N m].

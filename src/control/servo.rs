@@ -68,7 +68,10 @@ impl Servo {
                 let proportional = inertia * parameters.natural_frequency.powi(2);
                 Gains {
                     proportional,
-                    derivative: 2.0 * parameters.damping_ratio * parameters.natural_frequency * inertia,
+                    derivative: 2.0
+                        * parameters.damping_ratio
+                        * parameters.natural_frequency
+                        * inertia,
                     integral: proportional / parameters.integral_time,
                     effort: joint.effort,
                     joint_damping: joint.damping,
@@ -86,14 +89,24 @@ impl Servo {
     }
 
     /// Law of an axis over the coming step of length `dt` [s], joint damping and friction included.
-    pub fn law(&mut self, axis: usize, command: &AxisCommand, position: f64, velocity: f64, dt: f64) -> JointLaw {
+    pub fn law(
+        &mut self,
+        axis: usize,
+        command: &AxisCommand,
+        position: f64,
+        velocity: f64,
+        dt: f64,
+    ) -> JointLaw {
         let gains = &self.gains[axis];
         let error = command.position - position;
         if !self.saturated[axis] {
-            self.integrals[axis] += gains.integral * (error - dt * (command.velocity - velocity)) * dt;
+            self.integrals[axis] +=
+                gains.integral * (error - dt * (command.velocity - velocity)) * dt;
         }
-        let constant = command.feed_forward + self.integrals[axis] + gains.derivative * command.velocity;
-        let foreseen = constant + gains.proportional * (error - dt * command.velocity) - gains.derivative * velocity;
+        let constant =
+            command.feed_forward + self.integrals[axis] + gains.derivative * command.velocity;
+        let foreseen = constant + gains.proportional * (error - dt * command.velocity)
+            - gains.derivative * velocity;
         self.saturated[axis] = foreseen.abs() > gains.effort;
         let mut law = if self.saturated[axis] {
             JointLaw::constant(foreseen.clamp(-gains.effort, gains.effort))
@@ -154,14 +167,25 @@ mod tests {
             friction: 0.0,
             body: BodyInertia::ZERO,
         };
-        let arm = Chain { joints: vec![joint], tip_from_last: glamx::DPose3::IDENTITY };
-        let parameters = ServoParameters { natural_frequency: 100.0, damping_ratio: 1.0, integral_time: 0.1 };
+        let arm = Chain {
+            joints: vec![joint],
+            tip_from_last: glamx::DPose3::IDENTITY,
+        };
+        let parameters = ServoParameters {
+            natural_frequency: 100.0,
+            damping_ratio: 1.0,
+            integral_time: 0.1,
+        };
         Servo::new(&arm, &[2.0], &parameters)
     }
 
     #[test]
     fn a_law_gives_the_stated_gains() {
-        let command = AxisCommand { position: 0.0, velocity: 0.0, feed_forward: 7.0 };
+        let command = AxisCommand {
+            position: 0.0,
+            velocity: 0.0,
+            feed_forward: 7.0,
+        };
         let law = servo().law(0, &command, 0.0, 0.0, 1e-3);
         assert_eq!((law.stiffness, law.damping, law.force), (2e4, 400.0, 7.0));
     }
@@ -172,7 +196,11 @@ mod tests {
         servo.gains[0].joint_damping = 3.0;
         servo.gains[0].joint_friction = 2.0;
         // Asked for more than it can; the joint speeds up during the step.
-        let command = AxisCommand { position: 0.1, velocity: 0.0, feed_forward: 0.0 };
+        let command = AxisCommand {
+            position: 0.1,
+            velocity: 0.0,
+            feed_forward: 0.0,
+        };
         let law = servo.law(0, &command, 0.0, 2e-4, 1e-3);
         let total = law.at(1e-5, 0.05);
         assert!(total < 50.0 - 3.0 * 0.05);
@@ -182,7 +210,11 @@ mod tests {
     #[test]
     fn the_torque_stays_at_the_limit_and_the_integral_waits() {
         let mut servo = servo();
-        let command = AxisCommand { position: 0.1, velocity: 0.0, feed_forward: 0.0 };
+        let command = AxisCommand {
+            position: 0.1,
+            velocity: 0.0,
+            feed_forward: 0.0,
+        };
         let first = servo.law(0, &command, 0.0, 0.0, 1e-3);
         assert_eq!((first.force, first.stiffness), (50.0, 0.0));
         for _ in 0..100 {

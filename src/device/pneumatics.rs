@@ -118,18 +118,24 @@ impl Device {
         dt: f64,
         substeps: usize,
     ) -> DeviceForce {
-        state.regulator.command(&self.parameters.regulator, set_pressure);
+        state
+            .regulator
+            .command(&self.parameters.regulator, set_pressure);
         let h = dt / substeps as f64;
         let mut impulse = 0.0;
         for i in 0..substeps {
             let stroke = motion.stroke + motion.speed * h * i as f64;
             impulse += self.substep(state, stroke, motion.speed, h);
         }
-        let (stop, damping) =
-            self.parameters
-                .end_stop
-                .force(self.parameters.full_stroke, motion.stroke, motion.speed);
-        DeviceForce { force: impulse / dt + stop, damping }
+        let (stop, damping) = self.parameters.end_stop.force(
+            self.parameters.full_stroke,
+            motion.stroke,
+            motion.speed,
+        );
+        DeviceForce {
+            force: impulse / dt + stop,
+            damping,
+        }
     }
 
     /// One Runge-Kutta step; returns the impulse of the gas [N s].

@@ -32,7 +32,8 @@ impl PressureMap {
 
     /// Set pressure within what the regulator can give [Pa gauge].
     pub fn set_pressure(&self, force: f64, gravity_along_axis: f64) -> f64 {
-        self.unlimited(force, gravity_along_axis).clamp(0.0, self.supply)
+        self.unlimited(force, gravity_along_axis)
+            .clamp(0.0, self.supply)
     }
 
     /// Contact force at rest [N] for a set pressure [Pa gauge]: the inverse.

@@ -15,7 +15,11 @@ pub(super) const SINGULAR_LIMIT: f64 = 0.015;
 const INTERVAL: f64 = 4e-3;
 
 /// Checks the whole plan.
-pub(super) fn limits(request: &PlanRequest, standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
+pub(super) fn limits(
+    request: &PlanRequest,
+    standing: &Standing,
+    plan: &Plan,
+) -> Result<(), PlanError> {
     singularities(standing, plan)?;
     let count = (plan.duration() / INTERVAL).ceil() as usize;
     for i in 0..=count {
@@ -31,12 +35,23 @@ fn singularities(standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
             let value = standing.singularity(q);
             if value < SINGULAR_LIMIT {
                 let axis = standing.weakest_axis(q);
-                let obstacle = Obstacle::Singular { value, limit: SINGULAR_LIMIT, axis };
+                let obstacle = Obstacle::Singular {
+                    value,
+                    limit: SINGULAR_LIMIT,
+                    axis,
+                };
                 let place = match leg.way {
                     Way::Edge => leg.spline.knots()[index],
                     Way::Axial { place, .. } => place,
                 };
-                return Err(waypoint_error(&plan.tool_path, leg.phase, index, angles.len(), place, obstacle));
+                return Err(waypoint_error(
+                    &plan.tool_path,
+                    leg.phase,
+                    index,
+                    angles.len(),
+                    place,
+                    obstacle,
+                ));
             }
         }
     }
@@ -61,11 +76,20 @@ fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError
     );
     if reference.phase == Phase::Follow {
         let mut links = [DPose3::IDENTITY; MAX_JOINTS];
-        link_poses(request.arm_with_slide, request.world_from_base, &position[..=n], &mut links[..=n]);
+        link_poses(
+            request.arm_with_slide,
+            request.world_from_base,
+            &position[..=n],
+            &mut links[..=n],
+        );
         let jacobian = jacobian_at(request.arm_with_slide, &links[..=n], reference.centre);
-        let force = request.force_on_tool(reference.normal, reference.tangent).to_array();
+        let force = request
+            .force_on_tool(reference.normal, reference.tangent)
+            .to_array();
         for (joint, torque) in torque.iter_mut().enumerate().take(n) {
-            *torque -= (0..3).map(|row| jacobian[(row, joint)] * force[row]).sum::<f64>();
+            *torque -= (0..3)
+                .map(|row| jacobian[(row, joint)] * force[row])
+                .sum::<f64>();
         }
     }
     for (joint, axis) in request.arm.joints.iter().enumerate() {
@@ -74,20 +98,44 @@ fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError
         let needed = moving + axis.friction.copysign(moving);
         let obstacle = if reference.velocity[joint].abs() > axis.velocity {
             let value = reference.velocity[joint];
-            Obstacle::Velocity { axis: axis.name.clone(), value, limit: axis.velocity }
+            Obstacle::Velocity {
+                axis: axis.name.clone(),
+                value,
+                limit: axis.velocity,
+            }
         } else if needed.abs() > axis.effort {
-            Obstacle::Effort { axis: axis.name.clone(), value: needed, limit: axis.effort }
+            Obstacle::Effort {
+                axis: axis.name.clone(),
+                value: needed,
+                limit: axis.effort,
+            }
         } else {
             continue;
         };
-        let leg = plan.legs.iter().rev().find(|leg| leg.start_time <= time).unwrap_or(&plan.legs[0]);
+        let leg = plan
+            .legs
+            .iter()
+            .rev()
+            .find(|leg| leg.start_time <= time)
+            .unwrap_or(&plan.legs[0]);
         let along = leg.profile.at(time - leg.start_time).position;
-        let index = leg.spline.knots().partition_point(|&knot| knot <= along).saturating_sub(1);
+        let index = leg
+            .spline
+            .knots()
+            .partition_point(|&knot| knot <= along)
+            .saturating_sub(1);
         let place = match leg.way {
             Way::Edge => along,
             Way::Axial { place, .. } => place,
         };
-        return Err(waypoint_error(&plan.tool_path, leg.phase, index, leg.spline.knots().len(), place, obstacle));
+        return Err(waypoint_error(
+            &plan.tool_path,
+            leg.phase,
+            index,
+            leg.spline.knots().len(),
+            place,
+            obstacle,
+        ));
     }
     Ok(())
 }

@@ -87,9 +87,17 @@ impl std::fmt::Display for Obstacle {
                 limit.to_degrees()
             ),
             Self::Effort { axis, value, limit } => {
-                write!(f, "axis {axis} would need {:.2} N m, its limit is {limit:.2} N m", value.abs())
+                write!(
+                    f,
+                    "axis {axis} would need {:.2} N m, its limit is {limit:.2} N m",
+                    value.abs()
+                )
             }
-            Self::PostureChange { axis, value, needed } => write!(
+            Self::PostureChange {
+                axis,
+                value,
+                needed,
+            } => write!(
                 f,
                 "within reach only after a change of posture: axis {axis} would have to jump from {:.1} to {:.1} deg",
                 value.to_degrees(),

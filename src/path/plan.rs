@@ -177,7 +177,11 @@ impl Plan {
         let far = request.push_back + request.approach_distance;
         let coarse = Coarse::new(request, far);
         let (spin, start) = standing
-            .choose(|spin| coarse.poses(request, spin), request.seed_posture, request.seed)
+            .choose(
+                |spin| coarse.poses(request, spin),
+                request.seed_posture,
+                request.seed,
+            )
             .map_err(|(index, obstacle)| coarse.failure(request, index, obstacle))?;
         let mut plan = Self {
             legs: Vec::new(),
@@ -203,16 +207,51 @@ impl Plan {
         let knots = places(length, KNOT_SPACING);
         let poses = poses_along(request, &knots, spin);
         let near = request.push_back + CLEARANCE.min(0.5 * request.approach_distance);
-        let axial = |plan: &mut Self, phase, place: f64, pose: DPose3, from: f64, to: f64, speed, rest, start: &[f64]| {
-            let way = Way::Axial { place, from, sign: (to - from).signum() };
+        let axial = |plan: &mut Self,
+                     phase,
+                     place: f64,
+                     pose: DPose3,
+                     from: f64,
+                     to: f64,
+                     speed,
+                     rest,
+                     start: &[f64]| {
+            let way = Way::Axial {
+                place,
+                from,
+                sign: (to - from).signum(),
+            };
             let knots = places((to - from).abs(), KNOT_SPACING);
-            let poses: Vec<DPose3> = knots.iter().map(|k| backed_off(pose, from + k * (to - from).signum())).collect();
+            let poses: Vec<DPose3> = knots
+                .iter()
+                .map(|k| backed_off(pose, from + k * (to - from).signum()))
+                .collect();
             let profile = Profile::single((to - from).abs(), speed, request.limits);
             plan.add_leg(standing, phase, way, knots, &poses, profile, rest, start)
         };
         let (first, last) = (poses[0], poses[poses.len() - 1]);
-        let q = axial(self, Phase::Approach, 0.0, first, far, near, request.approach_speed, 0.0, start)?;
-        let q = axial(self, Phase::Engage, 0.0, first, near, 0.0, request.engage_speed, request.settle_time, &q)?;
+        let q = axial(
+            self,
+            Phase::Approach,
+            0.0,
+            first,
+            far,
+            near,
+            request.approach_speed,
+            0.0,
+            start,
+        )?;
+        let q = axial(
+            self,
+            Phase::Engage,
+            0.0,
+            first,
+            near,
+            0.0,
+            request.engage_speed,
+            request.settle_time,
+            &q,
+        )?;
         let angles = self.track(standing, Phase::Follow, Way::Edge, &knots, &poses, &q)?;
         let spline = Spline::through(knots, angles);
         let sections = self.feeds(request, &spline)?;
@@ -220,8 +259,28 @@ impl Plan {
         let q = spline.values().last().cloned().unwrap_or(q);
         self.push(Phase::Follow, Way::Edge, spline, profile, 0.0);
         // Gently until the slide stands at its outer stop again: there it takes the tool off the edge with a jolt.
-        let q = axial(self, Phase::Retract, length, last, 0.0, near, request.engage_speed, 0.0, &q)?;
-        axial(self, Phase::Retract, length, last, near, far, request.approach_speed, 0.2, &q)?;
+        let q = axial(
+            self,
+            Phase::Retract,
+            length,
+            last,
+            0.0,
+            near,
+            request.engage_speed,
+            0.0,
+            &q,
+        )?;
+        axial(
+            self,
+            Phase::Retract,
+            length,
+            last,
+            near,
+            far,
+            request.approach_speed,
+            0.2,
+            &q,
+        )?;
         Ok(())
     }
 
@@ -264,11 +323,22 @@ impl Plan {
     fn push(&mut self, phase: Phase, way: Way, spline: Spline, profile: Profile, rest: f64) {
         let start_time = self.duration();
         let duration = profile.duration() + rest;
-        self.legs.push(Leg { phase, start_time, duration, profile, spline, way });
+        self.legs.push(Leg {
+            phase,
+            start_time,
+            duration,
+            profile,
+            spline,
+            way,
+        });
     }
 
     /// Speed limits along the edge: the feed, less at corners, and less where an axis could not keep up.
-    fn feeds(&mut self, request: &PlanRequest, spline: &Spline) -> Result<Vec<SpeedSection>, PlanError> {
+    fn feeds(
+        &mut self,
+        request: &PlanRequest,
+        spline: &Spline,
+    ) -> Result<Vec<SpeedSection>, PlanError> {
         let mut sections = Vec::new();
         let mut slowest: Option<(f64, f64, usize)> = None;
         for section in request.tool_path.sections() {
@@ -284,7 +354,10 @@ impl Plan {
                 if cap < wanted && slowest.is_none_or(|s| cap < s.0) {
                     slowest = Some((cap, start, joint));
                 }
-                sections.push(SpeedSection { length: section.length / chunks, speed: wanted.min(cap) });
+                sections.push(SpeedSection {
+                    length: section.length / chunks,
+                    speed: wanted.min(cap),
+                });
             }
         }
         if let Some((cap, place, joint)) = slowest {
@@ -298,7 +371,14 @@ impl Plan {
                 };
                 let waypoint = (place / KNOT_SPACING) as usize;
                 let count = spline.knots().len();
-                return Err(waypoint_error(&self.tool_path, Phase::Follow, waypoint, count, place, obstacle));
+                return Err(waypoint_error(
+                    &self.tool_path,
+                    Phase::Follow,
+                    waypoint,
+                    count,
+                    place,
+                    obstacle,
+                ));
             }
             self.notes.push(format!(
                 "the feed is slowed to {:.1} mm/s near {:.1} mm of the edge, where axis {} reaches {:.0} % of its speed limit",
@@ -312,8 +392,15 @@ impl Plan {
     }
 
     /// Largest speed between two places that every axis can follow, and the axis that limits it.
-    fn speed_cap(&self, request: &PlanRequest, spline: &Spline, start: f64, end: f64) -> (f64, usize) {
-        let (mut value, mut slope, mut bend) = ([0.0; MAX_JOINTS], [0.0; MAX_JOINTS], [0.0; MAX_JOINTS]);
+    fn speed_cap(
+        &self,
+        request: &PlanRequest,
+        spline: &Spline,
+        start: f64,
+        end: f64,
+    ) -> (f64, usize) {
+        let (mut value, mut slope, mut bend) =
+            ([0.0; MAX_JOINTS], [0.0; MAX_JOINTS], [0.0; MAX_JOINTS]);
         let n = self.joints;
         let mut worst = (0.0, 0);
         for i in 0..=8 {
@@ -331,12 +418,17 @@ impl Plan {
 
     /// Duration of the whole job [s].
     pub fn duration(&self) -> f64 {
-        self.legs.last().map_or(0.0, |leg| leg.start_time + leg.duration)
+        self.legs
+            .last()
+            .map_or(0.0, |leg| leg.start_time + leg.duration)
     }
 
     /// Phases with their start and end [s].
     pub fn phases(&self) -> Vec<(Phase, f64, f64)> {
-        self.legs.iter().map(|leg| (leg.phase, leg.start_time, leg.start_time + leg.duration)).collect()
+        self.legs
+            .iter()
+            .map(|leg| (leg.phase, leg.start_time, leg.start_time + leg.duration))
+            .collect()
     }
 
     /// Joint angles at the start [rad].
@@ -351,20 +443,32 @@ impl Plan {
 
     /// The reference at a time [s].
     pub fn reference(&self, time: f64) -> Reference {
-        let index = self.legs.partition_point(|leg| leg.start_time <= time).saturating_sub(1);
+        let index = self
+            .legs
+            .partition_point(|leg| leg.start_time <= time)
+            .saturating_sub(1);
         let leg = &self.legs[index];
         let along: PathState = leg.profile.at(time - leg.start_time);
-        let (mut position, mut slope, mut bend) = ([0.0; MAX_JOINTS], [0.0; MAX_JOINTS], [0.0; MAX_JOINTS]);
+        let (mut position, mut slope, mut bend) =
+            ([0.0; MAX_JOINTS], [0.0; MAX_JOINTS], [0.0; MAX_JOINTS]);
         let n = self.joints;
-        leg.spline.at(along.position, &mut position[..n], &mut slope[..n], &mut bend[..n]);
+        leg.spline.at(
+            along.position,
+            &mut position[..n],
+            &mut slope[..n],
+            &mut bend[..n],
+        );
         let (mut velocity, mut acceleration) = ([0.0; MAX_JOINTS], [0.0; MAX_JOINTS]);
         for joint in 0..n {
             velocity[joint] = slope[joint] * along.speed;
-            acceleration[joint] = bend[joint] * along.speed * along.speed + slope[joint] * along.acceleration;
+            acceleration[joint] =
+                bend[joint] * along.speed * along.speed + slope[joint] * along.acceleration;
         }
         let (station, back, feed) = match leg.way {
             Way::Edge => (self.tool_path.at(along.position), 0.0, along.speed),
-            Way::Axial { place, from, sign } => (self.tool_path.at(place), from + sign * along.position, 0.0),
+            Way::Axial { place, from, sign } => {
+                (self.tool_path.at(place), from + sign * along.position, 0.0)
+            }
         };
         Reference {
             phase: leg.phase,
@@ -410,7 +514,13 @@ impl Coarse {
             request.force_on_tool(station.normal, station.tangent)
         }));
         forces.extend(idle);
-        (approach.chain(follow.iter().copied()).chain(retract).collect(), forces)
+        (
+            approach
+                .chain(follow.iter().copied())
+                .chain(retract)
+                .collect(),
+            forces,
+        )
     }
 
     fn failure(&self, request: &PlanRequest, index: usize, obstacle: Obstacle) -> PlanError {
@@ -418,9 +528,19 @@ impl Coarse {
         let (phase, waypoint, count, place) = if index < before {
             (Phase::Approach, index, before, 0.0)
         } else if index < after {
-            (Phase::Follow, index - before, self.places.len(), self.places[index - before])
+            (
+                Phase::Follow,
+                index - before,
+                self.places.len(),
+                self.places[index - before],
+            )
         } else {
-            (Phase::Retract, index - after, before, request.tool_path.length())
+            (
+                Phase::Retract,
+                index - after,
+                before,
+                request.tool_path.length(),
+            )
         };
         waypoint_error(&request.tool_path, phase, waypoint, count, place, obstacle)
     }
@@ -433,12 +553,17 @@ fn places(length: f64, spacing: f64) -> Vec<f64> {
 
 fn places_between(from: f64, to: f64, spacing: f64) -> Vec<f64> {
     let count = ((to - from).abs() / spacing).ceil().max(2.0) as usize;
-    (0..=count).map(|i| from + (to - from) * i as f64 / count as f64).collect()
+    (0..=count)
+        .map(|i| from + (to - from) * i as f64 / count as f64)
+        .collect()
 }
 
 /// The pose moved back along its own z by `back` [m].
 fn backed_off(pose: DPose3, back: f64) -> DPose3 {
-    DPose3::from_parts(pose.translation - pose.rotation * DVec3::Z * back, pose.rotation)
+    DPose3::from_parts(
+        pose.translation - pose.rotation * DVec3::Z * back,
+        pose.rotation,
+    )
 }
 
 /// Flange poses at places along the path; the flange's x is carried along without turning about the tool's axis, from `spin` [rad] off the tangent.
@@ -447,7 +572,10 @@ fn poses_along(request: &PlanRequest, places: &[f64], spin: f64) -> Vec<DPose3> 
         let x = (x - station.axis * x.dot(station.axis)).normalize();
         let rotation = DQuat::from_mat3(&DMat3::from_cols(x, station.axis.cross(x), station.axis));
         let centre = station.point + station.normal * (request.tool_radius - request.penetration);
-        (DPose3::from_parts(centre - station.axis * request.tool_distance, rotation), x)
+        (
+            DPose3::from_parts(centre - station.axis * request.tool_distance, rotation),
+            x,
+        )
     };
     let first = request.tool_path.at(places[0]);
     let mut x = DQuat::from_axis_angle(first.axis, spin) * first.tangent;

@@ -10,7 +10,9 @@ use super::error::Obstacle;
 use crate::arm::chain::{Chain, MAX_JOINTS};
 use crate::arm::dynamics::gravity_torques;
 use crate::arm::inverse_kinematics::{IkOptions, TipOrientation, distinct_solutions, solve};
-use crate::arm::kinematics::{Jacobian, jacobian_at, link_poses, smallest_singular_value, tip_pose};
+use crate::arm::kinematics::{
+    Jacobian, jacobian_at, link_poses, smallest_singular_value, tip_pose,
+};
 
 /// Newton steps to each pose; neighbouring poses need two or three, the coarse ones by which a posture is chosen up to six.
 const STEPS: usize = 6;
@@ -48,7 +50,11 @@ impl Standing<'_> {
 
     /// Smallest singular value of the scaled Jacobian at joint angles [1].
     pub fn singularity(&self, q: &[f64]) -> f64 {
-        smallest_singular_value(&self.task_jacobian(q), self.chain.len(), self.characteristic_length())
+        smallest_singular_value(
+            &self.task_jacobian(q),
+            self.chain.len(),
+            self.characteristic_length(),
+        )
     }
 
     /// Jacobian of the flange; of an arm with five axes or less without the turning about the tool's axis, which it need not master.
@@ -73,13 +79,19 @@ impl Standing<'_> {
     ///
     /// # Errors
     /// The number of the pose that is not reached, and why.
-    pub fn track(&self, poses: &[DPose3], start: &[f64]) -> Result<Vec<Vec<f64>>, (usize, Obstacle)> {
+    pub fn track(
+        &self,
+        poses: &[DPose3],
+        start: &[f64],
+    ) -> Result<Vec<Vec<f64>>, (usize, Obstacle)> {
         let mut q = start.to_vec();
         let mut angles = Vec::with_capacity(poses.len());
         for (index, pose) in poses.iter().enumerate() {
             let before = q.clone();
             if !self.reach(pose, &mut q) {
-                q = self.walk(pose, &before).map_err(|obstacle| (index, obstacle))?;
+                q = self
+                    .walk(pose, &before)
+                    .map_err(|obstacle| (index, obstacle))?;
             }
             if let Some(obstacle) = self.over_limit(&q) {
                 return Err((index, obstacle));
@@ -95,7 +107,8 @@ impl Standing<'_> {
         for _ in 0..STEPS {
             error = self.newton(pose, q);
         }
-        let distance = (tip_pose(self.chain, self.world_from_base, q).translation - pose.translation).length();
+        let distance =
+            (tip_pose(self.chain, self.world_from_base, q).translation - pose.translation).length();
         error < TOLERANCE && distance < TOLERANCE
     }
 
@@ -154,7 +167,11 @@ impl Standing<'_> {
             for row in 0..3 {
                 task[(row, column)] = jacobian[(row, column)];
             }
-            let angular = DVec3::new(jacobian[(3, column)], jacobian[(4, column)], jacobian[(5, column)]);
+            let angular = DVec3::new(
+                jacobian[(3, column)],
+                jacobian[(4, column)],
+                jacobian[(5, column)],
+            );
             for (row, axis) in axes.iter().enumerate() {
                 task[(3 + row, column)] = axis.dot(angular);
             }
@@ -183,25 +200,49 @@ impl Standing<'_> {
             } else {
                 return None;
             };
-            Some(Obstacle::Position { axis: joint.name.clone(), value, limit })
+            Some(Obstacle::Position {
+                axis: joint.name.clone(),
+                value,
+                limit,
+            })
         })
     }
 
     fn options(&self, seed: u64) -> IkOptions {
-        let orientation = if self.chain.len() < 6 { TipOrientation::FreeAboutZ } else { TipOrientation::Full };
-        IkOptions { orientation, seed, ..IkOptions::default() }
+        let orientation = if self.chain.len() < 6 {
+            TipOrientation::FreeAboutZ
+        } else {
+            TipOrientation::Full
+        };
+        IkOptions {
+            orientation,
+            seed,
+            ..IkOptions::default()
+        }
     }
 
     /// Why a pose is not reached.
     fn explain(&self, pose: &DPose3, start: &[f64]) -> Obstacle {
-        match solve(self.chain, self.world_from_base, pose, start, &self.options(1)) {
+        match solve(
+            self.chain,
+            self.world_from_base,
+            pose,
+            start,
+            &self.options(1),
+        ) {
             Ok(solution) => {
                 let (value, limit) = (self.singularity(start), super::check::SINGULAR_LIMIT);
                 if value < limit {
-                    return Obstacle::Singular { value, limit, axis: self.weakest_axis(start) };
+                    return Obstacle::Singular {
+                        value,
+                        limit,
+                        axis: self.weakest_axis(start),
+                    };
                 }
                 let jump = |&index: &usize| (solution.q[index] - start[index]).abs();
-                let most = (0..self.chain.len()).max_by(|a, b| jump(a).total_cmp(&jump(b))).unwrap_or(0);
+                let most = (0..self.chain.len())
+                    .max_by(|a, b| jump(a).total_cmp(&jump(b)))
+                    .unwrap_or(0);
                 Obstacle::PostureChange {
                     axis: self.chain.joints[most].name.clone(),
                     value: start[most],
@@ -210,7 +251,9 @@ impl Standing<'_> {
             }
             Err(failure) => Obstacle::OutOfReach {
                 distance: failure.position_error,
-                axis: failure.axis.map(|axis| (axis.name, axis.position, axis.limit)),
+                axis: failure
+                    .axis
+                    .map(|axis| (axis.name, axis.position, axis.limit)),
             },
         }
     }
@@ -218,9 +261,15 @@ impl Standing<'_> {
     /// The axis that moves most along the direction in which the arm is weakest.
     pub fn weakest_axis(&self, q: &[f64]) -> String {
         let (count, jacobian) = (self.chain.len(), self.task_jacobian(q));
-        let svd = DMatrix::from_fn(6, count, |row, column| jacobian[(row, column)]).svd(false, true);
+        let svd =
+            DMatrix::from_fn(6, count, |row, column| jacobian[(row, column)]).svd(false, true);
         let (smallest, _) = svd.singular_values.argmin();
-        let row = svd.v_t.map(|v_t| v_t.row(smallest).iter().map(|x| x.abs()).collect::<Vec<f64>>());
+        let row = svd.v_t.map(|v_t| {
+            v_t.row(smallest)
+                .iter()
+                .map(|x| x.abs())
+                .collect::<Vec<f64>>()
+        });
         let most = row.and_then(|row| (0..count).max_by(|&a, &b| row[a].total_cmp(&row[b])));
         most.map_or_else(String::new, |joint| self.chain.joints[joint].name.clone())
     }
@@ -240,12 +289,25 @@ impl Standing<'_> {
         let jacobian = jacobian_at(self.loaded, links, tool.translation);
         let mut comfort = (self.singularity(q) / 0.15).min(1.0);
         let mut torques = [0.0; MAX_JOINTS];
-        gravity_torques(self.loaded, self.world_from_base.rotation, self.gravity, position, &mut torques[..=count]);
+        gravity_torques(
+            self.loaded,
+            self.world_from_base.rotation,
+            self.gravity,
+            position,
+            &mut torques[..=count],
+        );
         for (index, joint) in self.chain.joints.iter().enumerate() {
             let margin = (q[index] - joint.lower).min(joint.upper - q[index]);
-            let push = DVec3::new(jacobian[(0, index)], jacobian[(1, index)], jacobian[(2, index)]).dot(tool_force);
+            let push = DVec3::new(
+                jacobian[(0, index)],
+                jacobian[(1, index)],
+                jacobian[(2, index)],
+            )
+            .dot(tool_force);
             let spare = 1.0 - ((torques[index] - push).abs() + joint.friction) / joint.effort;
-            comfort = comfort.min((margin / 0.5).min(1.0)).min((spare / 0.3).min(1.0));
+            comfort = comfort
+                .min((margin / 0.5).min(1.0))
+                .min((spare / 0.3).min(1.0));
         }
         let up = -self.gravity.normalize_or_zero();
         let lowest = links
@@ -254,7 +316,11 @@ impl Standing<'_> {
             .skip(1)
             .map(|pose| up.dot(pose.translation - self.world_from_base.translation))
             .fold(f64::INFINITY, f64::min);
-        if lowest < FLOOR { comfort.min(0.0) - 1.0 } else { comfort }
+        if lowest < FLOOR {
+            comfort.min(0.0) - 1.0
+        } else {
+            comfort
+        }
     }
 
     /// Chooses spin and posture: `poses_at` gives the coarse poses of the whole job for a spin [rad], with the force on the tool at each.
@@ -274,17 +340,37 @@ impl Standing<'_> {
             let (poses, forces) = poses_at(spin);
             let options = self.options(seed);
             let starts: Vec<Vec<f64>> = match seed_posture {
-                Some(posture) => solve(self.chain, self.world_from_base, &poses[0], posture, &IkOptions { random_starts: 0, ..options })
-                    .into_iter()
-                    .map(|solution| solution.q)
-                    .collect(),
-                None => distinct_solutions(self.chain, self.world_from_base, &poses[0], STARTS, &options)
-                    .into_iter()
-                    .map(|solution| solution.q)
-                    .collect(),
+                Some(posture) => solve(
+                    self.chain,
+                    self.world_from_base,
+                    &poses[0],
+                    posture,
+                    &IkOptions {
+                        random_starts: 0,
+                        ..options
+                    },
+                )
+                .into_iter()
+                .map(|solution| solution.q)
+                .collect(),
+                None => distinct_solutions(
+                    self.chain,
+                    self.world_from_base,
+                    &poses[0],
+                    STARTS,
+                    &options,
+                )
+                .into_iter()
+                .map(|solution| solution.q)
+                .collect(),
             };
             if starts.is_empty() && failure.is_none() {
-                let middle: Vec<f64> = self.chain.joints.iter().map(|joint| joint.middle().unwrap_or(0.0)).collect();
+                let middle: Vec<f64> = self
+                    .chain
+                    .joints
+                    .iter()
+                    .map(|joint| joint.middle().unwrap_or(0.0))
+                    .collect();
                 failure = Some((0, self.explain(&poses[0], &middle)));
             }
             for start in starts {
@@ -296,7 +382,11 @@ impl Standing<'_> {
                             .map(|(q, &force)| self.comfort(q, force))
                             .fold(f64::INFINITY, f64::min);
                         if let Some(posture) = seed_posture {
-                            let far = posture.iter().zip(&start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                            let far = posture
+                                .iter()
+                                .zip(&start)
+                                .map(|(a, b)| (a - b).abs())
+                                .fold(0.0, f64::max);
                             worth -= 10.0 * far;
                         }
                         if best.as_ref().is_none_or(|b| worth > b.0 + 1e-9) {
@@ -314,7 +404,13 @@ impl Standing<'_> {
         match (best, failure) {
             (Some((_, spin, start)), _) => Ok((spin, start)),
             (None, Some(failure)) => Err(failure),
-            (None, None) => Err((0, Obstacle::OutOfReach { distance: f64::NAN, axis: None })),
+            (None, None) => Err((
+                0,
+                Obstacle::OutOfReach {
+                    distance: f64::NAN,
+                    axis: None,
+                },
+            )),
         }
     }
 }
@@ -323,12 +419,20 @@ impl Standing<'_> {
 fn tilt(from: DVec3, to: DVec3) -> DVec3 {
     let across = from.cross(to);
     let sine = across.length();
-    if sine < 1e-300 { across } else { across * (sine.atan2(from.dot(to)) / sine) }
+    if sine < 1e-300 {
+        across
+    } else {
+        across * (sine.atan2(from.dot(to)) / sine)
+    }
 }
 
 /// Axis times angle of a rotation, the shorter way round; exact for small angles, unlike glam's `to_scaled_axis`.
 fn rotation_vector(rotation: DQuat) -> DVec3 {
-    let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
+    let rotation = if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
+    };
     let sine = rotation.xyz().length();
     if sine < 1e-300 {
         return 2.0 * rotation.xyz();

@@ -92,10 +92,18 @@ impl Profile {
         }
         joints.push(0.0);
         for (i, section) in sections.iter().enumerate() {
-            joints[i + 1] = joints[i + 1].min(limits.reachable(joints[i], joints[i + 1].max(joints[i]), section.length));
+            joints[i + 1] = joints[i + 1].min(limits.reachable(
+                joints[i],
+                joints[i + 1].max(joints[i]),
+                section.length,
+            ));
         }
         for (i, section) in sections.iter().enumerate().rev() {
-            joints[i] = joints[i].min(limits.reachable(joints[i + 1], joints[i].max(joints[i + 1]), section.length));
+            joints[i] = joints[i].min(limits.reachable(
+                joints[i + 1],
+                joints[i].max(joints[i + 1]),
+                section.length,
+            ));
         }
         let mut builder = Builder::default();
         for (i, section) in sections.iter().enumerate() {
@@ -119,7 +127,10 @@ impl Profile {
         if time >= self.duration || self.pieces.is_empty() {
             return self.end;
         }
-        let index = self.pieces.partition_point(|piece| piece.start_time <= time).saturating_sub(1);
+        let index = self
+            .pieces
+            .partition_point(|piece| piece.start_time <= time)
+            .saturating_sub(1);
         let piece = &self.pieces[index];
         advance(&piece.start, piece.jerk, (time - piece.start_time).max(0.0))
     }
@@ -127,7 +138,8 @@ impl Profile {
 
 fn advance(start: &PathState, jerk: f64, time: f64) -> PathState {
     PathState {
-        position: start.position + time * (start.speed + time * (0.5 * start.acceleration + time * jerk / 6.0)),
+        position: start.position
+            + time * (start.speed + time * (0.5 * start.acceleration + time * jerk / 6.0)),
         speed: start.speed + time * (start.acceleration + 0.5 * time * jerk),
         acceleration: start.acceleration + time * jerk,
     }
@@ -143,7 +155,8 @@ struct Builder {
 impl Builder {
     fn section(&mut self, section: &SpeedSection, enter: f64, leave: f64, limits: &MotionLimits) {
         let end = self.state.position + section.length;
-        let needed = |peak: f64| limits.change_distance(enter, peak) + limits.change_distance(peak, leave);
+        let needed =
+            |peak: f64| limits.change_distance(enter, peak) + limits.change_distance(peak, leave);
         let (mut low, mut high) = (enter.max(leave), section.speed.max(enter).max(leave));
         if needed(high) > section.length {
             for _ in 0..80 {
@@ -164,7 +177,11 @@ impl Builder {
         }
         self.change(leave, limits);
         // What rounding left over is put right here, so that sections do not drift.
-        self.state = PathState { position: end, speed: leave, acceleration: 0.0 };
+        self.state = PathState {
+            position: end,
+            speed: leave,
+            acceleration: 0.0,
+        };
     }
 
     fn change(&mut self, to: f64, limits: &MotionLimits) {
@@ -186,13 +203,21 @@ impl Builder {
         if duration <= 0.0 {
             return;
         }
-        self.pieces.push(Piece { start_time: self.time, start: self.state, jerk });
+        self.pieces.push(Piece {
+            start_time: self.time,
+            start: self.state,
+            jerk,
+        });
         self.state = advance(&self.state, jerk, duration);
         self.time += duration;
     }
 
     fn finish(self) -> Profile {
-        Profile { duration: self.time, end: self.state, pieces: self.pieces }
+        Profile {
+            duration: self.time,
+            end: self.state,
+            pieces: self.pieces,
+        }
     }
 }
 
@@ -200,7 +225,10 @@ impl Builder {
 mod tests {
     use super::*;
 
-    const LIMITS: MotionLimits = MotionLimits { acceleration: 0.5, jerk: 5.0 };
+    const LIMITS: MotionLimits = MotionLimits {
+        acceleration: 0.5,
+        jerk: 5.0,
+    };
 
     fn walk(profile: &Profile) -> (f64, f64, f64, f64) {
         let (mut fastest, mut hardest, mut jump, mut step) = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
@@ -211,7 +239,9 @@ mod tests {
             fastest = fastest.max(now.speed);
             hardest = hardest.max(now.acceleration.abs());
             jump = jump.max((now.acceleration - before.acceleration).abs() / dt);
-            step = step.max((now.position - before.position - 0.5 * dt * (now.speed + before.speed)).abs());
+            step = step.max(
+                (now.position - before.position - 0.5 * dt * (now.speed + before.speed)).abs(),
+            );
             before = now;
         }
         (fastest, hardest, jump, step)
@@ -219,17 +249,28 @@ mod tests {
 
     #[test]
     fn limits_hold_and_the_end_is_reached_at_rest() {
-        let sections = [(0.1, 0.05), (0.01, 0.01), (0.2, 0.2), (0.002, 0.02), (0.15, 0.05)];
+        let sections = [
+            (0.1, 0.05),
+            (0.01, 0.01),
+            (0.2, 0.2),
+            (0.002, 0.02),
+            (0.15, 0.05),
+        ];
         let sections = sections.map(|(length, speed)| SpeedSection { length, speed });
         let profile = Profile::through(&sections, LIMITS);
         let (fastest, hardest, jerk, step) = walk(&profile);
         assert!(fastest <= 0.2 + 1e-9 && fastest > 0.15, "{fastest}");
-        assert!(hardest <= 0.5 + 1e-9 && jerk <= 5.0 + 1e-3, "{hardest} {jerk}");
+        assert!(
+            hardest <= 0.5 + 1e-9 && jerk <= 5.0 + 1e-3,
+            "{hardest} {jerk}"
+        );
         assert!(step < 1e-9, "position jumps by {step}");
         let end = profile.at(profile.duration());
         assert!((end.position - 0.462).abs() < 1e-12 && end.speed == 0.0);
         // The slow section is passed at its own speed.
-        let at = (0..100_000).map(|i| profile.at(f64::from(i) * 1e-4)).find(|s| s.position > 0.105);
+        let at = (0..100_000)
+            .map(|i| profile.at(f64::from(i) * 1e-4))
+            .find(|s| s.position > 0.105);
         assert!((at.unwrap().speed - 0.01).abs() < 1e-9);
     }
 

@@ -24,7 +24,8 @@ impl Spline {
             let pivot = share * upper[i - 1] + 2.0;
             upper[i] = (share - 1.0) / pivot;
             for j in 0..width {
-                let slopes = (values[i + 1][j] - values[i][j]) / after - (values[i][j] - values[i - 1][j]) / before;
+                let slopes = (values[i + 1][j] - values[i][j]) / after
+                    - (values[i][j] - values[i - 1][j]) / before;
                 bends[i][j] = (6.0 * slopes / (before + after) - share * bends[i - 1][j]) / pivot;
             }
         }
@@ -34,21 +35,33 @@ impl Spline {
                 *bend += upper[i] * next;
             }
         }
-        Self { knots, values, bends }
+        Self {
+            knots,
+            values,
+            bends,
+        }
     }
 
     /// Value, first and second derivative of each component at a place, written to the three slices.
     pub fn at(&self, place: f64, value: &mut [f64], slope: &mut [f64], bend: &mut [f64]) {
         let last = self.knots.len() - 1;
-        let upper = self.knots.partition_point(|&knot| knot <= place).clamp(1, last);
+        let upper = self
+            .knots
+            .partition_point(|&knot| knot <= place)
+            .clamp(1, last);
         let lower = upper - 1;
         let h = self.knots[upper] - self.knots[lower];
-        let (a, b) = ((self.knots[upper] - place) / h, (place - self.knots[lower]) / h);
+        let (a, b) = (
+            (self.knots[upper] - place) / h,
+            (place - self.knots[lower]) / h,
+        );
         for j in 0..value.len() {
             let (y0, y1) = (self.values[lower][j], self.values[upper][j]);
             let (m0, m1) = (self.bends[lower][j], self.bends[upper][j]);
-            value[j] = a * y0 + b * y1 + ((a * a * a - a) * m0 + (b * b * b - b) * m1) * h * h / 6.0;
-            slope[j] = (y1 - y0) / h + ((3.0 * b * b - 1.0) * m1 - (3.0 * a * a - 1.0) * m0) * h / 6.0;
+            value[j] =
+                a * y0 + b * y1 + ((a * a * a - a) * m0 + (b * b * b - b) * m1) * h * h / 6.0;
+            slope[j] =
+                (y1 - y0) / h + ((3.0 * b * b - 1.0) * m1 - (3.0 * a * a - 1.0) * m0) * h / 6.0;
             bend[j] = a * m0 + b * m1;
         }
     }
@@ -71,7 +84,10 @@ mod tests {
     #[test]
     fn it_follows_a_smooth_curve_and_its_derivatives() {
         let knots: Vec<f64> = (0..=200).map(|i| 0.01 * f64::from(i)).collect();
-        let values = knots.iter().map(|x| vec![x.sin(), (2.0 * x).cos()]).collect();
+        let values = knots
+            .iter()
+            .map(|x| vec![x.sin(), (2.0 * x).cos()])
+            .collect();
         let spline = Spline::through(knots, values);
         let (mut y, mut d, mut dd) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         for i in 0..100 {

@@ -75,11 +75,19 @@ impl ToolPath {
     /// # Errors
     /// A corner that turns inwards, where a ball cannot reach the edge.
     pub fn along(curve: EdgeCurve, world_from_part: DPose3, lean: f64) -> Result<Self, PlanError> {
-        let mut path = Self { curve, world_from_part, lean, sections: Vec::new() };
+        let mut path = Self {
+            curve,
+            world_from_part,
+            lean,
+            sections: Vec::new(),
+        };
         let length = path.curve.length;
         let mut from = 0.0;
         let corners = path.curve.corner_stations();
-        for &corner in corners.iter().filter(|&&c| c > BESIDE && c < length - BESIDE) {
+        for &corner in corners
+            .iter()
+            .filter(|&&c| c > BESIDE && c < length - BESIDE)
+        {
             path.push(corner - from, Stretch::Edge { from, to: corner });
             path.push_corner(corner)?;
             from = corner;
@@ -90,7 +98,11 @@ impl ToolPath {
 
     fn push(&mut self, length: f64, stretch: Stretch) {
         let start = self.length();
-        self.sections.push(Section { start, length, stretch });
+        self.sections.push(Section {
+            start,
+            length,
+            stretch,
+        });
     }
 
     fn push_corner(&mut self, corner: f64) -> Result<(), PlanError> {
@@ -103,9 +115,18 @@ impl ToolPath {
                 turn: before.tangent.angle_between(after.tangent),
             });
         }
-        after.point = self.world_from_part.transform_point(self.curve.at(corner).point);
-        let turned = before.axis.angle_between(after.axis).max(before.normal.angle_between(after.normal));
-        let before = ToolStation { point: after.point, edge_length: corner, ..before };
+        after.point = self
+            .world_from_part
+            .transform_point(self.curve.at(corner).point);
+        let turned = before
+            .axis
+            .angle_between(after.axis)
+            .max(before.normal.angle_between(after.normal));
+        let before = ToolStation {
+            point: after.point,
+            edge_length: corner,
+            ..before
+        };
         after.edge_length = corner;
         self.push(CORNER_RADIUS * turned, Stretch::Corner { before, after });
         Ok(())
@@ -113,7 +134,9 @@ impl ToolPath {
 
     /// Length of the whole path [m].
     pub fn length(&self) -> f64 {
-        self.sections.last().map_or(0.0, |section| section.start + section.length)
+        self.sections
+            .last()
+            .map_or(0.0, |section| section.start + section.length)
     }
 
     /// Its sections in order.
@@ -123,7 +146,10 @@ impl ToolPath {
 
     /// The place at a path length [m], held at the ends.
     pub fn at(&self, place: f64) -> ToolStation {
-        let index = self.sections.partition_point(|section| section.start <= place).saturating_sub(1);
+        let index = self
+            .sections
+            .partition_point(|section| section.start <= place)
+            .saturating_sub(1);
         let section = &self.sections[index];
         let share = ((place - section.start) / section.length).clamp(0.0, 1.0);
         match section.stretch {
@@ -149,7 +175,8 @@ impl ToolPath {
     fn on_edge(&self, edge_length: f64) -> ToolStation {
         let edge = self.curve.at(edge_length);
         let rotation = self.world_from_part.rotation;
-        let side = (edge.normal_a - edge.bisector * edge.normal_a.dot(edge.bisector)).normalize_or_zero();
+        let side =
+            (edge.normal_a - edge.bisector * edge.normal_a.dot(edge.bisector)).normalize_or_zero();
         let outward = edge.bisector * self.lean.cos() + side * self.lean.sin();
         ToolStation {
             edge_length,
@@ -171,16 +198,34 @@ mod tests {
     /// A cube of 0.1 m whose top outline is a closed loop with four corners.
     fn cube() -> TriangleMesh {
         let corner = |i: usize| {
-            DVec3::new(0.1 * (i & 1) as f64, 0.1 * (i >> 1 & 1) as f64, 0.1 * (i >> 2 & 1) as f64)
+            DVec3::new(
+                0.1 * (i & 1) as f64,
+                0.1 * (i >> 1 & 1) as f64,
+                0.1 * (i >> 2 & 1) as f64,
+            )
         };
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let quads = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let triangles = quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect();
         TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap()
     }
 
     fn round_the_top(lean: f64) -> ToolPath {
         let list = list_edges(&cube(), &EdgeSearch::default());
-        let top = list.loops.iter().find(|l| l.points.iter().all(|p| p.z > 0.099)).unwrap();
+        let top = list
+            .loops
+            .iter()
+            .find(|l| l.points.iter().all(|p| p.z > 0.099))
+            .unwrap();
         ToolPath::along(top.clone(), DPose3::IDENTITY, lean).unwrap()
     }
 
@@ -199,7 +244,11 @@ mod tests {
     #[test]
     fn corners_are_turned_on_the_spot_and_everything_is_continuous() {
         let path = round_the_top(0.0);
-        let corners = path.sections().iter().filter(|s| matches!(s.stretch, Stretch::Corner { .. })).count();
+        let corners = path
+            .sections()
+            .iter()
+            .filter(|s| matches!(s.stretch, Stretch::Corner { .. }))
+            .count();
         assert_eq!(corners, 3, "the loop starts and ends at the fourth");
         // Two bisectors of a cube's corner stand 60 degrees apart.
         let expected = 0.4 + 3.0 * CORNER_RADIUS * std::f64::consts::FRAC_PI_3;
@@ -223,6 +272,9 @@ mod tests {
             *wall = -*wall;
         }
         let refused = ToolPath::along(curve, DPose3::IDENTITY, 0.0).unwrap_err();
-        assert!(matches!(refused, PlanError::InwardCorner { .. }), "{refused}");
+        assert!(
+            matches!(refused, PlanError::InwardCorner { .. }),
+            "{refused}"
+        );
     }
 }

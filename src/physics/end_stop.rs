@@ -38,7 +38,10 @@ mod tests {
 
     #[test]
     fn it_pushes_inwards_and_never_pulls() {
-        let stop = EndStop { stiffness: 1e6, damping: 2e3 };
+        let stop = EndStop {
+            stiffness: 1e6,
+            damping: 2e3,
+        };
         assert_eq!(stop.force(0.05, 0.02, 1.0).0, 0.0);
         assert!((stop.force(0.05, -1e-4, 0.0).0 - 100.0).abs() < 1e-9);
         assert!((stop.force(0.05, 0.0501, 0.0).0 + 100.0).abs() < 1e-6);

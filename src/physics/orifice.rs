@@ -80,7 +80,10 @@ impl FlowFunction {
         } else {
             (to, from, -1.0)
         };
-        sign * conductance_area * upstream * self.inverse_sqrt_rt * self.value(downstream / upstream)
+        sign * conductance_area
+            * upstream
+            * self.inverse_sqrt_rt
+            * self.value(downstream / upstream)
     }
 }
 

@@ -73,7 +73,8 @@ impl RegulatorState {
 
     fn relax(&mut self, parameters: &RegulatorParameters, dt: f64) {
         let target = (parameters.gain * self.arrived).clamp(0.0, parameters.supply);
-        self.outlet = target + (self.outlet - target) * (-dt.max(0.0) / parameters.time_constant).exp();
+        self.outlet =
+            target + (self.outlet - target) * (-dt.max(0.0) / parameters.time_constant).exp();
     }
 }
 

@@ -35,7 +35,8 @@ pub fn chamber_flows(
     pressures: [f64; 2],
 ) -> [f64; 2] {
     let supplied = |pressure| function.mass_flow(parameters.supply_conductance, outlet, pressure);
-    let vented = |pressure| function.mass_flow(parameters.exhaust_conductance, atmosphere, pressure);
+    let vented =
+        |pressure| function.mass_flow(parameters.exhaust_conductance, atmosphere, pressure);
     match position {
         ValvePosition::Extend => [supplied(pressures[0]), vented(pressures[1])],
         ValvePosition::Retract => [vented(pressures[0]), supplied(pressures[1])],

@@ -74,11 +74,22 @@ impl PhysicsHooks for ContactHook {
         let Some(rigid) = context.rigid_mut() else {
             return;
         };
-        let triangle = if part_first { rigid.manifold.subshape1 } else { rigid.manifold.subshape2 };
-        let kept = self.kept.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let triangle = if part_first {
+            rigid.manifold.subshape1
+        } else {
+            rigid.manifold.subshape2
+        };
+        let kept = self
+            .kept
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner());
         match kept.iter().find(|k| k.triangle == triangle) {
             Some(kept) => {
-                *rigid.normal = if part_first { kept.normal } else { -kept.normal };
+                *rigid.normal = if part_first {
+                    kept.normal
+                } else {
+                    -kept.normal
+                };
                 for contact in rigid.solver_contacts.iter_mut() {
                     contact.dist = kept.separation;
                 }
@@ -132,7 +143,10 @@ impl PartContact {
             .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
         let tool_collider = physics.insert_collider(ball, Some(tool_body));
         Self {
-            hook: ContactHook { part: part_collider, kept: Mutex::new(Vec::new()) },
+            hook: ContactHook {
+                part: part_collider,
+                kept: Mutex::new(Vec::new()),
+            },
             surface: ContactSurface::new(part),
             parameters,
             tool,
@@ -162,8 +176,13 @@ impl PartContact {
         centre: DVec3,
     ) {
         let reach = self.tool.radius + REACH + self.lift.max(0.0);
-        self.surface.genuine_contacts(centre, reach, &mut self.found);
-        let kept = self.hook.kept.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
+        self.surface
+            .genuine_contacts(centre, reach, &mut self.found);
+        let kept = self
+            .hook
+            .kept
+            .get_mut()
+            .unwrap_or_else(|poisoned| poisoned.into_inner());
         kept.clear();
         kept.extend(self.found.iter().map(|contact| {
             // A rising burr leans the normal back against the motion.
@@ -171,10 +190,13 @@ impl PartContact {
             Kept {
                 triangle: contact.triangle,
                 normal,
-                separation: (contact.distance - self.tool.radius - self.lift) * normal.dot(contact.normal),
+                separation: (contact.distance - self.tool.radius - self.lift)
+                    * normal.dot(contact.normal),
             }
         }));
-        let deepest = kept.iter().min_by(|a, b| a.separation.total_cmp(&b.separation));
+        let deepest = kept
+            .iter()
+            .min_by(|a, b| a.separation.total_cmp(&b.separation));
         let Some(deepest) = deepest.copied() else {
             self.mass_steps_left = 0;
             return;
@@ -219,7 +241,8 @@ impl PartContact {
             torque.y,
             torque.z,
         );
-        self.jacobian.gemv_tr(1.0, multibody.body_jacobian(link.id), &wrench, 0.0);
+        self.jacobian
+            .gemv_tr(1.0, multibody.body_jacobian(link.id), &wrench, 0.0);
         self.response.copy_from(&self.jacobian);
         multibody.inv_augmented_mass().solve_mut(&mut self.response);
         Some(1.0 / self.jacobian.dot(&self.response))
@@ -227,8 +250,15 @@ impl PartContact {
 
     /// Reads the forces of the last step.
     pub(super) fn read(&mut self, physics: &PhysicsWorld) -> ContactReading {
-        let mut reading = ContactReading { penetration: -f64::MAX, ..ContactReading::default() };
-        let kept = self.hook.kept.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let mut reading = ContactReading {
+            penetration: -f64::MAX,
+            ..ContactReading::default()
+        };
+        let kept = self
+            .hook
+            .kept
+            .get_mut()
+            .unwrap_or_else(|poisoned| poisoned.into_inner());
         if kept.is_empty() {
             return ContactReading::default();
         }
@@ -236,7 +266,11 @@ impl PartContact {
         for pair in physics.narrow_phase.contact_pairs_with(self.tool_collider) {
             let part_first = pair.collider1 == part;
             for manifold in pair.manifolds() {
-                let triangle = if part_first { manifold.subshape1 } else { manifold.subshape2 };
+                let triangle = if part_first {
+                    manifold.subshape1
+                } else {
+                    manifold.subshape2
+                };
                 let Some(kept) = kept.iter().find(|k| k.triangle == triangle) else {
                     continue;
                 };
@@ -265,7 +299,11 @@ impl PartContact {
 fn softness(parameters: &PartContactParameters, mass: f64, step: f64) -> SpringCoefficients<f64> {
     let frequency = (parameters.stiffness / mass).sqrt();
     let phase = frequency * step;
-    let theta = if phase <= EXPLICIT_LIMIT { 0.0 } else { 1.0 - (EXPLICIT_LIMIT / phase).powi(2) };
+    let theta = if phase <= EXPLICIT_LIMIT {
+        0.0
+    } else {
+        1.0 - (EXPLICIT_LIMIT / phase).powi(2)
+    };
     let discrete_damping = mass * ((step * parameters.damping / mass).exp_m1()) / step;
     let damping = discrete_damping - (1.0 - theta) * parameters.stiffness * step;
     SpringCoefficients::new(

@@ -39,7 +39,11 @@ impl SampleLog {
                 if let Some(span) = last {
                     span.end = time;
                 }
-                self.phases.push(PhaseSpan { name: phase.name().to_owned(), start: time, end: time });
+                self.phases.push(PhaseSpan {
+                    name: phase.name().to_owned(),
+                    start: time,
+                    end: time,
+                });
             }
         }
         self.time.push(time);
@@ -52,11 +56,21 @@ impl SampleLog {
     /// # Errors
     /// Nothing was recorded.
     pub fn into_recording(self) -> Result<Recording, RecordingError> {
-        let singles = schema::SIGNALS.iter().map(|signal| (signal.quantity.to_owned(), signal.unit));
-        let joints = (1..=self.joints)
-            .flat_map(|joint| JointSignal::ALL.map(|signal| (joint_quantity(joint, signal), signal.unit())));
+        let singles = schema::SIGNALS
+            .iter()
+            .map(|signal| (signal.quantity.to_owned(), signal.unit));
+        let joints = (1..=self.joints).flat_map(|joint| {
+            JointSignal::ALL.map(|signal| (joint_quantity(joint, signal), signal.unit()))
+        });
         let width = Self::width(self.joints);
-        let column = |index: usize| self.rows.iter().skip(index).step_by(width).copied().collect();
+        let column = |index: usize| {
+            self.rows
+                .iter()
+                .skip(index)
+                .step_by(width)
+                .copied()
+                .collect()
+        };
         let channels = singles
             .chain(joints)
             .enumerate()

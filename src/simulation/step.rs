@@ -213,7 +213,9 @@ impl<'a> Simulation<'a> {
             speed: self.world.velocities()[slide],
         };
         let substeps = self.cell.scenario.simulation.substeps;
-        self.cell.device.advance(&mut self.device, set_pressure, motion, dt, substeps)
+        self.cell
+            .device
+            .advance(&mut self.device, set_pressure, motion, dt, substeps)
     }
 
     /// Laws of all degrees of freedom: the axes' servo with feed-forward, the device on the slide.
@@ -226,7 +228,8 @@ impl<'a> Simulation<'a> {
                 velocity: reference.velocity[axis],
                 feed_forward,
             };
-            let (position, velocity) = (self.world.positions()[axis], self.world.velocities()[axis]);
+            let (position, velocity) =
+                (self.world.positions()[axis], self.world.velocities()[axis]);
             self.laws[axis] = self.servo.law(axis, &command, position, velocity, dt);
         }
         let device_scenario = &self.cell.scenario.device;
@@ -267,7 +270,11 @@ impl<'a> Simulation<'a> {
             &mut torque[..=n],
         );
         if cell.scenario.arm.servo.contact_feed_forward {
-            let pushing = if cell.scenario.device.locked { self.slide_force } else { device.force };
+            let pushing = if cell.scenario.device.locked {
+                self.slide_force
+            } else {
+                device.force
+            };
             let contact = (pushing - torque[n]) / cell.axial_share();
             let force = (reference.normal * contact).to_array();
             let mut links = [DPose3::IDENTITY; MAX_JOINTS];
@@ -276,7 +283,9 @@ impl<'a> Simulation<'a> {
             }
             let jacobian = jacobian_at(chain, &links[..=n], self.world.tool_centre());
             for (axis, torque) in torque.iter_mut().enumerate().take(n) {
-                *torque -= (0..3).map(|row| jacobian[(row, axis)] * force[row]).sum::<f64>();
+                *torque -= (0..3)
+                    .map(|row| jacobian[(row, axis)] * force[row])
+                    .sum::<f64>();
             }
         }
         torque
@@ -291,7 +300,9 @@ impl<'a> Simulation<'a> {
         let along = (self.world.tool_centre() - reference.centre).dot(reference.tangent);
         let place = (reference.edge_length + along).clamp(0.0, ride.length());
         let gradient = reference.tangent * ride.slope(place);
-        self.world.part_contact_mut().set_lift(ride.lift(place), gradient);
+        self.world
+            .part_contact_mut()
+            .set_lift(ride.lift(place), gradient);
     }
 
     fn sample(&mut self, reference: &Reference, set_pressure: f64) -> Result<(), SimulationError> {
@@ -333,8 +344,15 @@ impl<'a> Simulation<'a> {
         let mut joints = [[0.0; 4]; MAX_JOINTS];
         for (axis, joint) in joints.iter_mut().enumerate().take(n) {
             let velocity = self.world.velocities()[axis];
-            let torque = self.servo.drive_torque(axis, self.world.applied_force(axis), velocity);
-            *joint = [self.world.positions()[axis], reference.position[axis], velocity, torque];
+            let torque = self
+                .servo
+                .drive_torque(axis, self.world.applied_force(axis), velocity);
+            *joint = [
+                self.world.positions()[axis],
+                reference.position[axis],
+                velocity,
+                torque,
+            ];
         }
         self.check_finite(&signals, &joints[..n], reference.phase, time)?;
         self.log.push(time, reference.phase, &signals, &joints[..n]);
@@ -359,9 +377,15 @@ impl<'a> Simulation<'a> {
     fn frame(&mut self, time: f64, reference: &Reference, force: DVec3, normal: DVec3) {
         self.frames.times.push(time);
         self.frames.path_lengths.push(reference.edge_length);
-        self.frames.links.push((0..self.laws.len()).map(|joint| self.world.link_pose(joint)).collect());
+        self.frames.links.push(
+            (0..self.laws.len())
+                .map(|joint| self.world.link_pose(joint))
+                .collect(),
+        );
         let radius = self.cell.scenario.device.tool_radius;
-        self.frames.contact_points.push(self.world.tool_centre() - normal * radius);
+        self.frames
+            .contact_points
+            .push(self.world.tool_centre() - normal * radius);
         self.frames.contact_forces.push(force);
     }
 
@@ -373,9 +397,17 @@ impl<'a> Simulation<'a> {
         time: f64,
     ) -> Result<(), SimulationError> {
         let mut named = signals.iter().zip(&crate::recording::schema::SIGNALS);
-        let bad = named.find(|(value, signal)| !value.is_finite() || (signal.unit == Unit::Kilogram && **value < 0.0));
+        let bad = named.find(|(value, signal)| {
+            !value.is_finite() || (signal.unit == Unit::Kilogram && **value < 0.0)
+        });
         let bad = bad.map(|(value, signal)| (signal.quantity, *value));
-        let bad = bad.or_else(|| joints.iter().flatten().find(|v| !v.is_finite()).map(|v| ("a joint", *v)));
+        let bad = bad.or_else(|| {
+            joints
+                .iter()
+                .flatten()
+                .find(|v| !v.is_finite())
+                .map(|v| ("a joint", *v))
+        });
         match bad {
             None => Ok(()),
             Some((quantity, value)) => Err(SimulationError::NotFinite {
@@ -388,7 +420,12 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    fn check_axes(&self, joints: &[[f64; 4]], phase: Phase, time: f64) -> Result<(), SimulationError> {
+    fn check_axes(
+        &self,
+        joints: &[[f64; 4]],
+        phase: Phase,
+        time: f64,
+    ) -> Result<(), SimulationError> {
         for (axis, joint) in joints.iter().enumerate() {
             let error = joint[1] - joint[0];
             if error.abs() > LOST {
@@ -408,7 +445,12 @@ impl<'a> Simulation<'a> {
     }
 
     /// The slide must never reach its inner end, and on the edge not its outer one either.
-    fn check_stroke(&self, reference: &Reference, stroke: f64, time: f64) -> Result<(), SimulationError> {
+    fn check_stroke(
+        &self,
+        reference: &Reference,
+        stroke: f64,
+        time: f64,
+    ) -> Result<(), SimulationError> {
         let scenario = &self.cell.scenario;
         let full_stroke = scenario.device.parameters.full_stroke;
         if scenario.device.locked {

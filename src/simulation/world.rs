@@ -72,11 +72,8 @@ impl World {
         let (mut joints, mut axes, mut parent) = (Vec::new(), Vec::new(), base);
         for joint in &description.chain.joints {
             let body = &joint.body;
-            let properties = MassProperties::with_inertia_matrix(
-                body.centre_of_mass,
-                body.mass,
-                body.inertia,
-            );
+            let properties =
+                MassProperties::with_inertia_matrix(body.centre_of_mass, body.mass, body.inertia);
             let link = physics.insert_body(
                 RigidBodyBuilder::dynamic()
                     .additional_mass_properties(properties)
@@ -195,7 +192,10 @@ impl World {
             let (stiffness, rest) = if law.stiffness > 0.0 {
                 (law.stiffness, law.rest + law.force / law.stiffness)
             } else {
-                (CARRIER_STIFFNESS, self.positions[i] + law.force / CARRIER_STIFFNESS)
+                (
+                    CARRIER_STIFFNESS,
+                    self.positions[i] + law.force / CARRIER_STIFFNESS,
+                )
             };
             multibody.damping_mut()[i] = law.damping;
             if let Some(link) = multibody.link_mut(self.links[i]) {
@@ -207,8 +207,10 @@ impl World {
     /// Advances by one step.
     pub fn step(&mut self) {
         let centre = self.tool_centre();
-        self.pipeline_contact.prepare(&mut self.physics, self.joints[0], self.tool_body, centre);
-        self.physics.step_with_events(&self.pipeline_contact.hook, &());
+        self.pipeline_contact
+            .prepare(&mut self.physics, self.joints[0], self.tool_body, centre);
+        self.physics
+            .step_with_events(&self.pipeline_contact.hook, &());
         self.read_joints();
         self.reading = self.pipeline_contact.read(&self.physics);
     }
@@ -220,7 +222,9 @@ impl World {
             .get(self.joints[0])
             .expect("the multibody lives as long as the world");
         for i in 0..self.joints.len() {
-            let link = multibody.link(self.links[i]).expect("each joint has its link");
+            let link = multibody
+                .link(self.links[i])
+                .expect("each joint has its link");
             self.positions[i] = link.joint().coords()[self.axes[i]];
             self.velocities[i] = multibody.generalized_velocity()[i];
         }
@@ -278,7 +282,9 @@ impl World {
             }
             let weight = (self.physics.gravity * body.mass()).to_array();
             let jacobian = multibody.body_jacobian(link.link_id());
-            torques -= jacobian.fixed_rows::<3>(0).tr_mul(&nalgebra::Vector3::from(weight));
+            torques -= jacobian
+                .fixed_rows::<3>(0)
+                .tr_mul(&nalgebra::Vector3::from(weight));
         }
         torques
     }
@@ -305,7 +311,9 @@ impl World {
                     jacobian[(5, column)],
                 );
                 let angular = inertia * angular;
-                weighted.fixed_view_mut::<3, 1>(0, column).copy_from(&linear);
+                weighted
+                    .fixed_view_mut::<3, 1>(0, column)
+                    .copy_from(&linear);
                 for (row, value) in angular.to_array().into_iter().enumerate() {
                     weighted[(3 + row, column)] = value;
                 }

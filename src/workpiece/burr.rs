@@ -132,7 +132,9 @@ impl BurrProfile {
         let csv_fault = |error: csv::Error| {
             let line = error.position().map_or(1, csv::Position::line);
             match error.kind() {
-                csv::ErrorKind::UnequalLengths { len, .. } => fault(line, format!("{len} fields, expected 2")),
+                csv::ErrorKind::UnequalLengths { len, .. } => {
+                    fault(line, format!("{len} fields, expected 2"))
+                }
                 _ => fault(line, error.to_string()),
             }
         };
@@ -221,16 +223,28 @@ impl BurrProfile {
         let (from, to, expected, fits) = match self {
             Self::FromTable(table) => {
                 let (from, to) = (table.rows[0].0, table.rows[table.rows.len() - 1].0);
-                (from, to, "it to cover", from <= SLACK && to >= length - SLACK)
+                (
+                    from,
+                    to,
+                    "it to cover",
+                    from <= SLACK && to >= length - SLACK,
+                )
             }
-            Self::Bump { position, width, .. } => {
+            Self::Bump {
+                position, width, ..
+            } => {
                 let (from, to) = (position - width / 2.0, position + width / 2.0);
                 (from, to, "it to lie within", from < length && to > 0.0)
             }
             Self::Constant { .. } | Self::SeededRandom(_) => return Ok(()),
         };
         if !fits {
-            return Err(WorkpieceError::BurrCoverage { from, to, length, expected });
+            return Err(WorkpieceError::BurrCoverage {
+                from,
+                to,
+                length,
+                expected,
+            });
         }
         Ok(())
     }
@@ -335,7 +349,10 @@ mod tests {
         }
         burr.require_cover(0.3).unwrap();
         let message = burr.require_cover(0.301).unwrap_err().to_string();
-        assert!(message.ends_with("expected it to cover 0 mm to 301.000 mm"), "{message}");
+        assert!(
+            message.ends_with("expected it to cover 0 mm to 301.000 mm"),
+            "{message}"
+        );
         let bump = BurrProfile::bump(0.4, 1e-4, 0.02).unwrap();
         bump.require_cover(0.391).unwrap();
         let message = bump.require_cover(0.389).unwrap_err().to_string();

@@ -73,7 +73,10 @@ fn a_choked_chamber_fills_linearly() {
         let expected = start + rate * 1e-3 * f64::from(step);
         let pressure = device.pressures(&state, 0.025)[0];
         assert!(pressure < 0.528 * upstream, "no longer choked");
-        assert!((pressure / expected - 1.0).abs() < 1e-6, "{pressure} against {expected}");
+        assert!(
+            (pressure / expected - 1.0).abs() < 1e-6,
+            "{pressure} against {expected}"
+        );
     }
 }
 
@@ -94,11 +97,18 @@ fn closed_chambers_are_isothermal_springs_that_give_back_their_work() {
         stroke += speed * 1e-3;
         if step == 999 {
             // Work of the gas from 10 to 40 mm: sum of p0 V0 ln(V/V0), less the atmosphere's on the rod.
-            let gas: f64 = (0..2).map(|i| start[i] * volumes(0.01)[i] * (volumes(0.04)[i] / volumes(0.01)[i]).ln()).sum();
+            let gas: f64 = (0..2)
+                .map(|i| start[i] * volumes(0.01)[i] * (volumes(0.04)[i] / volumes(0.01)[i]).ln())
+                .sum();
             let expected = gas - Gas::default().atmosphere * device.areas.rod() * 0.03;
-            assert!((work / expected - 1.0).abs() < 1e-7, "{work} against {expected}");
+            assert!(
+                (work / expected - 1.0).abs() < 1e-7,
+                "{work} against {expected}"
+            );
             let pressure = device.pressures(&state, stroke)[0];
-            assert!((pressure * volumes(stroke)[0] / (start[0] * volumes(0.01)[0]) - 1.0).abs() < 1e-12);
+            assert!(
+                (pressure * volumes(stroke)[0] / (start[0] * volumes(0.01)[0]) - 1.0).abs() < 1e-12
+            );
         }
     }
     assert!(work.abs() < 1e-9, "{work} J were lost or made");
@@ -113,11 +123,20 @@ fn swing(substeps: usize) -> ([f64; 2], f64) {
     let mut stroke = 0.025;
     for step in 0..steps {
         let speed = 0.1 * (20.0 * dt * f64::from(step)).cos();
-        device.advance(&mut state, 2.5e5, PistonMotion { stroke, speed }, dt, substeps);
+        device.advance(
+            &mut state,
+            2.5e5,
+            PistonMotion { stroke, speed },
+            dt,
+            substeps,
+        );
         stroke += speed * dt;
     }
     let now: f64 = state.masses.iter().sum();
-    (device.pressures(&state, stroke), state.mass_entered - state.mass_left - (now - held))
+    (
+        device.pressures(&state, stroke),
+        state.mass_entered - state.mass_left - (now - held),
+    )
 }
 
 #[test]
@@ -126,7 +145,10 @@ fn two_substeps_a_millisecond_are_enough_and_no_air_is_lost() {
     for (substeps, tolerance) in [(1, 2e-4), (2, 2e-5), (4, 2e-6)] {
         let (pressures, lost) = swing(substeps);
         for (pressure, reference) in pressures.iter().zip(reference) {
-            assert!((pressure / reference - 1.0).abs() < tolerance, "{substeps}: {pressure} against {reference}");
+            assert!(
+                (pressure / reference - 1.0).abs() < tolerance,
+                "{substeps}: {pressure} against {reference}"
+            );
         }
         assert!(lost.abs() < 1e-18, "{lost} kg");
     }
@@ -142,6 +164,9 @@ fn the_end_stop_adds_its_push_and_its_damping() {
     };
     let free = device.gas_force(&state, 0.0501);
     let force = device.advance(&mut state, 1e5, motion, 1e-5, 1);
-    assert!((force.force - (free - 1e6 * 1e-4 - 2e3 * 0.01)).abs() < 0.1, "{force:?}");
+    assert!(
+        (force.force - (free - 1e6 * 1e-4 - 2e3 * 0.01)).abs() < 0.1,
+        "{force:?}"
+    );
     assert_eq!(force.damping, 2e3);
 }
