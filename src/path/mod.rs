@@ -7,7 +7,10 @@
 
 mod check;
 mod error;
+mod feed;
+mod legs;
 pub mod plan;
+mod poses;
 mod posture;
 pub mod profile;
 pub mod spline;

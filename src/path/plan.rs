@@ -3,27 +3,21 @@
 //! Approach, engage and retract run along the tool's axis; the tool's ball is led so that at the working stroke it presses into the edge by the contact's
 //! nominal penetration.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::DVec3;
 use glamx::DPose3;
 
 use super::check;
 use super::error::{Obstacle, PlanError};
+use super::legs::Layout;
+use super::poses::Coarse;
 use super::posture::Standing;
-use super::profile::{MotionLimits, PathState, Profile, SpeedSection};
+use super::profile::{MotionLimits, PathState, Profile};
 use super::spline::Spline;
-use super::toolpath::{Stretch, ToolPath, ToolStation};
+use super::toolpath::ToolPath;
 use crate::arm::chain::{Chain, MAX_JOINTS};
 
 /// Distance between the knots of the joint angles' spline [m].
-const KNOT_SPACING: f64 = 1e-3;
-/// Distance between the poses by which a posture is chosen [m].
-const COARSE_SPACING: f64 = 8e-3;
-/// Distance before touching at which approach hands over to engage [m].
-const CLEARANCE: f64 = 5e-3;
-/// Share of an axis's speed limit that a slowed feed may use [1].
-const SPEED_SHARE: f64 = 0.9;
-/// Length over which the feed may be slowed for an axis's speed limit [m].
-const FEED_CHUNK: f64 = 1e-2;
+pub(super) const KNOT_SPACING: f64 = 1e-3;
 
 /// Part of the job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -183,237 +177,16 @@ impl Plan {
                 request.seed,
             )
             .map_err(|(index, obstacle)| coarse.failure(request, index, obstacle))?;
-        let mut plan = Self {
-            legs: Vec::new(),
+        let (legs, notes) = Layout::new(request, &standing, spin, start, far)?;
+        let plan = Self {
+            legs,
             tool_path: request.tool_path.clone(),
             offset: request.tool_radius - request.penetration,
             joints: request.arm.len(),
-            notes: Vec::new(),
+            notes,
         };
-        plan.lay_out(request, &standing, spin, &start, far)?;
         check::limits(request, &standing, &plan)?;
         Ok(plan)
-    }
-
-    fn lay_out(
-        &mut self,
-        request: &PlanRequest,
-        standing: &Standing,
-        spin: f64,
-        start: &[f64],
-        far: f64,
-    ) -> Result<(), PlanError> {
-        let length = request.tool_path.length();
-        let knots = places(length, KNOT_SPACING);
-        let poses = poses_along(request, &knots, spin);
-        let near = request.push_back + CLEARANCE.min(0.5 * request.approach_distance);
-        let axial = |plan: &mut Self,
-                     phase,
-                     place: f64,
-                     pose: DPose3,
-                     from: f64,
-                     to: f64,
-                     speed,
-                     rest,
-                     start: &[f64]| {
-            let way = Way::Axial {
-                place,
-                from,
-                sign: (to - from).signum(),
-            };
-            let knots = places((to - from).abs(), KNOT_SPACING);
-            let poses: Vec<DPose3> = knots
-                .iter()
-                .map(|k| backed_off(pose, from + k * (to - from).signum()))
-                .collect();
-            let profile = Profile::single((to - from).abs(), speed, request.limits);
-            plan.add_leg(standing, phase, way, knots, &poses, profile, rest, start)
-        };
-        let (first, last) = (poses[0], poses[poses.len() - 1]);
-        let q = axial(
-            self,
-            Phase::Approach,
-            0.0,
-            first,
-            far,
-            near,
-            request.approach_speed,
-            0.0,
-            start,
-        )?;
-        let q = axial(
-            self,
-            Phase::Engage,
-            0.0,
-            first,
-            near,
-            0.0,
-            request.engage_speed,
-            request.settle_time,
-            &q,
-        )?;
-        let angles = self.track(standing, Phase::Follow, Way::Edge, &knots, &poses, &q)?;
-        let spline = Spline::through(knots, angles);
-        let sections = self.feeds(request, &spline)?;
-        let profile = Profile::through(&sections, request.limits);
-        let q = spline.values().last().cloned().unwrap_or(q);
-        self.push(Phase::Follow, Way::Edge, spline, profile, 0.0);
-        // Gently until the slide stands at its outer stop again: there it takes the tool off the edge with a jolt.
-        let q = axial(
-            self,
-            Phase::Retract,
-            length,
-            last,
-            0.0,
-            near,
-            request.engage_speed,
-            0.0,
-            &q,
-        )?;
-        axial(
-            self,
-            Phase::Retract,
-            length,
-            last,
-            near,
-            far,
-            request.approach_speed,
-            0.2,
-            &q,
-        )?;
-        Ok(())
-    }
-
-    #[allow(clippy::too_many_arguments)]
-    fn add_leg(
-        &mut self,
-        standing: &Standing,
-        phase: Phase,
-        way: Way,
-        knots: Vec<f64>,
-        poses: &[DPose3],
-        profile: Profile,
-        rest: f64,
-        start: &[f64],
-    ) -> Result<Vec<f64>, PlanError> {
-        let angles = self.track(standing, phase, way, &knots, poses, start)?;
-        let end = angles.last().cloned().unwrap_or_default();
-        self.push(phase, way, Spline::through(knots, angles), profile, rest);
-        Ok(end)
-    }
-
-    fn track(
-        &self,
-        standing: &Standing,
-        phase: Phase,
-        way: Way,
-        knots: &[f64],
-        poses: &[DPose3],
-        start: &[f64],
-    ) -> Result<Vec<Vec<f64>>, PlanError> {
-        standing.track(poses, start).map_err(|(index, obstacle)| {
-            let place = match way {
-                Way::Edge => knots[index],
-                Way::Axial { place, .. } => place,
-            };
-            waypoint_error(&self.tool_path, phase, index, poses.len(), place, obstacle)
-        })
-    }
-
-    fn push(&mut self, phase: Phase, way: Way, spline: Spline, profile: Profile, rest: f64) {
-        let start_time = self.duration();
-        let duration = profile.duration() + rest;
-        self.legs.push(Leg {
-            phase,
-            start_time,
-            duration,
-            profile,
-            spline,
-            way,
-        });
-    }
-
-    /// Speed limits along the edge: the feed, less at corners, and less where an axis could not keep up.
-    fn feeds(
-        &mut self,
-        request: &PlanRequest,
-        spline: &Spline,
-    ) -> Result<Vec<SpeedSection>, PlanError> {
-        let mut sections = Vec::new();
-        let mut slowest: Option<(f64, f64, usize)> = None;
-        for section in request.tool_path.sections() {
-            let wanted = match section.stretch {
-                Stretch::Edge { .. } => request.feed,
-                Stretch::Corner { .. } => request.corner_feed,
-            };
-            let chunks = (section.length / FEED_CHUNK).ceil().max(1.0);
-            for chunk in 0..chunks as usize {
-                let start = section.start + section.length * chunk as f64 / chunks;
-                let end = start + section.length / chunks;
-                let (cap, joint) = self.speed_cap(request, spline, start, end);
-                if cap < wanted && slowest.is_none_or(|s| cap < s.0) {
-                    slowest = Some((cap, start, joint));
-                }
-                sections.push(SpeedSection {
-                    length: section.length / chunks,
-                    speed: wanted.min(cap),
-                });
-            }
-        }
-        if let Some((cap, place, joint)) = slowest {
-            let axis = &request.arm.joints[joint];
-            let station = request.tool_path.at(place);
-            if cap < 0.1 * request.feed {
-                let obstacle = Obstacle::Velocity {
-                    axis: axis.name.clone(),
-                    value: axis.velocity * SPEED_SHARE * request.feed / cap,
-                    limit: axis.velocity,
-                };
-                let waypoint = (place / KNOT_SPACING) as usize;
-                let count = spline.knots().len();
-                return Err(waypoint_error(
-                    &self.tool_path,
-                    Phase::Follow,
-                    waypoint,
-                    count,
-                    place,
-                    obstacle,
-                ));
-            }
-            self.notes.push(format!(
-                "the feed is slowed to {:.1} mm/s near {:.1} mm of the edge, where axis {} reaches {:.0} % of its speed limit",
-                1e3 * cap,
-                1e3 * station.edge_length,
-                axis.name,
-                100.0 * SPEED_SHARE
-            ));
-        }
-        Ok(sections)
-    }
-
-    /// Largest speed between two places that every axis can follow, and the axis that limits it.
-    fn speed_cap(
-        &self,
-        request: &PlanRequest,
-        spline: &Spline,
-        start: f64,
-        end: f64,
-    ) -> (f64, usize) {
-        let (mut value, mut slope, mut bend) =
-            ([0.0; MAX_JOINTS], [0.0; MAX_JOINTS], [0.0; MAX_JOINTS]);
-        let n = self.joints;
-        let mut worst = (0.0, 0);
-        for i in 0..=8 {
-            let place = start + (end - start) * f64::from(i) / 8.0;
-            spline.at(place, &mut value[..n], &mut slope[..n], &mut bend[..n]);
-            for (joint, axis) in request.arm.joints.iter().enumerate() {
-                let share = slope[joint].abs() / axis.velocity;
-                if share > worst.0 {
-                    worst = (share, joint);
-                }
-            }
-        }
-        (SPEED_SHARE / worst.0.max(1e-12), worst.1)
     }
 
     /// Duration of the whole job [s].
@@ -483,110 +256,6 @@ impl Plan {
             centre: station.point + station.normal * self.offset - station.axis * back,
         }
     }
-}
-
-/// Widely spaced poses of the whole job, by which a posture is chosen: approach, follow, retract.
-struct Coarse {
-    /// Distances backed off along the tool's axis, from far to touching.
-    backs: Vec<f64>,
-    /// Places along the path.
-    places: Vec<f64>,
-}
-
-impl Coarse {
-    fn new(request: &PlanRequest, far: f64) -> Self {
-        Self {
-            backs: places_between(far, 0.0, COARSE_SPACING),
-            places: places(request.tool_path.length(), COARSE_SPACING),
-        }
-    }
-
-    /// Flange poses for a spin [rad], with the force on the tool at each [N].
-    fn poses(&self, request: &PlanRequest, spin: f64) -> (Vec<DPose3>, Vec<DVec3>) {
-        let follow = poses_along(request, &self.places, spin);
-        let (first, last) = (follow[0], follow[follow.len() - 1]);
-        let approach = self.backs.iter().map(|&back| backed_off(first, back));
-        let retract = self.backs.iter().rev().map(|&back| backed_off(last, back));
-        let idle = vec![DVec3::ZERO; self.backs.len()];
-        let mut forces = idle.clone();
-        forces.extend(self.places.iter().map(|&place| {
-            let station = request.tool_path.at(place);
-            request.force_on_tool(station.normal, station.tangent)
-        }));
-        forces.extend(idle);
-        (
-            approach
-                .chain(follow.iter().copied())
-                .chain(retract)
-                .collect(),
-            forces,
-        )
-    }
-
-    fn failure(&self, request: &PlanRequest, index: usize, obstacle: Obstacle) -> PlanError {
-        let (before, after) = (self.backs.len(), self.backs.len() + self.places.len());
-        let (phase, waypoint, count, place) = if index < before {
-            (Phase::Approach, index, before, 0.0)
-        } else if index < after {
-            (
-                Phase::Follow,
-                index - before,
-                self.places.len(),
-                self.places[index - before],
-            )
-        } else {
-            (
-                Phase::Retract,
-                index - after,
-                before,
-                request.tool_path.length(),
-            )
-        };
-        waypoint_error(&request.tool_path, phase, waypoint, count, place, obstacle)
-    }
-}
-
-/// Evenly spaced places from 0 to `length`, both included.
-fn places(length: f64, spacing: f64) -> Vec<f64> {
-    places_between(0.0, length, spacing)
-}
-
-fn places_between(from: f64, to: f64, spacing: f64) -> Vec<f64> {
-    let count = ((to - from).abs() / spacing).ceil().max(2.0) as usize;
-    (0..=count)
-        .map(|i| from + (to - from) * i as f64 / count as f64)
-        .collect()
-}
-
-/// The pose moved back along its own z by `back` [m].
-fn backed_off(pose: DPose3, back: f64) -> DPose3 {
-    DPose3::from_parts(
-        pose.translation - pose.rotation * DVec3::Z * back,
-        pose.rotation,
-    )
-}
-
-/// Flange poses at places along the path; the flange's x is carried along without turning about the tool's axis, from `spin` [rad] off the tangent.
-fn poses_along(request: &PlanRequest, places: &[f64], spin: f64) -> Vec<DPose3> {
-    let pose = |station: &ToolStation, x: DVec3| {
-        let x = (x - station.axis * x.dot(station.axis)).normalize();
-        let rotation = DQuat::from_mat3(&DMat3::from_cols(x, station.axis.cross(x), station.axis));
-        let centre = station.point + station.normal * (request.tool_radius - request.penetration);
-        (
-            DPose3::from_parts(centre - station.axis * request.tool_distance, rotation),
-            x,
-        )
-    };
-    let first = request.tool_path.at(places[0]);
-    let mut x = DQuat::from_axis_angle(first.axis, spin) * first.tangent;
-    places
-        .iter()
-        .map(|&place| {
-            let (pose, carried) = pose(&request.tool_path.at(place), x);
-            x = carried;
-            pose
-        })
-        .collect()
 }
 
 /// The error of a waypoint, counted from 0 here and from 1 in the message.

@@ -64,8 +64,8 @@ def model_of(scene: dict, solref: list[float]) -> mujoco.MjModel:
 def true_contact(scene: dict) -> mujoco.MjModel:
     """The model whose contact has the scene's stiffness and damping, in N/m and N s/m.
 
-    MuJoCo's force at rest is k r / R with R = (1 - d) / d A, d the impedance and A its estimate of the
-    contact's inverse mass; in the direct format solref is (-k d, -b d). (MuJoCo documentation, Computation.)
+    MuJoCo's contact force is (k r + b v) / R with its regularisation R, and solref = (-k d, -b d) in the direct
+    format, d the impedance. (MuJoCo documentation, Modeling, solver parameters.)
     """
     model = model_of(scene, [-1.0, -1.0])
     data = mujoco.MjData(model)
@@ -73,8 +73,7 @@ def true_contact(scene: dict) -> mujoco.MjModel:
     mujoco.mj_forward(model, data)
     if data.ncon != 1:
         raise SystemExit(f"mujoco_peer: the ball should touch the part once at the start, not {data.ncon} times")
-    inverse_mass = data.efc_diagApprox[data.contact[0].efc_address]
-    scale = (1.0 - IMPEDANCE) * inverse_mass
+    scale = IMPEDANCE * data.efc_R[data.contact[0].efc_address]
     contact = scene["contact"]
     return model_of(scene, [-contact["stiffness"] * scale, -contact["damping"] * scale])
 

@@ -1,0 +1,173 @@
+//! The legs of the job, one after the other: approach, engage, follow, retract.
+
+use glamx::DPose3;
+
+use super::error::PlanError;
+use super::feed;
+use super::plan::{KNOT_SPACING, Leg, Phase, PlanRequest, Way, waypoint_error};
+use super::poses::{backed_off, places, poses_along};
+use super::posture::Standing;
+use super::profile::Profile;
+use super::spline::Spline;
+
+/// Distance before touching at which approach hands over to engage [m].
+const CLEARANCE: f64 = 5e-3;
+/// Time at rest after retracting [s].
+const FINAL_REST: f64 = 0.2;
+
+/// A motion along the tool's axis at a place of the path.
+struct Axial {
+    phase: Phase,
+    place: f64,
+    /// Flange pose when touching.
+    pose: DPose3,
+    /// Distances backed off at its start and end [m].
+    from: f64,
+    to: f64,
+    speed: f64,
+    /// Time at rest after it [s].
+    rest: f64,
+}
+
+/// The legs as they are laid out.
+pub(super) struct Layout<'a> {
+    request: &'a PlanRequest<'a>,
+    standing: &'a Standing<'a>,
+    /// Joint angles at the end of the last leg [rad].
+    angles: Vec<f64>,
+    legs: Vec<Leg>,
+    notes: Vec<String>,
+}
+
+impl<'a> Layout<'a> {
+    /// Lays out all legs for a spin [rad] of the flange, from joint angles near the first pose, starting `far` [m] from the edge.
+    ///
+    /// # Errors
+    /// The waypoint that is not reached.
+    pub(super) fn new(
+        request: &'a PlanRequest<'a>,
+        standing: &'a Standing<'a>,
+        spin: f64,
+        start: Vec<f64>,
+        far: f64,
+    ) -> Result<(Vec<Leg>, Vec<String>), PlanError> {
+        let mut layout = Self {
+            request,
+            standing,
+            angles: start,
+            legs: Vec::new(),
+            notes: Vec::new(),
+        };
+        let length = request.tool_path.length();
+        let knots = places(length, KNOT_SPACING);
+        let poses = poses_along(request, &knots, spin);
+        let (first, last) = (poses[0], poses[poses.len() - 1]);
+        let near = request.push_back + CLEARANCE.min(0.5 * request.approach_distance);
+        let (fast, gentle) = (request.approach_speed, request.engage_speed);
+        let at_start = |phase, from, to, speed, rest| Axial {
+            phase,
+            place: 0.0,
+            pose: first,
+            from,
+            to,
+            speed,
+            rest,
+        };
+        let at_end = |from, to, speed, rest| Axial {
+            phase: Phase::Retract,
+            place: length,
+            pose: last,
+            from,
+            to,
+            speed,
+            rest,
+        };
+        layout.axial(&at_start(Phase::Approach, far, near, fast, 0.0))?;
+        layout.axial(&at_start(
+            Phase::Engage,
+            near,
+            0.0,
+            gentle,
+            request.settle_time,
+        ))?;
+        layout.follow(knots, &poses)?;
+        // Gently until the slide stands at its outer stop again: there it takes the tool off the edge with a jolt.
+        layout.axial(&at_end(0.0, near, gentle, 0.0))?;
+        layout.axial(&at_end(near, far, fast, FINAL_REST))?;
+        Ok((layout.legs, layout.notes))
+    }
+
+    fn axial(&mut self, motion: &Axial) -> Result<(), PlanError> {
+        let length = (motion.to - motion.from).abs();
+        let sign = (motion.to - motion.from).signum();
+        let way = Way::Axial {
+            place: motion.place,
+            from: motion.from,
+            sign,
+        };
+        let knots = places(length, KNOT_SPACING);
+        let poses: Vec<DPose3> = knots
+            .iter()
+            .map(|k| backed_off(motion.pose, motion.from + sign * k))
+            .collect();
+        let spline = self.track(motion.phase, way, knots, &poses)?;
+        let profile = Profile::single(length, motion.speed, self.request.limits);
+        self.push(motion.phase, way, spline, profile, motion.rest);
+        Ok(())
+    }
+
+    fn follow(&mut self, knots: Vec<f64>, poses: &[DPose3]) -> Result<(), PlanError> {
+        let spline = self.track(Phase::Follow, Way::Edge, knots, poses)?;
+        let (sections, note) = feed::sections(self.request, &spline)?;
+        self.notes.extend(note);
+        let profile = Profile::through(&sections, self.request.limits);
+        self.push(Phase::Follow, Way::Edge, spline, profile, 0.0);
+        Ok(())
+    }
+
+    fn track(
+        &mut self,
+        phase: Phase,
+        way: Way,
+        knots: Vec<f64>,
+        poses: &[DPose3],
+    ) -> Result<Spline, PlanError> {
+        let angles = self
+            .standing
+            .track(poses, &self.angles)
+            .map_err(|(index, obstacle)| {
+                let place = match way {
+                    Way::Edge => knots[index],
+                    Way::Axial { place, .. } => place,
+                };
+                waypoint_error(
+                    &self.request.tool_path,
+                    phase,
+                    index,
+                    poses.len(),
+                    place,
+                    obstacle,
+                )
+            })?;
+        if let Some(last) = angles.last() {
+            self.angles.clone_from(last);
+        }
+        Ok(Spline::through(knots, angles))
+    }
+
+    fn push(&mut self, phase: Phase, way: Way, spline: Spline, profile: Profile, rest: f64) {
+        let start_time = self
+            .legs
+            .last()
+            .map_or(0.0, |leg| leg.start_time + leg.duration);
+        let duration = profile.duration() + rest;
+        self.legs.push(Leg {
+            phase,
+            start_time,
+            duration,
+            profile,
+            spline,
+            way,
+        });
+    }
+}
