@@ -109,6 +109,11 @@ fn compare(cell: &Cell) -> Result<(), Box<dyn Error>> {
         }
     }
     print_ours(&mut rounds);
+    let (force, desired) = (world.contact().normal_force, cell.scenario.process.force);
+    println!(
+        "the rigid bodies alone press with {force:.4} N of {desired} N, {:.4} mm deep",
+        world.contact().penetration * 1e3
+    );
     match &peer {
         Ok(peer) => print_peer(cell, &mut rounds, peer, last_round.as_ref()),
         Err(reason) => println!("\nMuJoCo: not measured; {reason}"),

@@ -56,6 +56,26 @@ pub fn jacobian_at(chain: &Chain, world_from_link: &[DPose3], point_in_world: DV
     jacobian
 }
 
+/// Torques [N m] and forces [N] by which a force [N] at a point of the last link drives the joints: J^T f, from poses of [`link_poses`].
+#[inline]
+pub fn point_force_torques(
+    chain: &Chain,
+    world_from_link: &[DPose3],
+    point_in_world: DVec3,
+    force_in_world: DVec3,
+    out: &mut [f64],
+) {
+    for ((joint, pose), torque) in chain.joints.iter().zip(world_from_link).zip(out) {
+        let axis = pose.rotation * joint.axis;
+        *torque = match joint.kind {
+            JointKind::Revolute => {
+                axis.dot((point_in_world - pose.translation).cross(force_in_world))
+            }
+            JointKind::Prismatic => axis.dot(force_in_world),
+        };
+    }
+}
+
 /// Jacobian of a point given in the last link's frame [m], at joint positions `q`.
 pub fn geometric_jacobian(
     chain: &Chain,
@@ -103,6 +123,26 @@ mod tests {
     use super::*;
     use crate::arm::test_chains::{planar_two_link, random_chain, random_positions};
     use glam::DQuat;
+
+    #[test]
+    fn a_force_drives_the_joints_by_the_transposed_jacobian() {
+        let chain = random_chain(5, 7);
+        let q = random_positions(3, chain.len());
+        let mut poses = vec![DPose3::IDENTITY; chain.len()];
+        link_poses(&chain, DPose3::IDENTITY, &q, &mut poses);
+        let (point, force) = (DVec3::new(0.3, -0.2, 0.5), DVec3::new(4.0, -7.0, 11.0));
+        let jacobian = jacobian_at(&chain, &poses, point);
+        let mut torques = vec![0.0; chain.len()];
+        point_force_torques(&chain, &poses, point, force, &mut torques);
+        for (joint, torque) in torques.iter().enumerate() {
+            let column = jacobian.column(joint);
+            let expected = DVec3::new(column[0], column[1], column[2]).dot(force);
+            assert!(
+                (torque - expected).abs() < 1e-12,
+                "{torque} against {expected}"
+            );
+        }
+    }
 
     #[test]
     fn planar_arm_matches_its_closed_form() {

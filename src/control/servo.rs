@@ -33,7 +33,7 @@ pub struct ServoParameters {
     pub integral_time: f64,
 }
 
-/// Speed over which a joint's dry friction turns from one side to the other [rad/s].
+/// Speed v_0 over which a joint's dry friction turns from one side to the other, as v / sqrt(v^2 + v_0^2) [rad/s].
 const FRICTION_SPEED: f64 = 1e-3;
 
 /// The servo of all axes.
@@ -128,8 +128,9 @@ impl Servo {
     /// The joint's own viscous and dry friction, the latter linear about the present speed.
     fn joint_losses(&self, axis: usize, velocity: f64) -> JointLaw {
         let gains = &self.gains[axis];
-        let level = (velocity / FRICTION_SPEED).tanh();
-        let slope = gains.joint_friction / FRICTION_SPEED * (1.0 - level * level);
+        let size = (velocity * velocity + FRICTION_SPEED * FRICTION_SPEED).sqrt();
+        let level = velocity / size;
+        let slope = gains.joint_friction * FRICTION_SPEED * FRICTION_SPEED / size.powi(3);
         JointLaw {
             force: slope * velocity - gains.joint_friction * level,
             damping: gains.joint_damping + slope,

@@ -11,7 +11,7 @@ use super::sample::{FrameLog, SampleLog};
 use super::world::{ToolBall, World, WorldDescription};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
-use crate::arm::kinematics::jacobian_at;
+use crate::arm::kinematics::point_force_torques;
 use crate::cell::Cell;
 use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::JointLaw;
@@ -276,16 +276,13 @@ impl<'a> Simulation<'a> {
                 device.force
             };
             let contact = (pushing - torque[n]) / cell.axial_share();
-            let force = (reference.normal * contact).to_array();
             let mut links = [DPose3::IDENTITY; MAX_JOINTS];
-            for (joint, pose) in links.iter_mut().enumerate().take(n + 1) {
-                *pose = self.world.link_pose(joint);
-            }
-            let jacobian = jacobian_at(chain, &links[..=n], self.world.tool_centre());
-            for (axis, torque) in torque.iter_mut().enumerate().take(n) {
-                *torque -= (0..3)
-                    .map(|row| jacobian[(row, axis)] * force[row])
-                    .sum::<f64>();
+            self.world.link_poses(&mut links);
+            let mut pressed = [0.0; MAX_JOINTS];
+            let (point, force) = (self.world.tool_centre(), reference.normal * contact);
+            point_force_torques(chain, &links[..n], point, force, &mut pressed[..n]);
+            for (torque, pressed) in torque.iter_mut().zip(pressed).take(n) {
+                *torque -= pressed;
             }
         }
         torque
@@ -377,11 +374,9 @@ impl<'a> Simulation<'a> {
     fn frame(&mut self, time: f64, reference: &Reference, force: DVec3, normal: DVec3) {
         self.frames.times.push(time);
         self.frames.path_lengths.push(reference.edge_length);
-        self.frames.links.push(
-            (0..self.laws.len())
-                .map(|joint| self.world.link_pose(joint))
-                .collect(),
-        );
+        let mut links = vec![DPose3::IDENTITY; self.laws.len()];
+        self.world.link_poses(&mut links);
+        self.frames.links.push(links);
         let radius = self.cell.scenario.device.tool_radius;
         self.frames
             .contact_points

@@ -257,13 +257,13 @@ impl World {
             .transform_point(self.tool.centre_in_link)
     }
 
-    /// Pose of the link behind a joint in the world.
-    pub fn link_pose(&self, joint: usize) -> DPose3 {
-        *self
-            .multibody()
-            .link(self.links[joint])
-            .expect("each joint has its link")
-            .local_to_world()
+    /// Poses of the links behind the joints in the world, base first; writes as many as `out` holds.
+    pub fn link_poses(&self, out: &mut [DPose3]) {
+        let multibody = self.multibody();
+        for (pose, &link) in out.iter_mut().zip(&self.links) {
+            let link = multibody.link(link).expect("each joint has its link");
+            *pose = *link.local_to_world();
+        }
     }
 
     /// The contact, to shift it while the run goes on (burr under the ball).
