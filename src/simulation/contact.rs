@@ -9,14 +9,13 @@
 //! continuous damper does, and theta in 0..1 gives back the implicit term when w h is too large for an explicit spring.
 //!
 //! The mesh's triangles meet the ball several times at one place: at an internal edge from the side (ghosts) and at a sharp edge from both faces (twice
-//! the stiffness). Only true contacts, local minima of the distance to the part, reach the solver: `ContactSurface` finds them, the hook drops the rest.
-
-use std::sync::Mutex;
+//! the stiffness). Only true contacts, local minima of the distance to the part, reach the solver: `ContactSurface` finds them, `dispatch` hands them over.
 
 use glam::DVec3;
 use nalgebra::DVector;
 use rapier3d::prelude::*;
 
+use super::dispatch::{TrueContact, TrueContacts};
 use super::world::ToolBall;
 use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
 
@@ -53,56 +52,10 @@ pub struct ContactReading {
     pub normal: DVec3,
 }
 
-/// A true contact, as the hook hands it to the solver.
-#[derive(Debug, Clone, Copy)]
-struct Kept {
-    triangle: u32,
-    normal: DVec3,
-    /// Distance between the ball's and the part's surface, lift of a burr included [m].
-    separation: f64,
-}
-
-/// Keeps the true contacts and puts their geometry right.
-pub struct ContactHook {
-    part: ColliderHandle,
-    kept: Mutex<Vec<Kept>>,
-}
-
-impl PhysicsHooks for ContactHook {
-    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
-        let part_first = context.collider1 == self.part;
-        let Some(rigid) = context.rigid_mut() else {
-            return;
-        };
-        let triangle = if part_first {
-            rigid.manifold.subshape1
-        } else {
-            rigid.manifold.subshape2
-        };
-        let kept = self
-            .kept
-            .lock()
-            .unwrap_or_else(|poisoned| poisoned.into_inner());
-        match kept.iter().find(|k| k.triangle == triangle) {
-            Some(kept) => {
-                *rigid.normal = if part_first {
-                    kept.normal
-                } else {
-                    -kept.normal
-                };
-                for contact in rigid.solver_contacts.iter_mut() {
-                    contact.dist = kept.separation;
-                }
-            }
-            None => rigid.solver_contacts.clear(),
-        }
-    }
-}
-
 /// The contact pair of tool and part.
 pub struct PartContact {
-    /// Handed to Rapier at each step.
-    pub hook: ContactHook,
+    part_collider: ColliderHandle,
+    contacts: TrueContacts,
     surface: ContactSurface,
     parameters: PartContactParameters,
     tool: ToolBall,
@@ -129,6 +82,8 @@ impl PartContact {
         parameters: PartContactParameters,
         step: f64,
     ) -> Self {
+        let contacts = TrueContacts::default();
+        physics.narrow_phase = NarrowPhase::with_query_dispatcher(contacts.clone());
         let mesh = ColliderBuilder::trimesh(part.vertices().to_vec(), part.triangles().to_vec())
             .expect("a part's mesh holds at least one triangle")
             .density(0.0)
@@ -139,14 +94,11 @@ impl PartContact {
             .translation(tool.centre_in_link)
             .density(0.0)
             .friction(parameters.friction)
-            .friction_combine_rule(CoefficientCombineRule::Average)
-            .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+            .friction_combine_rule(CoefficientCombineRule::Average);
         let tool_collider = physics.insert_collider(ball, Some(tool_body));
         Self {
-            hook: ContactHook {
-                part: part_collider,
-                kept: Mutex::new(Vec::new()),
-            },
+            part_collider,
+            contacts,
             surface: ContactSurface::new(part),
             parameters,
             tool,
@@ -178,26 +130,21 @@ impl PartContact {
         let reach = self.tool.radius + REACH + self.lift.max(0.0);
         self.surface
             .genuine_contacts(centre, reach, &mut self.found);
-        let kept = self
-            .hook
-            .kept
-            .get_mut()
-            .unwrap_or_else(|poisoned| poisoned.into_inner());
-        kept.clear();
-        kept.extend(self.found.iter().map(|contact| {
-            // A rising burr leans the normal back against the motion.
-            let normal = (contact.normal - self.lift_gradient).normalize();
-            Kept {
-                triangle: contact.triangle,
-                normal,
-                separation: (contact.distance - self.tool.radius - self.lift)
-                    * normal.dot(contact.normal),
-            }
-        }));
-        let deepest = kept
-            .iter()
-            .min_by(|a, b| a.separation.total_cmp(&b.separation));
-        let Some(deepest) = deepest.copied() else {
+        let (radius, lift, gradient) = (self.tool.radius, self.lift, self.lift_gradient);
+        let deepest = self.contacts.with(|contacts| {
+            contacts.clear();
+            contacts.extend(self.found.iter().map(|contact| {
+                // A rising burr leans the normal back against the motion.
+                let normal = (contact.normal - gradient).normalize();
+                let separation = (contact.distance - radius - lift) * normal.dot(contact.normal);
+                TrueContact { normal, separation }
+            }));
+            contacts
+                .iter()
+                .copied()
+                .min_by(|a, b| a.separation.total_cmp(&b.separation))
+        });
+        let Some(deepest) = deepest else {
             self.mass_steps_left = 0;
             return;
         };
@@ -250,47 +197,35 @@ impl PartContact {
 
     /// Reads the forces of the last step.
     pub(super) fn read(&mut self, physics: &PhysicsWorld) -> ContactReading {
-        let mut reading = ContactReading {
-            penetration: -f64::MAX,
-            ..ContactReading::default()
-        };
-        let kept = self
-            .hook
-            .kept
-            .get_mut()
-            .unwrap_or_else(|poisoned| poisoned.into_inner());
-        if kept.is_empty() {
-            return ContactReading::default();
-        }
-        let part = self.hook.part;
-        for pair in physics.narrow_phase.contact_pairs_with(self.tool_collider) {
-            let part_first = pair.collider1 == part;
-            for manifold in pair.manifolds() {
-                let triangle = if part_first {
-                    manifold.subshape1
-                } else {
-                    manifold.subshape2
-                };
-                let Some(kept) = kept.iter().find(|k| k.triangle == triangle) else {
-                    continue;
-                };
-                if manifold.data.solver_contacts.is_empty() {
-                    continue;
-                }
-                for point in &manifold.points {
-                    let normal_force = point.data.impulse / self.step;
-                    let tangent = point.data.warmstart_tangent_world / self.step;
-                    let friction = if part_first { -tangent } else { tangent };
-                    reading.normal_force += normal_force;
-                    reading.friction_force += friction.length();
-                    reading.force_on_tool += kept.normal * normal_force + friction;
-                }
-                if -kept.separation > reading.penetration {
-                    reading.penetration = -kept.separation;
-                    reading.normal = kept.normal;
+        let mut reading = ContactReading::default();
+        let step = self.step;
+        let part = self.part_collider;
+        self.contacts.with(|contacts| {
+            if contacts.is_empty() {
+                return;
+            }
+            reading.penetration = -f64::MAX;
+            for pair in physics.narrow_phase.contact_pairs_with(self.tool_collider) {
+                let part_first = pair.collider1 == part;
+                for (manifold, contact) in pair.manifolds().iter().zip(contacts.iter()) {
+                    if manifold.data.solver_contacts.is_empty() {
+                        continue;
+                    }
+                    for point in &manifold.points {
+                        let normal_force = point.data.impulse / step;
+                        let tangent = point.data.warmstart_tangent_world / step;
+                        let friction = if part_first { -tangent } else { tangent };
+                        reading.normal_force += normal_force;
+                        reading.friction_force += friction.length();
+                        reading.force_on_tool += contact.normal * normal_force + friction;
+                    }
+                    if -contact.separation > reading.penetration {
+                        reading.penetration = -contact.separation;
+                        reading.normal = contact.normal;
+                    }
                 }
             }
-        }
+        });
         reading
     }
 }

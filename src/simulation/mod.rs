@@ -4,6 +4,7 @@
 //! reference -> set pressure -> device (pneumatic sub-steps) -> joint laws (servo with feed-forward, slide) -> rigid bodies with contact -> sample.
 
 pub mod contact;
+mod dispatch;
 mod error;
 mod sample;
 mod step;
