@@ -44,7 +44,7 @@ impl<'a> Layout<'a> {
     ///
     /// # Errors
     /// The waypoint that is not reached.
-    pub(super) fn new(
+    pub(super) fn lay_out(
         request: &'a PlanRequest<'a>,
         standing: &'a Standing<'a>,
         spin: f64,

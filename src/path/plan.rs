@@ -177,7 +177,7 @@ impl Plan {
                 request.seed,
             )
             .map_err(|(index, obstacle)| coarse.failure(request, index, obstacle))?;
-        let (legs, notes) = Layout::new(request, &standing, spin, start, far)?;
+        let (legs, notes) = Layout::lay_out(request, &standing, spin, start, far)?;
         let plan = Self {
             legs,
             tool_path: request.tool_path.clone(),
