@@ -142,11 +142,6 @@ impl Servo {
     pub fn drive_torque(&self, axis: usize, total: f64, velocity: f64) -> f64 {
         total - self.losses[axis].at(0.0, velocity)
     }
-
-    /// Is the axis at its effort limit?
-    pub fn saturated(&self, axis: usize) -> bool {
-        self.saturated[axis]
-    }
 }
 
 #[cfg(test)]

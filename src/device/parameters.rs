@@ -66,9 +66,4 @@ impl DeviceParameters {
             exhaust_conductance: self.exhaust_orifice * self.discharge_coefficient,
         }
     }
-
-    /// Largest force that the supply can give in steady extension, gravity left out [N].
-    pub fn largest_gas_force(&self) -> f64 {
-        self.regulator.supply * self.areas().extending
-    }
 }

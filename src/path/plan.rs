@@ -209,11 +209,6 @@ impl Plan {
         self.reference(0.0).position[..self.joints].to_vec()
     }
 
-    /// The tool's path.
-    pub fn tool_path(&self) -> &ToolPath {
-        &self.tool_path
-    }
-
     /// The reference at a time [s].
     pub fn reference(&self, time: f64) -> Reference {
         let index = self

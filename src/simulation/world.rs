@@ -45,7 +45,7 @@ pub struct WorldDescription<'a> {
 /// The rigid-body world.
 pub struct World {
     physics: PhysicsWorld,
-    pipeline_contact: PartContact,
+    part_contact: PartContact,
     /// Handle of each joint, base first.
     joints: Vec<MultibodyJointHandle>,
     /// Rapier's axis index of each joint's only degree of freedom.
@@ -102,7 +102,7 @@ impl World {
             parent = link;
         }
         let tool_body = parent;
-        let pipeline_contact = PartContact::insert(
+        let part_contact = PartContact::insert(
             &mut physics,
             part,
             tool_body,
@@ -121,7 +121,7 @@ impl World {
             .collect();
         let mut world = Self {
             physics,
-            pipeline_contact,
+            part_contact,
             joints,
             axes,
             links,
@@ -208,11 +208,11 @@ impl World {
     /// Advances by one step.
     pub fn step(&mut self) {
         let centre = self.tool_centre();
-        self.pipeline_contact
+        self.part_contact
             .prepare(&mut self.physics, self.joints[0], self.tool_body, centre);
         self.physics.step_with_events(&(), &());
         self.read_joints();
-        self.reading = self.pipeline_contact.read(&self.physics);
+        self.reading = self.part_contact.read(&self.physics);
     }
 
     fn read_joints(&mut self) {
@@ -268,7 +268,7 @@ impl World {
 
     /// The contact, to shift it while the run goes on (burr under the ball).
     pub fn part_contact_mut(&mut self) -> &mut PartContact {
-        &mut self.pipeline_contact
+        &mut self.part_contact
     }
 
     /// Torques that hold Rapier's bodies still against gravity at the current positions [N m or N]: minus the sum of J^T m g.
