@@ -341,3 +341,30 @@ fn friction_is_its_coefficient_times_the_normal_force_against_the_motion() {
         }
     }
 }
+
+/// A burr is not in the mesh, so a high one on a flat face stands out of the box by which Rapier finds the pair: the engine's margin of 40 mm must cover it.
+#[test]
+fn a_high_burr_is_met_where_it_begins() {
+    let contact = PartContactParameters {
+        stiffness: 1.5e5,
+        damping: 400.0,
+        friction: 0.0,
+    };
+    let (part, mass, lift, total) = (block_of_many_triangles(), 4.0, 8e-3, 100.0);
+    let mut world = press(&part, mass, contact);
+    world.part_contact_mut().set_lift(lift, DVec3::ZERO);
+    // Half a millimetre above the burr.
+    world.set_positions(&[0.0, TOUCH - lift - 0.5e-3]);
+    let mut peak: f64 = 0.0;
+    for _ in 0..2000 {
+        settle(&mut world, total - mass * GRAVITY, 1);
+        peak = peak.max(world.contact().normal_force);
+    }
+    let penetration = world.positions()[1] - (TOUCH - lift);
+    assert!(
+        (penetration / (total / contact.stiffness) - 1.0).abs() < 1e-3,
+        "{penetration} m"
+    );
+    // Falling 0.5 mm under 100 N onto the spring; a pair found at the mesh, 8 mm too deep, would be pushed out with 1200 N.
+    assert!(peak < 400.0, "{peak} N");
+}

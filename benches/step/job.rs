@@ -4,7 +4,6 @@ use std::error::Error;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
 use idc_cell::arm::chain::MAX_JOINTS;
 use idc_cell::arm::dynamics::{inverse_dynamics, mass_matrix};
 use idc_cell::arm::kinematics::{jacobian_at, link_poses};
@@ -12,8 +11,7 @@ use idc_cell::cell::Cell;
 use idc_cell::control::law::JointLaw;
 use idc_cell::path::{Phase, Reference};
 use idc_cell::scenario::load;
-use idc_cell::simulation::contact::PartContactParameters;
-use idc_cell::simulation::world::{ToolBall, World, WorldDescription};
+use idc_cell::simulation::world::{World, WorldDescription};
 use idc_cell::simulation::{Simulation, StepTimes};
 
 /// Time at the start of the following phase that is not timed, so that the motion is under way [s].
@@ -145,22 +143,7 @@ pub fn servo_gains(cell: &Cell) -> Vec<(f64, f64)> {
 /// The rigid-body world alone, holding the arm where following is under way; the ball on the edge, or `lift` [m] off it.
 pub fn holding_world(cell: &Cell, lift: f64) -> World {
     let scenario = &cell.scenario;
-    let mut world = World::new(&WorldDescription {
-        chain: &cell.arm_with_slide,
-        world_from_base: scenario.arm.world_from_base,
-        gravity: scenario.simulation.gravity,
-        step: scenario.simulation.step,
-        tool: ToolBall {
-            radius: scenario.device.tool_radius,
-            centre_in_link: DVec3::new(0.0, 0.0, scenario.device.tool_centre),
-        },
-        part: &cell.part.mesh_in_world,
-        contact: PartContactParameters {
-            stiffness: scenario.contact.stiffness,
-            damping: scenario.contact.damping,
-            friction: scenario.contact.friction,
-        },
-    });
+    let mut world = World::new(&WorldDescription::of(cell));
     let reference = cell.plan.reference(follow_span(cell).0 + LEAD);
     let count = cell.arm_with_slide.len();
     let stroke = scenario.process.working_stroke - lift;

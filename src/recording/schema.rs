@@ -118,7 +118,7 @@ pub const SIGNALS: [SignalDefinition; 21] = [
     signal(FRICTION_FORCE, Unit::Newton, Some(PlotGroup::ForceBalance), "friction force",
         "Size of the part of the contact force that lies across the contact normal."),
     signal(DEVICE_FORCE, Unit::Newton, Some(PlotGroup::ForceBalance), "device force",
-        "Force of air and seals on the device's moving part, positive along extension."),
+        "Force of the device on its moving part: air, end stops, and the clamp of a locked one; positive along extension."),
     signal(STROKE, Unit::Metre, Some(PlotGroup::Stroke), "stroke",
         "Position of the slide, zero when retracted, positive along extension."),
     signal(STROKE_VELOCITY, Unit::MetrePerSecond, None, "stroke velocity",

@@ -84,6 +84,7 @@ impl PartContact {
     ) -> Self {
         let contacts = TrueContacts::default();
         physics.narrow_phase = NarrowPhase::with_query_dispatcher(contacts.clone());
+        // Rapier takes no more from it than its box, to know when the pair is near; `surface` knows the mesh.
         let mesh = ColliderBuilder::trimesh(part.vertices().to_vec(), part.triangles().to_vec())
             .expect("a part's mesh holds at least one triangle")
             .density(0.0)

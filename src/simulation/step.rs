@@ -5,10 +5,9 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use glamx::DPose3;
 
-use super::contact::PartContactParameters;
 use super::error::SimulationError;
 use super::sample::{FrameLog, SampleLog};
-use super::world::{ToolBall, World, WorldDescription};
+use super::world::{World, WorldDescription};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::point_force_torques;
@@ -62,22 +61,7 @@ impl<'a> Simulation<'a> {
     /// Puts the cell at the start of its job: the arm at rest, the slide out against its stop, the device at pressure.
     pub fn new(cell: &'a Cell) -> Self {
         let scenario = &cell.scenario;
-        let mut world = World::new(&WorldDescription {
-            chain: &cell.arm_with_slide,
-            world_from_base: scenario.arm.world_from_base,
-            gravity: scenario.simulation.gravity,
-            step: scenario.simulation.step,
-            tool: ToolBall {
-                radius: scenario.device.tool_radius,
-                centre_in_link: DVec3::new(0.0, 0.0, scenario.device.tool_centre),
-            },
-            part: &cell.part.mesh_in_world,
-            contact: PartContactParameters {
-                stiffness: scenario.contact.stiffness,
-                damping: scenario.contact.damping,
-                friction: scenario.contact.friction,
-            },
-        });
+        let mut world = World::new(&WorldDescription::of(cell));
         let reference = cell.plan.reference(0.0);
         let mut controller = ForceController::pressure_map(&scenario.device.parameters);
         let gravity = cell.gravity_along(reference.axis);

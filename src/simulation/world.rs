@@ -9,6 +9,7 @@ use rapier3d::prelude::*;
 
 use super::contact::{ContactReading, PartContact, PartContactParameters};
 use crate::arm::chain::{Chain, JointKind};
+use crate::cell::Cell;
 use crate::control::law::JointLaw;
 use crate::workpiece::TriangleMesh;
 
@@ -40,6 +41,29 @@ pub struct WorldDescription<'a> {
     pub part: &'a TriangleMesh,
     /// Contact law.
     pub contact: PartContactParameters,
+}
+
+impl<'a> WorldDescription<'a> {
+    /// The world of a cell.
+    pub fn of(cell: &'a Cell) -> Self {
+        let scenario = &cell.scenario;
+        Self {
+            chain: &cell.arm_with_slide,
+            world_from_base: scenario.arm.world_from_base,
+            gravity: scenario.simulation.gravity,
+            step: scenario.simulation.step,
+            tool: ToolBall {
+                radius: scenario.device.tool_radius,
+                centre_in_link: DVec3::new(0.0, 0.0, scenario.device.tool_centre),
+            },
+            part: &cell.part.mesh_in_world,
+            contact: PartContactParameters {
+                stiffness: scenario.contact.stiffness,
+                damping: scenario.contact.damping,
+                friction: scenario.contact.friction,
+            },
+        }
+    }
 }
 
 /// The rigid-body world.
