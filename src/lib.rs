@@ -12,6 +12,7 @@
 //! - [`control`]: joint servo and force controllers
 //! - [`recording`]: sampled signals, Parquet, Rerun
 //! - [`simulation`]: the coupled step
+//! - [`rig`]: the bench rig, the device without an arm
 //! - [`metrics`]: the numbers of a run
 //! - [`report`]: tables for people
 //! - [`app`]: the command line and the files that it writes
@@ -28,6 +29,8 @@ pub mod path;
 pub mod physics;
 pub mod recording;
 pub mod report;
+pub mod rig;
 pub mod scenario;
+pub mod sensing;
 pub mod simulation;
 pub mod workpiece;

@@ -129,7 +129,7 @@ fn parameters() -> DeviceParameters {
 }
 
 fn inside(state: &DeviceState) -> f64 {
-    state.masses.iter().sum()
+    state.air.masses.iter().sum()
 }
 
 /// Advances by steps of 1 ms, the stroke swinging about the middle, and returns the largest gap in the balance.
@@ -141,7 +141,7 @@ fn gap_over(
     swing: f64,
 ) -> f64 {
     let start = inside(state);
-    let (entered, left) = (state.mass_entered, state.mass_left);
+    let (entered, left) = (state.air.entered, state.air.left);
     let mut worst = 0.0f64;
     for step in 0..(seconds * 1e3) as usize {
         let phase = 1e-3 * step as f64 * std::f64::consts::TAU;
@@ -150,7 +150,7 @@ fn gap_over(
             speed: swing * std::f64::consts::TAU * phase.cos(),
         };
         device.advance(state, set_pressure, motion, 1e-3, 2);
-        let brought = (state.mass_entered - entered) - (state.mass_left - left);
+        let brought = (state.air.entered - entered) - (state.air.left - left);
         worst = worst.max((inside(state) - start - brought).abs() / inside(state));
     }
     worst
@@ -168,15 +168,15 @@ fn a_closed_chamber_keeps_its_air_and_follows_boyle() {
     let before = state.clone();
     gap_over(&device, &mut state, 2e5, 1.3, 0.02);
     assert_eq!(
-        (state.masses, state.mass_entered, state.mass_left),
-        (before.masses, 0.0, 0.0)
+        (state.air.masses, state.air.entered, state.air.left),
+        (before.air.masses, 0.0, 0.0)
     );
     // Compressed to the far end: p V stays.
     for stroke in [0.001, 0.049] {
         for chamber in 0..2 {
             let pressure = device.pressures(&state, stroke)[chamber];
             let mass = mass_of(&closed, chamber, pressure, stroke);
-            assert!((mass / before.masses[chamber] - 1.0).abs() < 1e-14);
+            assert!((mass / before.air.masses[chamber] - 1.0).abs() < 1e-14);
         }
     }
 }
@@ -186,28 +186,28 @@ fn chambers_filled_from_empty_and_vented_keep_count() {
     let parameters = parameters();
     let device = Device::new(parameters.clone());
     let mut state = device.at_rest(0.025, 2e5);
-    state.masses = [1e-12; 2];
+    state.air.masses = [1e-12; 2];
     let filled = gap_over(&device, &mut state, 2e5, 2.0, 0.0);
     let gas = &parameters.gas;
     let full = |chamber, gauge: f64| mass_of(&parameters, chamber, gas.atmosphere + gauge, 0.025);
     for (chamber, gauge) in [(0, 2e5), (1, 0.0)] {
         assert!(
-            (state.masses[chamber] / full(chamber, gauge) - 1.0).abs() < 1e-6,
+            (state.air.masses[chamber] / full(chamber, gauge) - 1.0).abs() < 1e-6,
             "chamber {chamber}"
         );
     }
-    assert_eq!(state.mass_left, 0.0);
+    assert_eq!(state.air.left, 0.0);
     // The valve turned round: chamber 1 vents, chamber 2 fills, and the slide pumps meanwhile.
     state.valve = ValvePosition::Retract;
     let vented = gap_over(&device, &mut state, 2e5, 2.0, 0.0);
     for (chamber, gauge) in [(0, 0.0), (1, 2e5)] {
         assert!(
-            (state.masses[chamber] / full(chamber, gauge) - 1.0).abs() < 1e-6,
+            (state.air.masses[chamber] / full(chamber, gauge) - 1.0).abs() < 1e-6,
             "chamber {chamber}"
         );
     }
     let pumped = gap_over(&device, &mut state, 2e5, 3.0, 0.02);
-    assert!(state.mass_left > full(0, 1e5));
+    assert!(state.air.left > full(0, 1e5));
     for gap in [filled, vented, pumped] {
         assert!(gap < TOLERANCE, "{gap:e}");
     }

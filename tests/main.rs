@@ -3,6 +3,7 @@
 mod air;
 mod bad_input;
 mod balance;
+mod bench_reference;
 mod command_line;
 mod common;
 mod contact;

@@ -1,12 +1,18 @@
-//! The intelligent deburring control device: regulator, 5/2 valve, two chambers, piston and end stops, coupled.
+//! The intelligent deburring control device: regulator, line, 5/2 valve, two chambers, seals, piston and end stops, coupled.
 //!
-//! It knows the motion of its piston only as an input: whoever integrates the piston (the rigid-body cell, a bench rig) hands it over and takes the
-//! force back. So every rig shares every line of it.
+//! The device does not know who carries its piston. A rig with a piston of its own implements [`Carrier`] and gets the whole device integrated with
+//! it ([`Device::advance_carried`]); a rigid-body engine foretells the piston's motion over a step and gets a force back ([`Device::advance`]).
+//! Either way every line of the device is the same.
 
+mod carrier;
+mod integrate;
 mod parameters;
 mod pneumatics;
 mod pressure_map;
+mod state;
 
+pub use carrier::{Carrier, PistonMotion};
 pub use parameters::DeviceParameters;
-pub use pneumatics::{Device, DeviceForce, DeviceState, PistonMotion};
+pub use pneumatics::{Device, DeviceForce};
 pub use pressure_map::PressureMap;
+pub use state::{AirState, DeviceState, EnergyLedger};

@@ -1,10 +1,13 @@
 //! What does not change in a device during a run, strict SI.
 
 use crate::physics::chamber::{Chamber, Side};
-use crate::physics::end_stop::EndStop;
 use crate::physics::gas::Gas;
+use crate::physics::gas_process::GasProcess;
+use crate::physics::hose::Hose;
 use crate::physics::piston::PistonAreas;
+use crate::physics::push_only::PushOnly;
 use crate::physics::regulator::RegulatorParameters;
+use crate::physics::seal_friction::SealFriction;
 use crate::physics::valve::ValveParameters;
 
 /// Parameters of the device, all cylinders together.
@@ -30,10 +33,16 @@ pub struct DeviceParameters {
     pub discharge_coefficient: f64,
     /// The pressure regulator.
     pub regulator: RegulatorParameters,
-    /// The end stops.
-    pub end_stop: EndStop,
+    /// The end stops: one at each end of the stroke.
+    pub end_stop: PushOnly,
+    /// Friction of seals and guides.
+    pub seal_friction: SealFriction,
     /// The working gas.
     pub gas: Gas,
+    /// What the gas in the chambers does as it is compressed.
+    pub gas_process: GasProcess,
+    /// Line between regulator and valve, if it counts.
+    pub hose: Option<Hose>,
     /// Stiffness of the clamp that holds a locked device [N/m].
     pub lock_stiffness: f64,
 }

@@ -1,72 +1,60 @@
-//! The coupled pneumatics advanced over one rigid-body step in sub-steps.
-//!
-//! State: regulator outlet and the air mass of each chamber. Each sub-step is a classical Runge-Kutta step of order four on the masses, with the
-//! regulator's lag solved exactly at its nodes and the piston's motion as given:
-//!
-//!     dm_i/dt = m_dot_i(p_outlet(t), p_i),   p_i = m_i R T / V_i(x(t)),   x(t) = x_0 + v_0 t          (source paper, eqs. 1 to 11)
-//!
-//! The force handed back is the mean over the step (the impulse is what the rigid body feels), by Simpson's rule on the sub-steps.
+//! The device's equations put together: flows between its parts and the force on its piston, at a state.
 
-use super::DeviceParameters;
+use super::carrier::{Foretold, PistonMotion};
+use super::state::{AirState, DeviceState, EnergyLedger};
+use super::{Carrier, DeviceParameters};
 use crate::physics::chamber::Chamber;
+use crate::physics::gas_process::GasProcess;
 use crate::physics::orifice::FlowFunction;
 use crate::physics::piston::PistonAreas;
 use crate::physics::regulator::RegulatorState;
-use crate::physics::valve::{ValveParameters, ValvePosition, chamber_flows};
+use crate::physics::valve::{ValveParameters, ValvePosition};
 
-/// Motion of the piston over a step, as its owner foresees it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PistonMotion {
-    /// Stroke at the start of the step [m].
-    pub stroke: f64,
-    /// Speed of extension, held over the step [m/s].
-    pub speed: f64,
-}
-
-/// Force of the device on its moving part over a step.
+/// Force of the device on its moving part over a step, for a solver that treats it implicitly:
+///
+///     F(x, v) = force - damping (v - v_foretold) - stiffness (x - x_foretold)          at the end of the step
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeviceForce {
-    /// Mean force along extension [N].
+    /// Mean force along extension on the foretold motion [N].
     pub force: f64,
-    /// Damping within that force that a stiff integrator should treat implicitly [N s/m].
+    /// Damping of stops and seals [N s/m].
     pub damping: f64,
-}
-
-/// What changes in a device during a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DeviceState {
-    /// The regulator.
-    pub regulator: RegulatorState,
-    /// Air in chambers 1 and 2 [kg].
-    pub masses: [f64; 2],
-    /// Air that has come in since the start, from the regulator and from the atmosphere [kg].
-    pub mass_entered: f64,
-    /// Air that has gone out since the start [kg].
-    pub mass_left: f64,
-    /// Position of the solenoid valve.
-    pub valve: ValvePosition,
+    /// Stiffness of the seals before they slide [N/m].
+    pub stiffness: f64,
 }
 
 /// A device: parameters with all that follows from them, and no state.
 #[derive(Debug, Clone)]
 pub struct Device {
-    parameters: DeviceParameters,
+    pub(super) parameters: DeviceParameters,
     flow: FlowFunction,
-    chambers: [Chamber; 2],
-    areas: PistonAreas,
+    pub(super) chambers: [Chamber; 2],
+    pub(super) areas: PistonAreas,
     valve: ValveParameters,
+    /// The fastest rate of the pneumatics [1/s].
+    pub(super) air_rate: f64,
+}
+
+/// Rates of the air and, if asked for, of its energy, with the chamber pressures [Pa absolute] that they belong to.
+pub(super) struct AirRates {
+    pub air: AirState,
+    pub ledger: EnergyLedger,
+    pub pressures: [f64; 2],
 }
 
 impl Device {
     /// Prepares a device.
     pub fn new(parameters: DeviceParameters) -> Self {
-        Self {
+        let mut device = Self {
             flow: FlowFunction::new(&parameters.gas),
             chambers: parameters.chambers(),
             areas: parameters.areas(),
             valve: parameters.valve(),
+            air_rate: 0.0,
             parameters,
-        }
+        };
+        device.air_rate = device.fastest_air_rate();
+        device
     }
 
     /// The parameters.
@@ -79,37 +67,71 @@ impl Device {
         let gas = &self.parameters.gas;
         let regulator = RegulatorState::at_rest(&self.parameters.regulator, set_pressure);
         let pressures = [gas.atmosphere + regulator.outlet, gas.atmosphere];
+        let masses = [0, 1].map(|i| gas.mass(pressures[i], self.chambers[i].volume(stroke)));
+        let air = AirState {
+            masses,
+            energies: masses.map(|mass| mass * gas.specific_heat_volume() * gas.temperature),
+            hose_mass: self
+                .parameters
+                .hose
+                .map_or(0.0, |hose| gas.mass(pressures[0], hose.volume)),
+            ..AirState::default()
+        };
         DeviceState {
-            masses: [0, 1].map(|i| gas.mass(pressures[i], self.chambers[i].volume(stroke))),
+            air,
             regulator,
-            mass_entered: 0.0,
-            mass_left: 0.0,
             valve: ValvePosition::Extend,
+            seal_deflection: 0.0,
+            seal_stroke: stroke,
+            ledger: EnergyLedger::default(),
         }
     }
 
     /// Absolute pressures of chambers 1 and 2 [Pa] at a stroke [m].
     pub fn pressures(&self, state: &DeviceState, stroke: f64) -> [f64; 2] {
-        self.pressures_of(state.masses, stroke)
+        self.pressures_of(&state.air, [0, 1].map(|i| self.chambers[i].volume(stroke)))
+    }
+
+    /// Temperatures of the air in chambers 1 and 2 [K].
+    pub fn temperatures(&self, state: &DeviceState) -> [f64; 2] {
+        [0, 1].map(|i| self.temperature_of(&state.air, i))
     }
 
     /// Force of the gas on the piston along extension [N] at a stroke [m].
     pub fn gas_force(&self, state: &DeviceState, stroke: f64) -> f64 {
-        self.force_of(self.pressures(state, stroke))
+        self.gas_force_of(self.pressures(state, stroke))
     }
 
-    fn pressures_of(&self, masses: [f64; 2], stroke: f64) -> [f64; 2] {
-        [0, 1].map(|i| self.chambers[i].pressure(&self.parameters.gas, masses[i], stroke))
+    /// Force of the seals on the piston along extension [N].
+    pub fn seal_force(&self, state: &DeviceState, speed: f64) -> f64 {
+        -self
+            .parameters
+            .seal_friction
+            .force(state.seal_deflection, speed)
     }
 
-    fn force_of(&self, pressures: [f64; 2]) -> f64 {
-        self.areas
-            .gas_force(pressures[0], pressures[1], self.parameters.gas.atmosphere)
+    /// Force of the end stops along extension [N].
+    pub fn stop_force(&self, motion: PistonMotion) -> f64 {
+        match self.stop_at(motion) {
+            0 => 0.0,
+            stop => self.stop_force_of(stop, motion),
+        }
     }
 
-    /// Advances by `dt` [s] in `substeps` while the piston moves as told, and returns the mean force on the moving part.
-    ///
-    /// `set_pressure` [Pa gauge] is commanded at the start of the step and held.
+    /// Internal energy of the air in both chambers [J].
+    pub fn internal_energy(&self, state: &DeviceState) -> f64 {
+        let gas = &self.parameters.gas;
+        match self.parameters.gas_process {
+            GasProcess::Isothermal => {
+                let mass = state.air.masses[0] + state.air.masses[1];
+                mass * gas.specific_heat_volume() * gas.temperature
+            }
+            GasProcess::WallHeat { .. } => state.air.energies[0] + state.air.energies[1],
+        }
+    }
+
+    /// Advances by `dt` [s] while the piston moves as foretold, and returns the force on the moving part. `set_pressure` [Pa gauge] is commanded at
+    /// the start of the step and held. `substeps` is the least number of pneumatic sub-steps; stiff parts get more.
     pub fn advance(
         &self,
         state: &mut DeviceState,
@@ -118,67 +140,196 @@ impl Device {
         dt: f64,
         substeps: usize,
     ) -> DeviceForce {
-        state
-            .regulator
-            .command(&self.parameters.regulator, set_pressure);
-        let h = dt / substeps as f64;
-        let mut impulse = 0.0;
-        for i in 0..substeps {
-            let stroke = motion.stroke + motion.speed * h * i as f64;
-            impulse += self.substep(state, stroke, motion.speed, h);
-        }
-        let (stop, damping) = self.parameters.end_stop.force(
-            self.parameters.full_stroke,
-            motion.stroke,
-            motion.speed,
-        );
+        self.drag_seals(state, motion);
+        let mut moved = motion;
+        let impulse =
+            self.integrate::<_, false>(state, &mut moved, set_pressure, &Foretold, dt, substeps);
+        let seals = &self.parameters.seal_friction;
+        let deflection =
+            seals.deflection_after(state.seal_deflection, motion.speed * dt, motion.speed);
+        let stop_damping = match self.stop_at(motion) {
+            0 => 0.0,
+            _ => self.parameters.end_stop.damping,
+        };
         DeviceForce {
-            force: impulse / dt + stop,
-            damping,
+            force: impulse / dt + self.stop_force(motion) - seals.force(deflection, motion.speed),
+            damping: stop_damping + seals.viscous,
+            stiffness: seals.tangent_stiffness(deflection, motion.speed),
         }
     }
 
-    /// One Runge-Kutta step; returns the impulse of the gas [N s].
-    fn substep(&self, state: &mut DeviceState, stroke: f64, speed: f64, h: f64) -> f64 {
+    /// Advances device and piston together by `dt` [s]: the piston, of the device's moving mass, moves under the device's force and its carrier's.
+    /// `substeps` is the least number; stiff parts get more, and contacts, stops and reversals are met where they happen. Keeps the energy ledger.
+    pub fn advance_carried<C: Carrier>(
+        &self,
+        state: &mut DeviceState,
+        motion: &mut PistonMotion,
+        set_pressure: f64,
+        carrier: &C,
+        dt: f64,
+        substeps: usize,
+    ) {
+        self.integrate::<C, true>(state, motion, set_pressure, carrier, dt, substeps);
+    }
+
+    /// As [`Device::advance_carried`] without the ledger, a fifth faster.
+    pub fn advance_carried_unaudited<C: Carrier>(
+        &self,
+        state: &mut DeviceState,
+        motion: &mut PistonMotion,
+        set_pressure: f64,
+        carrier: &C,
+        dt: f64,
+        substeps: usize,
+    ) {
+        self.integrate::<C, false>(state, motion, set_pressure, carrier, dt, substeps);
+    }
+
+    /// Bends the bristles by the motion since they were last looked at.
+    fn drag_seals(&self, state: &mut DeviceState, motion: PistonMotion) {
+        state.seal_deflection = self.parameters.seal_friction.deflection_after(
+            state.seal_deflection,
+            motion.stroke - state.seal_stroke,
+            motion.speed,
+        );
+        state.seal_stroke = motion.stroke;
+    }
+
+    pub(super) fn gas_force_of(&self, pressures: [f64; 2]) -> f64 {
+        self.areas
+            .gas_force(pressures[0], pressures[1], self.parameters.gas.atmosphere)
+    }
+
+    /// Which end stop pushes: -1 the retracted one, 1 the extended one, 0 none.
+    pub(super) fn stop_at(&self, motion: PistonMotion) -> i8 {
+        let end_stop = &self.parameters.end_stop;
+        let beyond = motion.stroke - self.parameters.full_stroke;
+        if end_stop.pushes(-motion.stroke, -motion.speed) {
+            -1
+        } else if end_stop.pushes(beyond, motion.speed) {
+            1
+        } else {
+            0
+        }
+    }
+
+    /// Force of a stop along extension [N], as it holds while it pushes.
+    pub(super) fn stop_force_of(&self, stop: i8, motion: PistonMotion) -> f64 {
+        let end_stop = &self.parameters.end_stop;
+        match stop {
+            -1 => end_stop.linear(-motion.stroke, -motion.speed),
+            1 => -end_stop.linear(motion.stroke - self.parameters.full_stroke, motion.speed),
+            _ => 0.0,
+        }
+    }
+
+    fn pressures_of(&self, air: &AirState, volumes: [f64; 2]) -> [f64; 2] {
         let gas = &self.parameters.gas;
-        let start = state.masses;
-        let outlet_start = state.regulator.outlet;
-        let outlet_middle = state.regulator.advance(&self.parameters.regulator, 0.5 * h);
-        let outlet_end = state.regulator.advance(&self.parameters.regulator, 0.5 * h);
-        let (middle, end) = (stroke + 0.5 * h * speed, stroke + h * speed);
-        let flows = |outlet: f64, masses: [f64; 2], stroke: f64| {
-            chamber_flows(
-                &self.valve,
-                &self.flow,
-                state.valve,
-                gas.atmosphere + outlet,
-                gas.atmosphere,
-                self.pressures_of(masses, stroke),
-            )
-        };
-        let at = |rate: [f64; 2], t: f64| [start[0] + t * rate[0], start[1] + t * rate[1]];
-        let k1 = flows(outlet_start, start, stroke);
-        let k2 = flows(outlet_middle, at(k1, 0.5 * h), middle);
-        let masses_middle = at(k2, 0.5 * h);
-        let k3 = flows(outlet_middle, masses_middle, middle);
-        let k4 = flows(outlet_end, at(k3, h), end);
-        for i in 0..2 {
-            for (flow, weight) in [(k1[i], 1.0), (k2[i], 2.0), (k3[i], 2.0), (k4[i], 1.0)] {
-                let moved = weight * h / 6.0 * flow;
-                state.masses[i] += moved;
-                if moved > 0.0 {
-                    state.mass_entered += moved;
-                } else {
-                    state.mass_left -= moved;
-                }
+        match self.parameters.gas_process {
+            GasProcess::Isothermal => [0, 1].map(|i| gas.pressure(air.masses[i], volumes[i])),
+            GasProcess::WallHeat { .. } => {
+                let share = gas.heat_capacity_ratio - 1.0;
+                [0, 1].map(|i| share * air.energies[i] / volumes[i])
             }
         }
-        let forces = [
-            self.force_of(self.pressures_of(start, stroke)),
-            self.force_of(self.pressures_of(masses_middle, middle)),
-            self.force_of(self.pressures_of(state.masses, end)),
-        ];
-        h / 6.0 * (forces[0] + 4.0 * forces[1] + forces[2])
+    }
+
+    fn temperature_of(&self, air: &AirState, chamber: usize) -> f64 {
+        let gas = &self.parameters.gas;
+        match self.parameters.gas_process {
+            GasProcess::Isothermal => gas.temperature,
+            GasProcess::WallHeat { .. } => {
+                air.energies[chamber] / (air.masses[chamber] * gas.specific_heat_volume())
+            }
+        }
+    }
+
+    /// Rates of the air at an outlet pressure of the regulator [Pa absolute].
+    pub(super) fn air_rates<const LEDGER: bool>(
+        &self,
+        air: &AirState,
+        valve: ValvePosition,
+        outlet: f64,
+        motion: PistonMotion,
+    ) -> AirRates {
+        let gas = &self.parameters.gas;
+        let volumes = [0, 1].map(|i| self.chambers[i].volume(motion.stroke));
+        let pressures = self.pressures_of(air, volumes);
+        let (supplied, vented) = match valve {
+            ValvePosition::Extend => (0, 1),
+            ValvePosition::Retract => (1, 0),
+        };
+        let before = match &self.parameters.hose {
+            None => outlet,
+            Some(hose) => gas.pressure(air.hose_mass, hose.volume),
+        };
+        let mut flows = [0.0; 2];
+        flows[supplied] =
+            self.flow
+                .mass_flow(self.valve.supply_conductance, before, pressures[supplied]);
+        flows[vented] = self.flow.mass_flow(
+            self.valve.exhaust_conductance,
+            gas.atmosphere,
+            pressures[vented],
+        );
+        let mut rates = AirState::default();
+        let mut ledger = EnergyLedger::default();
+        if let GasProcess::WallHeat { conductance } = self.parameters.gas_process {
+            for i in 0..2 {
+                let own = self.temperature_of(air, i);
+                let upstream = if flows[i] > 0.0 { gas.temperature } else { own };
+                flows[i] *= (gas.temperature / upstream).sqrt();
+                let enthalpy = gas.specific_heat_pressure() * upstream * flows[i];
+                let heat = conductance * (gas.temperature - own);
+                let work = pressures[i] * self.chambers[i].growth() * motion.speed;
+                rates.energies[i] = enthalpy + heat - work;
+                ledger.enthalpy_in += enthalpy;
+                ledger.heat_in += heat;
+            }
+        } else if LEDGER {
+            let rt = gas.specific_gas_constant * gas.temperature;
+            for i in 0..2 {
+                let work = pressures[i] * self.chambers[i].growth() * motion.speed;
+                ledger.enthalpy_in += gas.specific_heat_pressure() * gas.temperature * flows[i];
+                ledger.heat_in += work - rt * flows[i];
+            }
+        }
+        rates.masses = flows;
+        let from_regulator = match &self.parameters.hose {
+            None => flows[supplied],
+            Some(hose) => {
+                let inflow = hose.mass_flow(outlet, before);
+                rates.hose_mass = inflow - flows[supplied];
+                inflow
+            }
+        };
+        rates.entered = from_regulator.max(0.0) + flows[vented].max(0.0);
+        rates.left = -(from_regulator.min(0.0) + flows[vented].min(0.0));
+        AirRates {
+            air: rates,
+            ledger,
+            pressures,
+        }
+    }
+
+    /// How fast the smallest chamber, or the line, comes to the pressure beside it [1/s].
+    fn fastest_air_rate(&self) -> f64 {
+        let gas = &self.parameters.gas;
+        let rt = gas.specific_gas_constant * gas.temperature;
+        let per_volume = |conductance: f64| conductance * rt.sqrt() * self.flow.laminar_slope();
+        let largest = self
+            .valve
+            .supply_conductance
+            .max(self.valve.exhaust_conductance);
+        let adiabatic = match self.parameters.gas_process {
+            GasProcess::Isothermal => 1.0,
+            GasProcess::WallHeat { .. } => gas.heat_capacity_ratio,
+        };
+        let chamber = adiabatic * per_volume(largest) / self.parameters.dead_volume;
+        let line = self.parameters.hose.map_or(0.0, |hose| {
+            (per_volume(self.valve.supply_conductance) + rt / hose.resistance) / hose.volume
+        });
+        chamber + line
     }
 }
 

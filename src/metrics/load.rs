@@ -57,7 +57,8 @@ fn air_mass_balance(run: &Window) -> Result<Option<f64>, MetricsError> {
     ) else {
         return Ok(None);
     };
-    let held = |index: usize| first[index] + second[index];
+    let line = channel(schema::HOSE_MASS)?;
+    let held = |index: usize| first[index] + second[index] + line.map_or(0.0, |line| line[index]);
     let gap = |index: usize| {
         let moved = (entered[index] - entered[0]) - (left[index] - left[0]);
         (moved - (held(index) - held(0))) / held(index)

@@ -7,7 +7,7 @@
 //!
 //! Eq. (6) is the derivative of P V = m R T at constant T, so the mass is carried as the state and the pressure follows exactly from eq. (4):
 //! no air is lost to the integrator, however coarse its step.
-//! Leaves out: heat exchange with the walls, leakage.
+//! Heat exchange with the walls: `gas_process`. Leaves out: leakage.
 
 use super::gas::Gas;
 
@@ -41,6 +41,14 @@ impl Chamber {
             Side::Retracting => self.full_stroke - stroke,
         };
         (self.dead_volume + self.area * displaced).max(0.01 * self.dead_volume)
+    }
+
+    /// dV/dx: growth of the volume with the stroke [m2].
+    pub fn growth(&self) -> f64 {
+        match self.side {
+            Side::Extending => self.area,
+            Side::Retracting => -self.area,
+        }
     }
 
     /// Absolute pressure [Pa] of a mass of gas [kg] at a stroke [m].

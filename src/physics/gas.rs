@@ -25,6 +25,16 @@ impl Gas {
         mass * self.specific_gas_constant * self.temperature / volume
     }
 
+    /// Specific heat at constant volume [J/(kg K)].
+    pub fn specific_heat_volume(&self) -> f64 {
+        self.specific_gas_constant / (self.heat_capacity_ratio - 1.0)
+    }
+
+    /// Specific heat at constant pressure [J/(kg K)].
+    pub fn specific_heat_pressure(&self) -> f64 {
+        self.heat_capacity_ratio * self.specific_heat_volume()
+    }
+
     /// Mass of the gas that fills a volume at an absolute pressure, eq. (4): [kg] from [Pa] and [m3].
     pub fn mass(&self, pressure: f64, volume: f64) -> f64 {
         pressure * volume / (self.specific_gas_constant * self.temperature)

@@ -3,9 +3,12 @@
 //! Pressures are absolute [Pa], mass flows positive into the chamber, forces positive in extension.
 
 pub mod chamber;
-pub mod end_stop;
 pub mod gas;
+pub mod gas_process;
+pub mod hose;
 pub mod orifice;
 pub mod piston;
+pub mod push_only;
 pub mod regulator;
+pub mod seal_friction;
 pub mod valve;

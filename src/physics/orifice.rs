@@ -68,6 +68,11 @@ impl FlowFunction {
         }
     }
 
+    /// Slope of the linear part [1]: the steepest there is.
+    pub fn laminar_slope(&self) -> f64 {
+        self.laminar_slope
+    }
+
     /// r of eq. (11) [1].
     pub fn critical_ratio(&self) -> f64 {
         self.critical_ratio

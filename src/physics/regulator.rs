@@ -54,27 +54,60 @@ impl RegulatorState {
         }
     }
 
-    /// Advances by `dt` [s] and returns the outlet pressure then [Pa gauge]; exact between arrivals.
-    pub fn advance(&mut self, parameters: &RegulatorParameters, dt: f64) -> f64 {
-        let end = self.time + dt;
+    /// How the outlet moves from now on until the next set pressure arrives, `longest` [s] at most.
+    pub fn course(&self, parameters: &RegulatorParameters, longest: f64) -> OutletCourse {
+        let next = self.pending.front().map_or(f64::INFINITY, |p| p.0);
+        OutletCourse {
+            start: self.outlet,
+            target: (parameters.gain * self.arrived).clamp(0.0, parameters.supply),
+            rate: 1.0 / parameters.time_constant,
+            duration: (next - self.time).clamp(0.0, longest),
+        }
+    }
+
+    /// Goes to the end of a course and takes what arrives there.
+    pub fn follow(&mut self, course: &OutletCourse) {
+        self.outlet = course.at(course.duration);
+        self.time += course.duration;
         while let Some(&(arrival, set_pressure)) = self.pending.front() {
-            if arrival > end {
+            // The course was cut at the arrival: what is left of it is rounding.
+            if arrival > self.time + 1e-12 {
                 break;
             }
             self.pending.pop_front();
-            self.relax(parameters, arrival - self.time);
-            self.time = self.time.max(arrival);
             self.arrived = set_pressure;
         }
-        self.relax(parameters, end - self.time);
-        self.time = end;
-        self.outlet
     }
 
-    fn relax(&mut self, parameters: &RegulatorParameters, dt: f64) {
-        let target = (parameters.gain * self.arrived).clamp(0.0, parameters.supply);
-        self.outlet =
-            target + (self.outlet - target) * (-dt.max(0.0) / parameters.time_constant).exp();
+    /// Advances by `dt` [s] and returns the outlet pressure then [Pa gauge]; exact.
+    pub fn advance(&mut self, parameters: &RegulatorParameters, dt: f64) -> f64 {
+        let mut left = dt;
+        while left > 0.0 {
+            let course = self.course(parameters, left);
+            self.follow(&course);
+            left -= course.duration;
+        }
+        self.outlet
+    }
+}
+
+/// The outlet over a time in which no new set pressure arrives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutletCourse {
+    /// Outlet pressure at its start, gauge [Pa].
+    start: f64,
+    /// Where the lag takes it, gauge [Pa].
+    target: f64,
+    /// One over the time constant [1/s].
+    rate: f64,
+    /// How long it holds [s].
+    pub duration: f64,
+}
+
+impl OutletCourse {
+    /// Outlet pressure, gauge [Pa], at a time since its start [s].
+    pub fn at(&self, time: f64) -> f64 {
+        self.target + (self.start - self.target) * (-time * self.rate).exp()
     }
 }
 

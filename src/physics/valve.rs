@@ -4,8 +4,6 @@
 //! retracting, the other way round (source paper, section 2.1 and fig. 2). Flow goes either way through each: the regulator relieves.
 //! Leaves out: the spool's switching time.
 
-use super::orifice::FlowFunction;
-
 /// Position of the spool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -23,22 +21,4 @@ pub struct ValveParameters {
     pub supply_conductance: f64,
     /// Exhaust orifice times discharge coefficient [m2].
     pub exhaust_conductance: f64,
-}
-
-/// Mass flows into chambers 1 and 2 [kg/s] at absolute pressures [Pa].
-pub fn chamber_flows(
-    parameters: &ValveParameters,
-    function: &FlowFunction,
-    position: ValvePosition,
-    outlet: f64,
-    atmosphere: f64,
-    pressures: [f64; 2],
-) -> [f64; 2] {
-    let supplied = |pressure| function.mass_flow(parameters.supply_conductance, outlet, pressure);
-    let vented =
-        |pressure| function.mass_flow(parameters.exhaust_conductance, atmosphere, pressure);
-    match position {
-        ValvePosition::Extend => [supplied(pressures[0]), vented(pressures[1])],
-        ValvePosition::Retract => [vented(pressures[0]), supplied(pressures[1])],
-    }
 }

@@ -41,6 +41,8 @@ pub const SET_PRESSURE: &str = "set_pressure";
 pub const CHAMBER_1_MASS: &str = "chamber_1_mass";
 /// Air in chamber 2.
 pub const CHAMBER_2_MASS: &str = "chamber_2_mass";
+/// Air in the line between regulator and valve.
+pub const HOSE_MASS: &str = "hose_mass";
 /// Air that has entered the chambers.
 pub const MASS_ENTERED: &str = "mass_entered";
 /// Air that has left the chambers.
@@ -51,6 +53,29 @@ pub const PATH_ERROR: &str = "path_error";
 pub const PATH_ERROR_AXIAL: &str = "path_error_axial";
 /// Speed of the tool along the edge.
 pub const FEED: &str = "feed";
+
+/// Force of the device's seals on its moving part.
+pub const SEAL_FORCE: &str = "seal_force";
+/// Acceleration of the device's slide.
+pub const ACCELERATION: &str = "acceleration";
+/// Where the load's surface stands along the stroke.
+pub const SURFACE_POSITION: &str = "surface_position";
+/// Is the 5/2 valve in its extending position?
+pub const VALVE_EXTENDS: &str = "valve_extends";
+/// Contact force as the load cell's software reads it, filtered.
+pub const MEASURED_FORCE: &str = "measured_force";
+/// Contact force as the load cell's software reads it, before its filter.
+pub const MEASURED_FORCE_UNFILTERED: &str = "measured_force_unfiltered";
+/// Stroke as the position sensor reads it.
+pub const MEASURED_STROKE: &str = "measured_stroke";
+/// Acceleration as the accelerometer reads it.
+pub const MEASURED_ACCELERATION: &str = "measured_acceleration";
+/// Regulator outlet as its sensor reads it.
+pub const MEASURED_REGULATOR_PRESSURE: &str = "measured_regulator_pressure";
+/// Contact force estimated without a load cell.
+pub const ESTIMATED_FORCE: &str = "estimated_force";
+/// Standard deviation that the estimator gives it.
+pub const ESTIMATED_FORCE_DEVIATION: &str = "estimated_force_deviation";
 
 /// The plot in which a signal is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -102,7 +127,7 @@ const fn signal(
 
 /// Signals that exist once, in the order of the table's columns.
 #[rustfmt::skip]
-pub const SIGNALS: [SignalDefinition; 21] = [
+pub const SIGNALS: [SignalDefinition; 22] = [
     signal(PATH_LENGTH, Unit::Metre, None, "path length",
         "Length of planned path behind the tool."),
     signal(CONTACT_FORCE, Unit::Newton, Some(PlotGroup::Force), "contact force",
@@ -135,6 +160,8 @@ pub const SIGNALS: [SignalDefinition; 21] = [
         "Mass of air in chamber 1."),
     signal(CHAMBER_2_MASS, Unit::Kilogram, None, "air in chamber 2",
         "Mass of air in chamber 2."),
+    signal(HOSE_MASS, Unit::Kilogram, None, "air in the line",
+        "Mass of air in the line between regulator and valve."),
     signal(MASS_ENTERED, Unit::Kilogram, None, "air entered",
         "Mass of air that has entered the chambers since the start."),
     signal(MASS_LEFT, Unit::Kilogram, None, "air left",
@@ -145,6 +172,33 @@ pub const SIGNALS: [SignalDefinition; 21] = [
         "Distance of the flange from its planned path along the tool's axis, positive towards the part."),
     signal(FEED, Unit::MetrePerSecond, None, "feed",
         "Speed of the tool along the edge."),
+];
+
+/// Signals that only a bench rig records, or sensors.
+#[rustfmt::skip]
+pub const BENCH_SIGNALS: [SignalDefinition; 11] = [
+    signal(SEAL_FORCE, Unit::Newton, Some(PlotGroup::ForceBalance), "seal force",
+        "Force of the device's seals on its moving part, positive along extension."),
+    signal(ACCELERATION, Unit::MetrePerSecondSquared, None, "acceleration",
+        "Acceleration of the slide, positive along extension."),
+    signal(SURFACE_POSITION, Unit::Metre, Some(PlotGroup::Stroke), "surface",
+        "Where the surface of the load stands along the stroke, from the retracted end."),
+    signal(VALVE_EXTENDS, Unit::One, None, "valve extends",
+        "1 while the 5/2 valve joins chamber 1 to the regulator, 0 while it joins chamber 2 to it."),
+    signal(MEASURED_FORCE, Unit::Newton, Some(PlotGroup::Force), "measured",
+        "Contact force as the load cell's software reads it, filtered."),
+    signal(MEASURED_FORCE_UNFILTERED, Unit::Newton, Some(PlotGroup::Force), "measured, unfiltered",
+        "Contact force as the load cell's software reads it, before its filter."),
+    signal(MEASURED_STROKE, Unit::Metre, Some(PlotGroup::Stroke), "measured",
+        "Stroke as the position sensor reads it."),
+    signal(MEASURED_ACCELERATION, Unit::MetrePerSecondSquared, None, "measured acceleration",
+        "Acceleration of the slide as the accelerometer reads it."),
+    signal(MEASURED_REGULATOR_PRESSURE, Unit::Pascal, Some(PlotGroup::Pressure), "regulator, measured",
+        "Absolute pressure at the regulator's outlet as its sensor reads it."),
+    signal(ESTIMATED_FORCE, Unit::Newton, Some(PlotGroup::Force), "estimated",
+        "Contact force estimated without a load cell, from regulator pressure, stroke and acceleration."),
+    signal(ESTIMATED_FORCE_DEVIATION, Unit::Newton, None, "estimated, deviation",
+        "Standard deviation of the estimated contact force."),
 ];
 
 /// A signal that every joint has.
@@ -220,7 +274,10 @@ pub fn parse_joint_quantity(quantity: &str) -> Option<(usize, JointSignal)> {
 /// The definition of a signal that exists once.
 #[must_use]
 pub fn definition(quantity: &str) -> Option<&'static SignalDefinition> {
-    SIGNALS.iter().find(|signal| signal.quantity == quantity)
+    SIGNALS
+        .iter()
+        .chain(&BENCH_SIGNALS)
+        .find(|signal| signal.quantity == quantity)
 }
 
 /// What a quantity is, in one sentence; `None` if the list does not know it.

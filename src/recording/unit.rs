@@ -13,6 +13,8 @@ pub enum Unit {
     Metre,
     /// Speed [m/s].
     MetrePerSecond,
+    /// Acceleration [m/s2].
+    MetrePerSecondSquared,
     /// Force [N].
     Newton,
     /// Torque [N m].
@@ -37,10 +39,11 @@ pub enum Unit {
 
 impl Unit {
     /// Every unit.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Second,
         Self::Metre,
         Self::MetrePerSecond,
+        Self::MetrePerSecondSquared,
         Self::Newton,
         Self::NewtonMetre,
         Self::Pascal,
@@ -60,6 +63,7 @@ impl Unit {
             Self::Second => "s",
             Self::Metre => "m",
             Self::MetrePerSecond => "m_per_s",
+            Self::MetrePerSecondSquared => "m_per_s2",
             Self::Newton => "n",
             Self::NewtonMetre => "n_m",
             Self::Pascal => "pa",
@@ -80,6 +84,7 @@ impl Unit {
             Self::Second => "s",
             Self::Metre => "m",
             Self::MetrePerSecond => "m/s",
+            Self::MetrePerSecondSquared => "m/s2",
             Self::Newton => "N",
             Self::NewtonMetre => "N m",
             Self::Pascal => "Pa",

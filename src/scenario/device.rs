@@ -4,15 +4,18 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use crate::device::DeviceParameters;
-use crate::physics::end_stop::EndStop;
 use crate::physics::gas::Gas;
+use crate::physics::gas_process::GasProcess;
+use crate::physics::hose::Hose;
+use crate::physics::push_only::PushOnly;
 use crate::physics::regulator::RegulatorParameters;
+use crate::physics::seal_friction::SealFriction;
 
 use super::DeviceScenario;
 use super::check::Section;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
-use super::file::{ModelFile, ModelKeys, SCHEMA};
+use super::file::{GasProcessKind, ModelFile, ModelKeys, SCHEMA};
 use super::sections::model_sections;
 
 /// Reads a device model file: the device as it comes, not locked.
@@ -97,6 +100,12 @@ impl<'a> Layers<'a> {
     #[rustfmt::skip] // A table: one key a line.
     fn parameters(&self) -> Result<DeviceParameters, ScenarioError> {
         let (section, count) = self.find("cylinder_count", |keys| keys.cylinder_count)?;
+        let gas = Gas {
+            specific_gas_constant: self.number("gas_constant_j_per_kg_k", |keys| keys.gas_constant_j_per_kg_k, 50.0..=5000.0)?,
+            heat_capacity_ratio: self.number("gas_heat_capacity_ratio", |keys| keys.gas_heat_capacity_ratio, 1.01..=1.67)?,
+            temperature: self.number("gas_temperature_k", |keys| keys.gas_temperature_k, 200.0..=500.0)?,
+            atmosphere: self.number("atmosphere_pa_absolute", |keys| keys.atmosphere_pa_absolute, 50_000.0..=110_000.0)?,
+        };
         Ok(DeviceParameters {
             cylinder_count: section.count("cylinder_count", count, 1..=16)?,
             bore: self.number("bore_mm", |keys| keys.bore_mm, 4.0..=200.0)?,
@@ -113,18 +122,53 @@ impl<'a> Layers<'a> {
                 dead_time: self.number("regulator_dead_time_ms", |keys| keys.regulator_dead_time_ms, 0.0..=5000.0)?,
                 supply: self.number("supply_pressure_bar_gauge", |keys| keys.supply_pressure_bar_gauge, 0.1..=16.0)?,
             },
-            end_stop: EndStop {
+            end_stop: PushOnly {
                 stiffness: self.number("end_stop_stiffness_n_per_m", |keys| keys.end_stop_stiffness_n_per_m, 1e4..=1e9)?,
                 damping: self.number("end_stop_damping_n_s_per_m", |keys| keys.end_stop_damping_n_s_per_m, 0.0..=1e6)?,
             },
-            gas: Gas {
-                specific_gas_constant: self.number("gas_constant_j_per_kg_k", |keys| keys.gas_constant_j_per_kg_k, 50.0..=5000.0)?,
-                heat_capacity_ratio: self.number("gas_heat_capacity_ratio", |keys| keys.gas_heat_capacity_ratio, 1.01..=1.67)?,
-                temperature: self.number("gas_temperature_k", |keys| keys.gas_temperature_k, 200.0..=500.0)?,
-                atmosphere: self.number("atmosphere_pa_absolute", |keys| keys.atmosphere_pa_absolute, 50_000.0..=110_000.0)?,
-            },
+            seal_friction: self.seal_friction()?,
+            gas_process: self.gas_process()?,
+            hose: self.hose(&gas)?,
+            gas,
             lock_stiffness: self.number("lock_stiffness_n_per_m", |keys| keys.lock_stiffness_n_per_m, 1e5..=1e10)?,
         })
+    }
+
+    #[rustfmt::skip] // A table: one key a line.
+    fn seal_friction(&self) -> Result<SealFriction, ScenarioError> {
+        Ok(SealFriction {
+            coulomb: self.number("seal_coulomb_force_n", |keys| keys.seal_coulomb_force_n, 0.0..=1000.0)?,
+            static_force: self.number("seal_static_force_n", |keys| keys.seal_static_force_n, 0.0..=1000.0)?,
+            stribeck_velocity: self.number("seal_stribeck_velocity_mm_per_s", |keys| keys.seal_stribeck_velocity_mm_per_s, 0.1..=1000.0)?,
+            viscous: self.number("seal_viscous_coefficient_n_s_per_m", |keys| keys.seal_viscous_coefficient_n_s_per_m, 0.0..=1e5)?,
+            presliding_displacement: self.number("seal_presliding_displacement_um", |keys| keys.seal_presliding_displacement_um, 1.0..=5000.0)?,
+        })
+    }
+
+    fn gas_process(&self) -> Result<GasProcess, ScenarioError> {
+        let conductance = self.number(
+            "wall_conductance_w_per_k",
+            |keys| keys.wall_conductance_w_per_k,
+            0.0..=100.0,
+        )?;
+        let (_, kind) = self.find("gas_process", |keys| keys.gas_process)?;
+        Ok(match kind {
+            GasProcessKind::Isothermal => GasProcess::Isothermal,
+            GasProcessKind::WallHeat => GasProcess::WallHeat { conductance },
+        })
+    }
+
+    /// The line, its resistance at the density of half the supply pressure; none of no length.
+    fn hose(&self, gas: &Gas) -> Result<Option<Hose>, ScenarioError> {
+        let length = self.number("hose_length_m", |keys| keys.hose_length_m, 0.0..=50.0)?;
+        let diameter = self.number("hose_diameter_mm", |keys| keys.hose_diameter_mm, 1.0..=25.0)?;
+        let supply = self.number(
+            "supply_pressure_bar_gauge",
+            |keys| keys.supply_pressure_bar_gauge,
+            0.1..=16.0,
+        )?;
+        let density = gas.mass(gas.atmosphere + 0.5 * supply, 1.0);
+        Ok((length > 0.0).then(|| Hose::of_geometry(length, diameter, density)))
     }
 
     /// What the values must be to each other.
@@ -135,6 +179,15 @@ impl<'a> Layers<'a> {
             let (section, rod) = self.find("rod_mm", |keys| keys.rod_mm)?;
             let expected = format!("less than bore_mm, {bore} mm");
             return Err(section.refuse_number("rod_mm", rod, expected));
+        }
+        let seals = &parameters.seal_friction;
+        if seals.static_force < seals.coulomb {
+            let (_, coulomb) =
+                self.find("seal_coulomb_force_n", |keys| keys.seal_coulomb_force_n)?;
+            let (section, value) =
+                self.find("seal_static_force_n", |keys| keys.seal_static_force_n)?;
+            let expected = format!("at least seal_coulomb_force_n, {coulomb} N");
+            return Err(section.refuse_number("seal_static_force_n", value, expected));
         }
         if device.tool_centre < device.tool_radius {
             let (_, radius) = self.find("tool_ball_radius_mm", |keys| keys.tool_ball_radius_mm)?;

@@ -48,6 +48,16 @@ pub enum ScenarioError {
         /// What is wrong and what was expected.
         reason: String,
     },
+    /// A scenario of the other kind.
+    #[error("{}: the scenario is a {found}, expected a {expected}", file.display())]
+    OtherKind {
+        /// The file.
+        file: PathBuf,
+        /// Its kind.
+        found: &'static str,
+        /// The kind that was asked for.
+        expected: &'static str,
+    },
     /// The file is written for another version of this format.
     #[error("{place}: schema is {found}, expected {expected}")]
     Schema {

@@ -15,6 +15,8 @@ pub(super) const SCHEMA: u32 = 1;
 #[serde(deny_unknown_fields)]
 pub(super) struct ScenarioFile {
     pub schema: u32,
+    #[expect(dead_code, reason = "read as `KindOnly`; here so that it is known")]
+    pub kind: Option<super::bench_file::Kind>,
     pub title: String,
     pub arm: ArmKeys,
     pub device: DeviceKeys,
@@ -102,6 +104,15 @@ pub(super) struct ModelKeys {
     pub supply_pressure_bar_gauge: Option<f64>,
     pub end_stop_stiffness_n_per_m: Option<f64>,
     pub end_stop_damping_n_s_per_m: Option<f64>,
+    pub seal_coulomb_force_n: Option<f64>,
+    pub seal_static_force_n: Option<f64>,
+    pub seal_stribeck_velocity_mm_per_s: Option<f64>,
+    pub seal_viscous_coefficient_n_s_per_m: Option<f64>,
+    pub seal_presliding_displacement_um: Option<f64>,
+    pub gas_process: Option<GasProcessKind>,
+    pub wall_conductance_w_per_k: Option<f64>,
+    pub hose_length_m: Option<f64>,
+    pub hose_diameter_mm: Option<f64>,
     pub gas_constant_j_per_kg_k: Option<f64>,
     pub gas_heat_capacity_ratio: Option<f64>,
     pub gas_temperature_k: Option<f64>,
@@ -111,6 +122,16 @@ pub(super) struct ModelKeys {
     pub tool_centre_mm: Option<f64>,
     pub moving_centre_of_mass_mm: Option<f64>,
     pub moving_radius_of_gyration_mm: Option<f64>,
+}
+
+/// What the gas does as it is compressed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum GasProcessKind {
+    /// Constant temperature.
+    Isothermal,
+    /// Heats up, exchanges heat with the wall.
+    WallHeat,
 }
 
 /// `[workpiece]`.

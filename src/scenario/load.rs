@@ -5,21 +5,56 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::bench::{self, BenchScenario};
+use super::bench_file::{Kind, KindOnly};
 use super::check::Section;
 use super::device::load_with_overrides;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
-use super::sections::scenario_sections;
+use super::sections::{bench_sections, scenario_sections};
 use super::workpiece::workpiece;
 use super::{
-    ArmScenario, ContactScenario, DeviceScenario, Expectation, LimitOverride, ProcessScenario,
-    Scenario, ServoScenario, SimulationScenario,
+    AnyScenario, ArmScenario, ContactScenario, DeviceScenario, Expectation, LimitOverride,
+    ProcessScenario, Scenario, ServoScenario, SimulationScenario,
 };
 
-/// Reads and checks a scenario file and the device model file that it names.
+/// Reads and checks a scenario file of either kind and the device model file that it names.
+pub fn load_any(path: &Path) -> Result<AnyScenario, ScenarioError> {
+    let text = read_text(path)?;
+    let document = Document::new(path, &text, file::SCHEMA)?;
+    // Keys of either kind are known here, so that only a wrong kind is refused.
+    let KindOnly { kind } = document.parse(&bench_sections())?;
+    match kind {
+        Kind::Cell => from_text(path, &text).map(|cell| AnyScenario::Cell(Box::new(cell))),
+        Kind::Bench => {
+            bench::from_document(path, &document).map(|bench| AnyScenario::Bench(Box::new(bench)))
+        }
+    }
+}
+
+/// Reads and checks the scenario file of a cell and the device model file that it names.
 pub fn load(path: &Path) -> Result<Scenario, ScenarioError> {
-    from_text(path, &read_text(path)?)
+    match load_any(path)? {
+        AnyScenario::Cell(cell) => Ok(*cell),
+        AnyScenario::Bench(_) => Err(ScenarioError::OtherKind {
+            file: path.to_owned(),
+            found: "bench",
+            expected: "cell",
+        }),
+    }
+}
+
+/// Reads and checks a bench scenario file and the device model file that it names.
+pub fn load_bench(path: &Path) -> Result<BenchScenario, ScenarioError> {
+    match load_any(path)? {
+        AnyScenario::Bench(bench) => Ok(*bench),
+        AnyScenario::Cell(_) => Err(ScenarioError::OtherKind {
+            file: path.to_owned(),
+            found: "cell",
+            expected: "bench",
+        }),
+    }
 }
 
 /// As `load`, of a text that stands, or could stand, in the file at `path`.
@@ -115,7 +150,11 @@ fn servo(section: &Section<'_>, keys: &file::ServoKeys) -> Result<ServoScenario,
     })
 }
 
-fn device(section: &Section<'_>, keys: &file::DeviceKeys) -> Result<DeviceScenario, ScenarioError> {
+/// The device of a scenario: its model with what the scenario overrides.
+pub(super) fn device(
+    section: &Section<'_>,
+    keys: &file::DeviceKeys,
+) -> Result<DeviceScenario, ScenarioError> {
     let overrides = Section::new(section.document(), "device.override");
     let model = section.file("model", &keys.model)?;
     let mut device = load_with_overrides(&model, Some((overrides, &keys.overrides)))?;
@@ -211,7 +250,7 @@ fn simulation(
 }
 
 /// Whether a metric of this name exists is for whoever computes them to say.
-fn expectations(
+pub(super) fn expectations(
     section: &Section<'_>,
     bounds: &std::collections::BTreeMap<String, file::BoundKeys>,
 ) -> Result<Vec<Expectation>, ScenarioError> {

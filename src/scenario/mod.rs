@@ -7,6 +7,8 @@ use glamx::DPose3;
 
 use crate::device::DeviceParameters;
 
+pub mod bench;
+mod bench_file;
 mod check;
 mod device;
 mod document;
@@ -20,9 +22,19 @@ mod tests;
 mod units;
 mod workpiece;
 
+pub use bench::BenchScenario;
 pub use device::load_device;
 pub use error::ScenarioError;
-pub use load::load;
+pub use load::{load, load_any, load_bench};
+
+/// A scenario of either kind.
+#[derive(Debug, Clone)]
+pub enum AnyScenario {
+    /// Arm, device and workpiece.
+    Cell(Box<Scenario>),
+    /// The device alone.
+    Bench(Box<BenchScenario>),
+}
 
 /// A whole cell and its job.
 #[derive(Debug, Clone)]

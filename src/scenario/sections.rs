@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
-use super::file;
+use super::{bench_file, file};
 
 /// Tables of a scenario file with their keys; `*` stands for a name that the user gives.
 pub(super) fn scenario_sections() -> Vec<(&'static str, &'static [&'static str])> {
@@ -21,6 +21,22 @@ pub(super) fn scenario_sections() -> Vec<(&'static str, &'static [&'static str])
         ("contact", keys::<file::ContactKeys>()),
         ("process", keys::<file::ProcessKeys>()),
         ("simulation", keys::<file::SimulationKeys>()),
+        ("expect.*", keys::<file::BoundKeys>()),
+    ]
+}
+
+/// Tables of a bench scenario file with their keys.
+pub(super) fn bench_sections() -> Vec<(&'static str, &'static [&'static str])> {
+    vec![
+        ("", keys::<bench_file::BenchFile>()),
+        ("device", keys::<file::DeviceKeys>()),
+        ("device.override", keys::<file::ModelKeys>()),
+        ("bench", keys::<bench_file::BenchKeys>()),
+        ("load", keys::<bench_file::LoadKeys>()),
+        ("hand", keys::<bench_file::HandKeys>()),
+        ("command", keys::<bench_file::CommandKeys>()),
+        ("valve", keys::<bench_file::ValveKeys>()),
+        ("simulation", keys::<bench_file::BenchSimulationKeys>()),
         ("expect.*", keys::<file::BoundKeys>()),
     ]
 }

@@ -23,7 +23,7 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 22] = [
+const UNITS: [Unit; 25] = [
     unit("_n_s_per_m", "N s/m", Divide(1.0)),
     unit("_n_per_m", "N/m", Divide(1.0)),
     unit("_n_m", "N m", Divide(1.0)),
@@ -37,12 +37,15 @@ const UNITS: [Unit; 22] = [
     unit("_pa_absolute", "Pa absolute", Divide(1.0)),
     unit("_cm3", "cm3", Divide(1e6)),
     unit("_mm2", "mm2", Divide(1e6)),
+    unit("_w_per_k", "W/K", Divide(1.0)),
+    unit("_um", "um", Divide(1e6)),
     unit("_mm", "mm", Divide(1e3)),
     unit("_deg", "deg", Multiply(PI / 180.0)),
     unit("_hz", "Hz", Divide(1.0)),
     unit("_kg", "kg", Divide(1.0)),
     unit("_ms", "ms", Divide(1e3)),
     unit("_n", "N", Divide(1.0)),
+    unit("_m", "m", Divide(1.0)),
     unit("_s", "s", Divide(1.0)),
     unit("_k", "K", Divide(1.0)),
     // A pure number: every key ends with nothing.

@@ -226,10 +226,11 @@ impl<'a> Simulation<'a> {
                 damping: 2.0 * (stiffness * device_scenario.parameters.moving_mass).sqrt(),
             }
         } else {
+            let speed = self.world.velocities()[n];
             JointLaw {
-                force: device.force + device.damping * self.world.velocities()[n],
-                stiffness: 0.0,
-                rest: 0.0,
+                force: device.force + device.damping * speed,
+                stiffness: device.stiffness,
+                rest: self.world.positions()[n] + speed * dt,
                 damping: device.damping,
             }
         };
@@ -314,10 +315,11 @@ impl<'a> Simulation<'a> {
             pressures[1],
             gas.atmosphere + self.device.regulator.outlet,
             gas.atmosphere + set_pressure,
-            self.device.masses[0],
-            self.device.masses[1],
-            self.device.mass_entered,
-            self.device.mass_left,
+            self.device.air.masses[0],
+            self.device.air.masses[1],
+            self.device.air.hose_mass,
+            self.device.air.entered,
+            self.device.air.left,
             across.length(),
             off.dot(reference.axis) - (stroke - cell.scenario.process.working_stroke),
             reference.feed,

@@ -1,9 +1,10 @@
 //! The device against closed forms, conserved quantities and halved steps.
 
 use super::*;
-use crate::physics::end_stop::EndStop;
 use crate::physics::gas::Gas;
+use crate::physics::push_only::PushOnly;
 use crate::physics::regulator::RegulatorParameters;
+use crate::physics::seal_friction::SealFriction;
 
 fn parameters() -> DeviceParameters {
     DeviceParameters {
@@ -22,11 +23,14 @@ fn parameters() -> DeviceParameters {
             dead_time: 0.02,
             supply: 6e5,
         },
-        end_stop: EndStop {
+        end_stop: PushOnly {
             stiffness: 1e6,
             damping: 2e3,
         },
+        seal_friction: SealFriction::NONE,
         gas: Gas::default(),
+        gas_process: GasProcess::Isothermal,
+        hose: None,
         lock_stiffness: 1e8,
     }
 }
@@ -40,14 +44,14 @@ const STILL: PistonMotion = PistonMotion {
 fn at_rest_nothing_flows() {
     let device = Device::new(parameters());
     let mut state = device.at_rest(0.025, 2e5);
-    let before = state.masses;
+    let before = state.air.masses;
     let mut force = 0.0;
     for _ in 0..1000 {
         force = device.advance(&mut state, 2e5, STILL, 1e-3, 2).force;
     }
     let area = device.parameters().areas().extending;
     assert!((force - 2e5 * area).abs() < 1e-6, "{force}");
-    for (now, before) in state.masses.iter().zip(before) {
+    for (now, before) in state.air.masses.iter().zip(before) {
         assert!((now / before - 1.0).abs() < 1e-12);
     }
 }
@@ -118,7 +122,7 @@ fn closed_chambers_are_isothermal_springs_that_give_back_their_work() {
 fn swing(substeps: usize) -> ([f64; 2], f64) {
     let device = Device::new(parameters());
     let mut state = device.at_rest(0.025, 1e5);
-    let held: f64 = state.masses.iter().sum();
+    let held: f64 = state.air.masses.iter().sum();
     let (dt, steps) = (1e-3, 400);
     let mut stroke = 0.025;
     for step in 0..steps {
@@ -132,10 +136,10 @@ fn swing(substeps: usize) -> ([f64; 2], f64) {
         );
         stroke += speed * dt;
     }
-    let now: f64 = state.masses.iter().sum();
+    let now: f64 = state.air.masses.iter().sum();
     (
         device.pressures(&state, stroke),
-        state.mass_entered - state.mass_left - (now - held),
+        state.air.entered - state.air.left - (now - held),
     )
 }
 

@@ -143,6 +143,7 @@ pub(super) fn plots(
 fn group_series(recording: &Recording, style: &Style) -> Vec<Series> {
     let signals = schema::SIGNALS
         .iter()
+        .chain(&schema::BENCH_SIGNALS)
         .filter(|s| s.group == Some(style.group));
     let mut series = Vec::new();
     for (index, signal) in signals.enumerate() {

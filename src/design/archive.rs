@@ -1,0 +1,148 @@
+//! Every design that was evaluated, each once.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::candidate::{Evaluate, EvaluateError, Outcome};
+use super::study::{Study, TradeOff};
+
+/// An evaluated design.
+#[derive(Debug, Clone)]
+pub(super) struct Judged {
+    /// Its values, one a variable.
+    pub values: Vec<f64>,
+    /// What it gives, or why nothing.
+    pub result: Result<Scored, EvaluateError>,
+}
+
+/// What a design that could be simulated is worth.
+#[derive(Debug, Clone)]
+pub(super) struct Scored {
+    pub outcome: Outcome,
+    /// The objective, in its unit.
+    pub objective: f64,
+    /// The second objective, in its unit; 0 if there is none.
+    pub trade_off: f64,
+    /// Per limit, how far it is outside, as a share of the bound; negative inside.
+    pub excess: Vec<f64>,
+}
+
+impl Scored {
+    /// Are all limits kept?
+    pub fn feasible(&self) -> bool {
+        self.excess.iter().all(|excess| *excess <= 0.0)
+    }
+}
+
+/// Evaluates and remembers. Shared between threads: which of them comes first changes nothing, for the same design gives the same outcome and the
+/// designs are kept in the order of their values.
+pub(super) struct Archive<'a> {
+    study: &'a Study,
+    evaluator: &'a dyn Evaluate,
+    progress: &'a (dyn Fn(usize, usize) + Sync),
+    known: Mutex<BTreeMap<Vec<u64>, Arc<Judged>>>,
+}
+
+impl<'a> Archive<'a> {
+    pub fn new(
+        study: &'a Study,
+        evaluator: &'a dyn Evaluate,
+        progress: &'a (dyn Fn(usize, usize) + Sync),
+    ) -> Self {
+        Self {
+            study,
+            evaluator,
+            progress,
+            known: Mutex::default(),
+        }
+    }
+
+    pub fn study(&self) -> &'a Study {
+        self.study
+    }
+
+    /// The design at these places from 0 to 1.
+    pub fn at(&self, places: &[f64]) -> Arc<Judged> {
+        let values = self.study.values(places);
+        let key: Vec<u64> = values.iter().map(|value| sortable(*value)).collect();
+        if let Some(judged) = self.known().get(&key) {
+            return judged.clone();
+        }
+        // Not under the lock: this takes long. Two threads may do the same work, with the same outcome.
+        let judged = Arc::new(self.evaluate(values));
+        let count = {
+            let mut known = self.known();
+            known.entry(key).or_insert_with(|| judged.clone());
+            known.len()
+        };
+        (self.progress)(count, self.study.evaluations);
+        judged
+    }
+
+    /// A design of any values, which is not remembered.
+    pub fn evaluate(&self, values: Vec<f64>) -> Judged {
+        let result = self
+            .evaluator
+            .evaluate(&self.study.design(&values))
+            .and_then(|outcome| score(self.study, &values, outcome));
+        Judged { values, result }
+    }
+
+    /// All designs so far, by their values.
+    pub fn all(&self) -> Vec<Arc<Judged>> {
+        self.known().values().cloned().collect()
+    }
+
+    fn known(&self) -> std::sync::MutexGuard<'_, BTreeMap<Vec<u64>, Arc<Judged>>> {
+        // Only whole entries are ever inserted, so a panic elsewhere leaves the map sound.
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Bits in the order of the numbers.
+fn sortable(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
+}
+
+fn score(study: &Study, values: &[f64], outcome: Outcome) -> Result<Scored, EvaluateError> {
+    let given = |value: Option<f64>, metric: &str| match value {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(value) => Err(EvaluateError {
+            reason: format!("{metric} not finite"),
+            detail: format!("{metric} is {value}, expected a finite number"),
+        }),
+        None => Err(EvaluateError {
+            reason: format!("{metric} not determined"),
+            detail: format!("no scenario determines {metric}"),
+        }),
+    };
+    let objective = given(study.objective.value(&outcome), &study.objective.metric)?;
+    let trade_off = match &study.trade_off {
+        Some(TradeOff::Metric(metric)) => given(metric.value(&outcome), &metric.metric)?,
+        Some(TradeOff::Variable(index)) => values[*index],
+        None => 0.0,
+    };
+    let excess = |limit: &super::Limit| {
+        let value = given(limit.value(&outcome), limit.key())?;
+        Ok(limit.excess(value) / limit.scale())
+    };
+    let excess = study.limits.iter().map(excess).collect::<Result<_, _>>()?;
+    Ok(Scored {
+        outcome,
+        objective,
+        trade_off,
+        excess,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_sort_as_the_numbers_do() {
+        let numbers = [-2.5, -1.0, -1e-9, 0.0, 1e-9, 0.5, 3.0, 1e12];
+        assert!(numbers.map(sortable).is_sorted_by(|a, b| a < b));
+    }
+}

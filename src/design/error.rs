@@ -1,0 +1,61 @@
+//! What can end a design study.
+
+use crate::scenario::ScenarioError;
+use crate::scenario::error::Place;
+
+/// A study that cannot be done.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DesignError {
+    /// The study file.
+    #[error(transparent)]
+    File(#[from] ScenarioError),
+    /// The starting design, to which everything is compared.
+    #[error("{place}: the starting design cannot be simulated: {detail}")]
+    Start {
+        /// The study's variables.
+        place: Place,
+        /// What the evaluation says.
+        detail: String,
+    },
+    /// A metric that no scenario gives.
+    #[error("{place}: `{key}` names the metric `{metric}`, which no scenario gives for the starting design; known here are {known}")]
+    UnknownMetric {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// The metric.
+        metric: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// The limits are too tight.
+    #[error("no design within the bounds keeps the limits: the best of {designs} violates {limit} by {excess}, with {value}")]
+    NoDesign {
+        /// Designs tried.
+        designs: usize,
+        /// The limit, bound and unit included.
+        limit: String,
+        /// By how much, unit included.
+        excess: String,
+        /// What it reaches, unit included.
+        value: String,
+    },
+    /// Nothing but failures.
+    #[error("no design but the starting one could be simulated: {count} of {designs} failed, most with: {reason}")]
+    OnlyFailures {
+        /// Designs tried.
+        designs: usize,
+        /// How many failed.
+        count: usize,
+        /// Most frequent reason.
+        reason: String,
+    },
+    /// The optimiser refused.
+    #[error("the optimiser stopped: {0}")]
+    Optimiser(String),
+    /// The drawing library refused.
+    #[error("the trade-off front cannot be drawn: {0}")]
+    Picture(String),
+}

@@ -1,0 +1,91 @@
+//! Names and units for people, from keys that end in their unit.
+
+use crate::scenario::units::{Unit, stem};
+
+/// Suffixes of metrics that no file key has.
+const OTHERS: [(&str, &str); 3] = [("_percent", "%"), ("_nl", "Nl"), ("_g", "g")];
+
+fn parts(key: &str) -> (&str, &'static str) {
+    OTHERS
+        .iter()
+        .find_map(|(suffix, symbol)| key.strip_suffix(suffix).map(|stem| (stem, *symbol)))
+        .unwrap_or_else(|| (stem(key), Unit::of_key(key).symbol))
+}
+
+/// Unit of a key; empty for a pure number.
+pub(super) fn symbol(key: &str) -> &'static str {
+    parts(key).1
+}
+
+/// `impact peak [N]` for `impact_peak_n`.
+pub(super) fn axis(key: &str) -> String {
+    let (stem, unit) = parts(key);
+    let name = stem.replace(['_', '.'], " ");
+    let unit = unit.replace("mm2", "mm\u{b2}").replace("cm3", "cm\u{b3}");
+    if unit.is_empty() { name } else { format!("{name} [{unit}]") }
+}
+
+/// A value of a key with its unit, to four significant digits.
+pub(super) fn with_unit(key: &str, value: f64) -> String {
+    let value = number(value);
+    match symbol(key) {
+        "" => value,
+        unit => format!("{value} {unit}"),
+    }
+}
+
+/// A number as people read it: up to five significant digits, without trailing zeros.
+pub(super) fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    let size = rounded.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    }
+}
+
+/// A change in percent with its sign.
+pub(super) fn percent(change: f64) -> String {
+    let text = if change.abs() < 9.95 {
+        format!("{change:+.1} %")
+    } else {
+        format!("{change:+.0} %")
+    };
+    if text == "-0.0 %" { "+0.0 %".to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_reads_as_a_name_with_its_unit() {
+        for (key, name) in [
+            ("impact_peak_n", "impact peak [N]"),
+            ("coefficient_of_variation_percent", "coefficient of variation [%]"),
+            ("supply_orifice_mm2", "supply orifice [mm\u{b2}]"),
+            ("controller.proportional_gain", "controller proportional gain"),
+            ("hose_length_m", "hose length [m]"),
+        ] {
+            assert_eq!(axis(key), name);
+        }
+        assert_eq!(with_unit("impact_peak_n", 399.98765), "399.99 N");
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, text) in [
+            (0.0, "0"),
+            (40.0, "40"),
+            (3.14159265, "3.1416"),
+            (1.5e5, "150000"),
+            (2.5e-7, "2.5e-7"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+        assert_eq!(percent(-3.04), "-3.0 %");
+        assert_eq!(percent(12.3), "+12 %");
+        assert_eq!(percent(-0.01), "+0.0 %");
+    }
+}

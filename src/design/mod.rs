@@ -1,0 +1,47 @@
+//! The design study: which device, within bounds and a catalogue, keeps the contact force most uniform under limits.
+//!
+//!     minimise   f(d)                    over scenarios: contact-force variation, or another metric
+//!     subject to g_j(d) <= 0             limits: force range, stroke margin, impact peak, ...
+//!                d_i in [min, max], or in a catalogue
+//!
+//! [`load`] reads and checks the study file; [`run`] searches, given anything that can [`Evaluate`] a [`Design`]; the [`StudyResult`] holds the
+//! chosen design beside the starting one, the trade-off front against a second objective, what binds it, and what each variable would still do.
+//! How a design is simulated is none of this module's business.
+//!
+//! The search (`search`): differential evolution over everything with feasibility first, then COBYLA on the continuous variables of the best few
+//! catalogue choices and of their neighbours. The front: the same under a ceiling on the second objective, one level after the other.
+
+mod archive;
+mod candidate;
+mod catalogue;
+mod error;
+mod evolve;
+mod file;
+mod front;
+mod goal;
+mod label;
+mod limits;
+mod picture;
+mod polish;
+mod refine;
+mod result;
+mod search;
+mod sensitivity;
+mod study;
+#[cfg(test)]
+mod tests;
+mod text;
+mod variable;
+
+pub use candidate::{Design, Evaluate, EvaluateError, Outcome, ScenarioOutcome};
+pub use error::DesignError;
+pub use limits::{Limit, LimitQuantity, Side};
+pub use picture::front_svg;
+pub use result::{
+    ActiveBound, ActiveLimit, Candidate, FrontPoint, LimitState, ObjectiveNames, Sensitivity,
+    StudyResult,
+};
+pub use search::run;
+pub use study::{Objective, Over, Study, TradeOff, load};
+pub use text::text;
+pub use variable::{CatalogueEntry, Domain, Variable};

@@ -1,0 +1,45 @@
+//! Who carries the piston.
+
+/// Motion of the piston.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PistonMotion {
+    /// Stroke from the retracted end [m].
+    pub stroke: f64,
+    /// Speed of extension [m/s].
+    pub speed: f64,
+}
+
+/// What moves with the piston and acts on it from outside the device. Times are since the start of the step that is being integrated [s].
+pub trait Carrier {
+    /// Does the piston move under the force? If not, it keeps its speed.
+    const MOVES: bool;
+
+    /// Force along extension from outside the device [N]: weight, load, hand. `touching` holds the contact as it was found by `touches`
+    /// for the whole of a sub-step, so that the law is smooth in it.
+    fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64;
+
+    /// Does the load push on the piston?
+    fn touches(&self, time: f64, motion: PistonMotion) -> bool;
+
+    /// The fastest rate [1/s] of whatever hangs on the piston, for the choice of sub-steps.
+    fn rate(&self) -> f64;
+}
+
+/// A piston that somebody else moves: at the same speed throughout.
+pub(super) struct Foretold;
+
+impl Carrier for Foretold {
+    const MOVES: bool = false;
+
+    fn force(&self, _: f64, _: PistonMotion, _: bool) -> f64 {
+        0.0
+    }
+
+    fn touches(&self, _: f64, _: PistonMotion) -> bool {
+        false
+    }
+
+    fn rate(&self) -> f64 {
+        0.0
+    }
+}

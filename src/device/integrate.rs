@@ -1,0 +1,263 @@
+//! Time integration: classical Runge-Kutta of order four on the air and the piston, in sub-steps that the stiffest part allows.
+//!
+//! The state is the air's mass (and energy), so that no air is lost however coarse the step. The regulator is solved exactly and known at every
+//! stage. Whatever makes the law not smooth - a contact or a stop made or left, the seals' reversal, a set pressure that arrives - is met where it
+//! happens: a mode is held over a sub-step, and a sub-step that ends in another mode is cut, by bisection, where that mode begins.
+//!
+//! Chosen by measurement over adaptive stiff solvers: benches/solver, docs/SPEED.md.
+
+use super::carrier::{Carrier, PistonMotion};
+use super::pneumatics::Device;
+use super::state::{AirState, DeviceState, EnergyLedger};
+use crate::physics::regulator::OutletCourse;
+use crate::physics::valve::ValvePosition;
+
+/// Largest sub-step times the fastest rate of the pneumatics [1]; the method is stable to 2.78 and damps to a third here.
+const AIR_LIMIT: f64 = 1.2;
+/// Largest sub-step times the fastest rate of stops and load [rad].
+const MECHANICAL_LIMIT: f64 = 0.25;
+/// Halvings when a change of mode is sought: to 1e-7 of a sub-step.
+const BISECTIONS: usize = 24;
+/// Changes of mode that are sought in one sub-step; a piston that chatters is then taken as it comes.
+const MOST_EVENTS: usize = 6;
+
+/// What is integrated.
+#[derive(Debug, Clone, Copy)]
+struct Flow {
+    air: AirState,
+    ledger: EnergyLedger,
+    motion: PistonMotion,
+    /// Impulse of the gas on the piston since the start of the step [N s].
+    impulse: f64,
+}
+
+impl Flow {
+    fn after(&self, rates: &Self, time: f64, ledger: bool) -> Self {
+        Self {
+            air: self.air.after(&rates.air, time),
+            ledger: if ledger {
+                self.ledger.after(&rates.ledger, time)
+            } else {
+                self.ledger
+            },
+            motion: PistonMotion {
+                stroke: self.motion.stroke + time * rates.motion.stroke,
+                speed: self.motion.speed + time * rates.motion.speed,
+            },
+            impulse: self.impulse + time * rates.impulse,
+        }
+    }
+}
+
+/// What holds over a sub-step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Mode {
+    touching: bool,
+    stop: i8,
+    /// Direction of sliding, where seals rub.
+    direction: i8,
+}
+
+/// A sub-step's surroundings.
+struct Leg<'a, C> {
+    device: &'a Device,
+    carrier: &'a C,
+    valve: ValvePosition,
+    course: OutletCourse,
+    /// Start of the course in the step [s].
+    course_start: f64,
+    /// Deflection of the seals at the start of the sub-step [m].
+    deflection: f64,
+}
+
+impl Device {
+    /// Returns the impulse of the gas on the piston [N s].
+    pub(super) fn integrate<C: Carrier, const LEDGER: bool>(
+        &self,
+        state: &mut DeviceState,
+        motion: &mut PistonMotion,
+        set_pressure: f64,
+        carrier: &C,
+        dt: f64,
+        substeps: usize,
+    ) -> f64 {
+        let regulator = &self.parameters.regulator;
+        state.regulator.command(regulator, set_pressure);
+        let longest = (dt / substeps as f64).min(self.longest_substep(carrier));
+        let mut flow = Flow {
+            air: state.air,
+            ledger: state.ledger,
+            motion: *motion,
+            impulse: 0.0,
+        };
+        let mut time = 0.0;
+        while time < dt {
+            let course = state.regulator.course(regulator, dt - time);
+            // A hair's breadth less than one more sub-step is rounding.
+            let count = (course.duration / longest - 1e-9).ceil().max(1.0);
+            let h = course.duration / count;
+            let mut leg = Leg {
+                device: self,
+                carrier,
+                valve: state.valve,
+                course,
+                course_start: time,
+                deflection: state.seal_deflection,
+            };
+            for i in 0..count as usize {
+                leg.advance::<LEDGER>(&mut flow, time + h * i as f64, h);
+            }
+            state.seal_deflection = leg.deflection;
+            state.regulator.follow(&course);
+            time += course.duration;
+        }
+        state.air = flow.air;
+        state.ledger = flow.ledger;
+        if C::MOVES {
+            *motion = flow.motion;
+            state.seal_stroke = flow.motion.stroke;
+        }
+        flow.impulse
+    }
+
+    fn longest_substep<C: Carrier>(&self, carrier: &C) -> f64 {
+        let air = AIR_LIMIT / self.air_rate;
+        if !C::MOVES {
+            return air;
+        }
+        let mass = self.parameters.moving_mass;
+        let stop = &self.parameters.end_stop;
+        let seals = self.parameters.seal_friction.stiffness();
+        let mechanical = (stop.stiffness / mass)
+            .sqrt()
+            .max(stop.damping / mass)
+            .max((seals / mass).sqrt())
+            .max(carrier.rate());
+        air.min(MECHANICAL_LIMIT / mechanical)
+    }
+}
+
+impl<C: Carrier> Leg<'_, C> {
+    /// Advances over a sub-step, cut where the mode changes.
+    fn advance<const LEDGER: bool>(&mut self, flow: &mut Flow, start: f64, h: f64) {
+        let (mut from, mut left) = (start, h);
+        for _ in 0..MOST_EVENTS {
+            if !C::MOVES {
+                break;
+            }
+            let mode = self.mode(from, flow.motion);
+            let whole = self.step::<LEDGER>(flow, from, left, mode);
+            if self.mode(from + left, whole.motion) == mode {
+                self.accept(flow, whole);
+                return;
+            }
+            let (mut before, mut after, mut there) = (0.0, left, whole);
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (before + after);
+                let tried = self.step::<LEDGER>(flow, from, middle, mode);
+                if self.mode(from + middle, tried.motion) == mode {
+                    before = middle;
+                } else {
+                    (after, there) = (middle, tried);
+                }
+            }
+            self.accept(flow, there);
+            from += after;
+            left -= after;
+            if left <= 0.0 {
+                return;
+            }
+        }
+        let mode = self.mode(from, flow.motion);
+        let rest = self.step::<LEDGER>(flow, from, left, mode);
+        self.accept(flow, rest);
+    }
+
+    fn accept(&mut self, flow: &mut Flow, next: Flow) {
+        let seals = &self.device.parameters.seal_friction;
+        if C::MOVES && seals.is_dry() {
+            let moved = next.motion.stroke - flow.motion.stroke;
+            let speed = 0.5 * (flow.motion.speed + next.motion.speed);
+            self.deflection = seals.deflection_after(self.deflection, moved, speed);
+        }
+        *flow = next;
+    }
+
+    fn mode(&self, time: f64, motion: PistonMotion) -> Mode {
+        if !C::MOVES {
+            return Mode {
+                touching: false,
+                stop: 0,
+                direction: 0,
+            };
+        }
+        let dry = self.device.parameters.seal_friction.is_dry();
+        Mode {
+            touching: self.carrier.touches(time, motion),
+            stop: self.device.stop_at(motion),
+            direction: if dry { motion.speed.signum() as i8 } else { 0 },
+        }
+    }
+
+    /// One Runge-Kutta step.
+    fn step<const LEDGER: bool>(&self, start: &Flow, time: f64, h: f64, mode: Mode) -> Flow {
+        let outlet = |t: f64| self.course.at(t - self.course_start);
+        let (first, middle, last) = (outlet(time), outlet(time + 0.5 * h), outlet(time + h));
+        let rates = |flow: &Flow, t: f64, outlet: f64| {
+            self.rates::<LEDGER>(flow, start.motion.stroke, t, outlet, mode)
+        };
+        let k1 = rates(start, time, first);
+        let k2 = rates(&start.after(&k1, 0.5 * h, false), time + 0.5 * h, middle);
+        let k3 = rates(&start.after(&k2, 0.5 * h, false), time + 0.5 * h, middle);
+        let k4 = rates(&start.after(&k3, h, false), time + h, last);
+        start
+            .after(&k1, h / 6.0, LEDGER)
+            .after(&k2, h / 3.0, LEDGER)
+            .after(&k3, h / 3.0, LEDGER)
+            .after(&k4, h / 6.0, LEDGER)
+    }
+
+    /// Rates of everything; `substep_stroke` [m] is where the sub-step began, with the seals at `self.deflection`.
+    fn rates<const LEDGER: bool>(
+        &self,
+        flow: &Flow,
+        substep_stroke: f64,
+        time: f64,
+        outlet: f64,
+        mode: Mode,
+    ) -> Flow {
+        let device = self.device;
+        let parameters = &device.parameters;
+        let motion = flow.motion;
+        let atmosphere = parameters.gas.atmosphere;
+        let air = device.air_rates::<LEDGER>(&flow.air, self.valve, atmosphere + outlet, motion);
+        let gas_force = device.gas_force_of(air.pressures);
+        let mut rates = Flow {
+            air: air.air,
+            ledger: air.ledger,
+            motion: PistonMotion {
+                stroke: motion.speed,
+                speed: 0.0,
+            },
+            impulse: gas_force,
+        };
+        if C::MOVES {
+            let seals = &parameters.seal_friction;
+            let moved = motion.stroke - substep_stroke;
+            let deflection = seals.deflection_after(self.deflection, moved, motion.speed);
+            let seal = seals.force(deflection, motion.speed);
+            let stop = device.stop_force_of(mode.stop, motion);
+            let carrier = self.carrier.force(time, motion, mode.touching);
+            rates.motion.speed = (gas_force - seal + stop + carrier) / parameters.moving_mass;
+            if LEDGER {
+                let rod = atmosphere * device.areas.rod() * motion.speed;
+                rates.ledger.atmosphere_work = rod;
+                rates.ledger.chamber_work = gas_force * motion.speed + rod;
+                rates.ledger.seal_work = seal * motion.speed;
+                rates.ledger.stop_work = -stop * motion.speed;
+                rates.ledger.carrier_work = carrier * motion.speed;
+            }
+        }
+        rates
+    }
+}

@@ -1,0 +1,93 @@
+//! What changes in a device during a run.
+
+use crate::physics::regulator::RegulatorState;
+use crate::physics::valve::ValvePosition;
+
+/// State of a device; the piston's motion belongs to whoever carries it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviceState {
+    /// The regulator.
+    pub regulator: RegulatorState,
+    /// Position of the solenoid valve.
+    pub valve: ValvePosition,
+    /// The air in it.
+    pub air: AirState,
+    /// Deflection of the seals' bristles [m].
+    pub seal_deflection: f64,
+    /// Stroke at which that was [m].
+    pub seal_stroke: f64,
+    /// Energy since the start.
+    pub ledger: EnergyLedger,
+}
+
+/// Air, in amounts that are conserved.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AirState {
+    /// Air in chambers 1 and 2 [kg].
+    pub masses: [f64; 2],
+    /// Its internal energy [J]; used only if the gas has a temperature of its own.
+    pub energies: [f64; 2],
+    /// Air in the line between regulator and valve [kg]; 0 without one.
+    pub hose_mass: f64,
+    /// Air that has come in since the start, from the regulator and from the atmosphere [kg].
+    pub entered: f64,
+    /// Air that has gone out since the start [kg].
+    pub left: f64,
+}
+
+impl AirState {
+    /// All the air inside [kg].
+    pub fn held(&self) -> f64 {
+        self.masses[0] + self.masses[1] + self.hose_mass
+    }
+
+    /// This, plus `rates` over a time [s].
+    pub(super) fn after(&self, rates: &Self, time: f64) -> Self {
+        let pair = |a: [f64; 2], b: [f64; 2]| [a[0] + time * b[0], a[1] + time * b[1]];
+        Self {
+            masses: pair(self.masses, rates.masses),
+            energies: pair(self.energies, rates.energies),
+            hose_mass: self.hose_mass + time * rates.hose_mass,
+            entered: self.entered + time * rates.entered,
+            left: self.left + time * rates.left,
+        }
+    }
+}
+
+/// Energy that has passed since the start [J]; kept while the piston is the integrator's own (see `Device::advance_carried`).
+///
+/// Two balances hold, at any time between any two states:
+///
+///     U(air in the chambers) = U_0 + enthalpy_in + heat_in - chamber_work
+///     M v^2/2                = M v_0^2/2 + chamber_work - atmosphere_work - seal_work - stop_work + carrier_work
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EnergyLedger {
+    /// Enthalpy of the air that came into the chambers, less that of what went out.
+    pub enthalpy_in: f64,
+    /// Heat from the walls; in an isothermal chamber whatever keeps its temperature.
+    pub heat_in: f64,
+    /// Work of the air on both sides of the piston.
+    pub chamber_work: f64,
+    /// Work of the piston on the atmosphere, over the rod's cross section.
+    pub atmosphere_work: f64,
+    /// Work of the piston on its seals, viscous part included.
+    pub seal_work: f64,
+    /// Work of the piston on the end stops.
+    pub stop_work: f64,
+    /// Work of whoever carries the piston on it.
+    pub carrier_work: f64,
+}
+
+impl EnergyLedger {
+    pub(super) fn after(&self, rates: &Self, time: f64) -> Self {
+        Self {
+            enthalpy_in: self.enthalpy_in + time * rates.enthalpy_in,
+            heat_in: self.heat_in + time * rates.heat_in,
+            chamber_work: self.chamber_work + time * rates.chamber_work,
+            atmosphere_work: self.atmosphere_work + time * rates.atmosphere_work,
+            seal_work: self.seal_work + time * rates.seal_work,
+            stop_work: self.stop_work + time * rates.stop_work,
+            carrier_work: self.carrier_work + time * rates.carrier_work,
+        }
+    }
+}

@@ -1,0 +1,359 @@
+//! The estimator: predicts over a period, takes the samples in, gives the force.
+
+use super::belief::{
+    ACCELERATION, ACCELERATION_BIAS, Belief, DEAD_VOLUME, EXHAUST, MASSES, OUTLET, PRESLIDING,
+    PRESSURE_BIAS, SIZE, SPEED, STROKE, SUPPLY, TARGET, TURNING_DEFLECTION, TURNING_STROKE, Term,
+};
+use super::chambers::{Chambers, Drive};
+use super::models::Models;
+use super::output::{Estimate, ForceOutput};
+use super::parameters::{EstimatorParameters, ProcessModel, Tolerances};
+use super::seals::{Seals, Way};
+use super::EstimationError;
+use crate::device::DeviceParameters;
+use crate::physics::valve::ValvePosition;
+
+/// Longest sampling period [s].
+const LONGEST_PERIOD: f64 = 0.02;
+/// Standard deviations of the stroke by which a step back must exceed a turning point to count.
+const TURN: f64 = 4.0;
+/// What the motion may be before the first sample, standard deviations: stroke [m], speed [m/s], acceleration [m/s2].
+const START_MOTION: [f64; 3] = [1e-3, 0.05, 1.0];
+/// Standard deviation of a chamber's pressure about its source before the first sample [Pa].
+const START_PRESSURE: f64 = 2e3;
+
+const STROKE_TERMS: [Term; 1] = [(STROKE, 1.0)];
+const ACCELERATION_TERMS: [Term; 2] = [(ACCELERATION, 1.0), (ACCELERATION_BIAS, 1.0)];
+const PRESSURE_TERMS: [Term; 2] = [(OUTLET, 1.0), (PRESSURE_BIAS, 1.0)];
+
+/// One set of samples. A value that is not finite is a missing sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measurement {
+    /// Stroke [m].
+    pub stroke: f64,
+    /// Acceleration of extension, relative to the flange [m/s2].
+    pub acceleration: f64,
+    /// Regulator's outlet, gauge [Pa].
+    pub regulator_pressure: f64,
+    /// Position of the valve over the period that ends with these samples.
+    pub valve: ValvePosition,
+}
+
+/// Process noise of one model over one period.
+#[derive(Debug, Clone)]
+struct ProcessNoise {
+    /// Covariances between two elements.
+    entries: [(usize, usize, f64); 9],
+}
+
+impl ProcessNoise {
+    /// A walk of the acceleration integrated twice, one of the regulator's target seen through its lag.
+    fn new(model: &ProcessModel, period: f64, time_constant: f64) -> Self {
+        let q = model.acceleration_walk.powi(2);
+        let t = period;
+        let w = model.pressure_walk.powi(2);
+        let lag = time_constant.max(t);
+        Self {
+            entries: [
+                (STROKE, STROKE, q * t.powi(5) / 20.0),
+                (STROKE, SPEED, q * t.powi(4) / 8.0),
+                (STROKE, ACCELERATION, q * t.powi(3) / 6.0),
+                (SPEED, SPEED, q * t.powi(3) / 3.0),
+                (SPEED, ACCELERATION, q * t * t / 2.0),
+                (ACCELERATION, ACCELERATION, q * t),
+                (OUTLET, OUTLET, w * t.powi(3) / (3.0 * lag * lag)),
+                (OUTLET, TARGET, w * t * t / (2.0 * lag)),
+                (TARGET, TARGET, w * t),
+            ],
+        }
+    }
+}
+
+/// Estimates the contact force, sample by sample.
+#[derive(Debug, Clone)]
+pub struct ContactForceEstimator {
+    period: f64,
+    /// Variances of the noise on stroke, acceleration and pressure.
+    noise: [f64; 3],
+    process: Vec<ProcessNoise>,
+    chambers: Chambers,
+    seals: Seals,
+    output: ForceOutput,
+    atmosphere: f64,
+    supply: f64,
+    models: Models,
+    started: bool,
+}
+
+impl ContactForceEstimator {
+    /// For a device as its data say, about at a stroke [m], sampled every `period` [s].
+    ///
+    /// It starts with chambers in equilibrium with what they hang on, and with seals whose deflection is anywhere.
+    pub fn new(
+        device: &DeviceParameters,
+        parameters: &EstimatorParameters,
+        initial_stroke: f64,
+        period: f64,
+    ) -> Result<Self, EstimationError> {
+        parameters.check()?;
+        if !(period > 0.0 && period <= LONGEST_PERIOD) {
+            return Err(EstimationError::Period {
+                period,
+                longest: LONGEST_PERIOD,
+            });
+        }
+        if !initial_stroke.is_finite() {
+            return Err(EstimationError::NotFinite {
+                name: "initial stroke",
+                value: initial_stroke,
+            });
+        }
+        let lag = device.regulator.time_constant;
+        let noise = &parameters.noise;
+        let belief = first_belief(device, parameters, initial_stroke);
+        Ok(Self {
+            period,
+            noise: [noise.stroke, noise.acceleration, noise.regulator_pressure].map(|s| s * s),
+            process: parameters
+                .models
+                .iter()
+                .map(|model| ProcessNoise::new(model, period, lag))
+                .collect(),
+            chambers: Chambers::new(device),
+            seals: Seals::new(device.seal_friction),
+            output: ForceOutput::new(
+                device,
+                parameters.tolerances,
+                parameters.gravity_along_axis,
+            ),
+            atmosphere: device.gas.atmosphere,
+            supply: device.regulator.supply,
+            models: Models::new(&parameters.models, &belief, period),
+            started: false,
+        })
+    }
+
+    /// Tells the component of gravity along extension, less the flange's own acceleration there [m/s2], as it is from now on.
+    pub fn set_gravity_along_axis(&mut self, gravity: f64) {
+        self.output.gravity_along_axis = gravity;
+    }
+
+    /// Probability of each process model, in the order given [1].
+    pub fn model_probabilities(&self) -> &[f64] {
+        &self.models.probabilities
+    }
+
+    /// Takes one set of samples in, a period after the one before.
+    pub fn update(&mut self, measurement: &Measurement) -> Estimate {
+        if self.started {
+            self.models.mix();
+            for (belief, noise) in self.models.beliefs.iter_mut().zip(&self.process) {
+                predict(belief, &self.chambers, noise, measurement.valve, self.period);
+            }
+        } else {
+            self.fill_chambers(measurement);
+            self.started = true;
+        }
+        let normalized_innovations = self.observe(measurement);
+        self.follow_seals();
+        self.estimate(normalized_innovations)
+    }
+
+    /// Chambers as they are after a long rest: each at the pressure of what it hangs on.
+    fn fill_chambers(&mut self, measurement: &Measurement) {
+        for belief in &mut self.models.beliefs {
+            let stroke = belief.mean[STROKE];
+            let outlet = belief.mean[OUTLET];
+            for (i, element) in MASSES.into_iter().enumerate() {
+                let supplied = Chambers::is_supplied(i, measurement.valve);
+                let gauge = if supplied { outlet } else { 0.0 };
+                let mass = self.chambers.mass(i, self.atmosphere + gauge, stroke);
+                let [by_mass, by_stroke, by_dead_volume] =
+                    self.chambers.pressure_slopes(i, mass, stroke);
+                belief.mean[element] = mass;
+                let follows = if supplied { 1.0 / by_mass } else { 0.0 };
+                belief.combine(
+                    element,
+                    &[
+                        (OUTLET, follows),
+                        (STROKE, -by_stroke / by_mass),
+                        (DEAD_VOLUME, -by_dead_volume / by_mass),
+                    ],
+                );
+                belief.add_noise(element, element, (START_PRESSURE / by_mass).powi(2));
+            }
+        }
+    }
+
+    /// Takes the samples in under every model and weighs the models.
+    fn observe(&mut self, measurement: &Measurement) -> [f64; 3] {
+        let samples: [(&[Term], f64); 3] = [
+            (&STROKE_TERMS, measurement.stroke),
+            (&ACCELERATION_TERMS, measurement.acceleration),
+            (&PRESSURE_TERMS, measurement.regulator_pressure),
+        ];
+        let mut normalized = [f64::NAN; 3];
+        let mut likelihoods = vec![0.0; self.models.beliefs.len()];
+        for (i, (terms, sample)) in samples.into_iter().enumerate() {
+            if !sample.is_finite() {
+                continue;
+            }
+            let noise = self.noise[i];
+            let (residual, variance) = self.models.overall(|belief| {
+                let innovation = belief.innovation(terms, sample, noise);
+                (innovation.residual, innovation.variance)
+            });
+            normalized[i] = residual / variance.sqrt();
+            for (belief, log) in self.models.beliefs.iter_mut().zip(&mut likelihoods) {
+                *log += belief.observe(terms, sample, noise).log_likelihood();
+            }
+        }
+        self.models.weigh(&likelihoods);
+        for belief in &mut self.models.beliefs {
+            let mean = &mut belief.mean;
+            mean[OUTLET] = mean[OUTLET].clamp(-self.atmosphere, self.supply + self.atmosphere);
+            mean[TURNING_DEFLECTION] = self.seals.limited(mean[TURNING_DEFLECTION]);
+        }
+        normalized
+    }
+
+    /// Carries the seals' turning point along where the stroke has gone on or turned.
+    fn follow_seals(&mut self) {
+        let of_way = |belief: &Belief| {
+            let mean = &belief.mean;
+            (
+                mean[STROKE] - mean[TURNING_STROKE],
+                belief.covariance[STROKE][STROKE],
+            )
+        };
+        let (displacement, variance) = self.models.overall(of_way);
+        if self.seals.way(displacement, TURN * variance.sqrt()) == Way::Undecided {
+            return;
+        }
+        for belief in &mut self.models.beliefs {
+            let mean = &mut belief.mean;
+            let displacement = mean[STROKE] - mean[TURNING_STROKE];
+            let after = self
+                .seals
+                .after(mean[TURNING_DEFLECTION], displacement, mean[SPEED]);
+            mean[TURNING_DEFLECTION] = after.value;
+            mean[TURNING_STROKE] = mean[STROKE];
+            belief.combine(
+                TURNING_DEFLECTION,
+                &[
+                    (TURNING_DEFLECTION, after.by_deflection),
+                    (STROKE, after.by_displacement),
+                    (TURNING_STROKE, -after.by_displacement),
+                    (PRESLIDING, after.by_presliding),
+                ],
+            );
+            belief.combine(TURNING_STROKE, &[(STROKE, 1.0)]);
+        }
+    }
+
+    fn estimate(&self, normalized_innovations: [f64; 3]) -> Estimate {
+        let parts: Vec<_> = self
+            .models
+            .beliefs
+            .iter()
+            .map(|belief| self.output.of(belief, &self.chambers, &self.seals))
+            .collect();
+        let weighted = |of: &dyn Fn(usize) -> f64| -> f64 {
+            let weights = self.models.probabilities.iter().enumerate();
+            weights.map(|(i, weight)| weight * of(i)).sum()
+        };
+        let force = weighted(&|i| parts[i].force);
+        let variance =
+            weighted(&|i| parts[i].variance + (parts[i].force - force) * (parts[i].force - force));
+        let element = |index: usize| weighted(&|i| self.models.beliefs[i].mean[index]);
+        Estimate {
+            force,
+            standard_deviation: variance.sqrt(),
+            chamber_pressures: [0, 1].map(|c| weighted(&|i| parts[i].pressures[c])),
+            gas_force: weighted(&|i| parts[i].gas),
+            friction: weighted(&|i| parts[i].friction),
+            stroke: element(STROKE),
+            speed: element(SPEED),
+            acceleration: element(ACCELERATION),
+            normalized_innovations,
+        }
+    }
+}
+
+/// Before the first sample: motion within its start, outlet anywhere within the supply, parameters within their tolerances.
+fn first_belief(
+    device: &DeviceParameters,
+    parameters: &EstimatorParameters,
+    initial_stroke: f64,
+) -> Belief {
+    let tolerances = &parameters.tolerances;
+    let mut mean = [0.0; SIZE];
+    mean[STROKE] = initial_stroke;
+    let mut deviations = [0.0; SIZE];
+    [
+        deviations[STROKE],
+        deviations[SPEED],
+        deviations[ACCELERATION],
+    ] = START_MOTION;
+    deviations[OUTLET] = device.regulator.supply;
+    // Any deflection within the presliding range is as likely as any other.
+    deviations[TURNING_DEFLECTION] = if device.seal_friction.is_dry() {
+        Tolerances::standard(device.seal_friction.static_force / device.seal_friction.coulomb)
+    } else {
+        0.0
+    };
+    for (element, limit) in [
+        (ACCELERATION_BIAS, tolerances.acceleration_bias),
+        (PRESSURE_BIAS, tolerances.regulator_pressure_bias),
+        (SUPPLY, tolerances.orifices),
+        (EXHAUST, tolerances.orifices),
+        (DEAD_VOLUME, tolerances.dead_volume),
+        (PRESLIDING, tolerances.presliding_displacement),
+    ] {
+        deviations[element] = Tolerances::standard(limit);
+    }
+    let mut belief = Belief::uncorrelated(mean, deviations);
+    // The turning point is where it stands, and the outlet has long followed its target.
+    belief.mean[TURNING_STROKE] = initial_stroke;
+    belief.combine(TURNING_STROKE, &[(STROKE, 1.0)]);
+    belief.combine(TARGET, &[(OUTLET, 1.0)]);
+    belief
+}
+
+/// Carries a belief over a period.
+fn predict(
+    belief: &mut Belief,
+    chambers: &Chambers,
+    noise: &ProcessNoise,
+    valve: ValvePosition,
+    period: f64,
+) {
+    let mean = &belief.mean;
+    let drive = Drive {
+        stroke: mean[STROKE],
+        speed: mean[SPEED],
+        acceleration: mean[ACCELERATION],
+        outlet: mean[OUTLET],
+        target: mean[TARGET],
+    };
+    // Chambers first: they answer to the motion and outlet as they are at the start.
+    for (i, element) in MASSES.into_iter().enumerate() {
+        let (mass, terms) = chambers.advance(i, belief.mean[element], &drive, valve, period);
+        belief.mean[element] = mass;
+        belief.combine(element, &terms);
+    }
+    let half_square = 0.5 * period * period;
+    belief.combine(
+        STROKE,
+        &[(STROKE, 1.0), (SPEED, period), (ACCELERATION, half_square)],
+    );
+    belief.combine(SPEED, &[(SPEED, 1.0), (ACCELERATION, period)]);
+    let left = chambers.remaining(period);
+    belief.combine(OUTLET, &[(OUTLET, left), (TARGET, 1.0 - left)]);
+    belief.mean[STROKE] += period * drive.speed + half_square * drive.acceleration;
+    belief.mean[SPEED] += period * drive.acceleration;
+    belief.mean[OUTLET] = chambers.outlet(&drive, period);
+    for &(i, j, covariance) in &noise.entries {
+        belief.add_noise(i, j, covariance);
+    }
+}

@@ -1,0 +1,142 @@
+//! The force that a belief implies, with its variance.
+
+use super::belief::{
+    ACCELERATION, Belief, DEAD_VOLUME, MASSES, PRESLIDING, SPEED, STROKE, TURNING_DEFLECTION,
+    TURNING_STROKE,
+};
+use super::chambers::Chambers;
+use super::parameters::Tolerances;
+use super::seals::Seals;
+use crate::device::DeviceParameters;
+use crate::physics::piston::PistonAreas;
+
+/// Standard deviations to either side of the 95 % band of a normal distribution [1].
+pub const COVERAGE_FACTOR: f64 = 1.959_964;
+
+/// What is known after a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Contact force, positive when the tool presses [N].
+    pub force: f64,
+    /// Its standard deviation, tolerances of the device included [N].
+    pub standard_deviation: f64,
+    /// Absolute pressures of chambers 1 and 2 [Pa].
+    pub chamber_pressures: [f64; 2],
+    /// Force of the gas along extension [N].
+    pub gas_force: f64,
+    /// Friction that resists extension [N].
+    pub friction: f64,
+    /// Stroke [m].
+    pub stroke: f64,
+    /// Speed of extension [m/s].
+    pub speed: f64,
+    /// Acceleration [m/s2].
+    pub acceleration: f64,
+    /// Differences of stroke, acceleration and regulator pressure from their predictions over the standard deviations they should have;
+    /// not a number where a sample was missing.
+    pub normalized_innovations: [f64; 3],
+}
+
+impl Estimate {
+    /// Limits of the 95 % band [N].
+    pub fn band(&self) -> [f64; 2] {
+        let half = COVERAGE_FACTOR * self.standard_deviation;
+        [self.force - half, self.force + half]
+    }
+
+    /// Does the 95 % band cover a force [N]?
+    pub fn covers(&self, force: f64) -> bool {
+        (force - self.force).abs() <= COVERAGE_FACTOR * self.standard_deviation
+    }
+}
+
+/// Parts of the force under one belief.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ForceParts {
+    pub(super) force: f64,
+    pub(super) variance: f64,
+    pub(super) pressures: [f64; 2],
+    pub(super) gas: f64,
+    pub(super) friction: f64,
+}
+
+/// Eq. (1) solved for the load.
+#[derive(Debug, Clone)]
+pub(super) struct ForceOutput {
+    areas: PistonAreas,
+    atmosphere: f64,
+    moving_mass: f64,
+    tolerances: Tolerances,
+    pub(super) gravity_along_axis: f64,
+}
+
+impl ForceOutput {
+    pub(super) fn new(
+        device: &DeviceParameters,
+        tolerances: Tolerances,
+        gravity_along_axis: f64,
+    ) -> Self {
+        Self {
+            areas: device.areas(),
+            atmosphere: device.gas.atmosphere,
+            moving_mass: device.moving_mass,
+            tolerances,
+            gravity_along_axis,
+        }
+    }
+
+    /// Force and variance under a belief.
+    pub(super) fn of(&self, belief: &Belief, chambers: &Chambers, seals: &Seals) -> ForceParts {
+        let mean = &belief.mean;
+        let stroke = mean[STROKE];
+        let pressures = [0, 1].map(|i| chambers.pressure(i, mean[MASSES[i]], stroke));
+        let slopes = [0, 1].map(|i| chambers.pressure_slopes(i, mean[MASSES[i]], stroke));
+        let gas = self
+            .areas
+            .gas_force(pressures[0], pressures[1], self.atmosphere);
+        let seal = seals.after(
+            mean[TURNING_DEFLECTION],
+            stroke - mean[TURNING_STROKE],
+            mean[SPEED],
+        );
+        let (dry, viscous) = (
+            seals.dry() * seal.value,
+            seals.viscous() * mean[SPEED],
+        );
+        let free = self.gravity_along_axis - mean[ACCELERATION];
+        let [a1, a2] = [self.areas.extending, -self.areas.retracting];
+        let by_displacement = seals.dry() * seal.by_displacement;
+        let terms = [
+            (MASSES[0], a1 * slopes[0][0]),
+            (MASSES[1], a2 * slopes[1][0]),
+            (
+                STROKE,
+                a1 * slopes[0][1] + a2 * slopes[1][1] - by_displacement,
+            ),
+            (DEAD_VOLUME, a1 * slopes[0][2] + a2 * slopes[1][2]),
+            (SPEED, -seals.viscous()),
+            (ACCELERATION, -self.moving_mass),
+            (TURNING_STROKE, by_displacement),
+            (TURNING_DEFLECTION, -seals.dry() * seal.by_deflection),
+            (PRESLIDING, -seals.dry() * seal.by_presliding),
+        ];
+        let alone = [
+            (self.tolerances.piston_area, gas),
+            (self.tolerances.dry_friction, dry),
+            (self.tolerances.viscous_friction, viscous),
+            (self.tolerances.moving_mass, self.moving_mass * free),
+            (self.tolerances.gravity_along_axis, self.moving_mass),
+        ];
+        let added: f64 = alone
+            .iter()
+            .map(|(limit, slope)| (Tolerances::standard(*limit) * slope).powi(2))
+            .sum();
+        ForceParts {
+            force: gas - dry - viscous + self.moving_mass * free,
+            variance: belief.variance(&terms) + added,
+            pressures,
+            gas,
+            friction: dry + viscous,
+        }
+    }
+}

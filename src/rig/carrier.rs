@@ -1,0 +1,122 @@
+//! What acts on the piston of a bench rig: weight, load, hand.
+//!
+//!     M dv/dt = F_device + M g_a - F_load - F_hand
+//!
+//! M moving mass [kg], g_a component of gravity along extension [m/s2], F_load push-only spring and damper on the load's surface [N].
+//! Source paper, eq. (1), whose sign of g is that of a device that extends upwards.
+
+use crate::device::{Carrier, PistonMotion};
+use crate::physics::push_only::PushOnly;
+use crate::scenario::bench::{BenchScenario, LoadScenario};
+
+/// Load and other forces over one step, during which the surface's and the hand's courses are taken as parabolas.
+#[derive(Debug, Clone, Copy)]
+pub struct BenchCarrier {
+    mass: f64,
+    weight: f64,
+    law: Option<PushOnly>,
+    /// The surface: position [m], speed [m/s], acceleration [m/s2] at the start of the step.
+    surface: [f64; 3],
+    /// The hand's force [N] and its rate [N/s] and curvature [N/s2].
+    hand: [f64; 3],
+}
+
+/// Value, first and second derivative of peak/2 (1 - cos(2 pi frequency (t - start))).
+fn swing(peak: f64, frequency: f64, start: f64, time: f64) -> [f64; 3] {
+    if time < start {
+        return [0.0; 3];
+    }
+    let rate = std::f64::consts::TAU * frequency;
+    let (sine, cosine) = (rate * (time - start)).sin_cos();
+    [
+        0.5 * peak * (1.0 - cosine),
+        0.5 * peak * rate * sine,
+        0.5 * peak * rate * rate * cosine,
+    ]
+}
+
+fn parabola(course: [f64; 3], time: f64) -> f64 {
+    course[0] + time * (course[1] + 0.5 * time * course[2])
+}
+
+impl BenchCarrier {
+    /// What acts on the piston from `time` [s] on.
+    pub fn at(scenario: &BenchScenario, time: f64) -> Self {
+        let mass = scenario.device.parameters.moving_mass;
+        let (law, surface) = match scenario.load {
+            LoadScenario::Free => (None, [f64::INFINITY, 0.0, 0.0]),
+            LoadScenario::Contact {
+                position,
+                law,
+                motion,
+            } => {
+                let moved = motion.map_or([0.0; 3], |m| {
+                    swing(m.peak_to_peak, m.frequency, m.start, time)
+                });
+                (Some(law), [position - moved[0], -moved[1], -moved[2]])
+            }
+        };
+        let hand = scenario.hand.map_or([0.0; 3], |hand| {
+            swing(hand.peak_force, hand.frequency, hand.start, time)
+        });
+        Self {
+            mass,
+            weight: mass * scenario.gravity_along_extension,
+            law,
+            surface,
+            hand,
+        }
+    }
+
+    /// Where the surface stands along the stroke [m].
+    pub fn surface(&self) -> f64 {
+        self.surface[0]
+    }
+
+    /// Force of the hand against extension [N].
+    pub fn hand_force(&self) -> f64 {
+        self.hand[0]
+    }
+
+    fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
+        let surface_speed = self.surface[1] + time * self.surface[2];
+        (
+            motion.stroke - parabola(self.surface, time),
+            motion.speed - surface_speed,
+        )
+    }
+
+    /// Force of the tool on the load [N].
+    pub fn contact_force(&self, time: f64, motion: PistonMotion) -> f64 {
+        let (penetration, rate) = self.penetration(time, motion);
+        self.law.map_or(0.0, |law| law.force(penetration, rate))
+    }
+}
+
+impl Carrier for BenchCarrier {
+    const MOVES: bool = true;
+
+    fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
+        let load = match self.law {
+            Some(law) if touching => {
+                let (penetration, rate) = self.penetration(time, motion);
+                law.linear(penetration, rate)
+            }
+            _ => 0.0,
+        };
+        self.weight - load - parabola(self.hand, time)
+    }
+
+    fn touches(&self, time: f64, motion: PistonMotion) -> bool {
+        let (penetration, rate) = self.penetration(time, motion);
+        self.law.is_some_and(|law| law.pushes(penetration, rate))
+    }
+
+    fn rate(&self) -> f64 {
+        self.law.map_or(0.0, |law| {
+            (law.stiffness / self.mass)
+                .sqrt()
+                .max(law.damping / self.mass)
+        })
+    }
+}

@@ -1,0 +1,102 @@
+//! What a bench rig records at each step.
+
+use super::carrier::BenchCarrier;
+use super::simulation::{Rig, RigTruth};
+use crate::device::DeviceState;
+use crate::physics::valve::ValvePosition;
+use crate::recording::schema;
+use crate::recording::{Channel, Recording, RecordingError};
+
+/// Channels of a bench recording, in the order of `RigLog::push`.
+const CHANNELS: [&str; 18] = [
+    schema::SET_PRESSURE,
+    schema::REGULATOR_PRESSURE,
+    schema::CHAMBER_1_PRESSURE,
+    schema::CHAMBER_2_PRESSURE,
+    schema::CONTACT_FORCE,
+    schema::DESIRED_FORCE,
+    schema::DEVICE_FORCE,
+    schema::SEAL_FORCE,
+    schema::STROKE,
+    schema::STROKE_VELOCITY,
+    schema::ACCELERATION,
+    schema::SURFACE_POSITION,
+    schema::VALVE_EXTENDS,
+    schema::CHAMBER_1_MASS,
+    schema::CHAMBER_2_MASS,
+    schema::HOSE_MASS,
+    schema::MASS_ENTERED,
+    schema::MASS_LEFT,
+];
+
+/// Samples by rows, until the run has ended.
+pub(super) struct RigLog {
+    time: Vec<f64>,
+    rows: Vec<[f64; CHANNELS.len()]>,
+}
+
+impl RigLog {
+    pub(super) fn new(capacity: usize) -> Self {
+        Self {
+            time: Vec::with_capacity(capacity),
+            rows: Vec::with_capacity(capacity),
+        }
+    }
+
+    pub(super) fn push(
+        &mut self,
+        rig: &Rig,
+        device: &DeviceState,
+        truth: &RigTruth,
+        carrier: &BenchCarrier,
+        set_pressure: f64,
+        desired_force: f64,
+    ) {
+        let atmosphere = rig.device.parameters().gas.atmosphere;
+        let pressures = rig.device.pressures(device, truth.motion.stroke);
+        let seal = rig.device.seal_force(device, truth.motion.speed);
+        let surface = carrier.surface();
+        self.time.push(truth.time);
+        self.rows.push([
+            atmosphere + set_pressure,
+            atmosphere + truth.regulator_pressure,
+            pressures[0],
+            pressures[1],
+            truth.contact_force,
+            desired_force,
+            rig.device.gas_force(device, truth.motion.stroke) + seal,
+            seal,
+            truth.motion.stroke,
+            truth.motion.speed,
+            truth.acceleration,
+            if surface.is_finite() {
+                surface
+            } else {
+                f64::NAN
+            },
+            f64::from(u8::from(device.valve == ValvePosition::Extend)),
+            device.air.masses[0],
+            device.air.masses[1],
+            device.air.hose_mass,
+            device.air.entered,
+            device.air.left,
+        ]);
+    }
+
+    /// The recording, without the channels that never had a value.
+    pub(super) fn into_recording(self) -> Result<Recording, RecordingError> {
+        let channels = CHANNELS
+            .iter()
+            .enumerate()
+            .map(|(index, quantity)| {
+                let values: Vec<f64> = self.rows.iter().map(|row| row[index]).collect();
+                let unit = schema::definition(quantity)
+                    .expect("every channel is in the schema")
+                    .unit;
+                Channel::new(*quantity, unit, values)
+            })
+            .filter(|channel| !channel.values.iter().all(|value| value.is_nan()))
+            .collect();
+        Recording::new(self.time, channels, Vec::new())
+    }
+}

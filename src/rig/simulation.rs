@@ -1,0 +1,248 @@
+//! One step of the bench rig, read from top to bottom.
+
+use super::carrier::BenchCarrier;
+use super::error::RigError;
+use super::sample::RigLog;
+use crate::control::force::{ForceController, ForceObservation};
+use crate::device::{Device, DeviceState, PistonMotion};
+use crate::physics::valve::ValvePosition;
+use crate::recording::{Recording, RecordingError};
+use crate::scenario::bench::{BenchScenario, CommandScenario};
+
+/// A bench rig with its job: all that does not change during a run.
+#[derive(Debug, Clone)]
+pub struct Rig {
+    /// What to do.
+    pub scenario: BenchScenario,
+    /// The device.
+    pub device: Device,
+}
+
+impl Rig {
+    /// Sets up a rig.
+    pub fn new(scenario: BenchScenario) -> Self {
+        let device = Device::new(scenario.device.parameters.clone());
+        Self { scenario, device }
+    }
+
+    /// Runs the whole job. `progress` is told steps done and in all.
+    ///
+    /// # Errors
+    /// Nothing could be recorded.
+    pub fn run(
+        &self,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<(Recording, Option<RigError>), RecordingError> {
+        let mut simulation = RigSimulation::new(self);
+        let mut stop = None;
+        while !simulation.done() && stop.is_none() {
+            stop = simulation.step().err();
+            progress(simulation.steps(), simulation.total_steps());
+        }
+        Ok((simulation.into_recording()?, stop))
+    }
+}
+
+/// What the rig really does at a moment, as no sensor shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RigTruth {
+    /// Time [s].
+    pub time: f64,
+    /// Stroke and speed.
+    pub motion: PistonMotion,
+    /// Acceleration along extension [m/s2].
+    pub acceleration: f64,
+    /// Force of the tool on the load [N].
+    pub contact_force: f64,
+    /// Regulator's outlet, gauge [Pa].
+    pub regulator_pressure: f64,
+}
+
+/// A running bench rig.
+pub struct RigSimulation<'a> {
+    rig: &'a Rig,
+    device: DeviceState,
+    motion: PistonMotion,
+    controller: ForceController,
+    steps: usize,
+    total_steps: usize,
+    log: RigLog,
+}
+
+/// The last value whose time has come.
+fn held<T: Copy>(steps: &[(f64, T)], time: f64) -> Option<T> {
+    // A step that begins within rounding of a command's time takes the command.
+    let due = steps.partition_point(|(at, _)| *at <= time + 1e-9);
+    due.checked_sub(1).map(|last| steps[last].1)
+}
+
+impl<'a> RigSimulation<'a> {
+    /// The rig at rest, both chambers and the regulator's outlet at the atmosphere.
+    pub fn new(rig: &'a Rig) -> Self {
+        let scenario = &rig.scenario;
+        let parameters = &scenario.device.parameters;
+        let weight = parameters.moving_mass * scenario.gravity_along_extension;
+        let stroke = if scenario.start_stroke == 0.0 {
+            weight.min(0.0) / parameters.end_stop.stiffness
+        } else {
+            scenario.start_stroke
+        };
+        let motion = PistonMotion { stroke, speed: 0.0 };
+        let total_steps = (scenario.duration / scenario.step - 1e-9).ceil() as usize;
+        let mut simulation = Self {
+            rig,
+            device: rig.device.at_rest(stroke, 0.0),
+            motion,
+            controller: ForceController::pressure_map(parameters),
+            steps: 0,
+            total_steps,
+            log: RigLog::new(total_steps + 1),
+        };
+        simulation.device.valve = held(&scenario.valve, 0.0).unwrap_or(ValvePosition::Extend);
+        simulation.sample(0.0);
+        simulation
+    }
+
+    /// Steps done.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Steps of the whole job.
+    pub fn total_steps(&self) -> usize {
+        self.total_steps
+    }
+
+    /// Is the job done?
+    pub fn done(&self) -> bool {
+        self.steps >= self.total_steps
+    }
+
+    /// State of the device.
+    pub fn device(&self) -> &DeviceState {
+        &self.device
+    }
+
+    /// Motion of the piston.
+    pub fn motion(&self) -> PistonMotion {
+        self.motion
+    }
+
+    /// Time [s].
+    pub fn time(&self) -> f64 {
+        self.steps as f64 * self.rig.scenario.step
+    }
+
+    /// What was recorded so far.
+    ///
+    /// # Errors
+    /// Nothing was.
+    pub fn into_recording(self) -> Result<Recording, RecordingError> {
+        self.log.into_recording()
+    }
+
+    /// One step: command -> controller -> device and piston under the load -> sample.
+    ///
+    /// # Errors
+    /// What stopped the run.
+    pub fn step(&mut self) -> Result<(), RigError> {
+        let scenario = &self.rig.scenario;
+        let time = self.time();
+        self.device.valve = held(&scenario.valve, time).unwrap_or(ValvePosition::Extend);
+        let set_pressure = self.set_pressure(time);
+        let carrier = BenchCarrier::at(scenario, time);
+        self.rig.device.advance_carried(
+            &mut self.device,
+            &mut self.motion,
+            set_pressure,
+            &carrier,
+            scenario.step,
+            scenario.substeps,
+        );
+        self.steps += 1;
+        self.sample(set_pressure);
+        self.check()
+    }
+
+    /// Set pressure from now on [Pa gauge].
+    fn set_pressure(&mut self, time: f64) -> f64 {
+        let scenario = &self.rig.scenario;
+        match &scenario.command {
+            CommandScenario::SetPressure(steps) => held(steps, time).unwrap_or(0.0),
+            CommandScenario::Force(steps) => {
+                let Some(desired) = held(steps, time) else {
+                    return 0.0;
+                };
+                let truth = self.truth();
+                self.controller.set_pressure(&ForceObservation {
+                    time,
+                    desired_axial_force: desired,
+                    gravity_along_axis: scenario.gravity_along_extension,
+                    measured_axial_force: truth.contact_force,
+                    stroke: truth.motion.stroke,
+                    regulator_pressure: truth.regulator_pressure,
+                })
+            }
+        }
+    }
+
+    /// What the rig does now.
+    pub fn truth(&self) -> RigTruth {
+        let scenario = &self.rig.scenario;
+        let carrier = BenchCarrier::at(scenario, self.time());
+        let device = &self.rig.device;
+        let mass = scenario.device.parameters.moving_mass;
+        let force = device.gas_force(&self.device, self.motion.stroke)
+            + device.seal_force(&self.device, self.motion.speed)
+            + device.stop_force(self.motion);
+        let contact_force = carrier.contact_force(0.0, self.motion);
+        let outside = mass * scenario.gravity_along_extension - carrier.hand_force();
+        RigTruth {
+            time: self.time(),
+            motion: self.motion,
+            acceleration: (force + outside - contact_force) / mass,
+            contact_force,
+            regulator_pressure: self.device.regulator.outlet,
+        }
+    }
+
+    fn sample(&mut self, set_pressure: f64) {
+        let truth = self.truth();
+        let desired = match &self.rig.scenario.command {
+            CommandScenario::Force(steps) => held(steps, truth.time).unwrap_or(0.0),
+            CommandScenario::SetPressure(_) => f64::NAN,
+        };
+        let carrier = BenchCarrier::at(&self.rig.scenario, truth.time);
+        self.log.push(
+            self.rig,
+            &self.device,
+            &truth,
+            &carrier,
+            set_pressure,
+            desired,
+        );
+    }
+
+    fn check(&self) -> Result<(), RigError> {
+        let air = &self.device.air;
+        let named = [
+            ("the air in chamber 1 [kg]", air.masses[0]),
+            ("the air in chamber 2 [kg]", air.masses[1]),
+        ];
+        let bad = named
+            .into_iter()
+            .find(|(_, mass)| !mass.is_finite() || *mass <= 0.0)
+            .or_else(|| {
+                let stroke = self.motion.stroke;
+                (!stroke.is_finite()).then_some(("the stroke [m]", stroke))
+            });
+        match bad {
+            None => Ok(()),
+            Some((quantity, value)) => Err(RigError::NotFinite {
+                time: self.time(),
+                quantity,
+                value,
+            }),
+        }
+    }
+}

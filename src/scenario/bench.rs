@@ -1,0 +1,312 @@
+//! A bench scenario: the device without an arm, on a load cell, on a moved surface, or free.
+
+use std::path::{Path, PathBuf};
+
+use super::bench_file::{
+    BenchFile, BenchSimulationKeys, CommandKeys, HandKeys, LoadKeys, LoadKind, ValveKeys,
+};
+use super::check::Section;
+use super::document::Document;
+use super::error::ScenarioError;
+use super::load::{device, expectations};
+use super::sections::bench_sections;
+use super::{DeviceScenario, Expectation};
+use crate::physics::push_only::PushOnly;
+use crate::physics::valve::ValvePosition;
+
+/// A bench and what is done on it.
+#[derive(Debug, Clone)]
+pub struct BenchScenario {
+    /// File that it was read from.
+    pub path: PathBuf,
+    /// Name for people; becomes the recording's title.
+    pub title: String,
+    /// The device.
+    pub device: DeviceScenario,
+    /// Length of the run [s].
+    pub duration: f64,
+    /// Component of gravity along extension [m/s2].
+    pub gravity_along_extension: f64,
+    /// Stroke at the start [m], unless the weight rests on the retracted stop.
+    pub start_stroke: f64,
+    /// What the tool meets.
+    pub load: LoadScenario,
+    /// A hand that pushes against extension.
+    pub hand: Option<HandScenario>,
+    /// What is commanded, in order of time.
+    pub command: CommandScenario,
+    /// Positions of the 5/2 valve, in order of time: time [s], position. Extending before the first.
+    pub valve: Vec<(f64, ValvePosition)>,
+    /// Time step of recording and control [s].
+    pub step: f64,
+    /// Least number of integration sub-steps in it.
+    pub substeps: usize,
+    /// Seed of all noise.
+    pub seed: u64,
+    /// Bounds that the results must keep.
+    pub expect: Vec<Expectation>,
+}
+
+/// What the tool meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LoadScenario {
+    /// Nothing.
+    Free,
+    /// Something that pushes back.
+    Contact {
+        /// Where it stands along the stroke, from the retracted end [m].
+        position: f64,
+        /// Contact law.
+        law: PushOnly,
+        /// How it moves; not at all on a load cell.
+        motion: Option<SurfaceMotion>,
+    },
+}
+
+/// A surface that comes towards the device and goes back: position - peak_to_peak/2 (1 - cos(2 pi frequency (t - start))).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceMotion {
+    /// Travel from end to end [m].
+    pub peak_to_peak: f64,
+    /// Frequency [Hz].
+    pub frequency: f64,
+    /// When it starts [s].
+    pub start: f64,
+}
+
+/// A hand that pushes against extension: peak_force/2 (1 - cos(2 pi frequency (t - start))).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HandScenario {
+    /// Largest force [N].
+    pub peak_force: f64,
+    /// Frequency [Hz].
+    pub frequency: f64,
+    /// When it starts [s].
+    pub start: f64,
+}
+
+/// Commands, each held from its time [s] until the next; nothing is asked for before the first.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CommandScenario {
+    /// Set pressures [Pa gauge].
+    SetPressure(Vec<(f64, f64)>),
+    /// Contact forces [N] for a controller.
+    Force(Vec<(f64, f64)>),
+}
+
+impl CommandScenario {
+    /// Times [s] and values [Pa gauge or N].
+    pub fn steps(&self) -> &[(f64, f64)] {
+        match self {
+            Self::SetPressure(steps) | Self::Force(steps) => steps,
+        }
+    }
+}
+
+/// Reads a bench scenario from a document that says that it is one.
+pub(super) fn from_document(
+    path: &Path,
+    document: &Document<'_>,
+) -> Result<BenchScenario, ScenarioError> {
+    let file: BenchFile = document.parse(&bench_sections())?;
+    debug_assert_eq!(file.schema, super::file::SCHEMA);
+    let section = |table: &str| Section::new(document, table);
+    let device = device(&section("device"), &file.device)?;
+    let bench = section("bench");
+    let duration = bench.number("duration_s", file.bench.duration_s, 0.01..=3600.0)?;
+    let start_stroke = bench.number(
+        "start_stroke_mm",
+        file.bench.start_stroke_mm.unwrap_or(0.0),
+        0.0..=500.0,
+    )?;
+    if start_stroke > device.parameters.full_stroke {
+        let expected = format!(
+            "at most the device's stroke_mm, {} mm",
+            device.parameters.full_stroke * 1e3
+        );
+        return Err(bench.refuse_number("start_stroke_mm", start_stroke * 1e3, expected));
+    }
+    if device.locked {
+        let reason = "a bench has no locked device".to_owned();
+        return Err(section("device").misplaced("locked", reason));
+    }
+    let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
+    Ok(BenchScenario {
+        path: path.to_owned(),
+        title: section("").text("title", &file.title)?,
+        duration,
+        gravity_along_extension: bench.number(
+            "gravity_along_extension_m_per_s2",
+            file.bench.gravity_along_extension_m_per_s2.unwrap_or(0.0),
+            -30.0..=30.0,
+        )?,
+        start_stroke,
+        load: load(&section("load"), &file.load)?,
+        hand: file
+            .hand
+            .as_ref()
+            .map(|keys| hand(&section("hand"), keys))
+            .transpose()?,
+        command: commands(document, &file.command, duration)?,
+        valve: valve(document, &file.valve, duration)?,
+        step,
+        substeps,
+        seed,
+        expect: expectations(&section("expect"), &file.expect)?,
+        device,
+    })
+}
+
+fn simulation(
+    section: &Section<'_>,
+    keys: &BenchSimulationKeys,
+) -> Result<(f64, usize, u64), ScenarioError> {
+    Ok((
+        section.number("step_ms", keys.step_ms.unwrap_or(1.0), 0.01..=20.0)?,
+        section.count(
+            "device_substeps",
+            keys.device_substeps.unwrap_or(2),
+            1..=1000,
+        )?,
+        keys.seed.unwrap_or(1),
+    ))
+}
+
+fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, ScenarioError> {
+    let given = [
+        ("position_mm", keys.position_mm.is_some()),
+        ("stiffness_n_per_m", keys.stiffness_n_per_m.is_some()),
+        ("damping_n_s_per_m", keys.damping_n_s_per_m.is_some()),
+        ("peak_to_peak_mm", keys.peak_to_peak_mm.is_some()),
+        ("frequency_hz", keys.frequency_hz.is_some()),
+        ("start_s", keys.start_s.is_some()),
+    ];
+    let allowed = match keys.kind {
+        LoadKind::Free => 0,
+        LoadKind::LoadCell => 3,
+        LoadKind::Surface => 6,
+    };
+    if let Some((key, _)) = given.iter().skip(allowed).find(|(_, given)| *given) {
+        let reason = match keys.kind {
+            LoadKind::Free => "nothing is met when kind = \"free\"",
+            _ => "a load cell stands still; kind = \"surface\" moves",
+        };
+        return Err(section.misplaced(key, reason.to_owned()));
+    }
+    if keys.kind == LoadKind::Free {
+        return Ok(LoadScenario::Free);
+    }
+    let required = |key: &str, value: Option<f64>| {
+        value.ok_or_else(|| section.missing(key, "it to be given for this kind of load"))
+    };
+    let position = required("position_mm", keys.position_mm)?;
+    let law = PushOnly {
+        stiffness: section.number(
+            "stiffness_n_per_m",
+            keys.stiffness_n_per_m.unwrap_or(1.5e5),
+            100.0..=1e9,
+        )?,
+        damping: section.number(
+            "damping_n_s_per_m",
+            keys.damping_n_s_per_m.unwrap_or(4e2),
+            0.0..=1e6,
+        )?,
+    };
+    let motion = if keys.kind == LoadKind::Surface {
+        let peak_to_peak = required("peak_to_peak_mm", keys.peak_to_peak_mm)?;
+        let frequency = required("frequency_hz", keys.frequency_hz)?;
+        Some(SurfaceMotion {
+            peak_to_peak: section.number("peak_to_peak_mm", peak_to_peak, 0.0..=500.0)?,
+            frequency: section.number("frequency_hz", frequency, 0.001..=100.0)?,
+            start: section.number("start_s", keys.start_s.unwrap_or(0.0), 0.0..=3600.0)?,
+        })
+    } else {
+        None
+    };
+    Ok(LoadScenario::Contact {
+        position: section.number("position_mm", position, -100.0..=600.0)?,
+        law,
+        motion,
+    })
+}
+
+fn hand(section: &Section<'_>, keys: &HandKeys) -> Result<HandScenario, ScenarioError> {
+    Ok(HandScenario {
+        peak_force: section.number("peak_force_n", keys.peak_force_n, 0.0..=5000.0)?,
+        frequency: section.number("frequency_hz", keys.frequency_hz, 0.001..=100.0)?,
+        start: section.number("start_s", keys.start_s.unwrap_or(0.0), 0.0..=3600.0)?,
+    })
+}
+
+/// Checks that times follow one another within the run.
+fn in_order(
+    document: &Document<'_>,
+    table: &str,
+    times: impl Iterator<Item = f64>,
+    duration: f64,
+) -> Result<Vec<f64>, ScenarioError> {
+    let mut checked: Vec<f64> = Vec::new();
+    for (index, time) in times.enumerate() {
+        let section = Section::new(document, format!("{table}[{index}]"));
+        let at = section.number("at_s", time, 0.0..=duration)?;
+        if let Some(&before) = checked.last()
+            && at <= before
+        {
+            let expected = format!("later than the entry ahead of it, {before} s");
+            return Err(section.refuse_number("at_s", time, expected));
+        }
+        checked.push(at);
+    }
+    Ok(checked)
+}
+
+fn commands(
+    document: &Document<'_>,
+    keys: &[CommandKeys],
+    duration: f64,
+) -> Result<CommandScenario, ScenarioError> {
+    let times = in_order(document, "command", keys.iter().map(|k| k.at_s), duration)?;
+    let by_force = keys.first().is_some_and(|first| first.force_n.is_some());
+    let mut steps = Vec::with_capacity(keys.len());
+    for (index, (keys, at)) in keys.iter().zip(times).enumerate() {
+        let section = Section::new(document, format!("command[{index}]"));
+        let value = match (by_force, keys.set_pressure_bar_gauge, keys.force_n) {
+            (false, Some(pressure), None) => {
+                section.number("set_pressure_bar_gauge", pressure, 0.0..=16.0)?
+            }
+            (true, None, Some(force)) => section.number("force_n", force, 0.0..=5000.0)?,
+            (false, _, Some(_)) => {
+                let reason = "the first command gives a set pressure, so all of them do".to_owned();
+                return Err(section.misplaced("force_n", reason));
+            }
+            (true, Some(_), _) => {
+                let reason = "the first command gives a force, so all of them do".to_owned();
+                return Err(section.misplaced("set_pressure_bar_gauge", reason));
+            }
+            (false, None, None) => {
+                return Err(section.missing("set_pressure_bar_gauge", "it or force_n to be given"));
+            }
+            (true, None, None) => {
+                return Err(section.missing("force_n", "it to be given, as in the first command"));
+            }
+        };
+        steps.push((at, value));
+    }
+    Ok(if by_force {
+        CommandScenario::Force(steps)
+    } else {
+        CommandScenario::SetPressure(steps)
+    })
+}
+
+fn valve(
+    document: &Document<'_>,
+    keys: &[ValveKeys],
+    duration: f64,
+) -> Result<Vec<(f64, ValvePosition)>, ScenarioError> {
+    let times = in_order(document, "valve", keys.iter().map(|k| k.at_s), duration)?;
+    Ok(times
+        .into_iter()
+        .zip(keys.iter().map(|keys| keys.position))
+        .collect())
+}

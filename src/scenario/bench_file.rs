@@ -1,0 +1,116 @@
+//! The TOML of a bench scenario, key by key, as `file` is for a cell.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use super::file::{BoundKeys, DeviceKeys};
+
+/// What a file describes; a cell if it does not say.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Kind {
+    /// Arm, device and workpiece.
+    #[default]
+    Cell,
+    /// The device alone.
+    Bench,
+}
+
+/// The one key that is read before a file's kind is known.
+#[derive(Debug, Deserialize)]
+pub(super) struct KindOnly {
+    #[serde(default)]
+    pub kind: Kind,
+}
+
+/// A bench scenario file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BenchFile {
+    pub schema: u32,
+    #[expect(dead_code, reason = "read as `KindOnly`; here so that it is known")]
+    pub kind: Kind,
+    pub title: String,
+    pub device: DeviceKeys,
+    pub bench: BenchKeys,
+    pub load: LoadKeys,
+    pub hand: Option<HandKeys>,
+    #[serde(default)]
+    pub command: Vec<CommandKeys>,
+    #[serde(default)]
+    pub valve: Vec<ValveKeys>,
+    #[serde(default)]
+    pub simulation: BenchSimulationKeys,
+    #[serde(default)]
+    pub expect: BTreeMap<String, BoundKeys>,
+}
+
+/// `[bench]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BenchKeys {
+    pub duration_s: f64,
+    pub gravity_along_extension_m_per_s2: Option<f64>,
+    pub start_stroke_mm: Option<f64>,
+}
+
+/// What the tool meets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum LoadKind {
+    /// Nothing.
+    Free,
+    /// A load cell that stands still.
+    LoadCell,
+    /// A surface that moves.
+    Surface,
+}
+
+/// `[load]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LoadKeys {
+    pub kind: LoadKind,
+    pub position_mm: Option<f64>,
+    pub stiffness_n_per_m: Option<f64>,
+    pub damping_n_s_per_m: Option<f64>,
+    pub peak_to_peak_mm: Option<f64>,
+    pub frequency_hz: Option<f64>,
+    pub start_s: Option<f64>,
+}
+
+/// `[hand]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct HandKeys {
+    pub peak_force_n: f64,
+    pub frequency_hz: f64,
+    pub start_s: Option<f64>,
+}
+
+/// `[[command]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CommandKeys {
+    pub at_s: f64,
+    pub set_pressure_bar_gauge: Option<f64>,
+    pub force_n: Option<f64>,
+}
+
+/// `[[valve]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ValveKeys {
+    pub at_s: f64,
+    pub position: crate::physics::valve::ValvePosition,
+}
+
+/// `[simulation]` of a bench.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BenchSimulationKeys {
+    pub step_ms: Option<f64>,
+    pub device_substeps: Option<usize>,
+    pub seed: Option<u64>,
+}
