@@ -14,6 +14,7 @@
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
 //! - [`metrics`]: the numbers of a run
+//! - [`figure`]: signals as SVG pictures
 //! - [`report`]: tables for people
 //! - [`app`]: the command line and the files that it writes
 // Units stand in square brackets, which rustdoc would take for links.
@@ -24,6 +25,7 @@ pub mod arm;
 pub mod cell;
 pub mod control;
 pub mod device;
+pub mod figure;
 pub mod metrics;
 pub mod path;
 pub mod physics;

@@ -1,6 +1,6 @@
 //! Guards on the variance of the contact force: one for each scenario that reaches contact, each shown to fail when a disturbance is planted.
 
-use idc_cell::metrics::check;
+use idc_cell::metrics::{METRICS, check};
 use idc_cell::scenario::{BurrScenario, Scenario};
 
 use crate::common::{run, scenario};
@@ -10,7 +10,7 @@ fn broken_bounds(scenario: Scenario) -> Vec<&'static str> {
     let expectations = scenario.expect.clone();
     assert!(!expectations.is_empty());
     let summary = run(scenario).summary;
-    let verdicts = check(&summary, &expectations).unwrap();
+    let verdicts = check(METRICS, &summary, &expectations).unwrap();
     verdicts
         .iter()
         .filter(|v| !v.kept)

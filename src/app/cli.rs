@@ -7,14 +7,17 @@ use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::error::{AppError, ExitCode};
-use super::files::{NAMES, OutputFolder, SummaryDocument};
+use super::files::{OutputFolder, RunOutput, SummaryDocument};
 use super::output::say;
+use super::picture::scene_of;
 use super::run::run_cell;
+use super::{bench, bench_figures, bench_picture};
 use crate::cell::Cell;
 use crate::metrics::{self, Verdict};
 use crate::recording::rerun::Opening;
-use crate::report::{Style, text};
-use crate::scenario;
+use crate::report::{Style, bench_markdown, bench_text, markdown, text};
+use crate::rig::Rig;
+use crate::scenario::{self, AnyScenario, BenchScenario};
 
 /// Simulate a robot deburring cell with a pneumatic constant-force end effector.
 #[derive(Debug, Parser)]
@@ -89,19 +92,18 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
 }
 
 fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
-    let scenario = scenario::load(&arguments.scenario)?;
+    let scenario = match scenario::load_any(&arguments.scenario)? {
+        AnyScenario::Cell(cell) => *cell,
+        AnyScenario::Bench(bench) => return run_bench(arguments, *bench),
+    };
     let file = arguments.scenario.display().to_string();
     let metrics_error = |source| AppError::Metrics {
         file: file.clone(),
         source,
     };
-    metrics::validate(&scenario.expect).map_err(metrics_error)?;
+    metrics::validate(metrics::METRICS, &scenario.expect).map_err(metrics_error)?;
     let cell = Cell::new(scenario)?;
-    let chosen = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| default_folder(&arguments.scenario));
-    let folder = OutputFolder::prepare(&chosen)?;
+    let folder = OutputFolder::prepare(&output_folder(arguments))?;
     let quiet = arguments.quiet || arguments.json;
     if !quiet {
         for note in &cell.notes {
@@ -115,30 +117,91 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     });
     bar.finish_and_clear();
     let finished = finished?;
-    let verdicts =
-        metrics::check(&finished.summary, &cell.scenario.expect).map_err(metrics_error)?;
-    let document = SummaryDocument::new(&cell, &finished, &verdicts);
-    folder.write(&cell, &finished, &document, opening(arguments))?;
+    let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect)
+        .map_err(metrics_error)?;
+    let title = &cell.scenario.title;
+    let document = SummaryDocument::new(&cell, &finished, &verdicts).text()?;
+    let names = folder.write(&RunOutput {
+        title,
+        recording: &finished.recording,
+        scene: &scene_of(&cell, &finished.recording, &finished.frames)?,
+        markdown: markdown(title, &finished.summary, &verdicts),
+        opening: opening(arguments),
+        summary: &document,
+        figures: None,
+    })?;
+    let table = text(title, &finished.summary, &verdicts, style());
+    show(arguments, &document, &table, &folder, &names)?;
+    Ok(end(finished.stop.as_ref(), &verdicts))
+}
+
+fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCode, AppError> {
+    let file = arguments.scenario.display().to_string();
+    let metrics_error = |source| AppError::Metrics {
+        file: file.clone(),
+        source,
+    };
+    metrics::validate(metrics::BENCH_METRICS, &scenario.expect).map_err(metrics_error)?;
+    if arguments.hold_at_s.is_some() {
+        return Err(AppError::NoBench {
+            option: "hold-at-s",
+        });
+    }
+    let rig = Rig::new(scenario);
+    let folder = OutputFolder::prepare(&output_folder(arguments))?;
+    let bar = progress(arguments.quiet || arguments.json);
+    let finished = bench::run_rig(&rig, &mut |done, total| {
+        bar.set_length(total as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let finished = finished?;
+    let scenario = &rig.scenario;
+    let verdicts = metrics::check(metrics::BENCH_METRICS, &finished.summary, &scenario.expect)
+        .map_err(metrics_error)?;
+    let document = bench::document(scenario, &finished, &verdicts)?;
+    let names = folder.write(&RunOutput {
+        title: &scenario.title,
+        recording: &finished.recording,
+        scene: &bench_picture::scene_of(scenario, &finished.recording)?,
+        markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
+        opening: opening(arguments),
+        summary: &document,
+        figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
+    })?;
+    let table = bench_text(&scenario.title, &finished.summary, &verdicts, style());
+    show(arguments, &document, &table, &folder, &names)?;
+    Ok(end(finished.stop.as_ref(), &verdicts))
+}
+
+/// Prints what the user asked to see.
+fn show(
+    arguments: &RunArguments,
+    document: &str,
+    table: &str,
+    folder: &OutputFolder,
+    names: &[&str],
+) -> Result<(), AppError> {
     if arguments.json {
-        say(&(document.text()? + "\n"))?;
+        say(&format!("{document}\n"))?;
     } else if !arguments.quiet {
-        say(&text(
-            &cell.scenario.title,
-            &finished.summary,
-            &verdicts,
-            style(),
-        ))?;
+        say(table)?;
         say(&format!(
             "written to {}: {}\n",
             folder.path().display(),
-            NAMES.join(", ")
+            names.join(", ")
         ))?;
     }
-    if let Some(stop) = &finished.stop {
+    Ok(())
+}
+
+/// Says why a run stopped early, if it did, and which bounds were not kept.
+fn end(stop: Option<&impl std::fmt::Display>, verdicts: &[Verdict]) -> ExitCode {
+    if let Some(stop) = stop {
         eprintln!("stopped: {stop}");
-        return Ok(ExitCode::Stopped);
+        return ExitCode::Stopped;
     }
-    Ok(judge(&verdicts))
+    judge(verdicts)
 }
 
 /// Says on standard error which results lie outside their bounds, whatever else is printed.
@@ -184,8 +247,9 @@ fn opening(arguments: &RunArguments) -> Opening {
         })
 }
 
-fn default_folder(scenario: &Path) -> PathBuf {
-    Path::new("runs").join(scenario.file_stem().unwrap_or_default())
+fn output_folder(arguments: &RunArguments) -> PathBuf {
+    let default = || Path::new("runs").join(arguments.scenario.file_stem().unwrap_or_default());
+    arguments.out.clone().unwrap_or_else(default)
 }
 
 fn progress(quiet: bool) -> ProgressBar {

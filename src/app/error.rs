@@ -72,6 +72,15 @@ pub enum AppError {
         /// What was expected.
         expected: &'static str,
     },
+    /// An option that only a cell has.
+    #[error("--{option} is for cells, and the scenario is a bench")]
+    NoBench {
+        /// The option.
+        option: &'static str,
+    },
+    /// A picture.
+    #[error(transparent)]
+    Figure(#[from] crate::figure::FigureError),
     /// The terminal, or whatever is in its place.
     #[error("cannot print: {0}")]
     Print(std::io::Error),

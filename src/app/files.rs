@@ -1,23 +1,24 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json; all three appear, or none.
+//! The files of a run: recording.rrd, samples.parquet, summary.json, and figures.svg of a bench; all appear, or none.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::error::AppError;
-use super::picture::scene_of;
 use super::run::Finished;
 use crate::cell::Cell;
 use crate::metrics::{Summary, Verdict};
+use crate::recording::Recording;
 use crate::recording::atomic::{UnfinishedFolder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
-use crate::report::markdown;
+use crate::recording::scene::Scene;
 
 const RECORDING: &str = "recording.rrd";
 const SAMPLES: &str = "samples.parquet";
 const SUMMARY: &str = "summary.json";
-/// All of them.
-pub(super) const NAMES: [&str; 3] = [RECORDING, SAMPLES, SUMMARY];
+const FIGURES: &str = "figures.svg";
+/// All that a run may write.
+const NAMES: [&str; 4] = [RECORDING, SAMPLES, SUMMARY, FIGURES];
 
 /// A folder that was found to be writable before the run.
 pub(super) struct OutputFolder {
@@ -49,18 +50,11 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Writes the three files.
-    pub(super) fn write(
-        &self,
-        cell: &Cell,
-        finished: &Finished,
-        document: &SummaryDocument,
-        opening: Opening,
-    ) -> Result<(), AppError> {
+    /// Writes the files of a run and returns their names.
+    pub(super) fn write(&self, output: &RunOutput<'_>) -> Result<Vec<&'static str>, AppError> {
         let unfinished = UnfinishedFolder::within(&self.path)?;
-        let title = &cell.scenario.title;
         let metadata = BTreeMap::from([
-            ("title".to_owned(), title.clone()),
+            ("title".to_owned(), output.title.to_owned()),
             (
                 "program".to_owned(),
                 format!("idc {}", env!("CARGO_PKG_VERSION")),
@@ -68,25 +62,47 @@ impl OutputFolder {
         ]);
         write_parquet(
             &unfinished.path().join(SAMPLES),
-            &finished.recording,
+            output.recording,
             &metadata,
         )?;
         let options = RerunOptions {
-            summary_markdown: markdown(title, &finished.summary, document.expectations),
-            opening,
+            summary_markdown: output.markdown.clone(),
+            opening: output.opening,
             ..RerunOptions::default()
         };
-        let scene = scene_of(cell, &finished.recording, &finished.frames)?;
         write_rrd(
             &unfinished.path().join(RECORDING),
-            &finished.recording,
-            &scene,
+            output.recording,
+            output.scene,
             &options,
         )?;
-        write_text(&unfinished.path().join(SUMMARY), &document.text()?)?;
-        unfinished.finish(&NAMES)?;
-        Ok(())
+        write_text(&unfinished.path().join(SUMMARY), output.summary)?;
+        let mut names = vec![RECORDING, SAMPLES, SUMMARY];
+        if let Some(figures) = output.figures {
+            write_text(&unfinished.path().join(FIGURES), figures)?;
+            names.push(FIGURES);
+        }
+        unfinished.finish(&names)?;
+        Ok(names)
     }
+}
+
+/// What a run leaves behind.
+pub(super) struct RunOutput<'a> {
+    /// Name for people.
+    pub title: &'a str,
+    /// The signals.
+    pub recording: &'a Recording,
+    /// How it looks in space.
+    pub scene: &'a Scene,
+    /// Results for the recording's text panel.
+    pub markdown: String,
+    /// How the recording opens.
+    pub opening: Opening,
+    /// summary.json.
+    pub summary: &'a str,
+    /// figures.svg.
+    pub figures: Option<&'a str>,
 }
 
 /// What summary.json holds, and `--json` prints.

@@ -1,5 +1,8 @@
 //! The program: subcommands, files that they write, messages and exit codes.
 
+mod bench;
+mod bench_figures;
+mod bench_picture;
 mod cli;
 mod edges;
 mod error;
@@ -8,6 +11,7 @@ mod output;
 mod picture;
 mod run;
 
+pub use bench::{FinishedBench, run_rig};
 pub use cli::{Cli, execute};
 pub use error::{AppError, ExitCode};
 pub use picture::scene_of;

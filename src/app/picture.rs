@@ -10,6 +10,7 @@ use crate::recording::scene::{
     SceneShape,
 };
 use crate::recording::{Recording, RecordingError, schema};
+use crate::scenario::DeviceScenario;
 use crate::simulation::FrameLog;
 
 /// Segments of the drawn edge.
@@ -18,7 +19,7 @@ const HOUSING: Colour = [70, 80, 92, 255];
 const CYLINDER: Colour = [176, 184, 192, 255];
 const CARRIAGE: Colour = [222, 143, 5, 255];
 const TOOL: Colour = [60, 60, 60, 255];
-const PART: Colour = [150, 165, 178, 255];
+pub(super) const PART: Colour = [150, 165, 178, 255];
 
 /// Builds the scene of a run.
 ///
@@ -120,11 +121,23 @@ fn plate(size: DVec3, middle: f64, colour: Colour) -> SceneShape {
     }
 }
 
-/// The device to its own measures: cylinders on the flange, carriage, spindle and ball nose on the slide.
 fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
-    let scenario = &cell.scenario.device;
-    let parameters = &scenario.parameters;
     let last = cell.arm.chain.len() - 1;
+    let flange = |links: &Vec<DPose3>| links[last] * cell.arm.chain.tip_from_last;
+    device_bodies(
+        &cell.scenario.device,
+        ScenePoses::Moving(frames.links.iter().map(flange).collect()),
+        ScenePoses::Moving(frames.links.iter().map(|links| links[last + 1]).collect()),
+    )
+}
+
+/// The device to its own measures: cylinders on the flange, carriage, spindle and ball nose on the slide.
+pub(super) fn device_bodies(
+    scenario: &DeviceScenario,
+    world_from_flange: ScenePoses,
+    world_from_slide: ScenePoses,
+) -> [SceneBody; 2] {
+    let parameters = &scenario.parameters;
     let barrel = 0.5 * parameters.bore + 0.004;
     let spacing = barrel + 0.028;
     let length = parameters.full_stroke.min(0.6 * scenario.tool_centre);
@@ -181,19 +194,16 @@ fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
         },
         colour: CARRIAGE,
     });
-    let flange = |links: &Vec<DPose3>| links[last] * cell.arm.chain.tip_from_last;
     [
         SceneBody {
             entity: "device/cylinders".into(),
             shapes: fixed,
-            world_from_body: ScenePoses::Moving(frames.links.iter().map(flange).collect()),
+            world_from_body: world_from_flange,
         },
         SceneBody {
             entity: "device/slide".into(),
             shapes: moving,
-            world_from_body: ScenePoses::Moving(
-                frames.links.iter().map(|links| links[last + 1]).collect(),
-            ),
+            world_from_body: world_from_slide,
         },
     ]
 }

@@ -40,6 +40,8 @@ pub(super) struct Archive<'a> {
     study: &'a Study,
     evaluator: &'a dyn Evaluate,
     progress: &'a (dyn Fn(usize, usize) + Sync),
+    /// Designs that were evaluated before, for the progress.
+    before: usize,
     known: Mutex<BTreeMap<Vec<u64>, Arc<Judged>>>,
 }
 
@@ -53,7 +55,16 @@ impl<'a> Archive<'a> {
             study,
             evaluator,
             progress,
+            before: 0,
             known: Mutex::default(),
+        }
+    }
+
+    /// An empty one for designs that are not to be chosen.
+    pub fn aside(&self) -> Self {
+        Self {
+            before: self.before + self.known().len(),
+            ..Self::new(self.study, self.evaluator, self.progress)
         }
     }
 
@@ -73,7 +84,7 @@ impl<'a> Archive<'a> {
         let count = {
             let mut known = self.known();
             known.entry(key).or_insert_with(|| judged.clone());
-            known.len()
+            self.before + known.len()
         };
         (self.progress)(count, self.study.evaluations);
         judged
@@ -86,6 +97,11 @@ impl<'a> Archive<'a> {
             .evaluate(&self.study.design(&values))
             .and_then(|outcome| score(self.study, &values, outcome));
         Judged { values, result }
+    }
+
+    /// The bare outcome of a design, of which metrics may be missing.
+    pub fn outcome(&self, values: &[f64]) -> Result<Outcome, EvaluateError> {
+        self.evaluator.evaluate(&self.study.design(values))
     }
 
     /// All designs so far, by their values.

@@ -1,5 +1,7 @@
 //! What can end a design study.
 
+use std::path::PathBuf;
+
 use crate::scenario::ScenarioError;
 use crate::scenario::error::Place;
 
@@ -11,10 +13,10 @@ pub enum DesignError {
     #[error(transparent)]
     File(#[from] ScenarioError),
     /// The starting design, to which everything is compared.
-    #[error("{place}: the starting design cannot be simulated: {detail}")]
+    #[error("{}: the starting design cannot be simulated: {detail}", file.display())]
     Start {
-        /// The study's variables.
-        place: Place,
+        /// The study.
+        file: PathBuf,
         /// What the evaluation says.
         detail: String,
     },

@@ -45,7 +45,7 @@ struct Local<'a> {
     fixed: Vec<f64>,
     /// Variables that are moved.
     free: Vec<usize>,
-    best: Mutex<Ranked>,
+    best: &'a Mutex<Ranked>,
 }
 
 impl Local<'_> {
@@ -133,54 +133,20 @@ pub(super) fn polish(
         return Ok(first);
     }
     let point: Vec<f64> = free.iter().map(|index| start[*index]).collect();
+    let best = Mutex::new(first);
     let problem = Local {
         archive,
         goal,
         fixed: start.to_vec(),
         free,
-        best: Mutex::new(first),
+        best: &best,
     };
     let solver = Cobyla::new()
         .with_initial_radius(radius)
         .with_final_radius(FINAL_RADIUS);
-    // The executor takes its problem; a reference is one as well.
-    Executor::new(Shared(&problem), solver, SelectedState::new(point))
+    Executor::new(problem, solver, SelectedState::new(point))
         .max_cost_evals(budget as u64)
         .run()
         .map_err(|error| DesignError::Optimiser(format!("COBYLA: {error}")))?;
-    Ok(problem.best.into_inner().unwrap_or_else(PoisonError::into_inner))
-}
-
-/// A problem by reference.
-struct Shared<'a>(&'a Local<'a>);
-
-impl CostFunction for Shared<'_> {
-    type Param = Vec<f64>;
-    type Output = f64;
-    type Error = Infallible;
-
-    fn cost(&self, point: &Vec<f64>) -> Result<f64, Infallible> {
-        self.0.cost(point)
-    }
-}
-
-impl Constraints for Shared<'_> {
-    type Set = <Local<'static> as Constraints>::Set;
-
-    fn constraints(&self) -> <Self::Set as ConstraintDescription>::Borrowed<'_> {
-        self.0.constraints()
-    }
-}
-
-impl NonlinearInequalityValues for Shared<'_> {
-    type Param = Vec<f64>;
-    type Values = Vec<f64>;
-    type Error = Infallible;
-
-    fn nonlinear_inequalities(
-        &self,
-        point: &Vec<f64>,
-    ) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
-        self.0.nonlinear_inequalities(point)
-    }
+    Ok(best.into_inner().unwrap_or_else(PoisonError::into_inner))
 }

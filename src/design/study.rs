@@ -9,7 +9,7 @@ use crate::scenario::document::{Document, read_text};
 use crate::scenario::error::Place;
 
 use super::candidate::{Design, Outcome};
-use super::file::{BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, study_sections};
+use super::file::{BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys, study_sections};
 use super::limits::{Limit, LimitQuantity, Side};
 use super::variable::{Variable, variable};
 
@@ -198,7 +198,9 @@ fn variables(document: &Document<'_>, file: &StudyFile) -> Result<Vec<Variable>,
         return Err(Section::new(document, "").missing("variables", expected));
     }
     let rod_varies = file.variables.contains_key("rod_mm");
-    let check = |(key, keys)| variable(document, key, keys, rod_varies);
+    let check = |(key, keys): (&String, &VariableKeys)| {
+        variable(document, key, keys, rod_varies)
+    };
     file.variables.iter().map(check).collect()
 }
 

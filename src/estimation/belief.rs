@@ -110,18 +110,13 @@ impl Belief {
         }
     }
 
-    /// What a sample of a linear combination with noise of a variance tells before it is taken in.
-    pub(super) fn innovation(&self, terms: &[Term], sample: f64, noise: f64) -> Innovation {
+    /// Takes a sample of a linear combination with noise of a variance in.
+    pub(super) fn observe(&mut self, terms: &[Term], sample: f64, noise: f64) -> Innovation {
         let predicted: f64 = terms.iter().map(|&(i, a)| a * self.mean[i]).sum();
-        Innovation {
+        let innovation = Innovation {
             residual: sample - predicted,
             variance: self.variance(terms) + noise,
-        }
-    }
-
-    /// Takes a sample in.
-    pub(super) fn observe(&mut self, terms: &[Term], sample: f64, noise: f64) -> Innovation {
-        let innovation = self.innovation(terms, sample, noise);
+        };
         let mut spread = [0.0; SIZE];
         for &(from, factor) in terms {
             for (sum, value) in spread.iter_mut().zip(&self.covariance[from]) {

@@ -143,6 +143,9 @@ impl ContactForceEstimator {
         &self.models.probabilities
     }
 
+    pub fn debug(&self) -> Vec<[f64; 4]> {
+        self.models.beliefs.iter().map(|b| [b.covariance[0][0].sqrt(), b.covariance[1][1].sqrt(), b.covariance[2][2].sqrt(), b.covariance[8][8].sqrt()]).collect()
+    }
     /// Takes one set of samples in, a period after the one before.
     pub fn update(&mut self, measurement: &Measurement) -> Estimate {
         if self.started {
@@ -193,19 +196,20 @@ impl ContactForceEstimator {
             (&PRESSURE_TERMS, measurement.regulator_pressure),
         ];
         let mut normalized = [f64::NAN; 3];
+        let likeliest = self.models.likeliest();
         let mut likelihoods = vec![0.0; self.models.beliefs.len()];
         for (i, (terms, sample)) in samples.into_iter().enumerate() {
             if !sample.is_finite() {
                 continue;
             }
             let noise = self.noise[i];
-            let (residual, variance) = self.models.overall(|belief| {
-                let innovation = belief.innovation(terms, sample, noise);
-                (innovation.residual, innovation.variance)
-            });
-            normalized[i] = residual / variance.sqrt();
-            for (belief, log) in self.models.beliefs.iter_mut().zip(&mut likelihoods) {
-                *log += belief.observe(terms, sample, noise).log_likelihood();
+            let beliefs = self.models.beliefs.iter_mut().zip(&mut likelihoods);
+            for (model, (belief, log)) in beliefs.enumerate() {
+                let innovation = belief.observe(terms, sample, noise);
+                *log += innovation.log_likelihood();
+                if model == likeliest {
+                    normalized[i] = innovation.residual / innovation.variance.sqrt();
+                }
             }
         }
         self.models.weigh(&likelihoods);
@@ -227,8 +231,17 @@ impl ContactForceEstimator {
             )
         };
         let (displacement, variance) = self.models.overall(of_way);
-        if self.seals.way(displacement, TURN * variance.sqrt()) == Way::Undecided {
-            return;
+        match self.seals.way(displacement, TURN * variance.sqrt()) {
+            Way::On => {}
+            Way::Undecided => return,
+            Way::Halted => {
+                let k: f64 = std::env::var("K").unwrap().parse().unwrap();
+                for belief in &mut self.models.beliefs {
+                    let stroke = belief.covariance[STROKE][STROKE];
+                    belief.add_noise(TURNING_STROKE, TURNING_STROKE, k * k * stroke);
+                }
+                return;
+            }
         }
         for belief in &mut self.models.beliefs {
             let mean = &mut belief.mean;

@@ -86,6 +86,17 @@ impl Models {
         }
     }
 
+    /// Index of the likeliest hypothesis.
+    pub(super) fn likeliest(&self) -> usize {
+        let mut best = 0;
+        for (i, probability) in self.probabilities.iter().enumerate() {
+            if *probability > self.probabilities[best] {
+                best = i;
+            }
+        }
+        best
+    }
+
     /// Mean and variance over all hypotheses of a quantity that each gives as mean and variance.
     pub(super) fn overall(&self, of: impl Fn(&Belief) -> (f64, f64)) -> (f64, f64) {
         let (mut mean, mut square) = (0.0, 0.0);

@@ -32,8 +32,8 @@ pub struct Estimate {
     pub speed: f64,
     /// Acceleration [m/s2].
     pub acceleration: f64,
-    /// Differences of stroke, acceleration and regulator pressure from their predictions over the standard deviations they should have;
-    /// not a number where a sample was missing.
+    /// Differences of stroke, acceleration and regulator pressure from their predictions over the standard deviations they should have, under
+    /// the process model that was likeliest before the samples; not a number where one was missing.
     pub normalized_innovations: [f64; 3],
 }
 

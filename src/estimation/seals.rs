@@ -26,7 +26,9 @@ pub(super) struct Deflection {
 pub(super) enum Way {
     /// On in the same direction, or turned: carry the turning point along.
     On,
-    /// Back by less than can be told from noise.
+    /// Back for the first time since it went on.
+    Halted,
+    /// Still back by less than can be told from noise.
     Undecided,
 }
 
@@ -35,6 +37,7 @@ pub(super) enum Way {
 pub(super) struct Seals {
     friction: SealFriction,
     direction: f64,
+    halted: bool,
 }
 
 impl Seals {
@@ -42,6 +45,7 @@ impl Seals {
         Self {
             friction,
             direction: 1.0,
+            halted: false,
         }
     }
 
@@ -62,14 +66,15 @@ impl Seals {
     /// What a displacement from the turning point [m] means when noise can make up to `noise` [m].
     pub(super) fn way(&mut self, displacement: f64, noise: f64) -> Way {
         let onward = self.direction * displacement;
-        if onward >= 0.0 {
-            Way::On
-        } else if -onward > noise {
+        if onward < -noise {
             self.direction = -self.direction;
-            Way::On
-        } else {
-            Way::Undecided
+        } else if onward < 0.0 {
+            let first = !self.halted;
+            self.halted = true;
+            return if first { Way::Halted } else { Way::Undecided };
         }
+        self.halted = false;
+        Way::On
     }
 
     /// Deflection after a displacement [m] at a speed [m/s].

@@ -1,57 +1,22 @@
-//! The layout of a figure, and the painting of its parts.
+//! The painting of a figure whose parts have their places.
 
 use std::collections::BTreeSet;
 
 use plotters::style::{Color, RGBColor, ShapeStyle, WHITE};
 
-use super::canvas::{self, Anchor, Canvas, Drawn, fitting, text_width};
-use super::trace::{PX, Place, Scale, over_quantity, over_time};
-use super::{Figure, FigureError, Horizontal, Panel, Role, Series, Stroke};
+use super::canvas::{self, Anchor, Canvas, Drawn, fitting};
+use super::layout::{
+    KEY, LEFT, Layout, NORMAL, RIGHT, ROW, SMALL, SPACE, Spot, TICK, TITLE_HEIGHT, WIDTH, across,
+    layouts,
+};
+use super::trace::{PX, Place, over_quantity, over_time};
+use super::{Figure, FigureError, Horizontal, Role, Series, Stroke};
 
-const WIDTH: i32 = 960 * PX;
-/// Ends of the plots.
-const LEFT: i32 = 80 * PX;
-const RIGHT: i32 = 940 * PX;
-const TITLE_HEIGHT: i32 = 40 * PX;
-/// Height of a row of the legend or of marker labels.
-const ROW: i32 = 21 * PX;
-/// Length of a line in the legend, and the space behind an entry.
-const KEY: i32 = 26 * PX;
-const KEY_GAP: i32 = 24 * PX;
-/// Between a text and what it belongs to.
-const SPACE: i32 = 6 * PX;
-const TICK: i32 = 4 * PX;
+/// Size of the figure's title.
 const LARGE: i32 = 18 * PX;
-const NORMAL: i32 = 14 * PX;
-const SMALL: i32 = 13 * PX;
 const FRAME: RGBColor = RGBColor(0x55, 0x55, 0x55);
-const EVENT: RGBColor = RGBColor(0x80, 0x80, 0x80);
+const EVENT: RGBColor = RGBColor(0x99, 0x99, 0x99);
 const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
-
-/// The place of a text: its left end, and its row.
-#[derive(Clone, Copy)]
-struct Spot {
-    left: i32,
-    row: i32,
-}
-
-/// A panel with everything in its place.
-struct Layout<'a> {
-    panel: &'a Panel<'a>,
-    horizontal: Scale,
-    vertical: Scale,
-    /// Whether the horizontal axis has its labels here.
-    labelled: bool,
-    /// Of the legend entries, rows counted from above.
-    keys: Vec<Spot>,
-    /// Of the markers that have labels, rows counted from the plot upwards.
-    labels: Vec<Option<Spot>>,
-    /// Upper edge of the panel.
-    above: i32,
-    /// Edges of its plot.
-    top: i32,
-    bottom: i32,
-}
 
 /// The figure as an SVG document.
 pub(super) fn document(figure: &Figure) -> Result<String, FigureError> {
@@ -69,141 +34,7 @@ pub(super) fn document(figure: &Figure) -> Result<String, FigureError> {
     })
 }
 
-fn layouts<'a>(figure: &'a Figure) -> Result<Vec<Layout<'a>>, FigureError> {
-    let over_time = |panel: &&Panel| panel.horizontal == Horizontal::Time;
-    let time = figure.panels.iter().filter(over_time);
-    let time = Scale::new(time.flat_map(Panel::places), 0.0, 10.0);
-    let mut above = if figure.title.is_empty() {
-        SPACE
-    } else {
-        TITLE_HEIGHT
-    };
-    let mut layouts = Vec::new();
-    for (index, panel) in figure.panels.iter().enumerate() {
-        let (horizontal, height) = match panel.horizontal {
-            Horizontal::Time => (time.clone(), 180 * PX),
-            Horizontal::Quantity(_) => (Scale::new(panel.places(), 0.04, 10.0), 330 * PX),
-        };
-        let keys = key_spots(panel);
-        let labels = label_spots(panel, &horizontal)?;
-        let last_key = keys.last().map_or(0, |spot| spot.row + 1);
-        let last_label = labels.iter().flatten().map(|spot| spot.row + 1).max();
-        let headings = last_key.max(i32::from(!panel.title.is_empty()));
-        let top = above + ROW * (headings + last_label.unwrap_or(0)) + TICK;
-        let next = figure.panels.get(index + 1);
-        layouts.push(Layout {
-            vertical: Scale::new(panel.heights(), 0.06, 6.0),
-            labelled: !(over_time(&panel) && next.is_some_and(|next| over_time(&next))),
-            bottom: top + height,
-            panel,
-            horizontal,
-            keys,
-            labels,
-            above,
-            top,
-        });
-        above = layouts.last().map_or(0, Layout::below);
-    }
-    Ok(layouts)
-}
-
-/// Legend entries one after the other behind the panel's title, in as many rows as they take.
-fn key_spots(panel: &Panel) -> Vec<Spot> {
-    let title = match text_width(&panel.title, NORMAL) {
-        0 => 0,
-        // Bold is wider.
-        width => width * 11 / 10 + KEY_GAP,
-    };
-    let (mut left, mut row) = (LEFT + title, 0);
-    let mut spots = Vec::new();
-    for (label, _) in panel.keys() {
-        let width = KEY + SPACE + text_width(label, NORMAL);
-        if left + width > RIGHT && left > LEFT {
-            (left, row) = (LEFT, row + 1);
-        }
-        spots.push(Spot { left, row });
-        left += width + KEY_GAP;
-    }
-    spots
-}
-
-/// Marker labels right of their lines, or left where the picture ends. From the last to the first
-/// each goes into the lowest row in which it and its line meet no later label.
-fn label_spots(panel: &Panel, horizontal: &Scale) -> Result<Vec<Option<Spot>>, FigureError> {
-    let mut order: Vec<usize> = (0..panel.markers.len()).collect();
-    order.sort_by(|&a, &b| panel.markers[b].at.total_cmp(&panel.markers[a].at));
-    let mut spots = vec![None; order.len()];
-    let mut taken: Vec<i32> = Vec::new();
-    for index in order {
-        let marker = &panel.markers[index];
-        let (low, high) = (horizontal.low, horizontal.high);
-        if !(low <= marker.at && marker.at <= high) {
-            let reason = format!(
-                "stands at {}, the axis goes from {low} to {high}",
-                marker.at
-            );
-            return Err(panel.misfit("marker", &marker.label, reason));
-        }
-        if marker.label.is_empty() {
-            continue;
-        }
-        let line = across(horizontal, marker.at);
-        let width = text_width(&marker.label, SMALL) + 2 * SPACE;
-        let left = if line + width <= WIDTH {
-            line
-        } else {
-            line - width
-        };
-        let row = taken.iter().position(|&from| left + width <= from);
-        let row = row.unwrap_or(taken.len());
-        taken.resize(taken.len().max(row + 1), left);
-        taken[..=row].fill(left);
-        let row = row as i32;
-        spots[index] = Some(Spot { left, row });
-    }
-    Ok(spots)
-}
-
-fn across(horizontal: &Scale, value: f64) -> i32 {
-    LEFT + (horizontal.share(value) * f64::from(RIGHT - LEFT)).round() as i32
-}
-
-impl<'a> Panel<'a> {
-    fn places(&self) -> impl Iterator<Item = f64> {
-        let series = self.series.iter();
-        series.flat_map(|series| series.horizontal.iter().copied())
-    }
-
-    fn heights(&self) -> impl Iterator<Item = f64> {
-        let values = self
-            .series
-            .iter()
-            .flat_map(|series| series.values.iter().copied());
-        values.chain(self.bands.iter().flat_map(|band| [band.from, band.to]))
-    }
-
-    /// Texts of the legend, with their series or, for bands, none.
-    fn keys(&self) -> impl Iterator<Item = (&str, Option<&Series<'a>>)> {
-        let series = self
-            .series
-            .iter()
-            .map(|series| (series.label.as_str(), Some(series)));
-        let bands = self.bands.iter().map(|band| (band.label.as_str(), None));
-        series.chain(bands).filter(|(label, _)| !label.is_empty())
-    }
-}
-
 impl Layout<'_> {
-    /// Lower edge of the panel.
-    fn below(&self) -> i32 {
-        self.bottom + if self.labelled { 56 * PX } else { 16 * PX }
-    }
-
-    fn up(&self, value: f64) -> i32 {
-        let height = f64::from(self.bottom - self.top);
-        self.bottom - (self.vertical.share(value) * height).round() as i32
-    }
-
     fn paint(&self, canvas: &Canvas) -> Drawn {
         for band in &self.panel.bands {
             let corners = [(LEFT, self.up(band.to)), (RIGHT, self.up(band.from))];
@@ -271,7 +102,7 @@ impl Layout<'_> {
         for (marker, spot) in placed.clone() {
             let x = across(&self.horizontal, marker.at);
             let end = spot.map_or(self.top, |spot| middle(spot) - 8 * PX);
-            canvas.line(&[(x, end), (x, self.bottom)], EVENT.stroke_width(12))?;
+            canvas.line(&[(x, end), (x, self.bottom)], EVENT.stroke_width(10))?;
         }
         for (marker, spot) in placed {
             let Some(spot) = *spot else { continue };

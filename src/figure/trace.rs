@@ -61,10 +61,12 @@ impl Scale {
         let power = |value: f64| (value * (1.0 + 1e-9)).log10().floor();
         let size = power(self.low.abs().max(self.high.abs()));
         let step = power(self.step);
-        let text = if size >= 6.0 || step < -4.0 {
-            format!("{tick:.*e}", (size - step).max(0.0) as usize)
-        } else {
+        let text = if size < 6.0 && step >= -4.0 {
             format!("{tick:.*}", (-step).max(0.0) as usize)
+        } else if tick == 0.0 {
+            "0".to_owned()
+        } else {
+            format!("{tick:.*e}", (size - step).max(0.0) as usize)
         };
         text.replace('-', "\u{2212}")
     }
@@ -148,4 +150,83 @@ fn without_level_middles(places: &[Place]) -> Vec<Place> {
         .filter(|&index| !(level(index, index.checked_sub(1)) && level(index, Some(index + 1))))
         .map(|index| places[index])
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Role, Stroke};
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_lie_inside() {
+        for (values, widened, texts) in [
+            ([0.0, 15.999], 0.0, "0 2 4 6 8 10 12 14 16"),
+            ([0.0, 3.0], 0.06, "0.0 0.5 1.0 1.5 2.0 2.5 3.0"),
+            ([-0.021, 0.013], 0.06, "\u{2212}0.02 \u{2212}0.01 0.00 0.01"),
+            (
+                [320.0, 320.0],
+                0.06,
+                "319.85 319.90 319.95 320.00 320.05 320.10 320.15",
+            ),
+            ([0.0, 0.0], 0.06, "\u{2212}0.4 \u{2212}0.2 0.0 0.2 0.4"),
+            ([0.0, 3e7], 0.06, "0 5.0e6 1.0e7 1.5e7 2.0e7 2.5e7 3.0e7"),
+            (
+                [0.0, 2e-6],
+                0.06,
+                "0 5.0e\u{2212}7 1.0e\u{2212}6 1.5e\u{2212}6 2.0e\u{2212}6",
+            ),
+        ] {
+            let most = if widened == 0.0 { 10.0 } else { 7.0 };
+            let scale = Scale::new(values.into_iter(), widened, most);
+            let ticks = scale.ticks();
+            let found: Vec<&str> = ticks.iter().map(|tick| tick.1.as_str()).collect();
+            assert_eq!(found.join(" "), texts);
+            for (tick, text) in &ticks {
+                assert!((-1e-9..=1.0 + 1e-9).contains(&scale.share(*tick)), "{text}");
+            }
+        }
+    }
+
+    fn place(time: f64, value: f64) -> Place {
+        (time.round() as i32, -value.round() as i32)
+    }
+
+    fn series(time: &[f64], values: &[f64]) -> Series<'static> {
+        Series::new(
+            "",
+            time.to_vec(),
+            values.to_vec(),
+            Role::Force,
+            Stroke::Plain,
+        )
+    }
+
+    #[test]
+    fn a_column_keeps_its_lowest_and_highest_in_order() {
+        let time: Vec<f64> = (0..1000).map(f64::from).collect();
+        let values: Vec<f64> = (0..1000).map(|i| f64::from((i * 37) % 101)).collect();
+        let lines = over_time(&series(&time, &values), place);
+        assert_eq!(lines.len(), 1);
+        assert!(lines[0].is_sorted_by_key(|place| place.0));
+        for (column, samples) in values.chunks(10).enumerate() {
+            let here = lines[0]
+                .iter()
+                .filter(|place| place.0 / PX == column as i32);
+            let heights: Vec<f64> = here.map(|place| f64::from(-place.1)).collect();
+            let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = samples.iter().copied().fold(0.0, f64::max);
+            assert!(heights == [low, high] || heights == [high, low]);
+        }
+    }
+
+    #[test]
+    fn a_held_value_turns_square_corners_and_ends_at_a_gap() {
+        let time = [0.0, 100.0, 200.0, 300.0, 400.0];
+        let held = series(&time, &[1.0, 1.0, 5.0, f64::NAN, 2.0]).stepwise();
+        let expected = vec![
+            vec![(0, -1), (200, -1), (200, -5), (300, -5)],
+            vec![(400, -2)],
+        ];
+        assert_eq!(over_time(&held, place), expected);
+    }
 }

@@ -6,7 +6,7 @@ use super::Summary;
 
 /// One number of a run.
 #[derive(Debug, Clone, Copy)]
-pub struct Metric {
+pub struct Metric<S = Summary> {
     /// Key in summary.json, unit included.
     pub name: &'static str,
     /// Unit as it is printed.
@@ -16,16 +16,16 @@ pub struct Metric {
     /// What it is, in a few words.
     pub meaning: &'static str,
     /// Its value, if the run determines it.
-    pub value: fn(&Summary) -> Option<f64>,
+    pub value: fn(&S) -> Option<f64>,
 }
 
-const fn entry(
+pub(super) const fn entry<S>(
     name: &'static str,
     unit: &'static str,
     label: &'static str,
     meaning: &'static str,
-    value: fn(&Summary) -> Option<f64>,
-) -> Metric {
+    value: fn(&S) -> Option<f64>,
+) -> Metric<S> {
     Metric {
         name,
         unit,

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::catalogue::{METRICS, Metric, metric};
-use super::{MetricsError, Summary};
+use super::MetricsError;
+use super::catalogue::Metric;
 use crate::scenario::Expectation;
 
 /// Whether a result kept its bounds.
@@ -28,24 +28,28 @@ pub struct Verdict {
 /// # Errors
 /// Names the first metric that does not exist, with the nearest that does, or the first bounds that
 /// make no sense.
-pub fn validate(expectations: &[Expectation]) -> Result<(), MetricsError> {
+pub fn validate<S>(
+    metrics: &'static [Metric<S>],
+    expectations: &[Expectation],
+) -> Result<(), MetricsError> {
     expectations
         .iter()
-        .try_for_each(|expectation| find(expectation).map(|_| ()))
+        .try_for_each(|expectation| find(metrics, expectation).map(|_| ()))
 }
 
 /// Compares results with their bounds, in the order of the expectations.
 ///
 /// # Errors
 /// As [`validate`].
-pub fn check(
-    summary: &Summary,
+pub fn check<S>(
+    metrics: &'static [Metric<S>],
+    summary: &S,
     expectations: &[Expectation],
 ) -> Result<Vec<Verdict>, MetricsError> {
     expectations
         .iter()
         .map(|expectation| {
-            let metric = find(expectation)?;
+            let metric = find(metrics, expectation)?;
             let (min, max) = (expectation.min, expectation.max);
             let value = (metric.value)(summary);
             let within = |value: f64| {
@@ -64,11 +68,15 @@ pub fn check(
 }
 
 /// The metric of an expectation whose bounds make sense.
-fn find(expectation: &Expectation) -> Result<&'static Metric, MetricsError> {
+fn find<S>(
+    metrics: &'static [Metric<S>],
+    expectation: &Expectation,
+) -> Result<&'static Metric<S>, MetricsError> {
     let name = &expectation.metric;
-    let found = metric(name).ok_or_else(|| MetricsError::UnknownMetric {
+    let found = metrics.iter().find(|metric| metric.name == name);
+    let found = found.ok_or_else(|| MetricsError::UnknownMetric {
         metric: name.clone(),
-        nearest: nearest(name),
+        nearest: nearest(metrics, name),
     })?;
     let refuse = |found: String, expected| {
         Err(MetricsError::Bound {
@@ -89,9 +97,9 @@ fn find(expectation: &Expectation) -> Result<&'static Metric, MetricsError> {
 }
 
 /// The metric whose name is most like a given one.
-fn nearest(name: &str) -> &'static str {
-    let likeness = |metric: &Metric| strsim::jaro_winkler(name, metric.name);
-    METRICS
+fn nearest<S>(metrics: &'static [Metric<S>], name: &str) -> &'static str {
+    let likeness = |metric: &Metric<S>| strsim::jaro_winkler(name, metric.name);
+    metrics
         .iter()
         .max_by(|one, other| likeness(one).total_cmp(&likeness(other)))
         .map_or("", |metric| metric.name)
@@ -99,6 +107,7 @@ fn nearest(name: &str) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{METRICS, Summary};
     use super::*;
 
     fn expectation(metric: &str, min: Option<f64>, max: Option<f64>) -> Expectation {
@@ -116,7 +125,7 @@ mod tests {
             ..Summary::default()
         };
         let kept = |metric, min, max| {
-            let verdicts = check(&summary, &[expectation(metric, min, max)]).unwrap();
+            let verdicts = check(METRICS, &summary, &[expectation(metric, min, max)]).unwrap();
             assert_eq!((verdicts[0].metric, verdicts.len()), (metric, 1));
             verdicts[0].kept
         };
@@ -139,7 +148,7 @@ mod tests {
             ("Stroke_margin_mm", "stroke_margin_mm"),
             ("froce_mean_n", "force_mean_n"),
         ] {
-            let error = validate(&[expectation(given, None, Some(1.0))]).unwrap_err();
+            let error = validate(METRICS, &[expectation(given, None, Some(1.0))]).unwrap_err();
             let MetricsError::UnknownMetric { metric, nearest } = &error else {
                 panic!("{error}");
             };
@@ -156,7 +165,7 @@ mod tests {
             (None, Some(f64::INFINITY), "max = inf"),
             (Some(2.0), Some(1.0), "min = 2 and max = 1"),
         ] {
-            let error = validate(&[expectation("force_mean_n", min, max)]).unwrap_err();
+            let error = validate(METRICS, &[expectation("force_mean_n", min, max)]).unwrap_err();
             assert!(error.to_string().contains(part), "{error}");
         }
     }

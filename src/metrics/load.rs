@@ -47,7 +47,7 @@ fn joints(run: &Window, limits: &SummaryLimits) -> Result<Vec<JointTorqueShare>,
 
 /// Largest |(entered - left) - (mass - mass at the start)| over the mass in the chambers; all
 /// counted from the first sample, at which some air may already have moved.
-fn air_mass_balance(run: &Window) -> Result<Option<f64>, MetricsError> {
+pub(super) fn air_mass_balance(run: &Window) -> Result<Option<f64>, MetricsError> {
     let channel = |quantity| run.finite(quantity, Unit::Kilogram);
     let (Some(first), Some(second), Some(entered), Some(left)) = (
         channel(schema::CHAMBER_1_MASS)?,

@@ -7,6 +7,7 @@
 //! A number that the recording does not determine is `None`: the phase or channel is missing, a
 //! value that it needs is not finite, or the tool never touched the part.
 
+pub mod bench;
 mod catalogue;
 mod engagement;
 mod error;
@@ -20,6 +21,7 @@ mod summary;
 mod test_recordings;
 mod window;
 
+pub use bench::{BENCH_METRICS, BenchLimits, BenchSummary, LevelSummary, summarise_bench};
 pub use catalogue::{METRICS, Metric, metric};
 pub use error::MetricsError;
 pub use expect::{Verdict, check, validate};

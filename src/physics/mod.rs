@@ -6,6 +6,7 @@ pub mod chamber;
 pub mod gas;
 pub mod gas_process;
 pub mod hose;
+pub mod iso_6358;
 pub mod orifice;
 pub mod piston;
 pub mod push_only;

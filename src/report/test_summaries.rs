@@ -1,6 +1,6 @@
 //! A made-up summary for the tests of the reports.
 
-use crate::metrics::{ForceTenth, Summary, Timing, Verdict, check};
+use crate::metrics::{ForceTenth, METRICS, Summary, Timing, Verdict, check};
 use crate::scenario::Expectation;
 
 /// A run as one would like it.
@@ -54,5 +54,5 @@ pub(super) fn judged(summary: &Summary) -> Vec<Verdict> {
         expectation("coefficient_of_variation_percent", None, Some(1.0)),
         expectation("stroke_margin_mm", Some(22.0), None),
     ];
-    check(summary, &expectations).unwrap()
+    check(METRICS, summary, &expectations).unwrap()
 }

@@ -26,15 +26,15 @@ impl Style {
         }
     }
 
-    fn heading(self, text: &str) -> String {
+    pub(super) fn heading(self, text: &str) -> String {
         self.paint("1", text)
     }
 
-    fn faint(self, text: &str) -> String {
+    pub(super) fn faint(self, text: &str) -> String {
         self.paint("2", text)
     }
 
-    fn verdict(self, kept: bool, text: &str) -> String {
+    pub(super) fn verdict(self, kept: bool, text: &str) -> String {
         self.paint(if kept { "32" } else { "1;31" }, text)
     }
 }

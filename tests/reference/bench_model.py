@@ -1,8 +1,8 @@
 """The device on the bench rig: reading a scenario, and the model's right-hand side. Used by bench_reference.py.
 
 Reads a scenario of kind "bench" and its device file, and shares nothing with the Rust program but those files.
-State: air mass of each chamber [kg], stroke [m], speed [m/s], air that entered since the start [kg], and with
-gas_process = "wall_heat" the internal energy of the air in each chamber [J], all scaled to about 1. The regulator's outlet is put in by its closed form. SI units; equation numbers are
+State: air mass of each chamber [kg], stroke [m], speed [m/s], and with gas_process = "wall_heat" the internal energy of the air
+in each chamber [J], all scaled to about 1. The regulator's outlet is put in by its closed form. SI units; equation numbers are
 those of the source paper.
 
 The right-hand side has branches: regimes of the orifices, modes of the contacts. It can be told to keep to one of them, on which it is
@@ -72,8 +72,6 @@ class State:
     stroke: float
     speed: float
     masses: tuple[float, float]
-    entered: float
-    volumes: tuple[float, float]
     pressures: tuple[float, float]
     temperatures: tuple[float, float]
 
@@ -129,7 +127,7 @@ class Bench:
 
         mass = self.atmosphere * (self.dead_volume + self.extending_area * self.full_stroke) / (self.gas_constant * self.temperature)
         energy = mass * self.gas_constant * self.temperature / (self.heat_ratio - 1.0)
-        self.scale = np.array([mass, mass, self.full_stroke, 1.0, mass] + [energy, energy] * self.wall_heat)
+        self.scale = np.array([mass, mass, self.full_stroke, 1.0] + [energy, energy] * self.wall_heat)
 
     def _prepare_flow(self) -> None:
         k = self.heat_ratio
@@ -162,7 +160,7 @@ class Bench:
         stroke = min(0.0, self.moving_mass * self.gravity / self.stop_stiffness)
         masses = [self.atmosphere * volume / (self.gas_constant * self.temperature) for volume in self.volumes(stroke)]
         energies = [m * self.gas_constant * self.temperature / (self.heat_ratio - 1) for m in masses] * self.wall_heat
-        return np.array([*masses, stroke, 0.0, 0.0, *energies]) / self.scale
+        return np.array([*masses, stroke, 0.0, *energies]) / self.scale
 
     def volumes(self, stroke: float) -> tuple[float, float]:
         return (
@@ -171,15 +169,14 @@ class Bench:
         )
 
     def state(self, y: np.ndarray) -> State:
-        mass_1, mass_2, stroke, speed, entered, *energies = (y * self.scale).tolist()
+        mass_1, mass_2, stroke, speed, *energies = (y * self.scale).tolist()
         masses = (mass_1, mass_2)
         volumes = self.volumes(stroke)
+        temperatures = (self.temperature, self.temperature)
         if self.wall_heat:
             temperatures = tuple(e * (self.heat_ratio - 1) / (m * self.gas_constant) for e, m in zip(energies, masses))
-        else:
-            temperatures = (self.temperature, self.temperature)
         pressures = tuple(m * self.gas_constant * t / v for m, t, v in zip(masses, temperatures, volumes))
-        return State(stroke, speed, masses, entered, volumes, pressures, temperatures)
+        return State(stroke, speed, masses, pressures, temperatures)
 
     def orifices(self, time: float, valve: str) -> tuple[tuple[float, float], tuple[float, float]]:
         """For each chamber: A C of its orifice [m2] and the pressure behind it [Pa absolute]."""
@@ -234,8 +231,7 @@ class Bench:
             )
         ]
         force = self.gas_force(state) + sum(self.contact_forces(time, state, modes.contacts))
-        entering = sum(max(flow, 0.0) for flow in flows)
-        rates = [*flows, state.speed, force / self.moving_mass + self.gravity, entering]
+        rates = [*flows, state.speed, force / self.moving_mass + self.gravity]
         if self.wall_heat:
             rates += self.energy_rates(state, flows)
         return np.array(rates) / self.scale

@@ -145,12 +145,45 @@ fn estimation_table() {
     for tolerances in [Tolerances::NONE, Tolerances::default()] {
         println!("{tolerances:?}");
         let told = parameters(&data, tolerances, 0.0);
-        for frequency in [0.1, 0.5] {
-            for force in [100.0, 290.0, 450.0] {
+        for frequency in [0.05, 0.1, 0.25, 0.5, 1.0] {
+            for force in [290.0] {
                 let motion = moved(force, frequency);
                 let result = ensemble(&data, &told, &told, &motion, 40);
                 println!("{}", result.line(&format!("{force} N, {frequency} Hz"), force));
             }
         }
+    }
+}
+
+#[test]
+#[ignore]
+fn debug_turn() {
+    let data = device();
+    let told = parameters(&data, Tolerances::NONE, 0.0);
+    for frequency in [0.05, 0.1, 0.25, 0.5, 1.0] {
+        let motion = moved(290.0, frequency);
+        let mut bins = [[0.0f64; 4]; 14];
+        let mut sx = 0.0;
+        for seed in 0..40 {
+            let samples = run(&data, &told, &Deviation::NONE, &motion, seed);
+            let mut e = ContactForceEstimator::new(&data, &told, 0.035, PERIOD).unwrap();
+            for (k, s) in samples.iter().enumerate() {
+                let est = e.update(&s.measurement);
+                let time = k as f64 * PERIOD;
+                if time * frequency < 0.25 { continue; }
+                if seed == 0 && k % 100 == 0 && k < 2000 { println!("{:?} {:?}", e.model_probabilities(), e.debug()); }
+                let dir = s.speed.signum();
+                let err = (est.friction - 10.0 * s.friction_share) * dir;
+                let b = (((s.friction_share * dir + 1.0) / 2.0 * 12.0) as usize).min(12);
+                let b = if s.friction_share * dir > 0.999 { 13 } else { b };
+                let ef = est.force - s.force;
+                bins[b][0] += 1.0; bins[b][1] += err; bins[b][2] += err * err; bins[b][3] += (est.standard_deviation).powi(2);
+                let _ = ef;
+                sx += 0.0;
+            }
+        }
+        let _ = sx;
+        println!("frequency {frequency}");
+        for (i, b) in bins.iter().enumerate() { println!("{i} n {} mean {:.2} rms {:.2} sd {:.2}", b[0], b[1]/b[0], (b[2]/b[0]).sqrt(), (b[3]/b[0]).sqrt()); }
     }
 }

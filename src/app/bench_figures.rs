@@ -1,0 +1,170 @@
+//! figures.svg of a bench run: the source paper's pictures - pressure, force and stroke against time.
+
+use crate::figure::{Figure, FigureError, Marker, Panel, Role, Series, Stroke, svg};
+use crate::physics::valve::ValvePosition;
+use crate::recording::{Recording, schema};
+use crate::scenario::BenchScenario;
+use crate::scenario::bench::CommandScenario;
+
+/// Quantity, label, role and stroke of a line, in the order of drawing.
+type Line = (&'static str, &'static str, Role, Stroke);
+
+const PRESSURE: [Line; 5] = [
+    (
+        schema::MEASURED_REGULATOR_PRESSURE,
+        "regulator, read",
+        Role::Measured,
+        Stroke::Raw,
+    ),
+    (
+        schema::CHAMBER_2_PRESSURE,
+        "chamber 2",
+        Role::Chamber2,
+        Stroke::Plain,
+    ),
+    (
+        schema::CHAMBER_1_PRESSURE,
+        "chamber 1",
+        Role::Chamber1,
+        Stroke::Plain,
+    ),
+    (
+        schema::REGULATOR_PRESSURE,
+        "regulator",
+        Role::Regulator,
+        Stroke::Truth,
+    ),
+    (schema::SET_PRESSURE, "set", Role::Command, Stroke::Dashed),
+];
+const FORCE: [Line; 5] = [
+    (
+        schema::MEASURED_FORCE_UNFILTERED,
+        "load cell, read",
+        Role::Measured,
+        Stroke::Raw,
+    ),
+    (schema::CONTACT_FORCE, "true", Role::Force, Stroke::Truth),
+    (
+        schema::MEASURED_FORCE,
+        "load cell, filtered",
+        Role::Filtered,
+        Stroke::Plain,
+    ),
+    (
+        schema::ESTIMATED_FORCE,
+        "estimated",
+        Role::Estimate,
+        Stroke::Plain,
+    ),
+    (
+        schema::DESIRED_FORCE,
+        "desired",
+        Role::Command,
+        Stroke::Dashed,
+    ),
+];
+const STROKE: [Line; 3] = [
+    (schema::MEASURED_STROKE, "read", Role::Measured, Stroke::Raw),
+    (schema::STROKE, "true", Role::Stroke, Stroke::Truth),
+    (
+        schema::SURFACE_POSITION,
+        "load's surface",
+        Role::Command,
+        Stroke::Dashed,
+    ),
+];
+
+/// Draws a run.
+///
+/// # Errors
+/// What cannot be drawn.
+pub(super) fn figures(
+    scenario: &BenchScenario,
+    recording: &Recording,
+) -> Result<String, FigureError> {
+    let atmosphere = scenario.device.parameters.gas.atmosphere;
+    let events = events(scenario);
+    let bare: Vec<Marker> = events
+        .iter()
+        .map(|event| Marker {
+            label: String::new(),
+            at: event.at,
+        })
+        .collect();
+    let panel =
+        |title: &str, label: &str, lines: &[Line], convert: &dyn Fn(f64) -> f64, markers| Panel {
+            title: title.to_owned(),
+            vertical_label: label.to_owned(),
+            series: series(recording, lines, convert),
+            markers,
+            ..Panel::default()
+        };
+    let gauge = |pressure: f64| (pressure - atmosphere) / 1e5;
+    let mut panels = vec![
+        panel(
+            "Pressure",
+            "pressure [bar gauge]",
+            &PRESSURE,
+            &gauge,
+            events,
+        ),
+        panel(
+            "Contact force",
+            "force [N]",
+            &FORCE,
+            &|force| force,
+            bare.clone(),
+        ),
+        panel(
+            "Stroke",
+            "stroke [mm]",
+            &STROKE,
+            &|stroke| stroke * 1e3,
+            bare,
+        ),
+    ];
+    panels.retain(|panel| !panel.series.is_empty());
+    svg(&Figure {
+        title: scenario.title.clone(),
+        panels,
+    })
+}
+
+fn series<'a>(
+    recording: &'a Recording,
+    lines: &[Line],
+    convert: &dyn Fn(f64) -> f64,
+) -> Vec<Series<'a>> {
+    lines
+        .iter()
+        .filter_map(|&(quantity, label, role, stroke)| {
+            let channel = recording.channel(quantity)?;
+            let values: Vec<f64> = channel.values.iter().map(|&value| convert(value)).collect();
+            let line = Series::new(label, recording.time(), values, role, stroke);
+            Some(match stroke {
+                Stroke::Dashed if quantity != schema::SURFACE_POSITION => line.stepwise(),
+                _ => line,
+            })
+        })
+        .collect()
+}
+
+fn events(scenario: &BenchScenario) -> Vec<Marker> {
+    let commands = scenario.command.steps().iter().map(|&(at, value)| Marker {
+        label: match scenario.command {
+            CommandScenario::SetPressure(_) => format!("set {:.3} bar", value / 1e5),
+            CommandScenario::Force(_) => format!("desired {value:.0} N"),
+        },
+        at,
+    });
+    let valve = scenario.valve.iter().map(|&(at, position)| Marker {
+        label: match position {
+            ValvePosition::Extend => "valve: extend".to_owned(),
+            ValvePosition::Retract => "valve: retract".to_owned(),
+        },
+        at,
+    });
+    let mut events: Vec<Marker> = commands.chain(valve).collect();
+    events.sort_by(|a, b| a.at.total_cmp(&b.at));
+    events
+}

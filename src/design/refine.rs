@@ -1,0 +1,125 @@
+//! From a few good places to the best near them: COBYLA on each, then on the neighbouring catalogue choices of the best, as long as one of these
+//! is better and there is budget.
+//!
+//! It looks only at what it evaluates itself, never at what the archive has meanwhile got from others, so that several of it can run side by side
+//! and still give the same result each time.
+
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+
+use super::archive::{Archive, Judged};
+use super::error::DesignError;
+use super::goal::Goal;
+use super::polish::{Ranked, polish};
+use super::study::Study;
+
+/// Places that are further apart than this share of the range along some axis count as different.
+const APART: f64 = 0.15;
+
+/// Refines `starts`, of which there must be one, with at most `budget` designs.
+pub(super) fn refine(
+    archive: &Archive<'_>,
+    goal: &Goal,
+    starts: &[Vec<f64>],
+    radius: f64,
+    budget: usize,
+) -> Result<Option<Ranked>, DesignError> {
+    let study = archive.study();
+    let catalogues = study.variables.iter().any(|v| v.domain.count().is_some());
+    let mut left = budget;
+    let first = if catalogues { budget / 2 } else { budget };
+    left -= first;
+    let each = first / starts.len().max(1);
+    let mut best = best_of(archive, goal, starts, radius, each)?;
+    let mut seen: BTreeSet<Vec<usize>> = starts.iter().map(|places| choice(study, places)).collect();
+    while let Some(current) = best.clone() {
+        let neighbours: Vec<Vec<f64>> = neighbours(study, &current.places)
+            .into_iter()
+            .filter(|places| seen.insert(choice(study, places)))
+            .collect();
+        let each = (left / 2) / neighbours.len().max(1);
+        if neighbours.is_empty() || each == 0 {
+            break;
+        }
+        left -= each * neighbours.len();
+        match best_of(archive, goal, &neighbours, radius, each)? {
+            Some(found) if found.rank < current.rank => best = Some(found),
+            _ => break,
+        }
+    }
+    Ok(best)
+}
+
+/// Polishes all of them in parallel; of equals the first is the best.
+fn best_of(
+    archive: &Archive<'_>,
+    goal: &Goal,
+    starts: &[Vec<f64>],
+    radius: f64,
+    each: usize,
+) -> Result<Option<Ranked>, DesignError> {
+    let polished: Vec<Ranked> = starts
+        .par_iter()
+        .map(|places| polish(archive, goal, places, radius, each))
+        .collect::<Result<_, _>>()?;
+    Ok(polished
+        .into_iter()
+        .reduce(|best, other| if other.rank < best.rank { other } else { best }))
+}
+
+/// Entries that a place stands for, one a catalogue.
+fn choice(study: &Study, places: &[f64]) -> Vec<usize> {
+    let pairs = study.variables.iter().zip(places);
+    pairs
+        .filter(|(variable, _)| variable.domain.count().is_some())
+        .map(|(variable, place)| variable.domain.index(*place))
+        .collect()
+}
+
+/// The place with one catalogue's entry replaced by the next smaller or larger one.
+fn neighbours(study: &Study, places: &[f64]) -> Vec<Vec<f64>> {
+    let mut found = Vec::new();
+    for (axis, variable) in study.variables.iter().enumerate() {
+        let Some(count) = variable.domain.count() else {
+            continue;
+        };
+        let index = variable.domain.index(places[axis]);
+        for next in [index.checked_sub(1), Some(index + 1)].into_iter().flatten() {
+            if next < count {
+                let mut neighbour = places.to_vec();
+                neighbour[axis] = super::Domain::place_of_entry(next, count);
+                found.push(neighbour);
+            }
+        }
+    }
+    found
+}
+
+/// The best designs that differ in a catalogue's entry or lie apart, at most `count`.
+pub(super) fn distinct_best(study: &Study, goal: &Goal, all: &[std::sync::Arc<Judged>], count: usize) -> Vec<Vec<f64>> {
+    let mut ranked: Vec<(f64, &Judged)> = all.iter().map(|judged| (goal.rank(judged), &**judged)).collect();
+    // Stable: of equals the first by their values stays first.
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut chosen: Vec<Vec<f64>> = Vec::new();
+    for (_, judged) in ranked {
+        let places = places_of(study, judged);
+        let apart = |other: &Vec<f64>| {
+            choice(study, other) != choice(study, &places)
+                || other.iter().zip(&places).any(|(a, b)| (a - b).abs() > APART)
+        };
+        if chosen.iter().all(apart) {
+            chosen.push(places);
+        }
+        if chosen.len() == count {
+            break;
+        }
+    }
+    chosen
+}
+
+/// Places of a design.
+pub(super) fn places_of(study: &Study, judged: &Judged) -> Vec<f64> {
+    let pairs = study.variables.iter().zip(&judged.values);
+    pairs.map(|(variable, value)| variable.domain.place(*value)).collect()
+}

@@ -1,0 +1,69 @@
+//! Table, picture and override text.
+
+use super::surrogate::{STUDY, Surrogate};
+use super::*;
+use crate::design::{front_svg, text};
+
+#[test]
+fn the_table_fits_a_terminal_and_says_what_binds() {
+    let study = read(STUDY).unwrap();
+    let result = run(&study, &Surrogate, &|_, _| ()).unwrap();
+    let table = text(&study, &result);
+    for line in table.lines() {
+        assert!(line.chars().count() <= 80 && line == line.trim_end(), "{line}");
+    }
+    for part in [
+        "AT ITS MAX 6",
+        "limit impact_peak_n at most 200 N",
+        "10 % looser: lower by 12 %",
+        "JUST KEPT, start outside",
+        "rod_mm",
+        "tool left the workpiece",
+    ] {
+        assert!(table.contains(part), "{part} in:\n{table}");
+    }
+}
+
+#[test]
+fn the_override_holds_the_chosen_design() {
+    let result = search(STUDY, &Surrogate).unwrap();
+    let table: toml::Table = result.override_text().parse().unwrap();
+    let device = &table["device"]["override"];
+    assert_eq!(device["bore_mm"].as_integer(), Some(40));
+    let volume = device["dead_volume_cm3"].as_float();
+    assert_eq!(volume, result.chosen.design.get("dead_volume_cm3"));
+}
+
+#[test]
+fn the_picture_names_its_axes_and_marks_both_designs() {
+    let result = search(STUDY, &Surrogate).unwrap();
+    let svg = front_svg(&result).unwrap().unwrap();
+    for part in [
+        "impact peak [N], worst of 2 scenarios",
+        "coefficient of variation [%], mean of 2 scenarios",
+        "chosen: ",
+        "start: ",
+        "impact peak n at most 200 N",
+    ] {
+        assert!(svg.contains(part), "{part}");
+    }
+    // For a look at it: DESIGN_SVG=front.svg cargo test.
+    if let Some(path) = std::env::var_os("DESIGN_SVG") {
+        std::fs::write(path, svg).unwrap();
+    }
+}
+
+#[test]
+fn progress_ends_within_the_budget() {
+    let most = std::sync::Mutex::new((0, 0));
+    let study = read(STUDY).unwrap();
+    let result = run(&study, &Surrogate, &|done, budget| {
+        let mut most = most.lock().unwrap();
+        *most = (most.0.max(done), budget);
+    })
+    .unwrap();
+    let (done, budget) = *most.lock().unwrap();
+    assert_eq!(budget, 1200);
+    assert!(done <= result.evaluations && result.evaluations <= budget, "{done} {}", result.evaluations);
+    assert!(done > 300);
+}

@@ -1,0 +1,213 @@
+//! The result as a plain table for the terminal, in at most 80 columns.
+
+use std::fmt::Write;
+
+use super::label::{number, percent, symbol, with_unit};
+use super::result::{Candidate, Sensitivity, StudyResult};
+use super::study::Study;
+use super::variable::{Domain, Variable};
+
+const WIDTH: usize = 80;
+/// Rows of the front that are printed; design.json has them all.
+const FRONT_ROWS: usize = 10;
+/// A step that would still lower the objective by more than this [%] is pointed out.
+const NOT_ENDED: f64 = 0.5;
+
+/// The table.
+#[must_use]
+pub fn text(study: &Study, result: &StudyResult) -> String {
+    let mut out = String::new();
+    line(&mut out, &result.title.replace(char::is_control, " "));
+    line(&mut out, &"-".repeat(WIDTH));
+    variables(&mut out, study, result);
+    metrics(&mut out, result);
+    limits(&mut out, result);
+    binding(&mut out, result);
+    steps(&mut out, result);
+    front(&mut out, result);
+    search(&mut out, result);
+    out
+}
+
+fn line(out: &mut String, text: &str) {
+    let mut text = text.trim_end();
+    // Keys and titles are the user's: a long one is cut, not wrapped.
+    if let Some((end, _)) = text.char_indices().nth(WIDTH) {
+        text = &text[..end];
+    }
+    out.push_str(text);
+    out.push('\n');
+}
+
+fn heading(out: &mut String, name: &str, columns: &str) {
+    out.push('\n');
+    line(out, &format!("{name:<37}{columns}"));
+}
+
+fn columns(names: [&str; 2], last: &str) -> String {
+    format!("{:>11} {:>11}  {last}", names[0], names[1])
+}
+
+fn row(out: &mut String, name: &str, values: [String; 2], last: &str) {
+    let columns = columns([&values[0], &values[1]], last);
+    line(out, &format!("  {name:<35}{columns}"));
+}
+
+fn variables(out: &mut String, study: &Study, result: &StudyResult) {
+    heading(out, "Variables", &columns(["start", "chosen"], "bounds"));
+    for (key, chosen) in result.chosen.design.iter() {
+        let start = result.start.design.get(key).map_or_else(String::new, number);
+        let variable = study.variables.iter().find(|variable| variable.key == key);
+        let last = variable.map_or_else(|| "follows".to_owned(), |variable| bounds(variable, result));
+        row(out, key, [start, number(chosen)], &last);
+    }
+}
+
+fn bounds(variable: &Variable, result: &StudyResult) -> String {
+    let active = result
+        .active_bounds
+        .iter()
+        .find(|bound| bound.variable == variable.key);
+    if let Some(bound) = active {
+        return format!("AT ITS {} {}", bound.side.to_uppercase(), number(bound.bound));
+    }
+    let [min, max] = variable.domain.ends().map(number);
+    match variable.domain {
+        Domain::Catalogue(_) => format!("{min} .. {max}"),
+        _ => format!("{min} to {max}"),
+    }
+}
+
+fn metrics(out: &mut String, result: &StudyResult) {
+    let names = &result.objectives;
+    let title = match names.scenarios {
+        1 => "Objective".to_owned(),
+        count => format!("Objective, {} of {count} scenarios", names.minimised_over),
+    };
+    heading(out, &title, &columns(["start", "chosen"], "change"));
+    compared(out, &names.minimised, [result.start.objective, result.chosen.objective]);
+    for scenario in &result.chosen.scenarios {
+        let find = |candidate: &Candidate, metric: &str| {
+            let found = candidate.scenarios.iter().find(|s| s.name == scenario.name);
+            found.and_then(|found| found.metrics.get(metric).copied())
+        };
+        heading(out, &format!("In {}", scenario.name.replace(char::is_control, " ")), "");
+        for (metric, chosen) in &scenario.metrics {
+            let start = find(&result.start, metric).unwrap_or(f64::NAN);
+            compared(out, metric, [start, *chosen]);
+        }
+    }
+}
+
+fn compared(out: &mut String, metric: &str, [start, chosen]: [f64; 2]) {
+    let change = 100.0 * (chosen - start) / start.abs();
+    let change = match change.is_finite() {
+        true => percent(change),
+        false => String::new(),
+    };
+    let shown = |value: f64| if value.is_nan() { "-".to_owned() } else { number(value) };
+    row(out, metric, [shown(start), shown(chosen)], &change);
+}
+
+fn limits(out: &mut String, result: &StudyResult) {
+    if result.chosen.limits.is_empty() {
+        return;
+    }
+    heading(out, "Limits", &columns(["start", "chosen"], ""));
+    for (before, after) in result.start.limits.iter().zip(&result.chosen.limits) {
+        let last = match (before.kept, after.active) {
+            (true, true) => "JUST KEPT",
+            (false, true) => "JUST KEPT, start outside",
+            (false, false) => "start outside",
+            (true, false) => "",
+        };
+        row(out, &after.limit, [number(before.value), number(after.value)], last);
+    }
+}
+
+fn direction(change: f64) -> String {
+    let size = percent(change.abs()).replace('+', "");
+    if change < 0.0 { format!("lower by {size}") } else { format!("higher by {size}") }
+}
+
+/// What binds, in sentences.
+fn binding(out: &mut String, result: &StudyResult) {
+    let metric = &result.objectives.minimised;
+    out.push('\n');
+    line(out, &format!("What binds, and what more room would do to {metric}"));
+    let mut any = false;
+    for bound in &result.active_bounds {
+        let effect = bound.objective_change_percent.map_or_else(|| "cannot be simulated".to_owned(), direction);
+        let beyond = format!("bound {} {} {}", bound.variable, bound.side, number(bound.bound));
+        line(out, &format!("  {beyond:<46} beyond it: {effect}"));
+        any = true;
+    }
+    for limit in &result.active_limits {
+        let effect = limit.objective_change_percent.map_or_else(|| "not found".to_owned(), direction);
+        let name = format!("limit {}", limit.limit);
+        line(out, &format!("  {name:<46} {:.0} % looser: {effect}", limit.loosened_by_percent));
+        any = true;
+    }
+    if !any {
+        line(out, "  nothing: neither a bound nor a limit");
+    }
+}
+
+fn steps(out: &mut String, result: &StudyResult) {
+    heading(out, "One variable alone", &columns(["to", "objective"], "limits"));
+    for step in &result.sensitivities {
+        let name = format!("{} {}", step.variable, percent(step.change_percent).replace(' ', ""));
+        let objective = step.objective_change_percent.map_or_else(|| "-".to_owned(), percent);
+        row(out, &name, [number(step.value), objective], &remark(step));
+    }
+    if let Some(step) = result.improving_steps(NOT_ENDED).next() {
+        let hint = format!("  {} alone would still lower it: more evaluations would help.", step.variable);
+        line(out, &hint);
+    }
+}
+
+fn remark(step: &Sensitivity) -> String {
+    if step.failure.is_some() {
+        return "not possible".to_owned();
+    }
+    let mut words = Vec::new();
+    if step.beyond_bound {
+        words.push("beyond bound".to_owned());
+    }
+    if let Some(first) = step.breaks.first() {
+        words.push(format!("breaks {first}"));
+    }
+    words.join(", ")
+}
+
+fn front(out: &mut String, result: &StudyResult) {
+    let Some(trade_off) = &result.objectives.trade_off else {
+        return;
+    };
+    out.push('\n');
+    line(out, &format!("Front: {} against {trade_off}", result.objectives.minimised));
+    let count = result.front.len();
+    let rows = count.min(FRONT_ROWS);
+    for i in 0..rows {
+        let point = &result.front[if rows > 1 { i * (count - 1) / (rows - 1) } else { 0 }];
+        let values = [(trade_off, point.trade_off), (&result.objectives.minimised, point.objective)];
+        let [x, y] = values.map(|(key, value)| with_unit(key, value));
+        line(out, &format!("  {x:>16} {y:>16}"));
+    }
+    if count > rows {
+        line(out, &format!("  ({rows} of {count} points)"));
+    }
+}
+
+fn search(out: &mut String, result: &StudyResult) {
+    let infeasible: usize = result.infeasible.values().sum();
+    out.push('\n');
+    line(out, &format!("{} designs evaluated, {infeasible} of them not feasible", result.evaluations));
+    for (reason, count) in &result.infeasible {
+        line(out, &format!("  {count:>6}  {reason}"));
+    }
+    let [low, high] = result.chosen.force_range;
+    let unit = symbol("force_n");
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "Force at rest: {} to {} {unit}", number(low), number(high));
+}

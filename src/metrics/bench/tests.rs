@@ -1,0 +1,176 @@
+//! Planted runs and the numbers that they must give.
+
+use super::*;
+use crate::recording::Channel;
+
+/// Two seconds at 1 kHz: set to 1 bar at 0.5 s and 3 bar at 1.25 s, force 100 N/bar with a lag of 50 ms, after 10 ms of dead time.
+fn stairs(overshoot: f64) -> (Recording, BenchLimits) {
+    let time: Vec<f64> = (0..=2000).map(|i| f64::from(i) * 1e-3).collect();
+    let respond = |t: f64, at: f64| {
+        let since = t - at - 0.01;
+        if since < 0.0 {
+            0.0
+        } else {
+            1.0 - (-since / 0.05).exp()
+        }
+    };
+    let gauge: Vec<f64> = time
+        .iter()
+        .map(|&t| 1e5 * respond(t, 0.5) + 2e5 * respond(t, 1.25))
+        .collect();
+    let force: Vec<f64> = time
+        .iter()
+        .zip(&gauge)
+        .map(|(&t, p)| {
+            p * 1e-3
+                + if (1.40..1.41).contains(&t) {
+                    overshoot
+                } else {
+                    0.0
+                }
+        })
+        .collect();
+    let set = |t: f64| {
+        if t < 0.5 {
+            0.0
+        } else if t < 1.25 {
+            1e5
+        } else {
+            3e5
+        }
+    };
+    let absolute = |p: f64| p + 1e5;
+    let channels = vec![
+        Channel::new(
+            schema::SET_PRESSURE,
+            Unit::Pascal,
+            time.iter().map(|&t| absolute(set(t))).collect(),
+        ),
+        Channel::new(
+            schema::REGULATOR_PRESSURE,
+            Unit::Pascal,
+            gauge.iter().map(|&p| absolute(p)).collect(),
+        ),
+        Channel::new(schema::CONTACT_FORCE, Unit::Newton, force.clone()),
+        Channel::new(
+            schema::MEASURED_FORCE,
+            Unit::Newton,
+            force.iter().map(|f| 1.208 * f).collect(),
+        ),
+        Channel::new(
+            schema::STROKE,
+            Unit::Metre,
+            time.iter().map(|t| 0.01 + 0.01 * t).collect(),
+        ),
+    ];
+    let limits = BenchLimits {
+        command_times: vec![0.5, 1.25],
+        moving: None,
+        stroke_limits: (0.0, 0.05),
+        atmosphere: 1e5,
+    };
+    (Recording::new(time, channels, vec![]).unwrap(), limits)
+}
+
+fn near(value: Option<f64>, expected: f64, tolerance: f64) {
+    let value = value.unwrap();
+    assert!(
+        (value - expected).abs() < tolerance,
+        "{value} against {expected}"
+    );
+}
+
+#[test]
+fn levels_delay_slope_and_settling_are_those_planted() {
+    let (recording, limits) = stairs(0.0);
+    let summary = summarise_bench(&recording, &limits).unwrap();
+    assert_eq!(summary.levels.len(), 2);
+    near(summary.regulator_delay_s, 0.06, 2e-3);
+    near(summary.levels[0].force_mean_n, 100.0, 0.01);
+    near(summary.levels[1].force_mean_n, 300.0, 0.01);
+    near(summary.force_slope_n_per_bar, 100.0, 1e-6);
+    // Two levels are always on a line.
+    assert_eq!(summary.force_linearity_percent, None);
+    // 200 N of change: within 5 % after 10 ms + 50 ms ln 20.
+    near(
+        summary.force_settling_time_s,
+        0.01 + 0.05 * 20f64.ln(),
+        2e-3,
+    );
+    near(summary.force_overshoot_percent, 0.0, 0.1);
+    near(summary.measured_force_error_percent, 20.8, 1e-6);
+    near(summary.stroke_max_mm, 30.0, 1e-9);
+    near(summary.stroke_margin_mm, 15.1, 0.1);
+    near(summary.first_contact_s, 0.511, 1.1e-3);
+}
+
+#[test]
+fn a_peak_is_an_overshoot_and_delays_settling() {
+    let (recording, limits) = stairs(50.0);
+    let summary = summarise_bench(&recording, &limits).unwrap();
+    // At 1.409 s the lag has 200 exp(-149/50) N left to go.
+    near(
+        summary.force_overshoot_percent,
+        (50.0 - 200.0 * (-0.149f64 / 0.05).exp()) / 2.0,
+        0.2,
+    );
+    near(summary.force_settling_time_s, 0.16, 2e-3);
+}
+
+#[test]
+fn the_moving_section_counts_where_the_surface_moves() {
+    let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+    let force = |t: f64| {
+        if t < 0.5 {
+            50.0
+        } else {
+            202.0 + 2.0 * (t * 200.0).sin().signum()
+        }
+    };
+    let channels = vec![
+        Channel::new(
+            schema::CONTACT_FORCE,
+            Unit::Newton,
+            time.iter().map(|&t| force(t)).collect(),
+        ),
+        Channel::new(schema::DESIRED_FORCE, Unit::Newton, vec![200.0; 1000]),
+    ];
+    let recording = Recording::new(time, channels, vec![]).unwrap();
+    let limits = BenchLimits {
+        command_times: vec![0.0],
+        moving: Some((0.5, 1.0)),
+        stroke_limits: (0.0, 0.05),
+        atmosphere: 1e5,
+    };
+    let summary = summarise_bench(&recording, &limits).unwrap();
+    near(summary.force_mean_n, 202.0, 0.1);
+    near(summary.force_rms_error_n, 8f64.sqrt(), 0.05);
+    near(summary.force_largest_error_percent, 2.0, 1e-9);
+    near(
+        summary.coefficient_of_variation_percent,
+        100.0 * 2.0 / 202.0,
+        0.02,
+    );
+}
+
+#[test]
+fn names_stand_in_the_file_and_in_the_document() {
+    let (recording, limits) = stairs(0.0);
+    let mut summary = summarise_bench(&recording, &limits).unwrap();
+    summary.timing = Some(Timing::new(8.0, 2.0));
+    let file = serde_json::to_value(&summary).unwrap();
+    let document =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/METRICS.md")).unwrap();
+    for metric in BENCH_METRICS {
+        let found = file
+            .get(metric.name)
+            .or_else(|| file["timing"].get(metric.name));
+        let found = found.and_then(serde_json::Value::as_f64);
+        assert_eq!(found, (metric.value)(&summary), "{}", metric.name);
+        assert!(
+            document.contains(&format!("`{}`", metric.name)),
+            "{}",
+            metric.name
+        );
+    }
+}
