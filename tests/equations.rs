@@ -6,6 +6,7 @@ mod conserved;
 mod devices;
 mod equation_7;
 mod equilibrium;
+mod extremes;
 mod gas_springs;
 mod orifices;
 mod piston;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::candidate::{Evaluate, EvaluateError, Outcome};
+use super::limits::Limit;
 use super::study::{Study, TradeOff};
 
 /// An evaluated design.
@@ -118,7 +119,11 @@ impl<'a> Archive<'a> {
 /// Bits in the order of the numbers.
 fn sortable(value: f64) -> u64 {
     let bits = value.to_bits();
-    if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
+    if bits >> 63 == 0 {
+        bits | 1 << 63
+    } else {
+        !bits
+    }
 }
 
 fn score(study: &Study, values: &[f64], outcome: Outcome) -> Result<Scored, EvaluateError> {
@@ -139,7 +144,7 @@ fn score(study: &Study, values: &[f64], outcome: Outcome) -> Result<Scored, Eval
         Some(TradeOff::Variable(index)) => values[*index],
         None => 0.0,
     };
-    let excess = |limit: &super::Limit| {
+    let excess = |limit: &Limit| {
         let value = given(limit.value(&outcome), limit.key())?;
         Ok(limit.excess(value) / limit.scale())
     };

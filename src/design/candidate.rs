@@ -120,7 +120,10 @@ mod tests {
             "[device.override]\nbore_mm = 40\ndead_volume_cm3 = 12.5\n\n[controller]\nintegral_time_s = 0.25\n"
         );
         let table: toml::Table = text.parse().unwrap();
-        assert_eq!(table["device"]["override"]["dead_volume_cm3"].as_float(), Some(12.5));
+        assert_eq!(
+            table["device"]["override"]["dead_volume_cm3"].as_float(),
+            Some(12.5)
+        );
         assert_eq!(design.get("bore_mm"), Some(40.0));
     }
 }

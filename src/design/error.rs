@@ -21,7 +21,9 @@ pub enum DesignError {
         detail: String,
     },
     /// A metric that no scenario gives.
-    #[error("{place}: `{key}` names the metric `{metric}`, which no scenario gives for the starting design; known here are {known}")]
+    #[error(
+        "{place}: `{key}` names the metric `{metric}`, which no scenario gives for the starting design; known here are {known}"
+    )]
     UnknownMetric {
         /// Where.
         place: Place,
@@ -33,7 +35,9 @@ pub enum DesignError {
         known: String,
     },
     /// The limits are too tight.
-    #[error("no design within the bounds keeps the limits: the best of {designs} violates {limit} by {excess}, with {value}")]
+    #[error(
+        "no design within the bounds keeps the limits: the best of {designs} violates {limit} by {excess}, with {value}"
+    )]
     NoDesign {
         /// Designs tried.
         designs: usize,
@@ -45,7 +49,9 @@ pub enum DesignError {
         value: String,
     },
     /// Nothing but failures.
-    #[error("no design but the starting one could be simulated: {count} of {designs} failed, most with: {reason}")]
+    #[error(
+        "no design but the starting one could be simulated: {count} of {designs} failed, most with: {reason}"
+    )]
     OnlyFailures {
         /// Designs tried.
         designs: usize,

@@ -74,10 +74,14 @@ pub(super) fn evolve(
         .with_mutation(DeMutation::CurrentToBest1)
         .with_dither(0.4, 0.95);
     let generations = (budget / count).saturating_sub(1) as u64;
-    Executor::new(problem, solver, PopulationProgress::from_population(population))
-        .max_iter(generations)
-        .run()
-        .map_err(|error| DesignError::Optimiser(format!("differential evolution: {error}")))?;
+    Executor::new(
+        problem,
+        solver,
+        PopulationProgress::from_population(population),
+    )
+    .max_iter(generations)
+    .run()
+    .map_err(|error| DesignError::Optimiser(format!("differential evolution: {error}")))?;
     Ok(())
 }
 

@@ -40,7 +40,9 @@ impl Goal {
     pub fn excesses(&self, scored: &Scored) -> Vec<f64> {
         let pairs = scored.excess.iter().zip(&self.slack);
         let mut excesses: Vec<f64> = pairs.map(|(excess, slack)| excess - slack).collect();
-        let ceiling = self.ceiling.map(|ceiling| (scored.trade_off - ceiling) / self.scales[1]);
+        let ceiling = self
+            .ceiling
+            .map(|ceiling| (scored.trade_off - ceiling) / self.scales[1]);
         excesses.extend(ceiling);
         excesses
     }
@@ -120,6 +122,9 @@ mod tests {
         ];
         let ranks = ordered.map(|judged| goal.rank(&judged));
         assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
-        assert_eq!(ranks.map(Goal::keeps).iter().filter(|kept| **kept).count(), 3);
+        assert_eq!(
+            ranks.map(Goal::keeps).iter().filter(|kept| **kept).count(),
+            3
+        );
     }
 }

@@ -22,7 +22,11 @@ pub(super) fn axis(key: &str) -> String {
     let (stem, unit) = parts(key);
     let name = stem.replace(['_', '.'], " ");
     let unit = unit.replace("mm2", "mm\u{b2}").replace("cm3", "cm\u{b3}");
-    if unit.is_empty() { name } else { format!("{name} [{unit}]") }
+    if unit.is_empty() {
+        name
+    } else {
+        format!("{name} [{unit}]")
+    }
 }
 
 /// A value of a key with its unit, to four significant digits.
@@ -52,7 +56,11 @@ pub(super) fn percent(change: f64) -> String {
     } else {
         format!("{change:+.0} %")
     };
-    if text == "-0.0 %" { "+0.0 %".to_owned() } else { text }
+    if text == "-0.0 %" {
+        "+0.0 %".to_owned()
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]
@@ -63,9 +71,15 @@ mod tests {
     fn a_key_reads_as_a_name_with_its_unit() {
         for (key, name) in [
             ("impact_peak_n", "impact peak [N]"),
-            ("coefficient_of_variation_percent", "coefficient of variation [%]"),
+            (
+                "coefficient_of_variation_percent",
+                "coefficient of variation [%]",
+            ),
             ("supply_orifice_mm2", "supply orifice [mm\u{b2}]"),
-            ("controller.proportional_gain", "controller proportional gain"),
+            (
+                "controller.proportional_gain",
+                "controller proportional gain",
+            ),
             ("hose_length_m", "hose length [m]"),
         ] {
             assert_eq!(axis(key), name);
@@ -78,7 +92,7 @@ mod tests {
         for (value, text) in [
             (0.0, "0"),
             (40.0, "40"),
-            (3.14159265, "3.1416"),
+            (2.34561789, "2.3456"),
             (1.5e5, "150000"),
             (2.5e-7, "2.5e-7"),
         ] {

@@ -49,7 +49,11 @@ impl Limit {
             (LimitQuantity::Metric(_), Side::Min) => "at least",
             (LimitQuantity::Metric(_), Side::Max) => "at most",
         };
-        format!("{} {words} {}", self.key(), with_unit(self.key(), self.bound))
+        format!(
+            "{} {words} {}",
+            self.key(),
+            with_unit(self.key(), self.bound)
+        )
     }
 
     /// What a design reaches: the worst over the scenarios, in the quantity's unit.
@@ -80,7 +84,11 @@ impl Limit {
 
     /// What counts as one [quantity's unit]: the bound itself, or the unit where that is 0.
     pub(super) fn scale(&self) -> f64 {
-        if self.bound == 0.0 { 1.0 } else { self.bound.abs() }
+        if self.bound == 0.0 {
+            1.0
+        } else {
+            self.bound.abs()
+        }
     }
 
     /// Unit as it is printed.

@@ -2,21 +2,24 @@
 //!
 //! The drawing library counts in whole units; a unit is a tenth of a pixel here, so that the curves are smooth.
 
+mod overlay;
+
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::error::DesignError;
-use super::label::{axis, with_unit};
-use super::result::{ObjectiveNames, StudyResult};
+use super::label::axis;
+use super::result::{Candidate, LimitState, StudyResult};
 
 const PX: i32 = 10;
 const WIDTH: i32 = 960 * PX;
 const HEIGHT: i32 = 620 * PX;
 const FONT: &str = "Arial, Liberation Sans, Helvetica, sans-serif";
-const TEXT: i32 = 14 * PX;
-const LARGE: i32 = 18 * PX;
+// The library writes four fifths of these.
+const TEXT: i32 = 17 * PX;
+const LARGE: i32 = 22 * PX;
 // Colours that the colour-blind tell apart (M. Okabe and K. Ito, "Color Universal Design", 2008).
 const FRONT: RGBColor = RGBColor(0x00, 0x72, 0xB2);
 const CHOSEN: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
@@ -24,8 +27,10 @@ const LIMIT: RGBColor = RGBColor(0xCC, 0x79, 0xA7);
 const DARK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const GREY: RGBColor = RGBColor(0x77, 0x77, 0x77);
 const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
-/// Room left around what must be seen, as a share of its extent.
-const MARGIN: f64 = 0.08;
+/// Room left around what must be seen, as a share of its extent: for the labels above the start and below the chosen design.
+const MARGIN: f64 = 0.12;
+/// The start is drawn on the edge if it lies further from the front than this many times the front's extent.
+const FAR: f64 = 3.0;
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
@@ -56,8 +61,8 @@ fn draw(svg: &mut String, result: &StudyResult, trade_off: &str) -> Drawn {
         .margin_right(28 * PX)
         .margin_bottom(8 * PX)
         .margin_left(6 * PX)
-        .x_label_area_size(56 * PX)
-        .y_label_area_size(82 * PX)
+        .x_label_area_size(60 * PX)
+        .y_label_area_size(84 * PX)
         .build_cartesian_2d(across.0..across.1, up.0..up.1)?;
     let label = |text: &str, over: Option<&str>| match over {
         Some(over) if names.scenarios > 1 => {
@@ -80,9 +85,11 @@ fn draw(svg: &mut String, result: &StudyResult, trade_off: &str) -> Drawn {
         .x_label_formatter(&|value| tick(*value, across))
         .y_label_formatter(&|value| tick(*value, up))
         .draw()?;
+    let limits = overlay::limits(&chart, result, trade_off, [across, up]);
+    overlay::tints(&chart, &limits)?;
     series(&mut chart, result, [across, up])?;
-    limits(&chart, result, trade_off, [across, up])?;
-    marks(&chart, result, [across, up])?;
+    overlay::words(&chart, &limits)?;
+    overlay::marks(&chart, result, [across, up])?;
     root.present()
 }
 
@@ -98,44 +105,52 @@ fn heading(root: &DrawingArea<SVGBackend<'_>, Shift>, result: &StudyResult) -> D
     let dot = |x: i32, radius: i32, fill: ShapeStyle| Circle::new((x, y), radius, fill);
     let mut x = 88 * PX;
     root.draw(&dot(x + 8 * PX, 3 * PX, GREY.mix(0.35).filled()))?;
-    root.draw(&Text::new("keeps the limits", (x + 20 * PX, y), style(TEXT)))?;
-    x += 150 * PX;
+    root.draw(&Text::new(
+        "keeps the limits",
+        (x + 20 * PX, y),
+        style(TEXT),
+    ))?;
+    x += 160 * PX;
     let key = [(x, y), (x + 26 * PX, y)];
     root.draw(&PathElement::new(key, FRONT.stroke_width(2 * PX as u32)))?;
     root.draw(&dot(x + 13 * PX, 4 * PX, FRONT.filled()))?;
-    root.draw(&Text::new("front: none is better in both", (x + 34 * PX, y), style(TEXT)))?;
-    x += 250 * PX;
+    root.draw(&Text::new(
+        "front: none is better in both",
+        (x + 34 * PX, y),
+        style(TEXT),
+    ))?;
+    x += 262 * PX;
     root.draw(&dot(x + 8 * PX, 7 * PX, CHOSEN.filled()))?;
     root.draw(&Text::new("chosen", (x + 22 * PX, y), style(TEXT)))?;
-    x += 96 * PX;
-    start_mark(root, (x + 8 * PX, y), result.start.feasible)?;
-    let start = if result.start.feasible { "start" } else { "start, breaks a limit" };
+    x += 98 * PX;
+    overlay::start_mark(root, (x + 8 * PX, y), result.start.feasible)?;
+    let start = if result.start.feasible {
+        "start"
+    } else {
+        "start, breaks a limit"
+    };
     root.draw(&Text::new(start, (x + 22 * PX, y), style(TEXT)))?;
     Ok(())
 }
 
-/// A diamond; hollow if the design breaks a limit.
-fn start_mark(root: &DrawingArea<SVGBackend<'_>, Shift>, (x, y): (i32, i32), feasible: bool) -> Drawn {
-    let size = 8 * PX;
-    let corners = vec![(x, y - size), (x + size, y), (x, y + size), (x - size, y), (x, y - size)];
-    let fill = if feasible { DARK } else { WHITE };
-    root.draw(&Polygon::new(corners.clone(), fill.filled()))?;
-    root.draw(&PathElement::new(corners, DARK.stroke_width(2 * PX as u32)))
-}
-
-/// What must be seen: the front, the start, the chosen design, and what limits both axes if that is near.
+/// What must be seen: the front and the chosen design, the start unless it is far, and what limits both axes if that is near.
 fn ranges(result: &StudyResult, trade_off: &str) -> [(f64, f64); 2] {
-    let candidates = [&result.start, &result.chosen];
-    let values = |axis: usize| {
-        let front = result.front.iter().map(move |p| [p.trade_off, p.objective][axis]);
-        let ends = candidates.into_iter();
-        front.chain(ends.filter_map(move |c| [c.trade_off, Some(c.objective)][axis]))
-    };
-    [(0, trade_off), (1, result.objectives.minimised.as_str())].map(|(axis, key)| {
-        let (low, high) = extent(values(axis));
-        let near = |bound: f64| (low - 0.3 * (high - low)..=high + 0.3 * (high - low)).contains(&bound);
-        let bounds = limits_of(result, key).map(|(bound, _)| bound).filter(|bound| near(*bound));
-        let (low, high) = extent(values(axis).chain(bounds));
+    let keys = [trade_off, result.objectives.minimised.as_str()];
+    [0, 1].map(|axis| {
+        let of = |candidate: &Candidate| [candidate.trade_off, Some(candidate.objective)][axis];
+        let front = result
+            .front
+            .iter()
+            .map(|point| [point.trade_off, point.objective][axis]);
+        let (low, high) = extent(front.chain(of(&result.chosen)));
+        let near = |value: f64, times: f64| {
+            high <= low
+                || (low - times * (high - low)..=high + times * (high - low)).contains(&value)
+        };
+        let start = of(&result.start).filter(|value| near(*value, FAR));
+        let bounds = limits_of(result, keys[axis]).map(|limit| limit.bound);
+        let bounds = bounds.filter(|bound| near(*bound, 0.5));
+        let (low, high) = extent([low, high].into_iter().chain(start).chain(bounds));
         // A front that is one point still needs an axis.
         let least = 0.02 * low.abs().max(high.abs()).max(1e-9);
         let margin = MARGIN * (high - low).max(least);
@@ -149,10 +164,10 @@ fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
     })
 }
 
-/// Bounds of the limits on a metric, with their sentences.
-fn limits_of<'a>(result: &'a StudyResult, key: &'a str) -> impl Iterator<Item = (f64, &'a str)> {
-    let limits = result.chosen.limits.iter().filter(move |limit| limit.key == key);
-    limits.map(|limit| (limit.bound, limit.limit.as_str()))
+/// Limits on a metric.
+fn limits_of<'a>(result: &'a StudyResult, key: &'a str) -> impl Iterator<Item = &'a LimitState> {
+    let limits = result.chosen.limits.iter();
+    limits.filter(move |limit| limit.key == key)
 }
 
 fn inside([x, y]: [f64; 2], [across, up]: [(f64, f64); 2]) -> bool {
@@ -161,8 +176,13 @@ fn inside([x, y]: [f64; 2], [across, up]: [(f64, f64); 2]) -> bool {
 
 fn series(chart: &mut Chart<'_, '_>, result: &StudyResult, ranges: [(f64, f64); 2]) -> Drawn {
     let others = result.others.iter().filter(|point| inside(**point, ranges));
-    chart.draw_series(others.map(|p| Circle::new((p[0], p[1]), 3 * PX, GREY.mix(0.25).filled())))?;
-    let front: Vec<(f64, f64)> = result.front.iter().map(|p| (p.trade_off, p.objective)).collect();
+    chart
+        .draw_series(others.map(|p| Circle::new((p[0], p[1]), 3 * PX, GREY.mix(0.25).filled())))?;
+    let front: Vec<(f64, f64)> = result
+        .front
+        .iter()
+        .map(|p| (p.trade_off, p.objective))
+        .collect();
     // Between two designs nothing was computed: the staircase is what is known to be reachable.
     let stairs: Vec<(f64, f64)> = front
         .iter()
@@ -172,85 +192,15 @@ fn series(chart: &mut Chart<'_, '_>, result: &StudyResult, ranges: [(f64, f64); 
             None => vec![*point],
         })
         .collect();
-    chart.draw_series(std::iter::once(PathElement::new(stairs, FRONT.stroke_width(2 * PX as u32))))?;
-    chart.draw_series(front.iter().map(|point| Circle::new(*point, 4 * PX, FRONT.filled())))?;
-    Ok(())
-}
-
-/// Limits on either axis: a dashed line and its words.
-fn limits(chart: &Chart<'_, '_>, result: &StudyResult, trade_off: &str, ranges: [(f64, f64); 2]) -> Drawn {
-    let area = chart.plotting_area();
-    let [across, up] = ranges;
-    let style = |h, v| (FONT, TEXT).into_font().color(&LIMIT).pos(Pos::new(h, v));
-    for (bound, words) in limits_of(result, trade_off) {
-        if inside([bound, up.0], ranges) {
-            let (x, bottom) = area.map_coordinate(&(bound, up.0));
-            let (_, top) = area.map_coordinate(&(bound, up.1));
-            dashed(chart, (x, top), (x, bottom))?;
-            let (left, _) = area.map_coordinate(&(across.0, up.0));
-            let (place, side) = if x - left > 300 * PX { (x - 6 * PX, HPos::Right) } else { (x + 6 * PX, HPos::Left) };
-            let style = style(side, VPos::Top);
-            pixels(chart).draw(&Text::new(words.replace('_', " "), (place, top + 6 * PX), style))?;
-        }
-    }
-    for (bound, words) in limits_of(result, &result.objectives.minimised) {
-        if inside([across.0, bound], ranges) {
-            let (left, y) = area.map_coordinate(&(across.0, bound));
-            let (right, _) = area.map_coordinate(&(across.1, bound));
-            dashed(chart, (left, y), (right, y))?;
-            let style = style(HPos::Right, VPos::Bottom);
-            pixels(chart).draw(&Text::new(words.replace('_', " "), (right - 6 * PX, y - 4 * PX), style))?;
-        }
-    }
-    Ok(())
-}
-
-/// The whole picture, in its own units.
-fn pixels<'b>(chart: &Chart<'_, 'b>) -> DrawingArea<SVGBackend<'b>, Shift> {
-    chart.plotting_area().strip_coord_spec().use_screen_coord()
-}
-
-fn dashed(chart: &Chart<'_, '_>, from: (i32, i32), to: (i32, i32)) -> Drawn {
-    let length = (to.0 - from.0).abs().max((to.1 - from.1).abs());
-    let area = pixels(chart);
-    let at = |place: i32| {
-        let share = f64::from(place.min(length)) / f64::from(length.max(1));
-        let along = |a: i32, b: i32| a + (share * f64::from(b - a)).round() as i32;
-        (along(from.0, to.0), along(from.1, to.1))
-    };
-    for start in (0..length).step_by(12 * PX as usize) {
-        area.draw(&PathElement::new([at(start), at(start + 7 * PX)], LIMIT.stroke_width(2 * PX as u32)))?;
-    }
-    Ok(())
-}
-
-/// The starting and the chosen design with their values.
-fn marks(chart: &Chart<'_, '_>, result: &StudyResult, ranges: [(f64, f64); 2]) -> Drawn {
-    let area = pixels(chart);
-    let [across, up] = ranges;
-    let names: &ObjectiveNames = &result.objectives;
-    for (candidate, word) in [(&result.start, "start"), (&result.chosen, "chosen")] {
-        let Some(x) = candidate.trade_off else { continue };
-        let place = chart.plotting_area().map_coordinate(&(x, candidate.objective));
-        if word == "start" {
-            start_mark(&area, place, candidate.feasible)?;
-        } else {
-            area.draw(&Circle::new(place, 7 * PX, CHOSEN.filled()))?;
-        }
-        let trade_off = names.trade_off.as_deref().unwrap_or_default();
-        let text = format!(
-            "{word}: {}, {}",
-            with_unit(trade_off, x),
-            with_unit(&names.minimised, candidate.objective)
-        );
-        let right_half = x > 0.5 * (across.0 + across.1);
-        let top = candidate.objective > 0.5 * (up.0 + up.1);
-        let (h, dx) = if right_half { (HPos::Right, -13 * PX) } else { (HPos::Left, 13 * PX) };
-        let (v, dy) = if top { (VPos::Top, 9 * PX) } else { (VPos::Bottom, -9 * PX) };
-        let colour = if word == "start" { DARK } else { CHOSEN };
-        let style = (FONT, TEXT).into_font().style(FontStyle::Bold).color(&colour).pos(Pos::new(h, v));
-        area.draw(&Text::new(text, (place.0 + dx, place.1 + dy), style))?;
-    }
+    chart.draw_series(std::iter::once(PathElement::new(
+        stairs,
+        FRONT.stroke_width(2 * PX as u32),
+    )))?;
+    chart.draw_series(
+        front
+            .iter()
+            .map(|point| Circle::new(*point, 4 * PX, FRONT.filled())),
+    )?;
     Ok(())
 }
 
@@ -259,7 +209,11 @@ fn tick(value: f64, (low, high): (f64, f64)) -> String {
     let step = (high - low) / 8.0;
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{value:.decimals$}");
-    let text = if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
+    let text = if text
+        .trim_start_matches('-')
+        .chars()
+        .all(|c| c == '0' || c == '.')
+    {
         text.trim_start_matches('-').to_owned()
     } else {
         text

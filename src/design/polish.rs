@@ -115,14 +115,14 @@ impl NonlinearInequalityValues for Local<'_> {
     }
 }
 
-/// Searches about a place with at most `budget` designs; returns the best that it met, the place itself included.
+/// Searches about a place with at most `budget` designs; returns the best that it met, the place itself included, and how many it asked for.
 pub(super) fn polish(
     archive: &Archive<'_>,
     goal: &Goal,
     start: &[f64],
     radius: f64,
     budget: usize,
-) -> Result<Ranked, DesignError> {
+) -> Result<(Ranked, usize), DesignError> {
     let variables = &archive.study().variables;
     let free: Vec<usize> = (0..variables.len())
         .filter(|index| variables[*index].domain.count().is_none())
@@ -130,7 +130,7 @@ pub(super) fn polish(
     let first = Ranked::of(archive, goal, start);
     // A simplex and a step.
     if free.is_empty() || budget < free.len() + 3 {
-        return Ok(first);
+        return Ok((first, 1));
     }
     let point: Vec<f64> = free.iter().map(|index| start[*index]).collect();
     let best = Mutex::new(first);
@@ -144,9 +144,15 @@ pub(super) fn polish(
     let solver = Cobyla::new()
         .with_initial_radius(radius)
         .with_final_radius(FINAL_RADIUS);
-    Executor::new(problem, solver, SelectedState::new(point))
+    let result = Executor::new(problem, solver, SelectedState::new(point))
         .max_cost_evals(budget as u64)
         .run()
         .map_err(|error| DesignError::Optimiser(format!("COBYLA: {error}")))?;
-    Ok(best.into_inner().unwrap_or_else(PoisonError::into_inner))
+    let used = usize::try_from(result.cost_evals())
+        .unwrap_or(budget)
+        .min(budget);
+    Ok((
+        best.into_inner().unwrap_or_else(PoisonError::into_inner),
+        used,
+    ))
 }

@@ -16,8 +16,10 @@ use super::study::Study;
 
 /// Places that are further apart than this share of the range along some axis count as different.
 const APART: f64 = 0.15;
+/// Radii of the last rounds, as shares of the first.
+const SHRINK: [f64; 3] = [0.5, 0.2, 0.1];
 
-/// Refines `starts`, of which there must be one, with at most `budget` designs.
+/// Refines `starts` with at most `budget` designs; none if there are no starts.
 pub(super) fn refine(
     archive: &Archive<'_>,
     goal: &Goal,
@@ -28,22 +30,31 @@ pub(super) fn refine(
     let study = archive.study();
     let catalogues = study.variables.iter().any(|v| v.domain.count().is_some());
     let mut left = budget;
-    let first = if catalogues { budget / 2 } else { budget };
-    left -= first;
-    let each = first / starts.len().max(1);
-    let mut best = best_of(archive, goal, starts, radius, each)?;
-    let mut seen: BTreeSet<Vec<usize>> = starts.iter().map(|places| choice(study, places)).collect();
+    let share = if catalogues {
+        budget / 2
+    } else {
+        2 * budget / 3
+    };
+    let mut best = best_of(archive, goal, starts, radius, share, &mut left)?;
+    let mut seen: BTreeSet<Vec<usize>> =
+        starts.iter().map(|places| choice(study, places)).collect();
     while let Some(current) = best.clone() {
         let neighbours: Vec<Vec<f64>> = neighbours(study, &current.places)
             .into_iter()
             .filter(|places| seen.insert(choice(study, places)))
             .collect();
-        let each = (left / 2) / neighbours.len().max(1);
-        if neighbours.is_empty() || each == 0 {
-            break;
+        let share = 2 * left / 3;
+        match best_of(archive, goal, &neighbours, radius, share, &mut left)? {
+            Some(found) if found.rank < current.rank => best = Some(found),
+            _ => break,
         }
-        left -= each * neighbours.len();
-        match best_of(archive, goal, &neighbours, radius, each)? {
+    }
+    // A new simplex, smaller each time, where the first has lost its shape.
+    for shrink in SHRINK {
+        let Some(current) = best.clone() else { break };
+        let again = [current.places];
+        let share = left;
+        match best_of(archive, goal, &again, shrink * radius, share, &mut left)? {
             Some(found) if found.rank < current.rank => best = Some(found),
             _ => break,
         }
@@ -51,21 +62,27 @@ pub(super) fn refine(
     Ok(best)
 }
 
-/// Polishes all of them in parallel; of equals the first is the best.
+/// Polishes all of them in parallel with `share` designs, and takes what they use from `left`; of equals the first is the best.
 fn best_of(
     archive: &Archive<'_>,
     goal: &Goal,
     starts: &[Vec<f64>],
     radius: f64,
-    each: usize,
+    share: usize,
+    left: &mut usize,
 ) -> Result<Option<Ranked>, DesignError> {
-    let polished: Vec<Ranked> = starts
+    let each = share / starts.len().max(1);
+    if each == 0 {
+        return Ok(None);
+    }
+    let polished: Vec<(Ranked, usize)> = starts
         .par_iter()
         .map(|places| polish(archive, goal, places, radius, each))
         .collect::<Result<_, _>>()?;
-    Ok(polished
-        .into_iter()
-        .reduce(|best, other| if other.rank < best.rank { other } else { best }))
+    let used: usize = polished.iter().map(|(_, used)| used).sum();
+    *left = left.saturating_sub(used);
+    let found = polished.into_iter().map(|(ranked, _)| ranked);
+    Ok(found.reduce(|best, other| if other.rank < best.rank { other } else { best }))
 }
 
 /// Entries that a place stands for, one a catalogue.
@@ -85,7 +102,10 @@ fn neighbours(study: &Study, places: &[f64]) -> Vec<Vec<f64>> {
             continue;
         };
         let index = variable.domain.index(places[axis]);
-        for next in [index.checked_sub(1), Some(index + 1)].into_iter().flatten() {
+        for next in [index.checked_sub(1), Some(index + 1)]
+            .into_iter()
+            .flatten()
+        {
             if next < count {
                 let mut neighbour = places.to_vec();
                 neighbour[axis] = super::Domain::place_of_entry(next, count);
@@ -97,8 +117,16 @@ fn neighbours(study: &Study, places: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// The best designs that differ in a catalogue's entry or lie apart, at most `count`.
-pub(super) fn distinct_best(study: &Study, goal: &Goal, all: &[std::sync::Arc<Judged>], count: usize) -> Vec<Vec<f64>> {
-    let mut ranked: Vec<(f64, &Judged)> = all.iter().map(|judged| (goal.rank(judged), &**judged)).collect();
+pub(super) fn distinct_best(
+    study: &Study,
+    goal: &Goal,
+    all: &[std::sync::Arc<Judged>],
+    count: usize,
+) -> Vec<Vec<f64>> {
+    let mut ranked: Vec<(f64, &Judged)> = all
+        .iter()
+        .map(|judged| (goal.rank(judged), &**judged))
+        .collect();
     // Stable: of equals the first by their values stays first.
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut chosen: Vec<Vec<f64>> = Vec::new();
@@ -106,7 +134,10 @@ pub(super) fn distinct_best(study: &Study, goal: &Goal, all: &[std::sync::Arc<Ju
         let places = places_of(study, judged);
         let apart = |other: &Vec<f64>| {
             choice(study, other) != choice(study, &places)
-                || other.iter().zip(&places).any(|(a, b)| (a - b).abs() > APART)
+                || other
+                    .iter()
+                    .zip(&places)
+                    .any(|(a, b)| (a - b).abs() > APART)
         };
         if chosen.iter().all(apart) {
             chosen.push(places);
@@ -121,5 +152,7 @@ pub(super) fn distinct_best(study: &Study, goal: &Goal, all: &[std::sync::Arc<Ju
 /// Places of a design.
 pub(super) fn places_of(study: &Study, judged: &Judged) -> Vec<f64> {
     let pairs = study.variables.iter().zip(&judged.values);
-    pairs.map(|(variable, value)| variable.domain.place(*value)).collect()
+    pairs
+        .map(|(variable, value)| variable.domain.place(*value))
+        .collect()
 }

@@ -81,6 +81,8 @@ pub struct LimitState {
     pub limit: String,
     /// Its key, unit included.
     pub key: String,
+    /// `min` or `max`.
+    pub side: &'static str,
     /// Its bound, in that unit.
     pub bound: f64,
     /// What the design reaches, in that unit.
@@ -170,7 +172,9 @@ impl StudyResult {
     /// Steps within the bounds that keep the limits and still lower the objective by more than `percent`: the search has not ended then.
     pub fn improving_steps(&self, percent: f64) -> impl Iterator<Item = &Sensitivity> {
         self.sensitivities.iter().filter(move |step| {
-            let lower = step.objective_change_percent.is_some_and(|change| change < -percent);
+            let lower = step
+                .objective_change_percent
+                .is_some_and(|change| change < -percent);
             lower && !step.beyond_bound && step.breaks.is_empty()
         })
     }

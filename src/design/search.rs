@@ -9,6 +9,8 @@
 //!
 //! Every design that was ever evaluated can become the chosen one or a point of the front.
 
+mod conclude;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -18,13 +20,12 @@ use super::archive::{Archive, Judged, Scored};
 use super::candidate::Evaluate;
 use super::error::DesignError;
 use super::evolve::evolve;
-use super::front::{non_dominated, thinned};
 use super::goal::{Aim, Goal};
 use super::label::with_unit;
+use super::limits::Limit;
 use super::refine::{distinct_best, refine};
-use super::result::{Candidate, FrontPoint, LimitState, ObjectiveNames, StudyResult};
-use super::sensitivity::{ACTIVE, active_bounds, active_limits, sensitivities};
-use super::study::{Over, Study, TradeOff};
+use super::result::StudyResult;
+use super::study::{Study, TradeOff};
 use super::variable::Domain;
 
 /// Shares of the budget: evolution and refinement of the objective, of the second one, all levels, what binds.
@@ -34,10 +35,8 @@ const WITHOUT_FRONT: [f64; 5] = [0.6, 0.3, 0.0, 0.0, 0.0];
 const STARTS: usize = 3;
 /// First steps of the refinement, as shares of a variable's range: after evolution, and from one level to the next.
 const RADII: [f64; 2] = [0.1, 0.05];
-/// Points of the front differ by more than this share of its extent.
-const FRONT_RESOLUTION: f64 = 0.004;
-/// Version of the result's format.
-const SCHEMA: u32 = 1;
+/// The lowest level, as a share of the front's width: at the least value itself there is no room to move.
+const LOWEST_LEVEL: f64 = 0.002;
 
 /// Does the study. The progress is told the number of designs evaluated so far and the budget, from any thread.
 ///
@@ -69,10 +68,20 @@ pub fn run(
             aim: Aim::TradeOff,
             ..goal.clone()
         };
-        hunt(&archive, &other, [budgets[2], budgets[3]], study.seed.wrapping_add(1))?;
+        hunt(
+            &archive,
+            &other,
+            [budgets[2], budgets[3]],
+            study.seed.wrapping_add(1),
+        )?;
         levels(&archive, &goal, &other, best.1.trade_off, budgets[4])?;
     }
-    finish(&archive, &goal, &start, study.evaluations - budgets.iter().sum::<usize>())
+    conclude::conclude(
+        &archive,
+        &goal,
+        &start,
+        study.evaluations - budgets.iter().sum::<usize>(),
+    )
 }
 
 /// A design that could be simulated.
@@ -97,9 +106,15 @@ fn start(archive: &Archive<'_>) -> Result<Good, DesignError> {
     // Which metrics there are is only known from an outcome.
     let outcome = archive.outcome(&judged.values);
     let outcome = outcome.map_err(|error| failed(error.detail))?;
-    let metrics = outcome.scenarios.iter().flat_map(|scenario| scenario.metrics.keys());
+    let metrics = outcome
+        .scenarios
+        .iter()
+        .flat_map(|scenario| scenario.metrics.keys());
     let known: BTreeSet<&String> = metrics.collect();
-    let unknown = study.places.iter().find(|(_, metric, _)| !known.contains(metric));
+    let unknown = study
+        .places
+        .iter()
+        .find(|(_, metric, _)| !known.contains(metric));
     match (unknown, &judged.result) {
         (Some((key, metric, place)), _) => Err(DesignError::UnknownMetric {
             place: place.clone(),
@@ -113,7 +128,12 @@ fn start(archive: &Archive<'_>) -> Result<Good, DesignError> {
 }
 
 /// Evolution, then refinement of the best.
-fn hunt(archive: &Archive<'_>, goal: &Goal, budgets: [usize; 2], seed: u64) -> Result<(), DesignError> {
+fn hunt(
+    archive: &Archive<'_>,
+    goal: &Goal,
+    budgets: [usize; 2],
+    seed: u64,
+) -> Result<(), DesignError> {
     let study = archive.study();
     // What is known already seeds the first generation by half at most.
     let known = distinct_best(study, goal, &archive.all(), 5);
@@ -131,7 +151,9 @@ fn best(archive: &Archive<'_>, goal: &Goal) -> Result<Good, DesignError> {
         .map(|judged| (goal.rank(judged), judged))
         .reduce(|best, other| if other.0 < best.0 { other } else { best });
     match best {
-        Some((rank, judged)) if Goal::keeps(rank) => good(judged).ok_or_else(|| only_failures(&all)),
+        Some((rank, judged)) if Goal::keeps(rank) => {
+            good(judged).ok_or_else(|| only_failures(&all))
+        }
         Some((_, judged)) => Err(match &judged.result {
             Ok(scored) => no_design(archive.study(), scored, all.len()),
             Err(_) => only_failures(&all),
@@ -141,15 +163,19 @@ fn best(archive: &Archive<'_>, goal: &Goal) -> Result<Good, DesignError> {
 }
 
 fn no_design(study: &Study, scored: &Scored, designs: usize) -> DesignError {
-    let worst = (0..study.limits.len()).max_by(|a, b| scored.excess[*a].total_cmp(&scored.excess[*b]));
+    let worst =
+        (0..study.limits.len()).max_by(|a, b| scored.excess[*a].total_cmp(&scored.excess[*b]));
     let (limit, value) = match worst.map(|index| &study.limits[index]) {
-        Some(limit) => (Some(limit), limit.value(&scored.outcome).unwrap_or(f64::NAN)),
+        Some(limit) => (
+            Some(limit),
+            limit.value(&scored.outcome).unwrap_or(f64::NAN),
+        ),
         None => (None, f64::NAN),
     };
     let show = |value| limit.map_or_else(String::new, |limit| with_unit(limit.key(), value));
     DesignError::NoDesign {
         designs,
-        limit: limit.map_or_else(String::new, super::Limit::sentence),
+        limit: limit.map_or_else(String::new, Limit::sentence),
         excess: limit.map_or_else(String::new, |limit| show(limit.excess(value))),
         value: show(value),
     }
@@ -197,7 +223,8 @@ fn levels(
         .try_for_each(|(goal, starts)| refine(archive, goal, starts, RADII[1], each).map(drop))
 }
 
-/// Levels of the second objective, both ends included: the lowest end is refined once more for the objective. Every entry, if it is a catalogue.
+/// Levels of the second objective: just above its least value, where the objective has not been looked at yet, and evenly on to that of the best
+/// design. Every entry, if it is a catalogue.
 fn ceilings(study: &Study, lowest: f64, highest: f64) -> Vec<f64> {
     if lowest >= highest {
         return Vec::new();
@@ -206,103 +233,13 @@ fn ceilings(study: &Study, lowest: f64, highest: f64) -> Vec<f64> {
         && let Domain::Catalogue(entries) = &study.variables[index].domain
     {
         let values = entries.iter().map(|entry| entry.value);
-        return values.filter(|value| (lowest..=highest).contains(value)).collect();
+        return values
+            .filter(|value| (lowest..=highest).contains(value))
+            .collect();
     }
     let last = study.front_points - 1;
     (0..last)
-        .map(|level| lowest + (highest - lowest) * level as f64 / last as f64)
+        .map(|level| LOWEST_LEVEL.max(level as f64 / last as f64))
+        .map(|share| lowest + (highest - lowest) * share)
         .collect()
-}
-
-fn finish(archive: &Archive<'_>, goal: &Goal, start: &Good, budget: usize) -> Result<StudyResult, DesignError> {
-    let study = archive.study();
-    let (chosen, score) = best(archive, goal)?;
-    // What these try is apart from the search: it may lie outside bounds and limits, and it is not there to be chosen.
-    let aside = archive.aside();
-    let steps = 2 * study.variables.len() + 1;
-    let active_limits = active_limits(&aside, goal, &chosen, &score, budget.saturating_sub(steps))?;
-    let sensitivities = sensitivities(&aside, &chosen, &score);
-    let all = archive.all();
-    let feasible: Vec<Good> = all.iter().filter_map(good).filter(|(_, s)| s.feasible()).collect();
-    let points: Vec<[f64; 2]> = feasible.iter().map(|(_, s)| [s.trade_off, s.objective]).collect();
-    let front = match study.trade_off {
-        Some(_) => thinned(&points, &non_dominated(&points), FRONT_RESOLUTION),
-        None => Vec::new(),
-    };
-    let front_point = |index: &usize| FrontPoint {
-        trade_off: points[*index][0],
-        objective: points[*index][1],
-        design: study.design(&feasible[*index].0.values),
-    };
-    Ok(StudyResult {
-        schema: SCHEMA,
-        title: study.title.clone(),
-        objectives: names(study),
-        seed: study.seed,
-        evaluations: all.len() + aside.all().len() + sensitivities.len(),
-        infeasible: infeasible(study, &all),
-        start: candidate(study, start),
-        front: front.iter().map(front_point).collect(),
-        active_bounds: active_bounds(study, &chosen, &sensitivities),
-        active_limits,
-        chosen: candidate(study, &(chosen, score)),
-        sensitivities,
-        others: points,
-    })
-}
-
-fn names(study: &Study) -> ObjectiveNames {
-    let word = |over: Over| match over {
-        Over::Mean => "mean",
-        Over::Worst => "worst",
-    };
-    let over = match &study.trade_off {
-        Some(TradeOff::Metric(metric)) => Some(word(metric.over)),
-        _ => None,
-    };
-    ObjectiveNames {
-        minimised: study.objective.metric.clone(),
-        minimised_over: word(study.objective.over),
-        trade_off: study.trade_off_key().map(str::to_owned),
-        trade_off_over: over,
-        scenarios: study.scenarios.len(),
-    }
-}
-
-fn infeasible(study: &Study, all: &[Arc<Judged>]) -> BTreeMap<String, usize> {
-    let mut counts = BTreeMap::new();
-    for judged in all {
-        let reason = match &judged.result {
-            Err(error) => error.reason.clone(),
-            Ok(scored) if scored.feasible() => continue,
-            Ok(scored) => {
-                let most = (0..study.limits.len())
-                    .max_by(|a, b| scored.excess[*a].total_cmp(&scored.excess[*b]));
-                most.map_or_else(String::new, |index| study.limits[index].sentence())
-            }
-        };
-        *counts.entry(reason).or_default() += 1;
-    }
-    counts
-}
-
-fn candidate(study: &Study, (judged, scored): &Good) -> Candidate {
-    let pairs = study.limits.iter().zip(&scored.excess);
-    let limits = pairs.map(|(limit, excess)| LimitState {
-        limit: limit.sentence(),
-        key: limit.key().to_owned(),
-        bound: limit.bound,
-        value: limit.value(&scored.outcome).unwrap_or(f64::NAN),
-        kept: *excess <= 0.0,
-        active: (-ACTIVE..=0.0).contains(excess),
-    });
-    Candidate {
-        design: study.design(&judged.values),
-        objective: scored.objective,
-        trade_off: study.trade_off.as_ref().map(|_| scored.trade_off),
-        feasible: scored.feasible(),
-        limits: limits.collect(),
-        force_range: scored.outcome.force_range,
-        scenarios: scored.outcome.scenarios.clone(),
-    }
 }

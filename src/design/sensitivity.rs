@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::archive::{Archive, Judged, Scored};
 use super::error::DesignError;
 use super::goal::Goal;
+use super::polish::polish;
 use super::refine::places_of;
 use super::result::{ActiveBound, ActiveLimit, Sensitivity};
 use super::study::Study;
@@ -22,7 +23,11 @@ const STEP: f64 = 0.1;
 const RADIUS: f64 = 0.05;
 
 /// One row for each variable and direction that there is.
-pub(super) fn sensitivities(archive: &Archive<'_>, chosen: &Judged, score: &Scored) -> Vec<Sensitivity> {
+pub(super) fn sensitivities(
+    archive: &Archive<'_>,
+    chosen: &Judged,
+    score: &Scored,
+) -> Vec<Sensitivity> {
     let study = archive.study();
     let steps: Vec<(usize, f64)> = study
         .variables
@@ -122,12 +127,13 @@ pub(super) fn active_bounds(
             Domain::Catalogue(_) => [*value == min, *value == max],
             _ => [place <= ACTIVE, place >= 1.0 - ACTIVE],
         };
-        for (side, bound, at_end, beyond) in [
-            ("min", min, ends[0], -1.0),
-            ("max", max, ends[1], 1.0),
-        ] {
+        for (side, bound, at_end, beyond) in
+            [("min", min, ends[0], -1.0), ("max", max, ends[1], 1.0)]
+        {
             let step = steps.iter().find(|step| {
-                step.variable == variable.key && step.beyond_bound && (step.value - bound) * beyond > 0.0
+                step.variable == variable.key
+                    && step.beyond_bound
+                    && (step.value - bound) * beyond > 0.0
             });
             if at_end {
                 found.push(ActiveBound {
@@ -161,9 +167,11 @@ pub(super) fn active_limits(
         .map(|index| {
             let mut looser = goal.clone();
             looser.slack[index] = STEP;
-            let found = super::polish::polish(archive, &looser, &places, RADIUS, each)?;
+            let (found, _) = polish(archive, &looser, &places, RADIUS, each)?;
             let change = match &archive.at(&found.places).result {
-                Ok(better) if Goal::keeps(found.rank) => Some(relative(score.objective, better.objective)),
+                Ok(better) if Goal::keeps(found.rank) => {
+                    Some(relative(score.objective, better.objective))
+                }
                 _ => None,
             };
             Ok(ActiveLimit {

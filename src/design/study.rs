@@ -9,7 +9,9 @@ use crate::scenario::document::{Document, read_text};
 use crate::scenario::error::Place;
 
 use super::candidate::{Design, Outcome};
-use super::file::{BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys, study_sections};
+use super::file::{
+    BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys, study_sections,
+};
 use super::limits::{Limit, LimitQuantity, Side};
 use super::variable::{Variable, variable};
 
@@ -101,13 +103,19 @@ impl Study {
     /// The design with these values, one a variable, in the keys' own units.
     pub fn design(&self, values: &[f64]) -> Design {
         let pairs = self.variables.iter().zip(values);
-        Design::new(pairs.flat_map(|(variable, value)| variable.entries(*value)).collect())
+        Design::new(
+            pairs
+                .flat_map(|(variable, value)| variable.entries(*value))
+                .collect(),
+        )
     }
 
     /// Values at places from 0 to 1, one a variable.
     pub(super) fn values(&self, places: &[f64]) -> Vec<f64> {
         let pairs = self.variables.iter().zip(places);
-        pairs.map(|(variable, place)| variable.domain.value(*place)).collect()
+        pairs
+            .map(|(variable, place)| variable.domain.value(*place))
+            .collect()
     }
 
     /// Places of the starting design.
@@ -198,9 +206,7 @@ fn variables(document: &Document<'_>, file: &StudyFile) -> Result<Vec<Variable>,
         return Err(Section::new(document, "").missing("variables", expected));
     }
     let rod_varies = file.variables.contains_key("rod_mm");
-    let check = |(key, keys): (&String, &VariableKeys)| {
-        variable(document, key, keys, rod_varies)
-    };
+    let check = |(key, keys): (&String, &VariableKeys)| variable(document, key, keys, rod_varies);
     file.variables.iter().map(check).collect()
 }
 
@@ -217,7 +223,10 @@ fn objectives(
         Some(OverKeys::Worst) => Over::Worst,
     };
     let objective = Objective {
-        metric: section.text("minimise", keys.minimise.as_deref().unwrap_or(DEFAULT_METRIC))?,
+        metric: section.text(
+            "minimise",
+            keys.minimise.as_deref().unwrap_or(DEFAULT_METRIC),
+        )?,
         over: over(keys.minimise_over),
     };
     let Some(trade_off) = &keys.trade_off else {
@@ -265,7 +274,11 @@ fn limits(document: &Document<'_>, file: &StudyFile) -> Result<Vec<Limit>, Scena
                 "force_n" => LimitQuantity::Force,
                 metric => LimitQuantity::Metric(metric.to_owned()),
             };
-            limits.extend(bound.map(|bound| Limit { quantity, side, bound }));
+            limits.extend(bound.map(|bound| Limit {
+                quantity,
+                side,
+                bound,
+            }));
         }
     }
     Ok(limits)

@@ -20,7 +20,7 @@ pub fn text(study: &Study, result: &StudyResult) -> String {
     line(&mut out, &result.title.replace(char::is_control, " "));
     line(&mut out, &"-".repeat(WIDTH));
     variables(&mut out, study, result);
-    metrics(&mut out, result);
+    metrics(&mut out, study, result);
     limits(&mut out, result);
     binding(&mut out, result);
     steps(&mut out, result);
@@ -41,24 +41,29 @@ fn line(out: &mut String, text: &str) {
 
 fn heading(out: &mut String, name: &str, columns: &str) {
     out.push('\n');
-    line(out, &format!("{name:<37}{columns}"));
+    line(out, &format!("{name:<35}{columns}"));
 }
 
 fn columns(names: [&str; 2], last: &str) -> String {
-    format!("{:>11} {:>11}  {last}", names[0], names[1])
+    format!("{:>10} {:>10}  {last}", names[0], names[1])
 }
 
 fn row(out: &mut String, name: &str, values: [String; 2], last: &str) {
     let columns = columns([&values[0], &values[1]], last);
-    line(out, &format!("  {name:<35}{columns}"));
+    line(out, &format!("  {name:<33}{columns}"));
 }
 
 fn variables(out: &mut String, study: &Study, result: &StudyResult) {
     heading(out, "Variables", &columns(["start", "chosen"], "bounds"));
     for (key, chosen) in result.chosen.design.iter() {
-        let start = result.start.design.get(key).map_or_else(String::new, number);
+        let start = result
+            .start
+            .design
+            .get(key)
+            .map_or_else(String::new, number);
         let variable = study.variables.iter().find(|variable| variable.key == key);
-        let last = variable.map_or_else(|| "follows".to_owned(), |variable| bounds(variable, result));
+        let last =
+            variable.map_or_else(|| "follows".to_owned(), |variable| bounds(variable, result));
         row(out, key, [start, number(chosen)], &last);
     }
 }
@@ -69,7 +74,11 @@ fn bounds(variable: &Variable, result: &StudyResult) -> String {
         .iter()
         .find(|bound| bound.variable == variable.key);
     if let Some(bound) = active {
-        return format!("AT ITS {} {}", bound.side.to_uppercase(), number(bound.bound));
+        return format!(
+            "AT ITS {} {}",
+            bound.side.to_uppercase(),
+            number(bound.bound)
+        );
     }
     let [min, max] = variable.domain.ends().map(number);
     match variable.domain {
@@ -78,25 +87,42 @@ fn bounds(variable: &Variable, result: &StudyResult) -> String {
     }
 }
 
-fn metrics(out: &mut String, result: &StudyResult) {
+/// Those that the study names; design.json has them all.
+fn metrics(out: &mut String, study: &Study, result: &StudyResult) {
     let names = &result.objectives;
     let title = match names.scenarios {
         1 => "Objective".to_owned(),
         count => format!("Objective, {} of {count} scenarios", names.minimised_over),
     };
     heading(out, &title, &columns(["start", "chosen"], "change"));
-    compared(out, &names.minimised, [result.start.objective, result.chosen.objective]);
+    compared(
+        out,
+        &names.minimised,
+        [result.start.objective, result.chosen.objective],
+    );
     for scenario in &result.chosen.scenarios {
         let find = |candidate: &Candidate, metric: &str| {
             let found = candidate.scenarios.iter().find(|s| s.name == scenario.name);
             found.and_then(|found| found.metrics.get(metric).copied())
         };
-        heading(out, &format!("In {}", scenario.name.replace(char::is_control, " ")), "");
-        for (metric, chosen) in &scenario.metrics {
+        heading(
+            out,
+            &format!("In {}", scenario.name.replace(char::is_control, " ")),
+            "",
+        );
+        for (metric, chosen) in scenario
+            .metrics
+            .iter()
+            .filter(|(metric, _)| named(study, metric))
+        {
             let start = find(&result.start, metric).unwrap_or(f64::NAN);
             compared(out, metric, [start, *chosen]);
         }
     }
+}
+
+fn named(study: &Study, metric: &str) -> bool {
+    study.places.iter().any(|(_, named, _)| named == metric)
 }
 
 fn compared(out: &mut String, metric: &str, [start, chosen]: [f64; 2]) {
@@ -105,7 +131,13 @@ fn compared(out: &mut String, metric: &str, [start, chosen]: [f64; 2]) {
         true => percent(change),
         false => String::new(),
     };
-    let shown = |value: f64| if value.is_nan() { "-".to_owned() } else { number(value) };
+    let shown = |value: f64| {
+        if value.is_nan() {
+            "-".to_owned()
+        } else {
+            number(value)
+        }
+    };
     row(out, metric, [shown(start), shown(chosen)], &change);
 }
 
@@ -117,35 +149,62 @@ fn limits(out: &mut String, result: &StudyResult) {
     for (before, after) in result.start.limits.iter().zip(&result.chosen.limits) {
         let last = match (before.kept, after.active) {
             (true, true) => "JUST KEPT",
-            (false, true) => "JUST KEPT, start outside",
-            (false, false) => "start outside",
+            (false, true) => "JUST KEPT, was broken",
+            (false, false) => "was broken",
             (true, false) => "",
         };
-        row(out, &after.limit, [number(before.value), number(after.value)], last);
+        row(
+            out,
+            &after.limit,
+            [number(before.value), number(after.value)],
+            last,
+        );
     }
 }
 
 fn direction(change: f64) -> String {
     let size = percent(change.abs()).replace('+', "");
-    if change < 0.0 { format!("lower by {size}") } else { format!("higher by {size}") }
+    if change < 0.0 {
+        format!("lower by {size}")
+    } else {
+        format!("higher by {size}")
+    }
 }
 
 /// What binds, in sentences.
 fn binding(out: &mut String, result: &StudyResult) {
     let metric = &result.objectives.minimised;
     out.push('\n');
-    line(out, &format!("What binds, and what more room would do to {metric}"));
+    line(
+        out,
+        &format!("What binds, and what more room would do to {metric}"),
+    );
     let mut any = false;
     for bound in &result.active_bounds {
-        let effect = bound.objective_change_percent.map_or_else(|| "cannot be simulated".to_owned(), direction);
-        let beyond = format!("bound {} {} {}", bound.variable, bound.side, number(bound.bound));
+        let effect = bound
+            .objective_change_percent
+            .map_or_else(|| "cannot be simulated".to_owned(), direction);
+        let beyond = format!(
+            "bound {} {} {}",
+            bound.variable,
+            bound.side,
+            number(bound.bound)
+        );
         line(out, &format!("  {beyond:<46} beyond it: {effect}"));
         any = true;
     }
     for limit in &result.active_limits {
-        let effect = limit.objective_change_percent.map_or_else(|| "not found".to_owned(), direction);
+        let effect = limit
+            .objective_change_percent
+            .map_or_else(|| "not found".to_owned(), direction);
         let name = format!("limit {}", limit.limit);
-        line(out, &format!("  {name:<46} {:.0} % looser: {effect}", limit.loosened_by_percent));
+        line(
+            out,
+            &format!(
+                "  {name:<46} {:.0} % looser: {effect}",
+                limit.loosened_by_percent
+            ),
+        );
         any = true;
     }
     if !any {
@@ -154,14 +213,27 @@ fn binding(out: &mut String, result: &StudyResult) {
 }
 
 fn steps(out: &mut String, result: &StudyResult) {
-    heading(out, "One variable alone", &columns(["to", "objective"], "limits"));
+    heading(
+        out,
+        "One variable alone",
+        &columns(["to", "objective"], "limits"),
+    );
     for step in &result.sensitivities {
-        let name = format!("{} {}", step.variable, percent(step.change_percent).replace(' ', ""));
-        let objective = step.objective_change_percent.map_or_else(|| "-".to_owned(), percent);
+        let name = format!(
+            "{} {}",
+            step.variable,
+            percent(step.change_percent).replace(' ', "")
+        );
+        let objective = step
+            .objective_change_percent
+            .map_or_else(|| "-".to_owned(), percent);
         row(out, &name, [number(step.value), objective], &remark(step));
     }
     if let Some(step) = result.improving_steps(NOT_ENDED).next() {
-        let hint = format!("  {} alone would still lower it: more evaluations would help.", step.variable);
+        let hint = format!(
+            "  {} alone would still lower it: more evaluations would help.",
+            step.variable
+        );
         line(out, &hint);
     }
 }
@@ -170,14 +242,11 @@ fn remark(step: &Sensitivity) -> String {
     if step.failure.is_some() {
         return "not possible".to_owned();
     }
-    let mut words = Vec::new();
-    if step.beyond_bound {
-        words.push("beyond bound".to_owned());
+    match (step.breaks.first(), step.beyond_bound) {
+        (Some(first), _) => format!("breaks {first}"),
+        (None, true) => "beyond its bound".to_owned(),
+        (None, false) => String::new(),
     }
-    if let Some(first) = step.breaks.first() {
-        words.push(format!("breaks {first}"));
-    }
-    words.join(", ")
 }
 
 fn front(out: &mut String, result: &StudyResult) {
@@ -185,12 +254,22 @@ fn front(out: &mut String, result: &StudyResult) {
         return;
     };
     out.push('\n');
-    line(out, &format!("Front: {} against {trade_off}", result.objectives.minimised));
+    line(
+        out,
+        &format!("Front: {} against {trade_off}", result.objectives.minimised),
+    );
     let count = result.front.len();
     let rows = count.min(FRONT_ROWS);
     for i in 0..rows {
-        let point = &result.front[if rows > 1 { i * (count - 1) / (rows - 1) } else { 0 }];
-        let values = [(trade_off, point.trade_off), (&result.objectives.minimised, point.objective)];
+        let point = &result.front[if rows > 1 {
+            i * (count - 1) / (rows - 1)
+        } else {
+            0
+        }];
+        let values = [
+            (trade_off, point.trade_off),
+            (&result.objectives.minimised, point.objective),
+        ];
         let [x, y] = values.map(|(key, value)| with_unit(key, value));
         line(out, &format!("  {x:>16} {y:>16}"));
     }
@@ -202,12 +281,23 @@ fn front(out: &mut String, result: &StudyResult) {
 fn search(out: &mut String, result: &StudyResult) {
     let infeasible: usize = result.infeasible.values().sum();
     out.push('\n');
-    line(out, &format!("{} designs evaluated, {infeasible} of them not feasible", result.evaluations));
+    line(
+        out,
+        &format!(
+            "{} designs evaluated, {infeasible} of them not feasible",
+            result.evaluations
+        ),
+    );
     for (reason, count) in &result.infeasible {
         line(out, &format!("  {count:>6}  {reason}"));
     }
     let [low, high] = result.chosen.force_range;
     let unit = symbol("force_n");
     // Writing to a String cannot fail.
-    let _ = writeln!(out, "Force at rest: {} to {} {unit}", number(low), number(high));
+    let _ = writeln!(
+        out,
+        "Force at rest: {} to {} {unit}",
+        number(low),
+        number(high)
+    );
 }

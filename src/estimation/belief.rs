@@ -161,10 +161,7 @@ mod tests {
         }
         let bias = 800.0 * 800.0;
         let variance = belief.covariance[OUTLET][OUTLET];
-        assert!(
-            (variance / (bias + 360.0) - 1.0).abs() < 1e-3,
-            "{variance}"
-        );
+        assert!((variance / (bias + 360.0) - 1.0).abs() < 1e-3, "{variance}");
         assert!((belief.covariance[OUTLET][PRESSURE_BIAS] / -bias - 1.0).abs() < 1e-2);
         assert_eq!(belief.covariance[PRESSURE_BIAS][PRESSURE_BIAS], bias);
         assert_eq!(belief.mean[PRESSURE_BIAS], 0.0);

@@ -1,5 +1,6 @@
 //! The estimator: predicts over a period, takes the samples in, gives the force.
 
+use super::EstimationError;
 use super::belief::{
     ACCELERATION, ACCELERATION_BIAS, Belief, DEAD_VOLUME, EXHAUST, MASSES, OUTLET, PRESLIDING,
     PRESSURE_BIAS, SIZE, SPEED, STROKE, SUPPLY, TARGET, TURNING_DEFLECTION, TURNING_STROKE, Term,
@@ -9,7 +10,6 @@ use super::models::Models;
 use super::output::{Estimate, ForceOutput};
 use super::parameters::{EstimatorParameters, ProcessModel, Tolerances};
 use super::seals::{Seals, Way};
-use super::EstimationError;
 use crate::device::DeviceParameters;
 use crate::physics::valve::ValvePosition;
 
@@ -17,6 +17,8 @@ use crate::physics::valve::ValvePosition;
 const LONGEST_PERIOD: f64 = 0.02;
 /// Standard deviations of the stroke by which a step back must exceed a turning point to count.
 const TURN: f64 = 4.0;
+/// Standard deviations of the displacement by which a halted motion must exceed its turning point to have gone on.
+const RESUME: f64 = 1.0;
 /// What the motion may be before the first sample, standard deviations: stroke [m], speed [m/s], acceleration [m/s2].
 const START_MOTION: [f64; 3] = [1e-3, 0.05, 1.0];
 /// Standard deviation of a chamber's pressure about its source before the first sample [Pa].
@@ -121,11 +123,7 @@ impl ContactForceEstimator {
                 .collect(),
             chambers: Chambers::new(device),
             seals: Seals::new(device.seal_friction),
-            output: ForceOutput::new(
-                device,
-                parameters.tolerances,
-                parameters.gravity_along_axis,
-            ),
+            output: ForceOutput::new(device, parameters.tolerances, parameters.gravity_along_axis),
             atmosphere: device.gas.atmosphere,
             supply: device.regulator.supply,
             models: Models::new(&parameters.models, &belief, period),
@@ -143,15 +141,18 @@ impl ContactForceEstimator {
         &self.models.probabilities
     }
 
-    pub fn debug(&self) -> Vec<[f64; 4]> {
-        self.models.beliefs.iter().map(|b| [b.covariance[0][0].sqrt(), b.covariance[1][1].sqrt(), b.covariance[2][2].sqrt(), b.covariance[8][8].sqrt()]).collect()
-    }
     /// Takes one set of samples in, a period after the one before.
     pub fn update(&mut self, measurement: &Measurement) -> Estimate {
         if self.started {
             self.models.mix();
             for (belief, noise) in self.models.beliefs.iter_mut().zip(&self.process) {
-                predict(belief, &self.chambers, noise, measurement.valve, self.period);
+                predict(
+                    belief,
+                    &self.chambers,
+                    noise,
+                    measurement.valve,
+                    self.period,
+                );
             }
         } else {
             self.fill_chambers(measurement);
@@ -223,26 +224,33 @@ impl ContactForceEstimator {
 
     /// Carries the seals' turning point along where the stroke has gone on or turned.
     fn follow_seals(&mut self) {
-        let of_way = |belief: &Belief| {
-            let mean = &belief.mean;
-            (
-                mean[STROKE] - mean[TURNING_STROKE],
-                belief.covariance[STROKE][STROKE],
-            )
-        };
-        let (displacement, variance) = self.models.overall(of_way);
-        match self.seals.way(displacement, TURN * variance.sqrt()) {
-            Way::On => {}
-            Way::Undecided => return,
+        let displacement = |belief: &Belief| belief.mean[STROKE] - belief.mean[TURNING_STROKE];
+        let stroke_variance = |belief: &Belief| belief.covariance[STROKE][STROKE];
+        let (moved, turned) = self
+            .models
+            .overall(|belief| (displacement(belief), stroke_variance(belief)));
+        let (_, resumed) = self.models.overall(|belief| {
+            let variance = belief.variance(&[(STROKE, 1.0), (TURNING_STROKE, -1.0)]);
+            (displacement(belief), variance)
+        });
+        let way = self
+            .seals
+            .way(moved, TURN * turned.sqrt(), RESUME * resumed.sqrt());
+        match way {
+            Way::On => self.carry_turning_point(),
+            Way::Undecided => {}
+            // When it turned is not known, so where is known no better than the stroke was.
             Way::Halted => {
-                let k: f64 = std::env::var("K").unwrap().parse().unwrap();
                 for belief in &mut self.models.beliefs {
-                    let stroke = belief.covariance[STROKE][STROKE];
-                    belief.add_noise(TURNING_STROKE, TURNING_STROKE, k * k * stroke);
+                    let variance = stroke_variance(belief);
+                    belief.add_noise(TURNING_STROKE, TURNING_STROKE, variance);
                 }
-                return;
             }
         }
+    }
+
+    /// The turning point becomes where the piston is.
+    fn carry_turning_point(&mut self) {
         for belief in &mut self.models.beliefs {
             let mean = &mut belief.mean;
             let displacement = mean[STROKE] - mean[TURNING_STROKE];

@@ -99,10 +99,7 @@ impl ForceOutput {
             stroke - mean[TURNING_STROKE],
             mean[SPEED],
         );
-        let (dry, viscous) = (
-            seals.dry() * seal.value,
-            seals.viscous() * mean[SPEED],
-        );
+        let (dry, viscous) = (seals.dry() * seal.value, seals.viscous() * mean[SPEED]);
         let free = self.gravity_along_axis - mean[ACCELERATION];
         let [a1, a2] = [self.areas.extending, -self.areas.retracting];
         let by_displacement = seals.dry() * seal.by_displacement;

@@ -124,8 +124,8 @@ impl EstimatorParameters {
             dwell,
         };
         vec![
-            model(std::env::var("Q").unwrap().parse().unwrap(), 2e3, 1.0),
-            model(5.0, 2e3, 0.1),
+            model(0.2, 2e3, 1.0),
+            model(1.5, 2e3, 0.3),
             model(5.0, 1e6, 0.1),
             model(500.0, 1e6, 0.02),
         ]

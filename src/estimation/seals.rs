@@ -36,7 +36,9 @@ pub(super) enum Way {
 #[derive(Debug, Clone)]
 pub(super) struct Seals {
     friction: SealFriction,
+    /// 1 extending, -1 retracting.
     direction: f64,
+    /// Has it stepped back since it went on?
     halted: bool,
 }
 
@@ -63,12 +65,13 @@ impl Seals {
         }
     }
 
-    /// What a displacement from the turning point [m] means when noise can make up to `noise` [m].
-    pub(super) fn way(&mut self, displacement: f64, noise: f64) -> Way {
+    /// What a displacement from the turning point [m] means when noise can make up to `noise` [m] of a step back, and a motion that has halted
+    /// is taken to go on from `resume` [m] on.
+    pub(super) fn way(&mut self, displacement: f64, noise: f64, resume: f64) -> Way {
         let onward = self.direction * displacement;
         if onward < -noise {
             self.direction = -self.direction;
-        } else if onward < 0.0 {
+        } else if onward < 0.0 || (self.halted && onward < resume) {
             let first = !self.halted;
             self.halted = true;
             return if first { Way::Halted } else { Way::Undecided };
@@ -167,7 +170,7 @@ mod tests {
             let stroke = 2e-6 * (f64::from(i) * 0.7).sin();
             path += (stroke - last).abs();
             last = stroke;
-            if seals.way(stroke - turning, 1e-5) == Way::On {
+            if seals.way(stroke - turning, 1e-5, 0.0) == Way::On {
                 deflection = seals.after(deflection, stroke - turning, 0.0).value;
                 turning = stroke;
             }

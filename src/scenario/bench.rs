@@ -10,9 +10,11 @@ use super::document::Document;
 use super::error::ScenarioError;
 use super::load::{device, expectations};
 use super::sections::bench_sections;
+use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
 use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
+use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
 #[derive(Debug, Clone)]
@@ -43,6 +45,8 @@ pub struct BenchScenario {
     pub substeps: usize,
     /// Seed of all noise.
     pub seed: u64,
+    /// What lies between controller and device.
+    pub sensing: SensingParameters,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
 }
@@ -131,6 +135,7 @@ pub(super) fn from_document(
         return Err(section("device").misplaced("locked", reason));
     }
     let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
+    let sensing = sensing(document, &file.sensing, step)?;
     Ok(BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
@@ -147,11 +152,12 @@ pub(super) fn from_document(
             .as_ref()
             .map(|keys| hand(&section("hand"), keys))
             .transpose()?,
-        command: commands(document, &file.command, duration)?,
+        command: commands(document, &file.command, duration, &sensing.command)?,
         valve: valve(document, &file.valve, duration)?,
         step,
         substeps,
         seed,
+        sensing,
         expect: expectations(&section("expect"), &file.expect)?,
         device,
     })
@@ -264,6 +270,7 @@ fn commands(
     document: &Document<'_>,
     keys: &[CommandKeys],
     duration: f64,
+    chain: &CommandChain,
 ) -> Result<CommandScenario, ScenarioError> {
     let times = in_order(document, "command", keys.iter().map(|k| k.at_s), duration)?;
     let by_force = keys.first().is_some_and(|first| first.force_n.is_some());
@@ -272,7 +279,10 @@ fn commands(
         let section = Section::new(document, format!("command[{index}]"));
         let value = match (by_force, keys.set_pressure_bar_gauge, keys.force_n) {
             (false, Some(pressure), None) => {
-                section.number("set_pressure_bar_gauge", pressure, 0.0..=16.0)?
+                let key = "set_pressure_bar_gauge";
+                let wanted = section.number(key, pressure, 0.0..=16.0)?;
+                check_set_pressure(&section, key, wanted, chain)?;
+                wanted
             }
             (true, None, Some(force)) => section.number("force_n", force, 0.0..=5000.0)?,
             (false, _, Some(_)) => {

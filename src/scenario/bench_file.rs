@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::file::{BoundKeys, DeviceKeys};
+use super::sensing::keys::SensingKeys;
 
 /// What a file describes; a cell if it does not say.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
@@ -42,6 +43,8 @@ pub(super) struct BenchFile {
     pub valve: Vec<ValveKeys>,
     #[serde(default)]
     pub simulation: BenchSimulationKeys,
+    #[serde(default)]
+    pub sensing: SensingKeys,
     #[serde(default)]
     pub expect: BTreeMap<String, BoundKeys>,
 }

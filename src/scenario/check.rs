@@ -31,6 +31,11 @@ impl<'a> Section<'a> {
         self.document
     }
 
+    /// Keys that the file gives in it.
+    pub fn given(&self) -> impl Iterator<Item = &str> {
+        self.document.keys_in(&self.table)
+    }
+
     /// A number within a range, both in the key's unit; returns it in SI.
     pub fn number(
         &self,
@@ -57,6 +62,17 @@ impl<'a> Section<'a> {
             format!("at least {}", unit.show(*range.start()))
         };
         Err(self.refuse(key, unit.show(value), expected))
+    }
+
+    /// As `number`, or the default [SI] if the file gives none.
+    pub fn number_or(
+        &self,
+        key: &str,
+        given: Option<f64>,
+        default: f64,
+        range: RangeInclusive<f64>,
+    ) -> Result<f64, ScenarioError> {
+        given.map_or(Ok(default), |value| self.number(key, value, range))
     }
 
     /// A whole number within a range.

@@ -90,6 +90,14 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// Names of the keys that a table has in the file.
+    pub fn keys_in<'b>(&'b self, table: &str) -> impl Iterator<Item = &'b str> {
+        self.entries.iter().filter_map(move |entry| {
+            let name = entry.key.strip_prefix(table)?.strip_prefix('.')?;
+            (!name.contains(['.', '['])).then_some(name)
+        })
+    }
+
     /// Lines and columns count from 1, columns in characters.
     fn place_at(&self, offset: usize) -> Place {
         let before = &self.text[..self.text.floor_char_boundary(offset)];
@@ -216,8 +224,8 @@ fn expected_value(expected: &str, key: &str) -> String {
         "u32" | "u64" | "usize" => number("a whole number, 0 or more"),
         "a boolean" => "true or false".to_owned(),
         "a string" | "path string" => "a text in quotes".to_owned(),
-        "a sequence" if key.ends_with("limit_overrides") => {
-            "tables [[arm.limit_overrides]]".to_owned()
+        "a sequence" if ["arm.limit_overrides", "command", "valve"].contains(&key) => {
+            format!("tables [[{key}]]")
         }
         "a sequence" => number("a list of numbers"),
         "a map" => "a table".to_owned(),

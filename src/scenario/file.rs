@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
+use super::sensing::keys::SensingKeys;
+
 /// Version of both formats.
 pub(super) const SCHEMA: u32 = 1;
 
@@ -26,6 +28,8 @@ pub(super) struct ScenarioFile {
     pub process: ProcessKeys,
     #[serde(default)]
     pub simulation: SimulationKeys,
+    #[serde(default)]
+    pub sensing: SensingKeys,
     #[serde(default)]
     pub expect: BTreeMap<String, BoundKeys>,
 }

@@ -13,6 +13,8 @@ use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
 use super::sections::{bench_sections, scenario_sections};
+use super::sensing::sensing;
+use super::suggestion::Sections;
 use super::workpiece::workpiece;
 use super::{
     AnyScenario, ArmScenario, ContactScenario, DeviceScenario, Expectation, LimitOverride,
@@ -21,15 +23,36 @@ use super::{
 
 /// Reads and checks a scenario file of either kind and the device model file that it names.
 pub fn load_any(path: &Path) -> Result<AnyScenario, ScenarioError> {
-    let text = read_text(path)?;
-    let document = Document::new(path, &text, file::SCHEMA)?;
+    from_text(path, &read_text(path)?)
+}
+
+/// As `load_any`, of a text that stands, or could stand, in the file at `path`.
+pub(super) fn from_text(path: &Path, text: &str) -> Result<AnyScenario, ScenarioError> {
+    let document = Document::new(path, text, file::SCHEMA)?;
     // Keys of either kind are known here, so that only a wrong kind is refused.
     let KindOnly { kind } = document.parse(&bench_sections())?;
     match kind {
-        Kind::Cell => from_text(path, &text).map(|cell| AnyScenario::Cell(Box::new(cell))),
-        Kind::Bench => {
-            bench::from_document(path, &document).map(|bench| AnyScenario::Bench(Box::new(bench)))
+        Kind::Cell => from_document(path, &document)
+            .map(|cell| AnyScenario::Cell(Box::new(cell)))
+            .map_err(|error| name_kind(error, "bench", &bench_sections())),
+        Kind::Bench => bench::from_document(path, &document)
+            .map(|bench| AnyScenario::Bench(Box::new(bench)))
+            .map_err(|error| name_kind(error, "cell", &scenario_sections())),
+    }
+}
+
+/// Says of an unknown key at the top that the other kind of scenario has it, if so.
+fn name_kind(error: ScenarioError, other: &str, sections: &Sections) -> ScenarioError {
+    match error {
+        ScenarioError::UnknownKey { place, key, .. }
+            if sections
+                .iter()
+                .any(|(table, keys)| table.is_empty() && keys.contains(&key.as_str())) =>
+        {
+            let advice = format!("a scenario of kind = \"{other}\" has it");
+            ScenarioError::UnknownKey { place, key, advice }
         }
+        error => error,
     }
 }
 
@@ -57,26 +80,27 @@ pub fn load_bench(path: &Path) -> Result<BenchScenario, ScenarioError> {
     }
 }
 
-/// As `load`, of a text that stands, or could stand, in the file at `path`.
-pub(super) fn from_text(path: &Path, text: &str) -> Result<Scenario, ScenarioError> {
-    let document = Document::new(path, text, file::SCHEMA)?;
+/// Reads the scenario of a cell from a document that does not say otherwise.
+fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, ScenarioError> {
     let file: ScenarioFile = document.parse(&scenario_sections())?;
     debug_assert_eq!(
         file.schema,
         file::SCHEMA,
         "other schemas are refused by Document::new"
     );
-    let section = |table: &str| Section::new(&document, table);
+    let section = |table: &str| Section::new(document, table);
     let device = device(&section("device"), &file.device)?;
     let contact = contact(&section("contact"), &file.contact)?;
     check_lock(&section("contact"), &file.contact, &device, &contact)?;
+    let simulation = simulation(&section("simulation"), &file.simulation)?;
     Ok(Scenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
         arm: arm(&section("arm"), &file.arm)?,
         workpiece: workpiece(&section("workpiece"), &file.workpiece)?,
         process: process(&section("process"), &file.process, &device)?,
-        simulation: simulation(&section("simulation"), &file.simulation)?,
+        sensing: sensing(document, &file.sensing, simulation.step)?,
+        simulation,
         expect: expectations(&section("expect"), &file.expect)?,
         device,
         contact,

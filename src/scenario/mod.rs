@@ -6,6 +6,7 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use crate::device::DeviceParameters;
+use crate::sensing::SensingParameters;
 
 pub mod bench;
 mod bench_file;
@@ -16,6 +17,7 @@ pub mod error;
 mod file;
 mod load;
 mod sections;
+mod sensing;
 mod suggestion;
 #[cfg(test)]
 mod tests;
@@ -26,6 +28,7 @@ pub use bench::BenchScenario;
 pub use device::load_device;
 pub use error::ScenarioError;
 pub use load::{load, load_any, load_bench};
+pub use sensing::largest_set_pressure;
 
 /// A scenario of either kind.
 #[derive(Debug, Clone)]
@@ -55,6 +58,8 @@ pub struct Scenario {
     pub process: ProcessScenario,
     /// How it is simulated.
     pub simulation: SimulationScenario,
+    /// What lies between controller and device.
+    pub sensing: SensingParameters,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
 }
@@ -255,7 +260,7 @@ pub struct SimulationScenario {
     pub substeps: usize,
     /// Gravity in the world [m/s2].
     pub gravity: DVec3,
-    /// Seed of the search for a posture.
+    /// Seed of the search for a posture and of all noise.
     pub seed: u64,
 }
 

@@ -3,11 +3,15 @@
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
+use super::sensing::keys as sensing;
 use super::{bench_file, file};
 
+/// A table and its keys.
+type Table = (&'static str, &'static [&'static str]);
+
 /// Tables of a scenario file with their keys; `*` stands for a name that the user gives.
-pub(super) fn scenario_sections() -> Vec<(&'static str, &'static [&'static str])> {
-    vec![
+pub(super) fn scenario_sections() -> Vec<Table> {
+    let mut sections = vec![
         ("", keys::<file::ScenarioFile>()),
         ("arm", keys::<file::ArmKeys>()),
         ("arm.limit_overrides", keys::<file::LimitKeys>()),
@@ -22,12 +26,14 @@ pub(super) fn scenario_sections() -> Vec<(&'static str, &'static [&'static str])
         ("process", keys::<file::ProcessKeys>()),
         ("simulation", keys::<file::SimulationKeys>()),
         ("expect.*", keys::<file::BoundKeys>()),
-    ]
+    ];
+    sections.extend(sensing_sections());
+    sections
 }
 
 /// Tables of a bench scenario file with their keys.
-pub(super) fn bench_sections() -> Vec<(&'static str, &'static [&'static str])> {
-    vec![
+pub(super) fn bench_sections() -> Vec<Table> {
+    let mut sections = vec![
         ("", keys::<bench_file::BenchFile>()),
         ("device", keys::<file::DeviceKeys>()),
         ("device.override", keys::<file::ModelKeys>()),
@@ -38,11 +44,30 @@ pub(super) fn bench_sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("valve", keys::<bench_file::ValveKeys>()),
         ("simulation", keys::<bench_file::BenchSimulationKeys>()),
         ("expect.*", keys::<file::BoundKeys>()),
+    ];
+    sections.extend(sensing_sections());
+    sections
+}
+
+/// Tables that a scenario of either kind may have for its sensing.
+fn sensing_sections() -> [Table; 8] {
+    [
+        ("sensing", keys::<sensing::SensingKeys>()),
+        ("sensing.command", keys::<sensing::CommandChainKeys>()),
+        (
+            "sensing.regulator_pressure",
+            keys::<sensing::RegulatorPressureKeys>(),
+        ),
+        ("sensing.force", keys::<sensing::ForceKeys>()),
+        ("sensing.stroke", keys::<sensing::StrokeKeys>()),
+        ("sensing.acceleration", keys::<sensing::AccelerationKeys>()),
+        ("sensing.adc", keys::<sensing::AdcKeys>()),
+        ("sensing.filter", keys::<sensing::FilterKeys>()),
     ]
 }
 
 /// Tables of a device model file with their keys.
-pub(super) fn model_sections() -> Vec<(&'static str, &'static [&'static str])> {
+pub(super) fn model_sections() -> Vec<Table> {
     vec![
         ("", keys::<file::ModelFile>()),
         ("device", keys::<file::ModelKeys>()),

@@ -6,11 +6,12 @@ use super::units::{Unit, stem};
 pub(super) type Sections = [(&'static str, &'static [&'static str])];
 
 /// Words of which unit suffixes are made, ours and others that people write.
-const UNIT_WORDS: [&str; 52] = [
+const UNIT_WORDS: [&str; 62] = [
     "per", "um", "mm", "cm", "m", "km", "in", "inch", "ft", "um2", "mm2", "cm2", "m2", "mm3",
     "cm3", "m3", "l", "ml", "us", "ms", "s", "s2", "s3", "min", "h", "hz", "khz", "rpm", "deg",
     "rad", "degrees", "radians", "g", "kg", "t", "n", "kn", "mn", "nm", "lbf", "pa", "kpa", "mpa",
-    "hpa", "bar", "mbar", "psi", "gauge", "absolute", "abs", "k", "c",
+    "hpa", "bar", "mbar", "psi", "gauge", "absolute", "abs", "k", "c", "v", "mv", "volt", "volts",
+    "ohm", "ohms", "kohm", "uf", "nf", "pf",
 ];
 
 /// Similarity (Jaro-Winkler) from which a key counts as a slip of the pen.

@@ -1,15 +1,17 @@
 //! Tests of reading a scenario: values, messages, the files shipped, and scenarios/README.md.
 
+mod bench;
 mod messages;
 mod readme;
 mod refusals;
+mod sensing;
 mod shipped;
 mod values;
 
 use std::path::{Path, PathBuf};
 
 use super::load::from_text;
-use super::{Scenario, ScenarioError};
+use super::{AnyScenario, BenchScenario, Scenario, ScenarioError};
 
 /// A scenario of required keys alone.
 const MINIMAL: &str = r#"schema = 1
@@ -30,28 +32,61 @@ force_n = 150
 feed_mm_per_s = 20
 "#;
 
+/// A bench scenario of required keys alone.
+const MINIMAL_BENCH: &str = r#"schema = 1
+kind = "bench"
+title = "minimal"
+[device]
+model = "../models/device.toml"
+[bench]
+duration_s = 6
+[load]
+kind = "free"
+"#;
+
 fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")
 }
 
 /// Reads a text as if it stood in scenarios/test.toml.
-fn read(text: &str) -> Result<Scenario, ScenarioError> {
+fn read_any(text: &str) -> Result<AnyScenario, ScenarioError> {
     from_text(&scenarios().join("test.toml"), text)
+}
+
+/// Reads a text that is a cell if it is anything.
+fn read(text: &str) -> Result<Scenario, ScenarioError> {
+    read_any(text).map(|scenario| match scenario {
+        AnyScenario::Cell(cell) => *cell,
+        AnyScenario::Bench(bench) => panic!("a bench: {bench:?}"),
+    })
+}
+
+/// Reads a text that is a bench if it is anything.
+fn read_bench(text: &str) -> Result<BenchScenario, ScenarioError> {
+    read_any(text).map(|scenario| match scenario {
+        AnyScenario::Bench(bench) => *bench,
+        AnyScenario::Cell(cell) => panic!("a cell: {cell:?}"),
+    })
+}
+
+/// A text with one piece replaced.
+fn replaced(text: &str, from: &str, to: &str) -> String {
+    assert_eq!(
+        text.matches(from).count(),
+        1,
+        "{from:?} must stand once in the text"
+    );
+    text.replace(from, to)
 }
 
 /// The minimal scenario with one piece of its text replaced.
 fn edited(from: &str, to: &str) -> String {
-    assert_eq!(
-        MINIMAL.matches(from).count(),
-        1,
-        "{from:?} must stand once in the text"
-    );
-    MINIMAL.replace(from, to)
+    replaced(MINIMAL, from, to)
 }
 
 /// The one line that a text is refused with.
 fn message(text: &str) -> String {
-    let message = match read(text) {
+    let message = match read_any(text) {
         Ok(scenario) => panic!("accepted: {scenario:?}"),
         Err(error) => error.to_string(),
     };
@@ -59,12 +94,17 @@ fn message(text: &str) -> String {
     message
 }
 
-/// Refuses `to` in place of `from`, at a line and column, with these words.
-fn refused(from: &str, to: &str, place: &str, words: &str) {
-    let message = message(&edited(from, to));
+/// Refuses a text at a line and column, with these words.
+fn text_refused(text: &str, place: &str, words: &str) {
+    let message = message(text);
     let expected = format!("scenarios/test.toml:{place}: {words}");
     assert!(
         message.ends_with(&expected),
         "{message}\nexpected {expected}"
     );
+}
+
+/// Refuses `to` in place of `from` in the minimal scenario.
+fn refused(from: &str, to: &str, place: &str, words: &str) {
+    text_refused(&edited(from, to), place, words);
 }

@@ -23,7 +23,8 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 25] = [
+const UNITS: [Unit; 30] = [
+    unit("_mv_per_v", "mV/V", Divide(1e3)),
     unit("_n_s_per_m", "N s/m", Divide(1.0)),
     unit("_n_per_m", "N/m", Divide(1.0)),
     unit("_n_m", "N m", Divide(1.0)),
@@ -38,7 +39,10 @@ const UNITS: [Unit; 25] = [
     unit("_cm3", "cm3", Divide(1e6)),
     unit("_mm2", "mm2", Divide(1e6)),
     unit("_w_per_k", "W/K", Divide(1.0)),
+    unit("_ohm", "ohm", Divide(1.0)),
     unit("_um", "um", Divide(1e6)),
+    unit("_uf", "uF", Divide(1e6)),
+    unit("_pa", "Pa", Divide(1.0)),
     unit("_mm", "mm", Divide(1e3)),
     unit("_deg", "deg", Multiply(PI / 180.0)),
     unit("_hz", "Hz", Divide(1.0)),
@@ -48,6 +52,7 @@ const UNITS: [Unit; 25] = [
     unit("_m", "m", Divide(1.0)),
     unit("_s", "s", Divide(1.0)),
     unit("_k", "K", Divide(1.0)),
+    unit("_v", "V", Divide(1.0)),
     // A pure number: every key ends with nothing.
     unit("", "", Divide(1.0)),
 ];
@@ -130,6 +135,14 @@ mod tests {
             ("gas_temperature_k", 293.15, "K", 293.15),
             ("gas_constant_j_per_kg_k", 287.05, "J/(kg K)", 287.05),
             ("gravity_m_per_s2", -9.81, "m/s2", -9.81),
+            ("rated_output_mv_per_v", 2.0, "mV/V", 2e-3),
+            ("resistance_ohm", 1e4, "ohm", 1e4),
+            ("capacitance_uf", 10.0, "uF", 1e-5),
+            ("standard_deviation_pa", 600.0, "Pa", 600.0),
+            ("seal_presliding_displacement_um", 50.0, "um", 5e-5),
+            ("wall_conductance_w_per_k", 0.5, "W/K", 0.5),
+            ("excitation_v", 5.0, "V", 5.0),
+            ("noise_steps", 2.0, "", 2.0),
             ("damping_ratio", 0.7, "", 0.7),
             ("device_substeps", 2.0, "", 2.0),
         ] {

@@ -148,9 +148,8 @@ impl Carrier for Outside {
     }
 
     fn touches(&self, _: f64, motion: PistonMotion) -> bool {
-        self.load.is_some_and(|(position, law)| {
-            law.pushes(motion.stroke - position, motion.speed)
-        })
+        self.load
+            .is_some_and(|(position, law)| law.pushes(motion.stroke - position, motion.speed))
     }
 
     fn rate(&self) -> f64 {

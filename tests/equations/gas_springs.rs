@@ -30,12 +30,16 @@ fn errors_of_a_swing(process: GasProcess, exponent: f64) -> [f64; 3] {
         device.advance_carried(&mut state, &mut motion, 0.0, &Outside::NOTHING, 1e-3, 1);
         lowest = lowest.min(motion.stroke);
         let now = volumes(device.parameters(), motion.stroke);
-        let (pressures, temperatures) = (device.pressures(&state, motion.stroke), device.temperatures(&state));
+        let (pressures, temperatures) = (
+            device.pressures(&state, motion.stroke),
+            device.temperatures(&state),
+        );
         let mut work = 0.0;
         for i in 0..2 {
             let ratio = now[i] / first[i];
             errors[0] = errors[0].max((pressures[i] / start[i] * ratio.powf(exponent) - 1.0).abs());
-            errors[1] = errors[1].max((temperatures[i] / 293.15 * ratio.powf(exponent - 1.0) - 1.0).abs());
+            errors[1] =
+                errors[1].max((temperatures[i] / 293.15 * ratio.powf(exponent - 1.0) - 1.0).abs());
             work += if exponent == 1.0 {
                 start[i] * first[i] * ratio.ln()
             } else {
@@ -53,10 +57,21 @@ fn errors_of_a_swing(process: GasProcess, exponent: f64) -> [f64; 3] {
 // Catches: k of one for an air that heats, work with the wrong sign in the energy, a ledger that misses a chamber.
 #[test]
 fn closed_chambers_follow_p_v_and_p_v_to_the_k_and_do_the_work_of_the_closed_form() {
-    for (name, process, exponent) in [("isothermal", GasProcess::Isothermal, 1.0), ("adiabatic", ADIABATIC, K)] {
+    for (name, process, exponent) in [
+        ("isothermal", GasProcess::Isothermal, 1.0),
+        ("adiabatic", ADIABATIC, K),
+    ] {
         let [pressure, temperature, work] = errors_of_a_swing(process, exponent);
-        reached(&format!("{name} compression, p V^{exponent}"), pressure, 1e-4);
-        reached(&format!("{name} compression, temperature"), temperature, 1e-4);
+        reached(
+            &format!("{name} compression, p V^{exponent}"),
+            pressure,
+            1e-4,
+        );
+        reached(
+            &format!("{name} compression, temperature"),
+            temperature,
+            1e-4,
+        );
         reached(&format!("{name} compression, work"), work, 1e-4);
     }
 }
@@ -83,17 +98,26 @@ fn much_wall_heat_comes_back_to_isothermal_as_one_over_g() {
     let mut before = f64::NAN;
     for conductance in [6.25, 12.5, 25.0, 50.0, 100.0] {
         let (found, error) = departure(conductance);
-        println!("G = {conductance} W/K: {found:.2e} above isothermal, first order off by {error:.1e}");
+        println!(
+            "G = {conductance} W/K: {found:.2e} above isothermal, first order off by {error:.1e}"
+        );
         assert!(found > 0.0);
         if before.is_finite() {
-            assert!((before / found - 2.0).abs() < 0.1, "halved by twice the conductance");
+            assert!(
+                (before / found - 2.0).abs() < 0.1,
+                "halved by twice the conductance"
+            );
         }
         before = found;
     }
     let (_, error) = departure(100.0);
     // Twice over, the second order out: what is left of the first-order law.
     let extrapolated = 2.0 * error - departure(50.0).1;
-    reached("-p V' / (G T), extrapolated to large G", extrapolated.abs(), 1e-3);
+    reached(
+        "-p V' / (G T), extrapolated to large G",
+        extrapolated.abs(),
+        1e-3,
+    );
 }
 
 /// Natural frequency of a small free swing [rad/s] from its zero crossings over many periods.
@@ -113,8 +137,13 @@ fn natural_frequency(process: GasProcess, first: f64) -> f64 {
             let mut s = a / (a - b);
             for _ in 0..20 {
                 let (s2, s3) = (s * s, s * s * s);
-                let value = a * (2.0 * s3 - 3.0 * s2 + 1.0) + va * (s3 - 2.0 * s2 + s) + b * (3.0 * s2 - 2.0 * s3) + vb * (s3 - s2);
-                let slope = (6.0 * s2 - 6.0 * s) * (a - b) + va * (3.0 * s2 - 4.0 * s + 1.0) + vb * (3.0 * s2 - 2.0 * s);
+                let value = a * (2.0 * s3 - 3.0 * s2 + 1.0)
+                    + va * (s3 - 2.0 * s2 + s)
+                    + b * (3.0 * s2 - 2.0 * s3)
+                    + vb * (s3 - s2);
+                let slope = (6.0 * s2 - 6.0 * s) * (a - b)
+                    + va * (3.0 * s2 - 4.0 * s + 1.0)
+                    + vb * (3.0 * s2 - 2.0 * s);
                 s -= value / slope;
             }
             crossings.push((f64::from(ms - 1) + s) * 1e-3);
@@ -128,16 +157,27 @@ fn natural_frequency(process: GasProcess, first: f64) -> f64 {
 // Catches: a stiffness of one chamber only, k left out or applied to an isothermal chamber, the mass counted twice.
 #[test]
 fn the_piston_swings_on_two_air_springs_at_its_natural_frequency() {
-    for (name, process, exponent) in [("isothermal", GasProcess::Isothermal, 1.0), ("adiabatic", ADIABATIC, K)] {
+    for (name, process, exponent) in [
+        ("isothermal", GasProcess::Isothermal, 1.0),
+        ("adiabatic", ADIABATIC, K),
+    ] {
         for first in [1.5e5, 4e5] {
             let device = Device::new(closed(process));
             let areas = device.parameters().areas();
             let [v1, v2] = volumes(device.parameters(), 0.02);
-            let stiffness = first * areas.extending.powi(2) / v1 + balancing(&device, first) * areas.retracting.powi(2) / v2;
+            let stiffness = first * areas.extending.powi(2) / v1
+                + balancing(&device, first) * areas.retracting.powi(2) / v2;
             let expected = (exponent * stiffness / 4.0).sqrt();
             let found = natural_frequency(process, first);
-            println!("{name}, {first} Pa: {:.4} Hz", found / std::f64::consts::TAU);
-            reached("natural frequency on two air springs", (found / expected - 1.0).abs(), 1e-4);
+            println!(
+                "{name}, {first} Pa: {:.4} Hz",
+                found / std::f64::consts::TAU
+            );
+            reached(
+                "natural frequency on two air springs",
+                (found / expected - 1.0).abs(),
+                1e-4,
+            );
         }
     }
 }

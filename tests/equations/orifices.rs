@@ -26,9 +26,15 @@ fn eqs_9_to_11_are_the_paper_s_wherever_it_has_a_value_but_next_to_equal_pressur
             laminar = laminar.max(error);
         }
     }
-    println!("above a ratio of {LAMINAR_RATIO} the flow is up to {laminar:.1e} of the choked flow less than eq. (10)");
+    println!(
+        "above a ratio of {LAMINAR_RATIO} the flow is up to {laminar:.1e} of the choked flow less than eq. (10)"
+    );
     assert!(laminar < 0.02);
-    reached("flow against eqs. (9) to (11), of the choked flow", largest, 1e-12);
+    reached(
+        "flow against eqs. (9) to (11), of the choked flow",
+        largest,
+        1e-12,
+    );
 }
 
 // Catches: a critical ratio that is not where the subsonic branch peaks, so that the flow jumps or decreases.
@@ -63,7 +69,9 @@ fn eq_9_has_no_value_backwards_and_the_regulator_relieves() {
         device.advance(&mut state, 1e5, still(0.04), 1e-3, 1);
     }
     let gauge = device.pressures(&state, 0.04)[0] - 101_325.0;
-    println!("set pressure from 3 to 1 bar: chamber 1 at {gauge:.3} Pa; with eq. (9) as printed it would stay at 3 bar");
+    println!(
+        "set pressure from 3 to 1 bar: chamber 1 at {gauge:.3} Pa; with eq. (9) as printed it would stay at 3 bar"
+    );
     reached("relieved to 1 bar", (gauge / 1e5 - 1.0).abs(), 1e-9);
     assert!(state.air.left > 1e-4 && state.air.entered == 0.0);
 }
@@ -75,8 +83,14 @@ fn eq_6_flows_of_chamber_2_that_the_paper_does_not_give_are_those_of_the_exhaust
     let valve = device.parameters().valve();
     let (supply, exhaust) = (valve.supply_conductance, valve.exhaust_conductance);
     for (position, areas) in [
-        (idc_cell::physics::valve::ValvePosition::Extend, [supply, exhaust]),
-        (idc_cell::physics::valve::ValvePosition::Retract, [exhaust, supply]),
+        (
+            idc_cell::physics::valve::ValvePosition::Extend,
+            [supply, exhaust],
+        ),
+        (
+            idc_cell::physics::valve::ValvePosition::Retract,
+            [exhaust, supply],
+        ),
     ] {
         let mut state = filled(&device, 0.02, [5e5, 5e5], 0.0);
         state.valve = position;
@@ -86,7 +100,10 @@ fn eq_6_flows_of_chamber_2_that_the_paper_does_not_give_are_those_of_the_exhaust
             let flow = (before[i] - state.air.masses[i]) / 1e-6;
             let choked = printed_flow(areas[i], 5e5, 1e5);
             // Over a microsecond the pressure falls by a few parts in a million.
-            assert!((flow / choked - 1.0).abs() < 1e-5, "{position:?} {i}: {flow}");
+            assert!(
+                (flow / choked - 1.0).abs() < 1e-5,
+                "{position:?} {i}: {flow}"
+            );
         }
     }
 }

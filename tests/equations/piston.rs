@@ -8,7 +8,13 @@ use idc_cell::physics::push_only::PushOnly;
 use super::devices::{Outside, filled, reached, rt, still, usual, volumes};
 
 /// Advances by whole milliseconds under one command.
-fn rest(device: &Device, outside: &Outside, start: PistonMotion, set: f64, ms: usize) -> PistonMotion {
+fn rest(
+    device: &Device,
+    outside: &Outside,
+    start: PistonMotion,
+    set: f64,
+    ms: usize,
+) -> PistonMotion {
     let mut state = device.at_rest(start.stroke, 0.0);
     let mut motion = start;
     for _ in 0..ms {
@@ -27,7 +33,11 @@ fn eq_1_as_printed_pushes_a_device_that_is_open_to_the_air_by_23_n() {
     println!("eq. (1) as printed pushes an open device with {printed:.2} N");
     assert!((printed - 22.9).abs() < 0.05, "{printed}");
     let end = rest(&device, &Outside::NOTHING, still(0.025), 0.0, 2000);
-    reached("open device, drift in 2 s over stroke", (end.stroke / 0.025 - 1.0).abs(), 1e-12);
+    reached(
+        "open device, drift in 2 s over stroke",
+        (end.stroke / 0.025 - 1.0).abs(),
+        1e-12,
+    );
     // Told so from outside, the piston leaves: the test would see it.
     let pushed = rest(&device, &Outside::force(printed), still(0.025), 0.0, 2000);
     assert!(pushed.stroke > 0.05);
@@ -49,7 +59,11 @@ fn eq_1_f_act_is_zero_where_the_contact_force_is_not_and_levels_are_gauge() {
         largest = largest.max((contact / (set * area) - 1.0).abs());
         assert!(f_act.abs() < 1e-6 * contact);
     }
-    reached("contact force at rest against gauge pressure times area", largest, 1e-9);
+    reached(
+        "contact force at rest against gauge pressure times area",
+        largest,
+        1e-9,
+    );
 }
 
 // Catches: a fixed sign of the weight in the pressure map (78.5 N between up and down).
@@ -66,12 +80,26 @@ fn eq_1_weight_goes_with_the_tilt() {
             ..Outside::load_cell(0.03)
         };
         let start = still((4.0 * along).min(0.0) / 1e6);
-        let end = rest(&device, &outside, start, map.set_pressure(200.0, along), 8000);
+        let end = rest(
+            &device,
+            &outside,
+            start,
+            map.set_pressure(200.0, along),
+            8000,
+        );
         largest = largest.max((outside.contact(end) / 200.0 - 1.0).abs());
-        let as_printed = rest(&device, &outside, start, map.set_pressure(200.0, -9.81), 8000);
+        let as_printed = rest(
+            &device,
+            &outside,
+            start,
+            map.set_pressure(200.0, -9.81),
+            8000,
+        );
         printed_error = printed_error.max((outside.contact(as_printed) - 200.0).abs());
     }
-    println!("with the sign of eq. (1) whatever the tilt, force is off by up to {printed_error:.1} N");
+    println!(
+        "with the sign of eq. (1) whatever the tilt, force is off by up to {printed_error:.1} N"
+    );
     assert!((printed_error - 78.48).abs() < 0.01, "{printed_error}");
     reached("200 N asked for at five tilts", largest, 1e-9);
 }
@@ -79,7 +107,13 @@ fn eq_1_weight_goes_with_the_tilt() {
 // Catches: end stops lost from the equation of motion.
 #[test]
 fn eq_1_without_stops_runs_past_the_stroke() {
-    let stopped = rest(&Device::new(usual()), &Outside::NOTHING, still(0.0), 1.8e5, 4000);
+    let stopped = rest(
+        &Device::new(usual()),
+        &Outside::NOTHING,
+        still(0.0),
+        1.8e5,
+        4000,
+    );
     let endless = DeviceParameters {
         end_stop: PushOnly {
             stiffness: 0.0,
@@ -87,7 +121,13 @@ fn eq_1_without_stops_runs_past_the_stroke() {
         },
         ..usual()
     };
-    let unstopped = rest(&Device::new(endless), &Outside::NOTHING, still(0.0), 1.8e5, 4000);
+    let unstopped = rest(
+        &Device::new(endless),
+        &Outside::NOTHING,
+        still(0.0),
+        1.8e5,
+        4000,
+    );
     println!(
         "1.8 bar, no load: {:.2} mm with stops, {:.2} mm as printed, of 50 mm",
         stopped.stroke * 1e3,
@@ -101,7 +141,10 @@ fn eq_1_without_stops_runs_past_the_stroke() {
 #[test]
 fn eqs_2_to_4_with_the_specific_gas_constant_and_both_volumes() {
     let density = Gas::default().mass(101_325.0, 1.0);
-    assert!((density - 1.204).abs() < 5e-4, "air at 20 degrees Celsius: {density} kg/m3");
+    assert!(
+        (density - 1.204).abs() < 5e-4,
+        "air at 20 degrees Celsius: {density} kg/m3"
+    );
     assert!((101_325.0 / (8.314 * 293.15) / density - 34.5).abs() < 0.1);
     let device = Device::new(usual());
     let mut largest = 0.0f64;
@@ -111,10 +154,15 @@ fn eqs_2_to_4_with_the_specific_gas_constant_and_both_volumes() {
         state.air.masses = [2e-4, 3e-4];
         let pressures = device.pressures(&state, stroke);
         for i in 0..2 {
-            largest = largest.max((pressures[i] * by_hand[i] / (state.air.masses[i] * rt()) - 1.0).abs());
+            largest =
+                largest.max((pressures[i] * by_hand[i] / (state.air.masses[i] * rt()) - 1.0).abs());
         }
     }
-    reached("P V = m R T of both chambers along the stroke", largest, 1e-14);
+    reached(
+        "P V = m R T of both chambers along the stroke",
+        largest,
+        1e-14,
+    );
 }
 
 // Catches: the sign of P dV/dt, a flow into the wrong chamber, the flow of eq. (3) taken for rho V.
@@ -126,13 +174,21 @@ fn eqs_3_5_and_6_hold_for_each_chamber_while_it_moves() {
     let conductances = parameters.valve();
     let growth = [parameters.areas().extending, -parameters.areas().retracting];
     let (h, mut largest, mut flow_error) = (1e-6, 0.0f64, 0.0f64);
-    for (speed, pressures) in [(0.2, [1.6e5, 2.4e5]), (-0.3, [3.3e5, 0.9e5]), (0.1, [2e5, 1.2e5])] {
+    for (speed, pressures) in [
+        (0.2, [1.6e5, 2.4e5]),
+        (-0.3, [3.3e5, 0.9e5]),
+        (0.1, [2e5, 1.2e5]),
+    ] {
         let set = 2e5;
         let mut state = filled(&device, 0.02, pressures, set);
         let samples: Vec<_> = (0..3)
             .map(|i| {
                 let stroke = 0.02 + speed * h * f64::from(i);
-                let sample = (device.pressures(&state, stroke), state.air.masses, volumes(parameters, stroke));
+                let sample = (
+                    device.pressures(&state, stroke),
+                    state.air.masses,
+                    volumes(parameters, stroke),
+                );
                 device.advance(&mut state, set, PistonMotion { stroke, speed }, h, 1);
                 sample
             })
@@ -151,5 +207,9 @@ fn eqs_3_5_and_6_hold_for_each_chamber_while_it_moves() {
         }
     }
     reached("dP/dt against eq. (6), both chambers", largest, 1e-5);
-    reached("d(rho V)/dt against the flow, eqs. (3) and (5)", flow_error, 1e-5);
+    reached(
+        "d(rho V)/dt against the flow, eqs. (3) and (5)",
+        flow_error,
+        1e-5,
+    );
 }

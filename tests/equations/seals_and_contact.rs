@@ -39,8 +39,16 @@ fn seals_slide_steadily_at_coulomb_plus_viscous_friction() {
     for _ in 0..3000 {
         device.advance_carried(&mut state, &mut motion, 0.0, &outside, 1e-3, 1);
     }
-    reached("sliding speed (F - F_c) / b", (motion.speed / ((pull - 10.0) / 50.0) - 1.0).abs(), 1e-4);
-    reached("friction while sliding", (-device.seal_force(&state, motion.speed) / pull - 1.0).abs(), 1e-4);
+    reached(
+        "sliding speed (F - F_c) / b",
+        (motion.speed / ((pull - 10.0) / 50.0) - 1.0).abs(),
+        1e-4,
+    );
+    reached(
+        "friction while sliding",
+        (-device.seal_force(&state, motion.speed) / pull - 1.0).abs(),
+        1e-4,
+    );
     // Let go of: v = (v_0 + F_c/b) exp(-b t/M) - F_c/b, then it sticks.
     let (start, coast) = (motion.speed, Outside::force(rod));
     let stops_after = 4.0 / 50.0 * (start * 50.0 / 10.0 + 1.0f64).ln();
@@ -76,7 +84,7 @@ fn seals_hold_to_static_friction_and_bend_before_it_in_closed_form() {
     // Damped and without Stribeck's fall the pull is quasi-static: F = F_c (1 - exp(-x/z_p)).
     let plain = SealFriction {
         static_force: 10.0,
-        viscous: 500.0,
+        viscous: 2e3,
         ..SEALS
     };
     let mut largest = 0.0f64;
@@ -91,40 +99,74 @@ fn seals_hold_to_static_friction_and_bend_before_it_in_closed_form() {
     for (share, slides) in [(0.95, false), (1.01, true)] {
         let (_, end) = pulled(SEALS, 14.0 * share, 2.0);
         let moved = end.stroke - 0.02;
-        println!("pulled with {share} of static friction: {:.3} mm, {:.2e} m/s", moved * 1e3, end.speed);
+        println!(
+            "pulled with {share} of static friction: {:.3} mm, {:.2e} m/s",
+            moved * 1e3,
+            end.speed
+        );
         assert_eq!(moved > 1e-3, slides, "{share}: {moved}");
     }
 }
 
-/// Contact time [s], speed after over speed before, and peak force [N] of a tap at a speed on a load without gas.
-fn tap(law: PushOnly, speed: f64) -> (f64, f64, f64) {
-    let (device, mut state, rod) = empty(SealFriction::NONE);
-    let outside = Outside {
-        force: rod,
-        load: Some((0.021, law)),
-        rate: (law.stiffness / 4.0).sqrt(),
-    };
-    let mut motion = PistonMotion {
-        stroke: 0.02,
-        speed,
-    };
-    let (mut peak, mut time) = (0.0f64, 0.0);
-    while time < 0.001 / speed + 0.1 {
-        device.advance_carried(&mut state, &mut motion, 0.0, &outside, 1e-4, 1);
-        time += 1e-4;
-        peak = peak.max(outside.contact(motion));
-    }
-    // Free flight both before and after; the spring may be left while still pressed in.
-    let touch = 0.001 / speed;
-    (time - touch, motion.speed / speed, peak.max((motion.stroke - 0.021) / motion.speed))
-        .into_contact(motion, law, speed)
+/// Where a mass of 4 kg is [m] that meets a load at 0.021 m with a speed [m/s], `time` [s] later.
+///
+/// In contact d = v/w_d exp(-a t) sin(w_d t), a = c/2M, w_d^2 = k/M - a^2, until k d + c d' = 0 at w_d t = pi - 2 asin(a/w); then free flight.
+fn tapped(law: PushOnly, speed: f64, time: f64) -> f64 {
+    let (natural, decay) = ((law.stiffness / 4.0).sqrt(), law.damping / 8.0);
+    let damped = (natural * natural - decay * decay).sqrt();
+    let leaves = (std::f64::consts::PI - 2.0 * (decay / natural).asin()) / damped;
+    let at = time.min(leaves);
+    let (sine, cosine) = (damped * at).sin_cos();
+    let shrunk = speed * (-decay * at).exp();
+    let left = shrunk * (cosine - decay / damped * sine);
+    0.021 + shrunk / damped * sine + left * (time - at)
 }
 
-trait IntoContact {
-    fn into_contact(self, motion: PistonMotion, law: PushOnly, speed: f64) -> (f64, f64, f64);
-}
-impl IntoContact for (f64, f64, f64) {
-    fn into_contact(self, _: PistonMotion, _: PushOnly, _: f64) -> (f64, f64, f64) {
-        self
+// Catches: a contact that pulls, is left or met a sub-step late, or whose damping or mass is wrong.
+#[test]
+fn a_tap_lasts_half_a_period_and_bounces_in_closed_form() {
+    for damping in [0.0, 400.0] {
+        let law = PushOnly {
+            stiffness: 1.5e5,
+            damping,
+        };
+        let (device, mut state, rod) = empty(SealFriction::NONE);
+        let outside = Outside {
+            force: rod,
+            load: Some((0.021, law)),
+            rate: (1.5e5f64 / 4.0).sqrt(),
+        };
+        // Meets the load within a step, at 4.16 ms.
+        let speed = 0.24;
+        let mut motion = PistonMotion {
+            stroke: 0.02,
+            speed,
+        };
+        let deepest = tapped(law, speed, 8.1e-3) - 0.021;
+        let mut largest = 0.0f64;
+        for ms in 1..=60 {
+            device.advance_carried(&mut state, &mut motion, 0.0, &outside, 1e-3, 1);
+            let since = f64::from(ms) * 1e-3 - 0.001 / speed;
+            let expected = match since > 0.0 {
+                true => tapped(law, speed, since),
+                false => 0.021 + speed * since,
+            };
+            largest = largest.max((motion.stroke - expected).abs() / deepest);
+        }
+        println!(
+            "tap at {speed} m/s, damping {damping}: leaves at {:.5} of its speed",
+            -motion.speed / speed
+        );
+        reached("path of a tap, of its depth", largest, 1e-4);
+        if damping == 0.0 {
+            // Extrapolated back along the free flight: when it left, after half a period.
+            let left_at = 0.06 - (0.021 - motion.stroke) / -motion.speed;
+            let half_period = std::f64::consts::PI * (4.0f64 / 1.5e5).sqrt();
+            reached(
+                "half-period of a tap",
+                ((left_at - 0.001 / speed) / half_period - 1.0).abs(),
+                1e-4,
+            );
+        }
     }
 }

@@ -44,7 +44,10 @@ fn choked_filling_is_linear_in_time_and_hotter_by_up_to_k_without_heat_exchange(
     let volume = volumes(&usual(), STROKE)[0];
     let choked = printed_flow(2.5e-6 * 0.95, supply, 0.0);
     let (mut hottest, mut limit) = (0.0f64, 0.0);
-    for (name, process, rule) in [("isothermal", GasProcess::Isothermal, 1.0), ("adiabatic", ADIABATIC, K)] {
+    for (name, process, rule) in [
+        ("isothermal", GasProcess::Isothermal, 1.0),
+        ("adiabatic", ADIABATIC, K),
+    ] {
         let device = device(process);
         let mut state = filled(&device, STROKE, [start, 101_325.0], 6e5);
         let rise = rt() * choked / volume;
@@ -55,7 +58,11 @@ fn choked_filling_is_linear_in_time_and_hotter_by_up_to_k_without_heat_exchange(
         });
         hottest = hottest.max(device.temperatures(&state)[0] / T_0);
         limit = rule;
-        reached(&format!("choked filling, {name}, {:.0} ms", 1e3 * duration), largest, 1e-4);
+        reached(
+            &format!("choked filling, {name}, {:.0} ms", 1e3 * duration),
+            largest,
+            1e-4,
+        );
     }
     println!("adiabatic filling heats to {hottest:.3} T_0, between 1 and k = {limit}");
     assert!(hottest > 1.3 && hottest < limit);
@@ -71,17 +78,30 @@ fn choked_venting_is_an_exponential_or_a_power_of_time() {
     let isothermal = device(GasProcess::Isothermal);
     let mut state = filled(&isothermal, STROKE, [101_325.0, start], 0.0);
     let duration = tau * (start / end).ln();
-    let largest = error(&isothermal, &mut state, 1, 0.0, duration, |t| (start * (-t / tau).exp(), T_0));
-    reached(&format!("choked venting, isothermal, {:.0} ms", 1e3 * duration), largest, 1e-4);
+    let largest = error(&isothermal, &mut state, 1, 0.0, duration, |t| {
+        (start * (-t / tau).exp(), T_0)
+    });
+    reached(
+        &format!("choked venting, isothermal, {:.0} ms", 1e3 * duration),
+        largest,
+        1e-4,
+    );
 
     let adiabatic = device(ADIABATIC);
     let mut state = filled(&adiabatic, STROKE, [101_325.0, start], 0.0);
     let root = |t: f64| 1.0 + 0.5 * (K - 1.0) * t / tau;
     let duration = ((start / end).powf(0.5 * (K - 1.0) / K) - 1.0) * tau / (0.5 * (K - 1.0));
     let largest = error(&adiabatic, &mut state, 1, 0.0, duration, |t| {
-        (start * root(t).powf(-2.0 * K / (K - 1.0)), T_0 * root(t).powi(-2))
+        (
+            start * root(t).powf(-2.0 * K / (K - 1.0)),
+            T_0 * root(t).powi(-2),
+        )
     });
-    reached(&format!("choked venting, adiabatic, {:.0} ms", 1e3 * duration), largest, 1e-4);
+    reached(
+        &format!("choked venting, adiabatic, {:.0} ms", 1e3 * duration),
+        largest,
+        1e-4,
+    );
     assert!(adiabatic.temperatures(&state)[1] < 0.75 * T_0);
 }
 
@@ -100,11 +120,16 @@ fn a_closed_chamber_comes_to_its_wall_with_m_c_v_over_g() {
         for ms in 1..=200 {
             device.advance(&mut state, 0.0, still(STROKE), 1e-3, 1);
             for i in 0..2 {
-                let expected = T_0 + above[i] * (-conductance * f64::from(ms) * 1e-3 / heats[i]).exp();
+                let expected =
+                    T_0 + above[i] * (-conductance * f64::from(ms) * 1e-3 / heats[i]).exp();
                 let found = device.temperatures(&state)[i];
                 largest = largest.max((found - expected).abs() / above[i].abs());
             }
         }
     }
-    reached("temperature of a closed chamber against exp(-G t / (m c_v))", largest, 1e-4);
+    reached(
+        "temperature of a closed chamber against exp(-G t / (m c_v))",
+        largest,
+        1e-4,
+    );
 }

@@ -25,7 +25,9 @@ LAMINAR_RATIO = 0.999
 # Modes of a contact. In RELEASED it is still pressed in, but k d + c d_dot < 0, so it does not push.
 OPEN, PUSHING, RELEASED = range(3)
 
-OPTIONAL_DEVICE_KEYS = {"gas_process", "wall_conductance_w_per_k"}
+# What is not modelled here, and must be left at zero by the device or out of the scenario.
+ZERO_DEVICE_KEYS = ("seal_coulomb_force_n", "seal_static_force_n", "seal_viscous_coefficient_n_s_per_m", "hose_length_m")
+BENCH_KEYS = {"duration_s", "gravity_along_extension_m_per_s2"}
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,7 @@ class Bench:
         self.heat_ratio = device["gas_heat_capacity_ratio"]
         self.temperature = device["gas_temperature_k"]
         self.atmosphere = device["atmosphere_pa_absolute"]
-        process = device.get("gas_process", "isothermal")
+        process = device["gas_process"]
         if process not in ("isothermal", "wall_heat"):
             raise SystemExit(f"bench_reference: gas_process {process!r} is not modelled here")
         self.wall_heat = process == "wall_heat"
@@ -192,7 +194,7 @@ class Bench:
     def flow(self, regime: int, conductance: float, outside: float, inside: float, temperature: float) -> float:
         """Mass flow into a chamber [kg/s], eqs. (9) and (10) by the branch given, in either direction."""
         upstream = max(outside, inside)
-        fall = (outside - inside) / upstream
+        fall = pressure_fall(outside, inside)
         if regime == LAMINAR:
             shape = self.laminar_slope * fall
         else:
@@ -286,7 +288,12 @@ def read_bench(path: Path) -> Bench:
         raise SystemExit(f"bench_reference: {path} is not of kind bench")
     device = tomllib.loads((path.parent / scenario["device"]["model"]).read_text())["device"]
     override = scenario["device"].get("override", {})
-    unknown = override.keys() - device.keys() - OPTIONAL_DEVICE_KEYS
+    unknown = override.keys() - device.keys()
     if unknown:
         raise SystemExit(f"bench_reference: {path} overrides {', '.join(sorted(unknown))}, which the device does not have")
-    return Bench(scenario, device | override)
+    device |= override
+    refused = [key for key in ZERO_DEVICE_KEYS if device[key] != 0]
+    refused += sorted(scenario["bench"].keys() - BENCH_KEYS) + sorted(scenario.keys() & {"hand"})
+    if refused:
+        raise SystemExit(f"bench_reference: {path} asks for {', '.join(refused)}, not modelled here")
+    return Bench(scenario, device)

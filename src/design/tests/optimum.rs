@@ -34,17 +34,36 @@ fn the_planted_optimum_is_found_whatever_the_seed() {
 #[test]
 fn what_binds_is_named_with_its_price() {
     let result = search(&single(), &Surrogate).unwrap();
-    let bounds: Vec<_> = result.active_bounds.iter().map(|b| (b.variable.as_str(), b.side)).collect();
+    let bounds: Vec<_> = result
+        .active_bounds
+        .iter()
+        .map(|b| (b.variable.as_str(), b.side))
+        .collect();
     assert_eq!(bounds, [("supply_orifice_mm2", "max")]);
     // A tenth more orifice, alone, and the peak's limit a tenth higher with all chosen anew: both in closed form.
     let best = least_variation(200.0);
     let wider = 100.0 * (variation(6.6, 4.0, 15.0, 40.0) / best - 1.0);
-    near(result.active_bounds[0].objective_change_percent.unwrap(), wider, 0.01);
-    let limits: Vec<_> = result.active_limits.iter().map(|limit| limit.limit.as_str()).collect();
+    near(
+        result.active_bounds[0].objective_change_percent.unwrap(),
+        wider,
+        0.01,
+    );
+    let limits: Vec<_> = result
+        .active_limits
+        .iter()
+        .map(|limit| limit.limit.as_str())
+        .collect();
     assert_eq!(limits, ["impact_peak_n at most 200 N"]);
     let looser = 100.0 * (least_variation(220.0) / best - 1.0);
-    near(result.active_limits[0].objective_change_percent.unwrap(), looser, 0.02);
-    let smaller = result.sensitivities.iter().find(|s| s.variable == "bore_mm" && s.value == 32.0);
+    near(
+        result.active_limits[0].objective_change_percent.unwrap(),
+        looser,
+        0.02,
+    );
+    let smaller = result
+        .sensitivities
+        .iter()
+        .find(|s| s.variable == "bore_mm" && s.value == 32.0);
     assert_eq!(smaller.unwrap().breaks, ["force_n"]);
     assert_eq!(result.improving_steps(0.1).count(), 0);
 }
@@ -52,14 +71,21 @@ fn what_binds_is_named_with_its_price() {
 #[test]
 fn candidates_that_fail_are_counted_by_reason() {
     let result = search(&single(), &Surrogate).unwrap();
-    assert!(result.infeasible["tool left the workpiece"] > 0, "{:?}", result.infeasible);
+    assert!(
+        result.infeasible["tool left the workpiece"] > 0,
+        "{:?}",
+        result.infeasible
+    );
     assert!(result.infeasible["force_n up to 1000 N"] > 0);
 }
 
 #[test]
 fn the_same_study_gives_the_same_bytes_on_any_number_of_threads() {
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| {
             let result = search(STUDY, &Surrogate).unwrap();
             let svg = crate::design::front_svg(&result).unwrap().unwrap();
@@ -79,10 +105,16 @@ fn a_catalogue_of_two_neighbouring_optima_is_not_left_to_chance() {
     struct Valley;
     impl Evaluate for Valley {
         fn evaluate(&self, design: &Design) -> Result<Outcome, EvaluateError> {
-            let [hose, length, volume] =
-                ["hose_diameter_mm", "hose_length_m", "dead_volume_cm3"].map(|k| design.get(k).unwrap());
-            let value = 1.0 + 0.1 * (hose - 6.0).abs() + 40.0 * (length - 0.2 * hose).powi(2) + (volume - 10.0 * length).powi(2) / 25.0;
-            Ok(super::fronts::outcome(&[("coefficient_of_variation_percent", value)]))
+            let [hose, length, volume] = ["hose_diameter_mm", "hose_length_m", "dead_volume_cm3"]
+                .map(|k| design.get(k).unwrap());
+            let value = 1.0
+                + 0.1 * (hose - 6.0).abs()
+                + 40.0 * (length - 0.2 * hose).powi(2)
+                + (volume - 10.0 * length).powi(2) / 25.0;
+            Ok(super::fronts::outcome(&[(
+                "coefficient_of_variation_percent",
+                value,
+            )]))
         }
     }
     let text = r#"schema = 1
@@ -110,9 +142,15 @@ start = 30
 
 #[test]
 fn limits_that_nobody_can_keep_are_refused_with_the_gap() {
-    let text = STUDY.replace("stroke_margin_mm = { min = 5 }", "stroke_margin_mm = { min = 25 }");
+    let text = STUDY.replace(
+        "stroke_margin_mm = { min = 5 }",
+        "stroke_margin_mm = { min = 25 }",
+    );
     let message = search(&text, &Surrogate).unwrap_err().to_string();
-    assert!(message.starts_with("no design within the bounds keeps the limits: the best of "), "{message}");
+    assert!(
+        message.starts_with("no design within the bounds keeps the limits: the best of "),
+        "{message}"
+    );
     assert!(
         message.ends_with("violates stroke_margin_mm at least 25 mm by 5 mm, with 20 mm"),
         "{message}"
@@ -132,7 +170,9 @@ fn a_metric_that_no_scenario_gives_and_a_start_that_fails_are_refused() {
     let text = STUDY.replace("start = 20\n", "start = 58\n");
     let message = search(&text, &Surrogate).unwrap_err().to_string();
     assert!(
-        message.ends_with("test.toml: the starting design cannot be simulated: tool left the workpiece at 58 cm3"),
+        message.ends_with(
+            "test.toml: the starting design cannot be simulated: tool left the workpiece at 58 cm3"
+        ),
         "{message}"
     );
 }

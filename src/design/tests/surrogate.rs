@@ -77,7 +77,10 @@ impl Evaluate for Surrogate {
         let scenario = |name: &str, factor: f64, drop: f64| ScenarioOutcome {
             name: name.to_owned(),
             metrics: BTreeMap::from([
-                ("coefficient_of_variation_percent".to_owned(), factor * variation),
+                (
+                    "coefficient_of_variation_percent".to_owned(),
+                    factor * variation,
+                ),
                 ("impact_peak_n".to_owned(), peak - drop),
                 ("stroke_margin_mm".to_owned(), 20.0),
             ]),

@@ -3,5 +3,5 @@
 mod closed_forms;
 mod consistency;
 mod ensemble;
-mod plant;
+pub(in crate::estimation) mod plant;
 mod refusals;

@@ -66,8 +66,12 @@ pub fn noise(device: &DeviceParameters) -> SensorNoise {
 /// What happens in a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Motion {
-    /// Force that the outlet pressure gives at rest, friction aside [N].
+    /// Force that the outlet pressure gives at rest at the start, friction aside [N].
     pub force: f64,
+    /// The same that the regulator is set to from 0.5 s on [N].
+    pub later_force: f64,
+    /// Distance from the surface at the start [m]; with chambers at the atmosphere when it is not touching.
+    pub approach: f64,
     /// Peak to peak of the surface [m].
     pub peak_to_peak: f64,
     /// Its frequency [Hz].
@@ -83,7 +87,7 @@ pub struct Motion {
 pub struct Sample {
     pub measurement: Measurement,
     pub force: f64,
-    pub speed: f64,
+    pub time: f64,
     /// Dry friction over its Coulomb level [1].
     pub friction_share: f64,
     pub pressures: [f64; 2],
@@ -130,19 +134,31 @@ impl Deviation {
 /// Masses, stroke, speed, deflection.
 type State = [f64; 5];
 
-struct Plant {
+struct Plant<'a> {
+    /// As the data say, and as it is.
+    data: &'a DeviceParameters,
     device: DeviceParameters,
     flow: FlowFunction,
     motion: Motion,
     gravity: f64,
-    /// Outlet over time, gauge [Pa].
-    outlet: f64,
 }
 
-impl Plant {
+impl Plant<'_> {
     fn pressures(&self, state: &State) -> [f64; 2] {
         let chambers = self.device.chambers();
         [0, 1].map(|i| chambers[i].pressure(&self.device.gas, state[i], state[2]))
+    }
+
+    /// Outlet that follows its setting at 0.5 s, gauge [Pa].
+    fn outlet(&self, time: f64) -> f64 {
+        let weight = self.data.moving_mass * self.motion.gravity;
+        let pressure = |force: f64| ((force - weight) / self.data.areas().extending).max(0.0);
+        let (first, later) = (
+            pressure(self.motion.force),
+            pressure(self.motion.later_force),
+        );
+        let left = (-(time - 0.5).max(0.0) / self.device.regulator.time_constant).exp();
+        later + (first - later) * left
     }
 
     fn contact(&self, state: &State, time: f64) -> f64 {
@@ -165,7 +181,7 @@ impl Plant {
             &device.valve(),
             &self.flow,
             ValvePosition::Extend,
-            gas.atmosphere + self.outlet,
+            gas.atmosphere + self.outlet(time),
             gas.atmosphere,
             pressures,
         );
@@ -198,7 +214,10 @@ impl Plant {
 
 /// Normal deviate by the central limit of 12 (variance 1, limits at 6).
 fn normal(generator: &mut ChaCha8Rng) -> f64 {
-    (0..12).map(|_| generator.random_range(0.0..1.0)).sum::<f64>() - 6.0
+    (0..12)
+        .map(|_| generator.random_range(0.0..1.0))
+        .sum::<f64>()
+        - 6.0
 }
 
 /// Runs the truth and samples it with noise.
@@ -212,12 +231,22 @@ pub fn run(
     let (device, [pressure_bias, acceleration_bias, tilt]) =
         deviation.apply(data, &parameters.tolerances);
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let gravity = motion.gravity + tilt;
-    let outlet = (motion.force - data.moving_mass * motion.gravity) / data.areas().extending;
-    let contact = outlet * device.areas().extending + device.moving_mass * gravity;
-    let stroke = SURFACE + contact / 1.5e5;
     let gas = device.gas;
     let chambers = device.chambers();
+    let plant = Plant {
+        data,
+        flow: FlowFunction::new(&gas),
+        gravity: motion.gravity + tilt,
+        device,
+        motion: *motion,
+    };
+    let outlet = plant.outlet(0.0);
+    let stroke = if motion.approach > 0.0 {
+        SURFACE - motion.approach
+    } else {
+        let weight = plant.device.moving_mass * plant.gravity;
+        SURFACE + (outlet * plant.device.areas().extending + weight) / 1.5e5
+    };
     let mut state = [
         gas.mass(gas.atmosphere + outlet, chambers[0].volume(stroke)),
         gas.mass(gas.atmosphere, chambers[1].volume(stroke)),
@@ -225,13 +254,6 @@ pub fn run(
         0.0,
         0.0,
     ];
-    let plant = Plant {
-        flow: FlowFunction::new(&gas),
-        device,
-        motion: *motion,
-        gravity,
-        outlet,
-    };
     let noise = &parameters.noise;
     let samples = (motion.duration / PERIOD).round() as usize;
     (0..samples)
@@ -242,14 +264,17 @@ pub fn run(
             let measurement = Measurement {
                 stroke: noisy(state[2], noise.stroke),
                 acceleration: noisy(acceleration + acceleration_bias, noise.acceleration),
-                regulator_pressure: noisy(outlet + pressure_bias, noise.regulator_pressure),
+                regulator_pressure: noisy(
+                    plant.outlet(time) + pressure_bias,
+                    noise.regulator_pressure,
+                ),
                 valve: ValvePosition::Extend,
             };
             let seals = &plant.device.seal_friction;
             let result = Sample {
                 measurement,
                 force: plant.contact(&state, time),
-                speed: state[3],
+                time,
                 friction_share: if seals.is_dry() {
                     seals.force(state[4], 0.0) / seals.coulomb
                 } else {

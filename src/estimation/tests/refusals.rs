@@ -1,1 +1,33 @@
+//! What cannot be meant is refused by name.
 
+use super::ensemble::parameters;
+use super::plant::{PERIOD, device};
+use crate::estimation::{ContactForceEstimator, EstimationError, EstimatorParameters, Tolerances};
+
+fn refused(change: impl Fn(&mut EstimatorParameters), stroke: f64, period: f64) -> EstimationError {
+    let data = device();
+    let mut told = parameters(&data, Tolerances::default());
+    change(&mut told);
+    ContactForceEstimator::new(&data, &told, stroke, period).unwrap_err()
+}
+
+#[test]
+fn each_refusal_names_what_is_wrong() {
+    let message = refused(|p| p.noise.stroke = 0.0, 0.03, PERIOD).to_string();
+    assert!(
+        message.contains("standard deviation of the stroke is 0"),
+        "{message}"
+    );
+    let message = refused(|p| p.noise.acceleration = f64::NAN, 0.03, PERIOD).to_string();
+    assert!(message.contains("acceleration is NaN"), "{message}");
+    let message = refused(|p| p.tolerances.orifices = -0.1, 0.03, PERIOD).to_string();
+    assert!(message.contains("the orifices is -0.1"), "{message}");
+    let message = refused(|p| p.tolerances.dead_volume = 1.5, 0.03, PERIOD).to_string();
+    assert!(message.contains("the dead volume is 1.5"), "{message}");
+    let error = refused(|p| p.models.clear(), 0.03, PERIOD);
+    assert_eq!(error, EstimationError::NoModel);
+    let error = refused(|_| (), 0.03, 0.1);
+    assert!(matches!(error, EstimationError::Period { period, .. } if period == 0.1));
+    let error = refused(|_| (), f64::NAN, PERIOD);
+    assert!(matches!(error, EstimationError::NotFinite { .. }));
+}

@@ -4,9 +4,19 @@ use std::collections::BTreeMap;
 
 use toml::{Table, Value};
 
-use super::super::sections::{model_sections, scenario_sections};
+use super::super::document::join;
+use super::super::sections::{bench_sections, model_sections, scenario_sections};
 use super::super::units::Unit;
-use super::{MINIMAL, read, scenarios};
+use super::{MINIMAL, MINIMAL_BENCH, read_any, scenarios};
+
+/// Which of the two formats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Cell,
+    Bench,
+}
+
+use Format::{Bench, Cell};
 
 /// A line of the README's tables of keys.
 struct Row {
@@ -15,49 +25,101 @@ struct Row {
     range: String,
 }
 
-fn rows() -> BTreeMap<String, Row> {
+/// Does a key of a chapter of the README belong to a format?
+fn belongs(key: &str, chapter: &str, format: Format) -> bool {
+    let of_both = ["schema", "kind", "title"].contains(&key) || key.starts_with("device.");
+    match chapter {
+        "Keys of a cell" => format == Cell || of_both,
+        "Keys of a bench" => format == Bench,
+        "Keys of the sensing chain" => true,
+        other => panic!("{key} stands in the chapter {other:?}"),
+    }
+}
+
+fn rows(format: Format) -> BTreeMap<String, Row> {
     let text = std::fs::read_to_string(scenarios().join("README.md")).unwrap();
-    let row = |line: &str| {
+    let mut chapter = "";
+    let mut rows = BTreeMap::new();
+    for line in text.lines() {
+        if let Some(heading) = line.strip_prefix("## ") {
+            chapter = heading;
+        }
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let key = cells.get(1)?.strip_prefix('`')?.strip_suffix('`')?;
-        let cell = |index: usize| cells[index].to_owned();
+        let quoted = |cell: &&str| Some(cell.strip_prefix('`')?.strip_suffix('`')?.to_owned());
+        let Some(key) = cells.get(1).and_then(quoted) else {
+            continue;
+        };
         assert_eq!(cells.len(), 7, "{line}");
+        if !belongs(&key, chapter, format) {
+            continue;
+        }
+        let cell = |index: usize| cells[index].to_owned();
         let (unit, default, range) = (cell(2), cell(3), cell(4));
-        Some((
-            key.to_owned(),
-            Row {
-                unit,
-                default,
-                range,
-            },
-        ))
-    };
-    let found: Vec<_> = text.lines().filter_map(row).collect();
-    let count = found.len();
-    let rows: BTreeMap<_, _> = found.into_iter().collect();
-    assert_eq!(rows.len(), count, "a key stands twice");
+        let row = Row {
+            unit,
+            default,
+            range,
+        };
+        assert!(
+            rows.insert(key, row).is_none(),
+            "a key stands twice: {line}"
+        );
+    }
     rows
 }
 
-/// The minimal scenario with what a key needs beside it, and the key itself if it is needed there.
-fn base(key: &str) -> Table {
-    let beside = match key {
-        "workpiece.burr.height_mm" | "workpiece.burr.position_mm" | "workpiece.burr.width_mm" => {
-            "[workpiece.burr]\nkind = 'bump'\nposition_mm = 1\nheight_mm = 1\nwidth_mm = 1"
+/// What a key needs beside it, and the key itself if it is needed there.
+fn beside(key: &str) -> String {
+    let (table, name) = key.rsplit_once('.').unwrap_or(("", key));
+    match (table, name) {
+        ("workpiece.burr", "height_mm" | "position_mm" | "width_mm") => {
+            "[workpiece.burr]\nkind = 'bump'\nposition_mm = 1\nheight_mm = 1\nwidth_mm = 1".into()
         }
-        "workpiece.burr.path" => "[workpiece.burr]\nkind = 'table'\npath = 'README.md'",
-        _ if key.starts_with("workpiece.burr.") => {
+        ("workpiece.burr", "path") => "[workpiece.burr]\nkind = 'table'\npath = 'README.md'".into(),
+        ("workpiece.burr", _) => {
             "[workpiece.burr]\nkind = 'random'\nmean_height_mm = 1\ncorrelation_length_mm = 1"
+                .into()
         }
-        "arm.limit_overrides.effort_n_m" => {
-            "[[arm.limit_overrides]]\njoint = 'a'\nvelocity_deg_per_s = 90"
+        ("arm.limit_overrides", "effort_n_m") => {
+            "[[arm.limit_overrides]]\njoint = 'a'\nvelocity_deg_per_s = 90".into()
         }
-        _ if key.starts_with("arm.limit_overrides.") => {
-            "[[arm.limit_overrides]]\njoint = 'a'\neffort_n_m = 9"
+        ("arm.limit_overrides", _) => "[[arm.limit_overrides]]\njoint = 'a'\neffort_n_m = 9".into(),
+        ("hand", _) => "[hand]\npeak_force_n = 1\nfrequency_hz = 1".into(),
+        ("command", "force_n") => "[[command]]\nat_s = 0\nforce_n = 1".into(),
+        ("command", _) => "[[command]]\nat_s = 0\nset_pressure_bar_gauge = 1".into(),
+        ("valve", _) => "[[valve]]\nat_s = 0\nposition = 'extend'".into(),
+        ("sensing.adc", _) => "[sensing.force]\nkind = 'real'".into(),
+        ("sensing.filter", name) => {
+            let (kind, setting) = match name {
+                "time_constant_ms" => ("first_order", "time_constant_ms = 10"),
+                "length" => ("median", "length = 3"),
+                _ => ("bessel", "cutoff_hz = 10"),
+            };
+            format!(
+                "[sensing]\nsample_rate_hz = 1000\n[sensing.filter]\nkind = '{kind}'\n{setting}"
+            )
         }
-        _ => "",
+        (table, name) if table.starts_with("sensing.") && name != "kind" => {
+            let white = name.starts_with("standard_deviation");
+            let kind = if white { "white" } else { "real" };
+            format!("[{table}]\nkind = '{kind}'")
+        }
+        _ => String::new(),
+    }
+}
+
+/// The minimal scenario of a format with what a key needs.
+fn base(format: Format, key: &str) -> Table {
+    const SURFACE: &str =
+        "kind = \"surface\"\nposition_mm = 1\npeak_to_peak_mm = 1\nfrequency_hz = 1";
+    let minimal = match format {
+        Cell => MINIMAL.to_owned(),
+        Bench if key.starts_with("load.") && key != "load.kind" => {
+            MINIMAL_BENCH.replace("kind = \"free\"", SURFACE)
+        }
+        Bench => MINIMAL_BENCH.to_owned(),
     };
-    format!("{MINIMAL}{beside}\n").parse().unwrap()
+    format!("{minimal}{}\n", beside(key)).parse().unwrap()
 }
 
 /// The table that holds a key, and its name there.
@@ -75,15 +137,15 @@ fn slot<'a>(mut table: &'a mut Table, key: &'a str) -> (&'a mut Table, &'a str) 
 }
 
 /// What comes of a key with a value: the scenario, or the message.
-fn outcome(key: &str, value: Option<Value>) -> Result<String, String> {
-    let mut table = base(key);
+fn outcome(format: Format, key: &str, value: Option<Value>) -> Result<String, String> {
+    let mut table = base(format, key);
     let (holder, name) = slot(&mut table, key);
     match value {
         Some(value) => drop(holder.insert(name.to_owned(), value)),
         None => drop(holder.remove(name)),
     }
     let text = toml::to_string(&table).unwrap();
-    match read(&text) {
+    match read_any(&text) {
         Ok(scenario) => Ok(format!("{scenario:?}")),
         Err(error) => Err(error.to_string()),
     }
@@ -91,39 +153,42 @@ fn outcome(key: &str, value: Option<Value>) -> Result<String, String> {
 
 #[test]
 fn every_key_has_its_row_and_every_row_its_key() {
-    let mut sections = scenario_sections();
-    // The tables' own names are keys of the tables around them.
-    let tables: Vec<&str> = sections.iter().map(|(table, _)| *table).collect();
-    sections.retain(|(_, keys)| !keys.is_empty());
-    assert_eq!(
-        sections.len(),
-        tables.len(),
-        "a table without keys was not read off its type"
-    );
-    let mut keys: Vec<String> = sections
-        .iter()
-        .flat_map(|(table, keys)| {
-            keys.iter()
-                .map(|key| super::super::document::join(table, key))
-        })
-        .filter(|key| !tables.contains(&key.as_str()) && !key.starts_with("expect"))
-        .collect();
-    keys.sort();
-    let documented: Vec<String> = rows().into_keys().collect();
-    assert_eq!(documented, keys);
+    for (format, mut sections) in [(Cell, scenario_sections()), (Bench, bench_sections())] {
+        // The tables' own names are keys of the tables around them.
+        let tables: Vec<&str> = sections.iter().map(|(table, _)| *table).collect();
+        sections.retain(|(_, keys)| !keys.is_empty());
+        assert_eq!(
+            sections.len(),
+            tables.len(),
+            "a table without keys was not read off its type"
+        );
+        let mut keys: Vec<String> = sections
+            .iter()
+            .flat_map(|(table, keys)| keys.iter().map(|key| join(table, key)))
+            .filter(|key| !tables.contains(&key.as_str()) && !key.starts_with("expect"))
+            .collect();
+        keys.sort();
+        let documented: Vec<String> = rows(format).into_keys().collect();
+        assert_eq!(documented, keys, "{format:?}");
+    }
     // A model file has the keys of [device.override].
     let find = |sections: &[(&str, &'static [&'static str])], table: &str| {
         sections.iter().find(|(name, _)| *name == table).unwrap().1
     };
     let of_model = find(&model_sections(), "device");
     assert_eq!(of_model, find(&scenario_sections(), "device.override"));
+    assert_eq!(of_model, find(&bench_sections(), "device.override"));
 }
 
 #[test]
 fn every_unit_is_that_of_the_key() {
-    for (key, row) in rows() {
+    for (key, row) in [Cell, Bench].into_iter().flat_map(rows) {
         let unit = Unit::of_key(&key);
-        if !unit.is_one() {
+        if unit.is_one() {
+            let words = ["number", "whole number", "text", "true or false", "file"];
+            let is_word = words.contains(&row.unit.as_str()) || row.unit.starts_with("table");
+            assert!(is_word, "{key}: {}", row.unit);
+        } else {
             assert_eq!(row.unit.split(',').next().unwrap(), unit.symbol, "{key}");
         }
     }
@@ -131,92 +196,93 @@ fn every_unit_is_that_of_the_key() {
 
 #[test]
 fn every_default_is_what_leaving_the_key_out_does() {
-    let (mut defaults, mut required) = (0, 0);
-    for (key, row) in rows() {
-        if row.default.starts_with("one of") {
-            continue;
+    for (format, least_defaults, least_required) in [(Cell, 90, 18), (Bench, 70, 15)] {
+        let (mut defaults, mut required) = (0, 0);
+        for (key, row) in rows(format) {
+            // Without its kind, a bench is no bench.
+            if row.default.starts_with("one of") || (key == "kind" && format == Bench) {
+                continue;
+            }
+            let without = outcome(format, &key, None);
+            if row.default == "required" {
+                let message = without.expect_err(&key);
+                assert!(message.contains("is missing"), "{key}: {message}");
+                required += 1;
+                continue;
+            }
+            let without = without.unwrap_or_else(|error| panic!("{key}: {error}"));
+            if let Ok(mut table) = format!("v = {}", row.default).parse::<Table>() {
+                let given = outcome(format, &key, table.remove("v"));
+                assert_eq!(given, Ok(without), "{key}");
+                defaults += 1;
+            } else {
+                let worded = row.default == "none"
+                    || ["half", "third", "10 bits"]
+                        .iter()
+                        .any(|word| row.default.contains(word));
+                assert!(worded, "{key}: {}", row.default);
+            }
         }
-        let without = outcome(&key, None);
-        if row.default == "required" {
-            let message = without.expect_err(&key);
-            assert!(message.contains("is missing"), "{key}: {message}");
-            required += 1;
-            continue;
-        }
-        let without = without.unwrap_or_else(|error| panic!("{key}: {error}"));
-        if let Ok(mut table) = format!("v = {}", row.default).parse::<Table>() {
-            assert_eq!(outcome(&key, table.remove("v")), Ok(without), "{key}");
-            defaults += 1;
-        } else {
-            let worded = row.default == "none"
-                || row.default.contains("half")
-                || row.default.contains("third");
-            assert!(worded, "{key}: {}", row.default);
-        }
+        assert!(
+            defaults > least_defaults && required > least_required,
+            "{format:?}: {defaults} defaults, {required} required"
+        );
     }
-    assert!(
-        defaults > 50 && required > 15,
-        "{defaults} defaults, {required} required"
-    );
 }
 
 #[test]
 fn every_range_is_kept_and_named_as_in_the_readme() {
-    let mut ranges = 0;
-    for (key, row) in rows() {
-        let (low, high): (f64, f64) = match (
-            row.range.split_once(" to "),
-            row.range.strip_prefix("at least "),
-        ) {
-            (Some((low, high)), _) => (low.parse().unwrap(), high.parse().unwrap()),
-            (_, Some(low)) => (low.parse().unwrap(), f64::INFINITY),
-            _ => continue,
+    for (format, least) in [(Cell, 95), (Bench, 80)] {
+        let rows = rows(format);
+        let ranges = rows
+            .iter()
+            .filter(|(key, row)| range_is_kept(format, key, row))
+            .count();
+        assert!(ranges > least, "{format:?}: {ranges} ranges");
+    }
+}
+
+/// Holds the program to the range of a row; false for a row without numbers.
+fn range_is_kept(format: Format, key: &str, row: &Row) -> bool {
+    let (low, high): (f64, f64) = match (
+        row.range.split_once(" to "),
+        row.range.strip_prefix("at least "),
+    ) {
+        (Some((low, high)), _) => (low.parse().unwrap(), high.parse().unwrap()),
+        (_, Some(low)) => (low.parse().unwrap(), f64::INFINITY),
+        _ => return false,
+    };
+    let whole = row.unit == "whole number";
+    let outcome = |number: f64| {
+        let value = if whole {
+            Value::Integer(number as i64)
+        } else {
+            Value::Float(number)
         };
-        let whole = row.unit == "whole number";
-        let outcome = |number: f64| {
-            let value = if whole {
-                Value::Integer(number as i64)
-            } else {
-                Value::Float(number)
-            };
-            let zero = Value::Float(0.0);
-            let list = row.unit.contains("list");
-            outcome(
-                &key,
-                Some(if list {
-                    Value::Array(vec![value, zero.clone(), zero])
-                } else {
-                    value
-                }),
-            )
+        let zero = Value::Float(0.0);
+        let value = if row.unit.contains("list") {
+            Value::Array(vec![value, zero.clone(), zero])
+        } else {
+            value
         };
-        let words = format!("expected {}", row.range);
-        let refused = |number: f64| outcome(number).is_err_and(|message| message.contains(&words));
-        let step = if whole {
+        outcome(format, key, Some(value))
+    };
+    let words = format!("expected {}", row.range);
+    let refused = |number: f64| outcome(number).is_err_and(|message| message.contains(&words));
+    let step = |end: f64| {
+        if whole {
             1.0
         } else {
-            1e-9 * low.abs().max(1.0)
-        };
-        assert!(
-            refused(low - step),
-            "{key} below {low}: {:?}",
-            outcome(low - step)
-        );
-        // Another key may object to an end of the range; the range may not.
-        assert!(!refused(low) && !refused(high), "{key} at an end");
-        if high.is_finite() {
-            let step = if whole {
-                1.0
-            } else {
-                1e-9 * high.abs().max(1.0)
-            };
-            assert!(
-                refused(high + step),
-                "{key} above {high}: {:?}",
-                outcome(high + step)
-            );
+            1e-9 * end.abs().max(1e-3)
         }
-        ranges += 1;
+    };
+    let below = low - step(low);
+    assert!(refused(below), "{key} below {low}: {:?}", outcome(below));
+    // Another key may object to an end of the range; the range may not.
+    assert!(!refused(low) && !refused(high), "{key} at an end");
+    if high.is_finite() {
+        let above = high + step(high);
+        assert!(refused(above), "{key} above {high}: {:?}", outcome(above));
     }
-    assert!(ranges > 55, "{ranges} ranges");
+    true
 }

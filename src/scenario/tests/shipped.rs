@@ -1,7 +1,10 @@
 //! The files that come with the project.
 
-use super::super::{EdgeSelection, load, load_device};
+use super::super::bench::{CommandScenario, LoadScenario};
+use super::super::{AnyScenario, EdgeSelection, load, load_any, load_bench, load_device};
 use super::scenarios;
+use crate::physics::gas_process::GasProcess;
+use crate::physics::valve::ValvePosition;
 
 /// Every scenario file shipped, by name.
 fn shipped() -> Vec<String> {
@@ -21,9 +24,13 @@ fn every_scenario_loads_says_what_it_shows_and_stands_in_the_readme() {
     for expected in [
         "bracket_loop",
         "burred_edge",
+        "hand_push",
         "locked_tool",
         "misplaced_part",
+        "paper_stairstep",
+        "paper_step",
         "plate_edge",
+        "retract",
         "tilted_wrist",
         "weak_supply",
     ] {
@@ -31,17 +38,73 @@ fn every_scenario_loads_says_what_it_shows_and_stands_in_the_readme() {
     }
     for name in names {
         let path = scenarios().join(format!("{name}.toml"));
-        let scenario = load(&path).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(scenario.path, path);
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(
             text.starts_with("# ") && text.contains("# Should happen: "),
             "{name}"
         );
-        assert!(readme.contains(&format!("[{name}]({name}.toml)")), "{name}");
-        // What is refused has no results to bound.
-        assert_eq!(scenario.expect.is_empty(), name == "weak_supply", "{name}");
+        let link = format!("| [{name}]({name}.toml) | ");
+        let row = readme.lines().find_map(|line| line.strip_prefix(&link));
+        let row = row.unwrap_or_else(|| panic!("{name} has no row"));
+        match load_any(&path).unwrap_or_else(|error| panic!("{error}")) {
+            AnyScenario::Cell(cell) => {
+                assert_eq!(cell.path, path);
+                // What is refused has no results to bound.
+                assert_eq!(cell.expect.is_empty(), name == "weak_supply", "{name}");
+                assert!(!row.starts_with("bench: "), "{name}");
+            }
+            AnyScenario::Bench(bench) => {
+                assert_eq!(bench.path, path);
+                assert!(row.starts_with("bench: "), "{name}");
+            }
+        }
     }
+}
+
+#[test]
+fn the_papers_benches_are_what_the_paper_did() {
+    let bench = |name: &str| load_bench(&scenarios().join(format!("{name}.toml"))).unwrap();
+    for (name, steps) in [
+        ("paper_step", &[(0.5, 1.8e5)][..]),
+        (
+            "paper_stairstep",
+            &[(0.5, 1.2e5), (5.5, 2.1e5), (10.5, 3e5)],
+        ),
+    ] {
+        let bench = bench(name);
+        assert_eq!(bench.command, CommandScenario::SetPressure(steps.to_vec()));
+        let LoadScenario::Contact { motion, .. } = bench.load else {
+            panic!("{:?}", bench.load)
+        };
+        assert_eq!(motion, None);
+    }
+    let LoadScenario::Contact {
+        motion: Some(motion),
+        ..
+    } = bench("hand_push").load
+    else {
+        panic!("the hand does not move")
+    };
+    assert_eq!((motion.peak_to_peak, motion.frequency), (0.02, 0.5));
+    let retract = bench("retract");
+    let positions = [(2.5, ValvePosition::Retract), (4.5, ValvePosition::Extend)];
+    assert_eq!(retract.valve, positions);
+    assert_eq!(retract.load, LoadScenario::Free);
+}
+
+#[test]
+fn each_kind_is_refused_where_the_other_is_asked_for() {
+    let path = |name: &str| scenarios().join(format!("{name}.toml"));
+    let message = load(&path("paper_step")).unwrap_err().to_string();
+    assert!(
+        message.ends_with("paper_step.toml: the scenario is a bench, expected a cell"),
+        "{message}"
+    );
+    let message = load_bench(&path("plate_edge")).unwrap_err().to_string();
+    assert!(
+        message.ends_with("plate_edge.toml: the scenario is a cell, expected a bench"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -98,6 +161,14 @@ fn the_device_model_is_the_device_of_the_issue() {
     let stop = parameters.end_stop;
     assert_eq!((stop.stiffness, stop.damping), (1e6, 2e3));
     assert_eq!(parameters.lock_stiffness, 1e8);
+    // As in the source paper: no friction of the seals, no heat, no line.
+    let seals = parameters.seal_friction;
+    assert_eq!(
+        (seals.coulomb, seals.static_force, seals.viscous),
+        (0.0, 0.0, 0.0)
+    );
+    assert_eq!(parameters.gas_process, GasProcess::Isothermal);
+    assert_eq!(parameters.hose, None);
     assert_eq!((device.tool_centre, device.tool_radius), (0.15, 0.005));
     assert_eq!(
         (

@@ -1,11 +1,11 @@
-//! The TOML of `[sensing]`, key by key, the same in a scenario of either kind. Without a key the preset or the source paper's value holds.
+//! The TOML of `[sensing]`, key by key, the same in a scenario of either kind.
 
 use serde::Deserialize;
 
 /// `[sensing]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SensingKeys {
+pub(in crate::scenario) struct SensingKeys {
     #[serde(default)]
     pub preset: Preset,
     pub sample_rate_hz: Option<f64>,
@@ -27,7 +27,7 @@ pub(super) struct SensingKeys {
 /// What the stages are that do not say it themselves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Preset {
+pub(in crate::scenario) enum Preset {
     /// The truth everywhere.
     #[default]
     Ideal,
@@ -40,7 +40,7 @@ pub(super) enum Preset {
 /// What the command's way is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum CommandChainKind {
+pub(in crate::scenario) enum CommandChainKind {
     /// As it is wanted.
     Ideal,
     /// PWM, RC and amplifier.
@@ -50,7 +50,7 @@ pub(super) enum CommandChainKind {
 /// What a sensor is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum SensorKind {
+pub(in crate::scenario) enum SensorKind {
     /// The truth.
     Ideal,
     /// The truth and white noise.
@@ -62,7 +62,7 @@ pub(super) enum SensorKind {
 /// `[sensing.command]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct CommandChainKeys {
+pub(in crate::scenario) struct CommandChainKeys {
     pub kind: Option<CommandChainKind>,
     pub full_scale_bar_gauge: Option<f64>,
     pub full_input_v: Option<f64>,
@@ -79,7 +79,7 @@ pub(super) struct CommandChainKeys {
 /// `[sensing.regulator_pressure]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RegulatorPressureKeys {
+pub(in crate::scenario) struct RegulatorPressureKeys {
     pub kind: Option<SensorKind>,
     pub standard_deviation_pa: Option<f64>,
     pub full_scale_bar_gauge: Option<f64>,
@@ -93,7 +93,7 @@ pub(super) struct RegulatorPressureKeys {
 /// `[sensing.force]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct ForceKeys {
+pub(in crate::scenario) struct ForceKeys {
     pub kind: Option<SensorKind>,
     pub standard_deviation_n: Option<f64>,
     pub capacity_kg: Option<f64>,
@@ -110,7 +110,7 @@ pub(super) struct ForceKeys {
 /// `[sensing.stroke]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct StrokeKeys {
+pub(in crate::scenario) struct StrokeKeys {
     pub kind: Option<SensorKind>,
     pub standard_deviation_mm: Option<f64>,
     pub gain: Option<f64>,
@@ -121,7 +121,7 @@ pub(super) struct StrokeKeys {
 /// `[sensing.acceleration]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct AccelerationKeys {
+pub(in crate::scenario) struct AccelerationKeys {
     pub kind: Option<SensorKind>,
     pub standard_deviation_m_per_s2: Option<f64>,
     pub bias_m_per_s2: Option<f64>,
@@ -132,7 +132,7 @@ pub(super) struct AccelerationKeys {
 /// `[sensing.adc]`, which reads regulator pressure and force.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct AdcKeys {
+pub(in crate::scenario) struct AdcKeys {
     pub bits: Option<u32>,
     pub reference_v: Option<f64>,
     pub noise_steps: Option<f64>,
@@ -141,7 +141,7 @@ pub(super) struct AdcKeys {
 /// Treatment of the force's noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum FilterKind {
+pub(in crate::scenario) enum FilterKind {
     /// None.
     None,
     /// First-order lag.
@@ -155,9 +155,9 @@ pub(super) enum FilterKind {
 /// `[sensing.filter]`: `kind` says which of the other keys there is.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct FilterKeys {
+pub(in crate::scenario) struct FilterKeys {
     pub kind: FilterKind,
     pub time_constant_ms: Option<f64>,
     pub cutoff_hz: Option<f64>,
-    pub length: Option<u32>,
+    pub length: Option<usize>,
 }

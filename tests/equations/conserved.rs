@@ -1,0 +1,274 @@
+//! Conserved quantities over the bench rig's courses: the mass of the air, and energy by both balances of `EnergyLedger`.
+
+use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
+use idc_cell::physics::gas_process::GasProcess;
+use idc_cell::physics::hose::Hose;
+use idc_cell::physics::regulator::RegulatorParameters;
+use idc_cell::physics::seal_friction::SealFriction;
+use idc_cell::physics::valve::ValvePosition;
+
+use super::devices::{Outside, reached, still, usual};
+
+/// A course of scenarios/: times [s] with set pressures [Pa gauge] and with positions of the valve.
+struct Course {
+    name: &'static str,
+    commands: &'static [(f64, f64)],
+    valve: &'static [(f64, ValvePosition)],
+    duration: f64,
+    load_cell: Option<f64>,
+    late_regulator: bool,
+}
+
+const COURSES: [Course; 3] = [
+    Course {
+        name: "paper_step",
+        commands: &[(0.5, 1.8e5)],
+        valve: &[],
+        duration: 6.0,
+        load_cell: Some(0.04),
+        late_regulator: true,
+    },
+    Course {
+        name: "paper_stairstep",
+        commands: &[(0.5, 1.2e5), (5.5, 2.1e5), (10.5, 3e5)],
+        valve: &[],
+        duration: 16.0,
+        load_cell: Some(0.04),
+        late_regulator: true,
+    },
+    Course {
+        name: "retract",
+        commands: &[(0.2, 1e5)],
+        valve: &[(2.5, ValvePosition::Retract), (4.5, ValvePosition::Extend)],
+        duration: 6.0,
+        load_cell: None,
+        late_regulator: false,
+    },
+];
+
+const SEALS: SealFriction = SealFriction {
+    coulomb: 10.0,
+    static_force: 12.0,
+    stribeck_velocity: 0.01,
+    viscous: 20.0,
+    presliding_displacement: 5e-5,
+};
+
+fn held<T: Copy>(steps: &[(f64, T)], time: f64) -> Option<T> {
+    let due = steps.iter().rev().find(|step| step.0 <= time + 1e-9);
+    due.map(|step| step.1)
+}
+
+/// Runs a course by milliseconds, and shows each to `look`.
+fn run(
+    course: &Course,
+    mut parameters: DeviceParameters,
+    substeps: usize,
+    look: &mut dyn FnMut(&Device, &DeviceState, PistonMotion),
+) {
+    if course.late_regulator {
+        parameters.regulator = RegulatorParameters {
+            time_constant: 0.5,
+            dead_time: 0.5,
+            ..parameters.regulator
+        };
+    }
+    let device = Device::new(parameters);
+    let outside = course
+        .load_cell
+        .map_or(Outside::NOTHING, Outside::load_cell);
+    let (mut state, mut motion) = (device.at_rest(0.0, 0.0), still(0.0));
+    look(&device, &state, motion);
+    for step in 0..(course.duration * 1e3).round() as usize {
+        let time = step as f64 * 1e-3;
+        state.valve = held(course.valve, time).unwrap_or(ValvePosition::Extend);
+        let set = held(course.commands, time).unwrap_or(0.0);
+        device.advance_carried(&mut state, &mut motion, set, &outside, 1e-3, substeps);
+        look(&device, &state, motion);
+    }
+}
+
+// Catches: a flow that one account has and another has not: chamber, line, regulator, exhaust.
+#[test]
+fn air_is_neither_made_nor_lost() {
+    let hose = Some(Hose::of_geometry(2.0, 0.004, 4.8));
+    let mut largest = 0.0f64;
+    for course in &COURSES {
+        for hose in [None, hose] {
+            for gas_process in [
+                GasProcess::Isothermal,
+                GasProcess::WallHeat { conductance: 0.5 },
+            ] {
+                let parameters = DeviceParameters {
+                    hose,
+                    gas_process,
+                    ..usual()
+                };
+                let (mut first, mut worst, mut moved) = (f64::NAN, 0.0f64, 0.0);
+                run(course, parameters, 1, &mut |_, state, _| {
+                    let air = &state.air;
+                    if first.is_nan() {
+                        first = air.held();
+                    }
+                    let gap = air.held() - first - (air.entered - air.left);
+                    worst = worst.max(gap.abs() / air.held());
+                    moved = air.entered + air.left;
+                });
+                println!(
+                    "{}, line {}, {gas_process:?}: {worst:.1e}",
+                    course.name,
+                    hose.is_some()
+                );
+                assert!(moved > first, "air went through: {moved} kg");
+                largest = largest.max(worst);
+            }
+        }
+    }
+    reached("mass of the air", largest, 1e-9);
+}
+
+/// Largest gaps of the balances over a course.
+struct Gaps {
+    /// Of the air, of its work on the piston summed without its sign [1].
+    air: f64,
+    /// Of the piston, of the same [1].
+    piston: f64,
+    /// Of both together, of all that passed through any account, enthalpy included [1].
+    whole: f64,
+    /// That work [J].
+    work: f64,
+    /// All that passed [J].
+    turned_over: f64,
+}
+
+/// The accounts of the ledger: enthalpy, heat, and the works on piston, atmosphere, seals, stops, and of the carrier.
+fn accounts(state: &DeviceState) -> [f64; 7] {
+    let ledger = &state.ledger;
+    [
+        ledger.enthalpy_in,
+        ledger.heat_in,
+        ledger.chamber_work,
+        ledger.atmosphere_work,
+        ledger.seal_work,
+        ledger.stop_work,
+        ledger.carrier_work,
+    ]
+}
+
+fn energy_gaps(course: &Course, parameters: DeviceParameters, substeps: usize) -> Gaps {
+    let (mut first, mut before) = (f64::NAN, [0.0; 7]);
+    let (mut air, mut piston, mut whole) = (0.0f64, 0.0f64, 0.0f64);
+    let (mut work, mut turned_over) = (0.0, 0.0);
+    run(
+        course,
+        parameters,
+        substeps,
+        &mut |device, state, motion| {
+            let energy = device.internal_energy(state);
+            if first.is_nan() {
+                first = energy;
+            }
+            let now = accounts(state);
+            let [enthalpy, heat, chamber, atmosphere, seal, stop, carrier] = now;
+            let kinetic = 0.5 * device.parameters().moving_mass * motion.speed * motion.speed;
+            let of_air = energy - first - (enthalpy + heat - chamber);
+            let of_piston = kinetic - (chamber + carrier - atmosphere - seal - stop);
+            air = air.max(of_air.abs());
+            piston = piston.max(of_piston.abs());
+            whole = whole.max((of_air + of_piston).abs());
+            work += (now[2] - before[2]).abs();
+            let passed = now
+                .iter()
+                .zip(before)
+                .map(|(now, before)| (now - before).abs());
+            turned_over += passed.sum::<f64>();
+            before = now;
+        },
+    );
+    Gaps {
+        air: air / work,
+        piston: piston / work,
+        whole: whole / turned_over,
+        work,
+        turned_over,
+    }
+}
+
+// Catches: a work or heat that is booked twice, not at all or with the wrong sign; an integration too coarse for its contacts and reversals.
+#[test]
+fn energy_balances_over_extension_retraction_extension() {
+    let mut worst = [0.0f64; 4];
+    let heated = GasProcess::WallHeat { conductance: 0.5 };
+    for course in &COURSES {
+        for (seal_friction, gas_process) in [
+            (SealFriction::NONE, GasProcess::Isothermal),
+            (SealFriction::NONE, heated),
+            (SEALS, GasProcess::Isothermal),
+            (SEALS, heated),
+        ] {
+            let parameters = DeviceParameters {
+                seal_friction,
+                gas_process,
+                ..usual()
+            };
+            // Two a millisecond are the bench's default.
+            let gaps = [2, 4, 8, 16].map(|n| energy_gaps(course, parameters.clone(), n));
+            let shown: Vec<_> = gaps
+                .iter()
+                .map(|gap| format!("{:.1e}", gap.piston))
+                .collect();
+            println!(
+                "{}, seals {} N, {gas_process:?}: work {:.1} J of {:.0} J turned over; air {:.1e}, piston by 2, 4, 8, 16 sub-steps {}",
+                course.name,
+                seal_friction.coulomb,
+                gaps[0].work,
+                gaps[0].turned_over,
+                gaps[0].air,
+                shown.join(", ")
+            );
+            assert!(gaps[0].work > 1.0, "work was done");
+            for (worst, found) in
+                worst
+                    .iter_mut()
+                    .zip([gaps[0].air, gaps[0].whole, gaps[0].piston, gaps[1].piston])
+            {
+                *worst = worst.max(found);
+            }
+        }
+    }
+    reached("energy of the air, of its net work", worst[0], 1e-6);
+    reached(
+        "energy of the device, of all that was turned over, 2 sub-steps",
+        worst[1],
+        1e-6,
+    );
+    reached(
+        "energy of the piston, of the net work of the air, 4 sub-steps",
+        worst[3],
+        1e-6,
+    );
+    // The hard landings of the retraction on the stops; falls with the fourth power of the sub-step.
+    reached(
+        "energy of the piston, of the net work of the air, 2 sub-steps",
+        worst[2],
+        3e-6,
+    );
+}
+
+// Catches: an enthalpy or heat that both sides of the first balance book alike: here each is held against what it must be.
+#[test]
+fn isothermal_air_brings_c_p_t_and_takes_the_heat_of_its_work() {
+    let course = &COURSES[2];
+    let mut largest = 0.0f64;
+    run(course, usual(), 1, &mut |device, state, _| {
+        let gas = &device.parameters().gas;
+        let brought = state.air.entered - state.air.left;
+        let enthalpy = 1.4 / 0.4 * 287.05 * 293.15 * brought;
+        // U = m c_v T, so that the heat is the work less the flow's share, R T m.
+        let heat =
+            state.ledger.chamber_work - gas.specific_gas_constant * gas.temperature * brought;
+        largest = largest.max((state.ledger.enthalpy_in - enthalpy).abs());
+        largest = largest.max((state.ledger.heat_in - heat).abs());
+    });
+    reached("enthalpy and heat of isothermal air [J]", largest, 1e-9);
+}
