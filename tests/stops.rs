@@ -150,19 +150,12 @@ fn an_arm_that_runs_its_locked_tool_into_the_part() {
 }
 
 #[test]
-fn a_state_that_cannot_be() {
+fn a_chamber_that_empties_in_microseconds_is_no_reason_to_stop() {
+    // Ended with a negative mass of air when the number of sub-steps was the user's business alone.
     let bench = leaky(2.0);
     let outcome = bench.run();
-    let reason = stopped(&outcome);
-    for words in [
-        "chamber_2_mass became -",
-        "in phase approach",
-        "step_ms = 1 is too long",
-    ] {
-        assert!(reason.contains(words), "{reason}");
-    }
-    // What cannot be is not recorded.
-    holds_up_to(&bench, milliseconds(reason) - 1, reason);
+    assert_ne!(outcome.code, 3, "{}", outcome.err);
+    assert!(bench.path("out/samples.parquet").exists());
 }
 
 #[test]

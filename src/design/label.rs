@@ -21,7 +21,7 @@ pub(super) fn symbol(key: &str) -> &'static str {
 pub(super) fn axis(key: &str) -> String {
     let (stem, unit) = parts(key);
     let name = stem.replace(['_', '.'], " ");
-    let unit = unit.replace("mm2", "mm\u{b2}").replace("cm3", "cm\u{b3}");
+    let unit = raised(unit);
     if unit.is_empty() {
         name
     } else {
@@ -29,7 +29,12 @@ pub(super) fn axis(key: &str) -> String {
     }
 }
 
-/// A value of a key with its unit, to four significant digits.
+/// Powers of a unit as raised digits, for pictures.
+pub(super) fn raised(text: &str) -> String {
+    text.replace("mm2", "mm\u{b2}").replace("cm3", "cm\u{b3}")
+}
+
+/// A value of a key with its unit, to five significant digits.
 pub(super) fn with_unit(key: &str, value: f64) -> String {
     let value = number(value);
     match symbol(key) {

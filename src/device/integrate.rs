@@ -16,6 +16,8 @@ use crate::physics::valve::ValvePosition;
 const AIR_LIMIT: f64 = 1.2;
 /// Largest sub-step times the fastest rate of stops and load [rad].
 const MECHANICAL_LIMIT: f64 = 0.25;
+/// Sub-steps of a step beyond which a device is out of all proportion: its run then ends with the state that cannot be.
+const MOST_SUBSTEPS: f64 = 2e4;
 /// Halvings when a change of mode is sought: to 1e-7 of a sub-step.
 const BISECTIONS: usize = 24;
 /// Changes of mode that are sought in one sub-step; a piston that chatters is then taken as it comes.
@@ -83,7 +85,9 @@ impl Device {
     ) -> f64 {
         let regulator = &self.parameters.regulator;
         state.regulator.command(regulator, set_pressure);
-        let longest = (dt / substeps as f64).min(self.longest_substep(carrier));
+        let longest = (dt / substeps as f64)
+            .min(self.longest_substep(carrier, *motion, dt))
+            .max(dt / MOST_SUBSTEPS);
         let mut flow = Flow {
             air: state.air,
             ledger: state.ledger,
@@ -120,8 +124,8 @@ impl Device {
         flow.impulse
     }
 
-    fn longest_substep<C: Carrier>(&self, carrier: &C) -> f64 {
-        let air = AIR_LIMIT / self.air_rate;
+    fn longest_substep<C: Carrier>(&self, carrier: &C, motion: PistonMotion, dt: f64) -> f64 {
+        let air = AIR_LIMIT / self.air_rate(motion, dt);
         if !C::MOVES {
             return air;
         }

@@ -31,8 +31,10 @@ pub struct Device {
     pub(super) chambers: [Chamber; 2],
     pub(super) areas: PistonAreas,
     valve: ValveParameters,
-    /// The fastest rate of the pneumatics [1/s].
-    pub(super) air_rate: f64,
+    /// How fast a volume comes to the pressure beside it, times that volume [m3/s].
+    chamber_rate_volume: f64,
+    /// How fast the line does [1/s].
+    line_rate: f64,
 }
 
 /// Rates of the air and, if asked for, of its energy, with the chamber pressures [Pa absolute] that they belong to.
@@ -45,16 +47,27 @@ pub(super) struct AirRates {
 impl Device {
     /// Prepares a device.
     pub fn new(parameters: DeviceParameters) -> Self {
-        let mut device = Self {
-            flow: FlowFunction::new(&parameters.gas),
+        let gas = &parameters.gas;
+        let flow = FlowFunction::new(gas);
+        let valve = parameters.valve();
+        let rt = gas.specific_gas_constant * gas.temperature;
+        let rate_volume = |conductance: f64| conductance * rt.sqrt() * flow.laminar_slope();
+        let adiabatic = match parameters.gas_process {
+            GasProcess::Isothermal => 1.0,
+            GasProcess::WallHeat { .. } => gas.heat_capacity_ratio,
+        };
+        Self {
             chambers: parameters.chambers(),
             areas: parameters.areas(),
-            valve: parameters.valve(),
-            air_rate: 0.0,
+            chamber_rate_volume: adiabatic
+                * rate_volume(valve.supply_conductance.max(valve.exhaust_conductance)),
+            line_rate: parameters.hose.map_or(0.0, |hose| {
+                (rate_volume(valve.supply_conductance) + rt / hose.resistance) / hose.volume
+            }),
+            flow,
+            valve,
             parameters,
-        };
-        device.air_rate = device.fastest_air_rate();
-        device
+        }
     }
 
     /// The parameters.
@@ -312,24 +325,14 @@ impl Device {
         }
     }
 
-    /// How fast the smallest chamber, or the line, comes to the pressure beside it [1/s].
-    fn fastest_air_rate(&self) -> f64 {
-        let gas = &self.parameters.gas;
-        let rt = gas.specific_gas_constant * gas.temperature;
-        let per_volume = |conductance: f64| conductance * rt.sqrt() * self.flow.laminar_slope();
-        let largest = self
-            .valve
-            .supply_conductance
-            .max(self.valve.exhaust_conductance);
-        let adiabatic = match self.parameters.gas_process {
-            GasProcess::Isothermal => 1.0,
-            GasProcess::WallHeat { .. } => gas.heat_capacity_ratio,
-        };
-        let chamber = adiabatic * per_volume(largest) / self.parameters.dead_volume;
-        let line = self.parameters.hose.map_or(0.0, |hose| {
-            (per_volume(self.valve.supply_conductance) + rt / hose.resistance) / hose.volume
-        });
-        chamber + line
+    /// How fast the smallest volume of a step comes to the pressure beside it [1/s].
+    pub(super) fn air_rate(&self, motion: PistonMotion, dt: f64) -> f64 {
+        let ends = [motion.stroke, motion.stroke + motion.speed * dt];
+        let volumes = self
+            .chambers
+            .iter()
+            .flat_map(|chamber| ends.map(|stroke| chamber.volume(stroke)));
+        self.chamber_rate_volume / volumes.fold(f64::INFINITY, f64::min) + self.line_rate
     }
 }
 

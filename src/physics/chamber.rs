@@ -34,13 +34,13 @@ pub struct Chamber {
 }
 
 impl Chamber {
-    /// Volume at a stroke [m3]. Held at 1 % of the dead volume beyond the mechanical end, which only a broken end stop would reach.
+    /// Volume at a stroke [m3]. Held at a tenth of the dead volume beyond the mechanical end, which only a broken end stop would reach.
     pub fn volume(&self, stroke: f64) -> f64 {
         let displaced = match self.side {
             Side::Extending => stroke,
             Side::Retracting => self.full_stroke - stroke,
         };
-        (self.dead_volume + self.area * displaced).max(0.01 * self.dead_volume)
+        (self.dead_volume + self.area * displaced).max(0.1 * self.dead_volume)
     }
 
     /// dV/dx: growth of the volume with the stroke [m2].

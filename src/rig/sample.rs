@@ -6,9 +6,10 @@ use crate::device::DeviceState;
 use crate::physics::valve::ValvePosition;
 use crate::recording::schema;
 use crate::recording::{Channel, Recording, RecordingError};
+use crate::sensing::Readings;
 
 /// Channels of a bench recording, in the order of `RigLog::push`.
-const CHANNELS: [&str; 18] = [
+const CHANNELS: [&str; 23] = [
     schema::SET_PRESSURE,
     schema::REGULATOR_PRESSURE,
     schema::CHAMBER_1_PRESSURE,
@@ -27,7 +28,25 @@ const CHANNELS: [&str; 18] = [
     schema::HOSE_MASS,
     schema::MASS_ENTERED,
     schema::MASS_LEFT,
+    schema::MEASURED_FORCE,
+    schema::MEASURED_FORCE_UNFILTERED,
+    schema::MEASURED_STROKE,
+    schema::MEASURED_ACCELERATION,
+    schema::MEASURED_REGULATOR_PRESSURE,
 ];
+
+/// What there is to record at a moment.
+pub(super) struct RigSample<'a> {
+    pub rig: &'a Rig,
+    pub device: &'a DeviceState,
+    pub truth: &'a RigTruth,
+    pub readings: &'a Readings,
+    pub carrier: &'a BenchCarrier,
+    /// Set pressure that the regulator acts on [Pa gauge].
+    pub set_pressure: f64,
+    /// Contact force asked for [N]; NaN where pressures are.
+    pub desired_force: f64,
+}
 
 /// Samples by rows, until the run has ended.
 pub(super) struct RigLog {
@@ -43,27 +62,26 @@ impl RigLog {
         }
     }
 
-    pub(super) fn push(
-        &mut self,
-        rig: &Rig,
-        device: &DeviceState,
-        truth: &RigTruth,
-        carrier: &BenchCarrier,
-        set_pressure: f64,
-        desired_force: f64,
-    ) {
+    pub(super) fn push(&mut self, sample: &RigSample<'_>) {
+        let RigSample {
+            rig,
+            device,
+            truth,
+            readings,
+            ..
+        } = *sample;
         let atmosphere = rig.device.parameters().gas.atmosphere;
         let pressures = rig.device.pressures(device, truth.motion.stroke);
         let seal = rig.device.seal_force(device, truth.motion.speed);
-        let surface = carrier.surface();
+        let surface = sample.carrier.surface();
         self.time.push(truth.time);
         self.rows.push([
-            atmosphere + set_pressure,
+            atmosphere + sample.set_pressure,
             atmosphere + truth.regulator_pressure,
             pressures[0],
             pressures[1],
             truth.contact_force,
-            desired_force,
+            sample.desired_force,
             rig.device.gas_force(device, truth.motion.stroke) + seal,
             seal,
             truth.motion.stroke,
@@ -80,6 +98,11 @@ impl RigLog {
             device.air.hose_mass,
             device.air.entered,
             device.air.left,
+            readings.force,
+            readings.force_unfiltered,
+            readings.stroke,
+            readings.acceleration,
+            atmosphere + readings.regulator_pressure,
         ]);
     }
 

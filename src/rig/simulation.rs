@@ -2,12 +2,13 @@
 
 use super::carrier::BenchCarrier;
 use super::error::RigError;
-use super::sample::RigLog;
+use super::sample::{RigLog, RigSample};
 use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::valve::ValvePosition;
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::bench::{BenchScenario, CommandScenario};
+use crate::sensing::{Readings, SensorChain, Truth};
 
 /// A bench rig with its job: all that does not change during a run.
 #[derive(Debug, Clone)]
@@ -64,6 +65,8 @@ pub struct RigSimulation<'a> {
     device: DeviceState,
     motion: PistonMotion,
     controller: ForceController,
+    sensors: SensorChain,
+    readings: Readings,
     steps: usize,
     total_steps: usize,
     log: RigLog,
@@ -94,6 +97,8 @@ impl<'a> RigSimulation<'a> {
             device: rig.device.at_rest(stroke, 0.0),
             motion,
             controller: ForceController::pressure_map(parameters),
+            sensors: SensorChain::new(&scenario.sensing, scenario.seed),
+            readings: Readings::default(),
             steps: 0,
             total_steps,
             log: RigLog::new(total_steps + 1),
@@ -141,7 +146,7 @@ impl<'a> RigSimulation<'a> {
         self.log.into_recording()
     }
 
-    /// One step: command -> controller -> device and piston under the load -> sample.
+    /// One step: command -> controller -> set value -> device and piston under the load -> sensors -> sample.
     ///
     /// # Errors
     /// What stopped the run.
@@ -149,7 +154,8 @@ impl<'a> RigSimulation<'a> {
         let scenario = &self.rig.scenario;
         let time = self.time();
         self.device.valve = held(&scenario.valve, time).unwrap_or(ValvePosition::Extend);
-        let set_pressure = self.set_pressure(time);
+        let wanted = self.set_pressure(time);
+        let set_pressure = self.sensors.command(wanted, scenario.step);
         let carrier = BenchCarrier::at(scenario, time);
         self.rig.device.advance_carried(
             &mut self.device,
@@ -173,14 +179,13 @@ impl<'a> RigSimulation<'a> {
                 let Some(desired) = held(steps, time) else {
                     return 0.0;
                 };
-                let truth = self.truth();
                 self.controller.set_pressure(&ForceObservation {
                     time,
                     desired_axial_force: desired,
                     gravity_along_axis: scenario.gravity_along_extension,
-                    measured_axial_force: truth.contact_force,
-                    stroke: truth.motion.stroke,
-                    regulator_pressure: truth.regulator_pressure,
+                    measured_axial_force: self.readings.force,
+                    stroke: self.readings.stroke,
+                    regulator_pressure: self.readings.regulator_pressure,
                 })
             }
         }
@@ -208,19 +213,29 @@ impl<'a> RigSimulation<'a> {
 
     fn sample(&mut self, set_pressure: f64) {
         let truth = self.truth();
+        self.readings = self.sensors.measure(
+            truth.time,
+            &Truth {
+                force: truth.contact_force,
+                stroke: truth.motion.stroke,
+                acceleration: truth.acceleration,
+                regulator_pressure: truth.regulator_pressure,
+            },
+        );
         let desired = match &self.rig.scenario.command {
             CommandScenario::Force(steps) => held(steps, truth.time).unwrap_or(0.0),
             CommandScenario::SetPressure(_) => f64::NAN,
         };
         let carrier = BenchCarrier::at(&self.rig.scenario, truth.time);
-        self.log.push(
-            self.rig,
-            &self.device,
-            &truth,
-            &carrier,
+        self.log.push(&RigSample {
+            rig: self.rig,
+            device: &self.device,
+            truth: &truth,
+            readings: &self.readings,
+            carrier: &carrier,
             set_pressure,
-            desired,
-        );
+            desired_force: desired,
+        });
     }
 
     fn check(&self) -> Result<(), RigError> {

@@ -18,6 +18,7 @@ use crate::control::servo::{AxisCommand, Servo, ServoParameters};
 use crate::device::{DeviceForce, DeviceState, PistonMotion};
 use crate::path::{Phase, Reference};
 use crate::recording::Unit;
+use crate::sensing::{Readings, SensorChain, Truth};
 
 /// Time between two frames of the picture [s].
 const FRAME_INTERVAL: f64 = 0.02;
@@ -46,11 +47,12 @@ pub struct Simulation<'a> {
     device: DeviceState,
     servo: Servo,
     controller: ForceController,
+    sensors: SensorChain,
+    readings: Readings,
+    slide_speed: f64,
     steps: usize,
     total_steps: usize,
     laws: Vec<JointLaw>,
-    /// Axial contact force over the last step [N].
-    axial_force: f64,
     slide_force: f64,
     log: SampleLog,
     frames: FrameLog,
@@ -98,17 +100,25 @@ impl<'a> Simulation<'a> {
                 integral_time: scenario.arm.servo.integral_time,
             },
         );
+        let mut sensors = SensorChain::new(&scenario.sensing, scenario.simulation.seed);
+        sensors.settle(set_pressure);
         let total_steps = (cell.plan.duration() / scenario.simulation.step).ceil() as usize;
         Self {
             cell,
             world,
-            device,
             servo,
             controller,
+            sensors,
+            readings: Readings {
+                stroke,
+                regulator_pressure: device.regulator.outlet,
+                ..Readings::default()
+            },
+            slide_speed: 0.0,
+            device,
             steps: 0,
             total_steps,
             laws: vec![JointLaw::default(); count],
-            axial_force: 0.0,
             slide_force: 0.0,
             log: SampleLog::new(count - 1, total_steps),
             frames: FrameLog::default(),
@@ -183,11 +193,13 @@ impl<'a> Simulation<'a> {
             time: self.steps as f64 * self.cell.scenario.simulation.step,
             desired_axial_force: self.cell.scenario.process.force * self.cell.axial_share(),
             gravity_along_axis: self.cell.gravity_along(reference.axis),
-            measured_axial_force: self.axial_force,
-            stroke: self.world.positions()[self.slide()],
-            regulator_pressure: self.device.regulator.outlet,
+            measured_axial_force: self.readings.force,
+            stroke: self.readings.stroke,
+            regulator_pressure: self.readings.regulator_pressure,
         };
-        self.controller.set_pressure(&observation)
+        let wanted = self.controller.set_pressure(&observation);
+        self.sensors
+            .command(wanted, self.cell.scenario.simulation.step)
     }
 
     fn advance_device(&mut self, set_pressure: f64, dt: f64) -> DeviceForce {
@@ -296,7 +308,17 @@ impl<'a> Simulation<'a> {
         let pressures = cell.device.pressures(&self.device, stroke);
         self.slide_force = self.world.applied_force(n);
         let force_on_part = -contact.force_on_tool;
-        self.axial_force = force_on_part.dot(reference.axis);
+        let speed = self.world.velocities()[n];
+        self.readings = self.sensors.measure(
+            time,
+            &Truth {
+                force: force_on_part.dot(reference.axis),
+                stroke,
+                acceleration: (speed - self.slide_speed) / cell.scenario.simulation.step,
+                regulator_pressure: self.device.regulator.outlet,
+            },
+        );
+        self.slide_speed = speed;
 
         let off = self.world.tool_centre() - reference.centre;
         let across = off - reference.axis * off.dot(reference.axis);

@@ -116,7 +116,7 @@ fn much_wall_heat_comes_back_to_isothermal_as_one_over_g() {
     reached(
         "-p V' / (G T), extrapolated to large G",
         extrapolated.abs(),
-        1e-3,
+        1e-4,
     );
 }
 

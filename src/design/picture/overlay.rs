@@ -5,7 +5,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{CHOSEN, Chart, DARK, Drawn, FONT, GREY, LIMIT, PX, TEXT, inside, limits_of};
-use crate::design::label::with_unit;
+use crate::design::label::{raised, with_unit};
 use crate::design::result::{LimitState, StudyResult};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -44,7 +44,8 @@ pub(super) fn limits(
             words,
             line: [(x, top), (x, bottom)],
             forbidden: [(x.min(forbidden), top), (x.max(forbidden), bottom)],
-            place: ((x + gap, top + 14 * PX), ends),
+            // Below the label of a start that lies beyond the picture.
+            place: ((x + gap, top + 60 * PX), ends),
         };
         (limit, [limit.bound, up.0], line)
     });
@@ -72,7 +73,7 @@ fn words_of(limit: &LimitState) -> String {
     } else {
         "at least"
     };
-    format!("limit: {side} {}", with_unit(&limit.key, limit.bound))
+    format!("limit: {side} {}", short_with_unit(&limit.key, limit.bound))
 }
 
 /// Estimated width of a text; the viewer's font decides.
@@ -152,7 +153,14 @@ pub(super) fn marks(chart: &Chart<'_, '_>, result: &StudyResult, ranges: [(f64, 
             x.clamp(across.0, across.1),
             candidate.objective.clamp(up.0, up.1),
         );
-        let place = chart.plotting_area().map_coordinate(&shown);
+        let (x_shown, y_shown) = chart.plotting_area().map_coordinate(&shown);
+        // What reaches beyond the plot is cut off.
+        let (columns, rows) = chart.plotting_area().get_pixel_range();
+        let edge = 10 * PX;
+        let place = (
+            x_shown.clamp(columns.start + edge, columns.end - edge),
+            y_shown.clamp(rows.start + edge, rows.end - edge),
+        );
         let mut text = format!(
             "{word}: {}, {}",
             short_with_unit(trade_off, x),
@@ -213,5 +221,6 @@ fn label(
 
 /// As [`with_unit`], to four significant digits.
 fn short_with_unit(key: &str, value: f64) -> String {
-    with_unit(key, format!("{value:.3e}").parse().unwrap_or(value))
+    let shown = format!("{value:.3e}").parse().unwrap_or(value);
+    raised(&with_unit(key, shown))
 }

@@ -32,6 +32,22 @@ fn the_planted_optimum_is_found_whatever_the_seed() {
 }
 
 #[test]
+fn the_smallest_budget_is_kept_as_well() {
+    let least = STUDY.replace("evaluations = 1200", "evaluations = 200");
+    for text in [
+        least.clone(),
+        least.replace(
+            "trade_off = \"impact_peak_n\"\ntrade_off_over = \"worst\"\n",
+            "",
+        ),
+    ] {
+        let result = search(&text, &Surrogate).unwrap();
+        assert!(result.evaluations <= 200, "{}", result.evaluations);
+        assert!(result.chosen.feasible && result.chosen.objective < result.start.objective);
+    }
+}
+
+#[test]
 fn what_binds_is_named_with_its_price() {
     let result = search(&single(), &Surrogate).unwrap();
     let bounds: Vec<_> = result

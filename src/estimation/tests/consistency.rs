@@ -136,3 +136,19 @@ fn running_out_and_striking_is_followed() {
     assert!(covered > 0.85, "{covered}");
     assert!(last < 15.0, "{last}");
 }
+
+/// Cost: `cargo test --release estimation_cost -- --ignored --nocapture`.
+#[test]
+#[ignore = "prints a time"]
+fn estimation_cost() {
+    let data = device();
+    let told = parameters(&data, Tolerances::default());
+    let samples = run(&data, &told, &Deviation::NONE, &moved(290.0, 0.5), 7);
+    let start = std::time::Instant::now();
+    let mut sum = 0.0;
+    for _ in 0..10 {
+        sum += follow(&data, &told, 0.035, &samples)[2000].force;
+    }
+    let each = start.elapsed().as_secs_f64() / 10.0 / samples.len() as f64;
+    println!("{:.2} us an update ({sum})", 1e6 * each);
+}

@@ -4,9 +4,11 @@
 
 use crate::device::DeviceParameters;
 use crate::estimation::{EstimatorParameters, Measurement, SensorNoise, Tolerances};
+use crate::physics::chamber::Chamber;
 use crate::physics::end_stop::EndStop;
 use crate::physics::gas::Gas;
 use crate::physics::orifice::FlowFunction;
+use crate::physics::piston::PistonAreas;
 use crate::physics::regulator::RegulatorParameters;
 use crate::physics::seal_friction::SealFriction;
 use crate::physics::valve::{ValvePosition, chamber_flows};
@@ -138,6 +140,8 @@ struct Plant<'a> {
     /// As the data say, and as it is.
     data: &'a DeviceParameters,
     device: DeviceParameters,
+    chambers: [Chamber; 2],
+    areas: PistonAreas,
     flow: FlowFunction,
     motion: Motion,
     gravity: f64,
@@ -145,8 +149,7 @@ struct Plant<'a> {
 
 impl Plant<'_> {
     fn pressures(&self, state: &State) -> [f64; 2] {
-        let chambers = self.device.chambers();
-        [0, 1].map(|i| chambers[i].pressure(&self.device.gas, state[i], state[2]))
+        [0, 1].map(|i| self.chambers[i].pressure(&self.device.gas, state[i], state[2]))
     }
 
     /// Outlet that follows its setting at 0.5 s, gauge [Pa].
@@ -187,8 +190,8 @@ impl Plant<'_> {
         );
         let speed = state[3];
         let seals = &device.seal_friction;
-        let push = device
-            .areas()
+        let push = self
+            .areas
             .gas_force(pressures[0], pressures[1], gas.atmosphere);
         let resist = seals.force(state[4], speed) + self.contact(state, time);
         let bend = if seals.is_dry() {
@@ -235,6 +238,8 @@ pub fn run(
     let chambers = device.chambers();
     let plant = Plant {
         data,
+        chambers,
+        areas: device.areas(),
         flow: FlowFunction::new(&gas),
         gravity: motion.gravity + tilt,
         device,
