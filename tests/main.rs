@@ -9,6 +9,7 @@ mod common;
 mod contact;
 mod convergence;
 mod determinism;
+mod equations;
 mod layers;
 mod program;
 mod real_robots;

@@ -14,10 +14,10 @@ fn misplaced(shift_mm: f64) -> Bench {
 }
 
 /// Air that leaves a chamber faster than the integrator's step can follow: the mass overshoots zero.
-fn leaky(dead_volume_cm3: f64) -> Bench {
+fn leaky(dead_volume_cm3: f64, orifice_mm2: f64) -> Bench {
     let bench = Bench::new("plate_edge");
     let keys = format!(
-        "dead_volume_cm3 = {dead_volume_cm3}\nsupply_orifice_mm2 = 50\nexhaust_orifice_mm2 = 50"
+        "dead_volume_cm3 = {dead_volume_cm3}\nsupply_orifice_mm2 = {orifice_mm2}\nexhaust_orifice_mm2 = {orifice_mm2}"
     );
     bench.replace(
         "scenario.toml",
@@ -152,7 +152,7 @@ fn an_arm_that_runs_its_locked_tool_into_the_part() {
 #[test]
 fn a_chamber_that_empties_in_microseconds_is_no_reason_to_stop() {
     // Ended with a negative mass of air when the number of sub-steps was the user's business alone.
-    let bench = leaky(2.0);
+    let bench = leaky(2.0, 50.0);
     let outcome = bench.run();
     assert_ne!(outcome.code, 3, "{}", outcome.err);
     assert!(bench.path("out/samples.parquet").exists());
@@ -160,7 +160,7 @@ fn a_chamber_that_empties_in_microseconds_is_no_reason_to_stop() {
 
 #[test]
 fn a_state_that_cannot_be_at_the_first_step_leaves_nothing_to_record() {
-    let bench = leaky(0.1);
+    let bench = leaky(0.1, 100.0);
     let outcome = bench.run();
     let reason = stopped(&outcome);
     assert!(reason.contains("chamber_2_mass became -"), "{reason}");

@@ -15,7 +15,7 @@ use crate::physics::valve::ValvePosition;
 /// Largest sub-step times the fastest rate of the pneumatics [1]; the method is stable to 2.78 and damps to a third here.
 const AIR_LIMIT: f64 = 1.2;
 /// Largest sub-step times the fastest rate of stops and load [rad].
-const MECHANICAL_LIMIT: f64 = 0.25;
+const MECHANICAL_LIMIT: f64 = 0.2;
 /// Sub-steps of a step beyond which a device is out of all proportion: its run then ends with the state that cannot be.
 const MOST_SUBSTEPS: f64 = 2e4;
 /// Halvings when a change of mode is sought: to 1e-7 of a sub-step.
@@ -136,6 +136,7 @@ impl Device {
             .sqrt()
             .max(stop.damping / mass)
             .max((seals / mass).sqrt())
+            .max(self.parameters.seal_friction.viscous / mass)
             .max(carrier.rate());
         air.min(MECHANICAL_LIMIT / mechanical)
     }

@@ -332,7 +332,15 @@ impl Device {
             .chambers
             .iter()
             .flat_map(|chamber| ends.map(|stroke| chamber.volume(stroke)));
-        self.chamber_rate_volume / volumes.fold(f64::INFINITY, f64::min) + self.line_rate
+        let smallest = volumes.fold(f64::INFINITY, f64::min);
+        let gas = &self.parameters.gas;
+        let wall = match self.parameters.gas_process {
+            GasProcess::Isothermal => 0.0,
+            GasProcess::WallHeat { conductance } => {
+                conductance / (gas.mass(gas.atmosphere, smallest) * gas.specific_heat_volume())
+            }
+        };
+        self.chamber_rate_volume / smallest + self.line_rate + wall
     }
 }
 

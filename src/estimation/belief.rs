@@ -1,8 +1,8 @@
 //! What one filter believes: a mean and a covariance over state and considered parameters, and the two things done to them.
 //!
-//! A sample z = h s + noise of variance R:   c = P h,  S = h' P h + R,  K = c / S on the state and 0 on the parameters,
+//! A sample z = h s + noise of variance R:   c = P h,  S = h' P h + R,  K = c / S on the state and 0 on the parameters (Schmidt),
 //!
-//!     s <- s + K (z - h s),   P <- P - K c' - c K' + S K K'                              (Joseph's form; Schmidt's gain)
+//!     s <- s + K (z - h s),   P <- P - K c' - c K' + S K K'  =  P - c c' / S but for the parameters' own block, which stays
 //!
 //! An element replaced by a linear combination of all:   P <- T P T'.
 //!
@@ -38,8 +38,10 @@ pub(super) const EXHAUST: usize = 12;
 pub(super) const DEAD_VOLUME: usize = 13;
 /// Relative error of the presliding displacement [1].
 pub(super) const PRESLIDING: usize = 14;
+/// Relative error of the outlet's sensor [1].
+pub(super) const PRESSURE_SCALE: usize = 15;
 /// All elements.
-pub(super) const SIZE: usize = 15;
+pub(super) const SIZE: usize = 16;
 
 /// A coefficient on each of some elements.
 pub(super) type Term = (usize, f64);
@@ -128,12 +130,15 @@ impl Belief {
             gain[i] = spread[i] / innovation.variance;
             self.mean[i] += gain[i] * innovation.residual;
         }
-        for i in 0..SIZE {
-            for j in 0..=i {
-                let change = gain[i] * spread[j] + spread[i] * gain[j]
-                    - innovation.variance * gain[i] * gain[j];
-                self.covariance[i][j] -= change;
-                self.covariance[j][i] = self.covariance[i][j];
+        let (states, parameters) = self.covariance.split_at_mut(STATES);
+        for (row, gain) in states.iter_mut().zip(gain) {
+            for (value, spread) in row.iter_mut().zip(&spread) {
+                *value -= gain * spread;
+            }
+        }
+        for (row, spread) in parameters.iter_mut().zip(&spread[STATES..]) {
+            for (value, gain) in row.iter_mut().zip(&gain) {
+                *value -= spread * gain;
             }
         }
         innovation

@@ -44,7 +44,10 @@ pub(super) struct Chambers {
     chambers: [Chamber; 2],
     valve: ValveParameters,
     dead_volume: f64,
-    time_constant: f64,
+    /// Length of a sub-step [s].
+    substep: f64,
+    /// Share of the outlet's difference from its target that is left at the start, after half a sub-step, after one, ... to the period's end.
+    remaining: Vec<f64>,
 }
 
 /// What a chamber hangs on [Pa] and where its piston is [m].
@@ -64,14 +67,21 @@ struct Slope {
 }
 
 impl Chambers {
-    pub(super) fn new(device: &DeviceParameters) -> Self {
+    pub(super) fn new(device: &DeviceParameters, period: f64) -> Self {
+        let substeps = (period / LONGEST_SUBSTEP).ceil().max(1.0);
+        let substep = period / substeps;
+        let halves = 0..=2 * substeps as usize;
+        let lag = device.regulator.time_constant;
         Self {
             gas: device.gas,
             flow: FlowFunction::new(&device.gas),
             chambers: device.chambers(),
             valve: device.valve(),
             dead_volume: device.dead_volume,
-            time_constant: device.regulator.time_constant,
+            substep,
+            remaining: halves
+                .map(|i| (-0.5 * substep * i as f64 / lag).exp())
+                .collect(),
         }
     }
 
@@ -109,24 +119,28 @@ impl Chambers {
         (chamber == 0) == (valve == ValvePosition::Extend)
     }
 
-    /// Outlet after a time [s], gauge [Pa].
-    pub(super) fn outlet(&self, drive: &Drive, time: f64) -> f64 {
-        drive.target + (drive.outlet - drive.target) * self.remaining(time)
+    /// Outlet after a period, gauge [Pa].
+    pub(super) fn outlet(&self, drive: &Drive) -> f64 {
+        drive.target + (drive.outlet - drive.target) * self.remaining()
     }
 
-    /// Share of the outlet's difference from its target that is left after a time [s].
-    pub(super) fn remaining(&self, time: f64) -> f64 {
-        (-time / self.time_constant).exp()
+    /// Share of the outlet's difference from its target that is left after a period.
+    pub(super) fn remaining(&self) -> f64 {
+        self.remaining[self.remaining.len() - 1]
     }
 
-    /// Air after a period [s], and the terms of its deviation.
+    /// The period [s].
+    pub(super) fn period(&self) -> f64 {
+        self.substep * (self.remaining.len() / 2) as f64
+    }
+
+    /// Air after a period [kg], and the terms of its deviation.
     pub(super) fn advance(
         &self,
         chamber: usize,
         mass: f64,
         drive: &Drive,
         valve: ValvePosition,
-        period: f64,
     ) -> (f64, [Term; 8]) {
         let supplied = Self::is_supplied(chamber, valve);
         let area = if supplied {
@@ -134,28 +148,32 @@ impl Chambers {
         } else {
             self.valve.exhaust_conductance
         };
-        let surroundings = |t: f64| {
-            let gauge = if supplied { self.outlet(drive, t) } else { 0.0 };
+        let h = self.substep;
+        let after_halves = |halves: usize| {
+            let t = 0.5 * h * halves as f64;
+            let difference = (drive.outlet - drive.target) * self.remaining[halves];
+            let gauge = if supplied {
+                (drive.target + difference).max(0.0)
+            } else {
+                0.0
+            };
             Surroundings {
-                upstream: self.gas.atmosphere + gauge.max(0.0),
+                upstream: self.gas.atmosphere + gauge,
                 stroke: drive.stroke + t * (drive.speed + 0.5 * t * drive.acceleration),
             }
         };
-        let substeps = (period / LONGEST_SUBSTEP).ceil().max(1.0);
-        let h = period / substeps;
         let (mut m, mut terms) = (mass, [0.0; 8]);
         terms[0] = 1.0;
-        let mut start = surroundings(0.0);
-        for i in 0..substeps as usize {
-            let t = h * i as f64;
-            let (middle, end) = (surroundings(t + 0.5 * h), surroundings(t + h));
+        let mut start = after_halves(0);
+        for i in 0..self.remaining.len() / 2 {
+            let (middle, end) = (after_halves(2 * i + 1), after_halves(2 * i + 2));
             let equal = [start, middle, end].map(|s| self.mass(chamber, s.upstream, s.stroke));
             let rate = self.relative_rate(chamber, area, m, &start);
             let half = lag(m, equal[0], equal[1], rate, 0.5 * h);
             let rate = self.relative_rate(chamber, area, half, &middle);
             m = lag(m, equal[0], equal[2], rate, h);
             let slope = self.slope(chamber, area, half, &middle);
-            self.carry(&mut terms, &slope, t, h);
+            self.carry(&mut terms, &slope, i);
             start = end;
         }
         if !supplied {
@@ -198,9 +216,12 @@ impl Chambers {
         let (upstream, stroke) = (around.upstream, around.stroke);
         let pressure = self.pressure(chamber, mass, stroke);
         let at = |p: f64| self.flow.mass_flow(area, upstream, p);
-        let flow = at(pressure);
-        let by_pressure = (at(pressure + SLOPE_HALF_WIDTH) - at(pressure - SLOPE_HALF_WIDTH))
-            / (2.0 * SLOPE_HALF_WIDTH);
+        let (above, below) = (
+            at(pressure + SLOPE_HALF_WIDTH),
+            at(pressure - SLOPE_HALF_WIDTH),
+        );
+        let flow = 0.5 * (above + below);
+        let by_pressure = (above - below) / (2.0 * SLOPE_HALF_WIDTH);
         let [by_mass, by_stroke, by_dead_volume] = self.pressure_slopes(chamber, mass, stroke);
         Slope {
             by_mass: by_pressure * by_mass,
@@ -211,8 +232,9 @@ impl Chambers {
         }
     }
 
-    /// Carries the terms of the deviation over a sub-step of `h` [s] that starts at `time` [s]; what drives them goes evenly meanwhile.
-    fn carry(&self, terms: &mut [f64; 8], slope: &Slope, time: f64, h: f64) {
+    /// Carries the terms of the deviation over a sub-step; what drives them goes evenly meanwhile.
+    fn carry(&self, terms: &mut [f64; 8], slope: &Slope, substep: usize) {
+        let h = self.substep;
         let exponent = slope.by_mass * h;
         let decay = exponent.exp();
         let (of_start, of_end) = if exponent.abs() < 1e-4 {
@@ -222,8 +244,8 @@ impl Chambers {
             let of_end = h * (all - 1.0) / exponent;
             (h * all - of_end, of_end)
         };
-        let sources = |t: f64| {
-            let left = self.remaining(t);
+        let sources = |node: usize| {
+            let (t, left) = (h * node as f64, self.remaining[2 * node]);
             [
                 0.0,
                 slope.by_stroke,
@@ -235,7 +257,7 @@ impl Chambers {
                 slope.by_dead_volume,
             ]
         };
-        let (start, end) = (sources(time), sources(time + h));
+        let (start, end) = (sources(substep), sources(substep + 1));
         for (i, term) in terms.iter_mut().enumerate() {
             *term = decay * *term + of_start * start[i] + of_end * end[i];
         }
@@ -265,14 +287,16 @@ mod tests {
         target: 2.4e5,
     };
 
-    /// Classical Runge-Kutta steps of a microsecond.
-    fn fine(chambers: &Chambers, chamber: usize, mass: f64, period: f64) -> f64 {
+    /// Classical Runge-Kutta steps of a microsecond, over a millisecond.
+    fn fine(device: &DeviceParameters, chambers: &Chambers, chamber: usize, mass: f64) -> f64 {
         let area = [
             chambers.valve.supply_conductance,
             chambers.valve.exhaust_conductance,
         ][chamber];
         let rate = |m: f64, t: f64| {
-            let gauge = [chambers.outlet(&DRIVE, t), 0.0][chamber];
+            let left = (-t / device.regulator.time_constant).exp();
+            let outlet = DRIVE.target + (DRIVE.outlet - DRIVE.target) * left;
+            let gauge = [outlet, 0.0][chamber];
             let stroke = DRIVE.stroke + t * (DRIVE.speed + 0.5 * t * DRIVE.acceleration);
             let pressure = chambers.pressure(chamber, m, stroke);
             chambers
@@ -280,7 +304,7 @@ mod tests {
                 .mass_flow(area, chambers.gas.atmosphere + gauge, pressure)
         };
         let h = 1e-6;
-        (0..(period / h).round() as usize).fold(mass, |m, i| {
+        (0..1000).fold(mass, |m, i| {
             let t = h * i as f64;
             let k1 = rate(m, t);
             let k2 = rate(m + 0.5 * h * k1, t + 0.5 * h);
@@ -297,13 +321,13 @@ mod tests {
         for (scale, tolerance) in [(1.0, 2e-5), (30.0, 5e-3)] {
             device.supply_orifice = 2.5e-6 * scale;
             device.exhaust_orifice = 2e-6 * scale;
-            let chambers = Chambers::new(&device);
+            let chambers = Chambers::new(&device, 1e-3);
             for chamber in [0, 1] {
                 for start in [2.9e5, 2.6e5, 1.2e5] {
                     let mass = chambers.mass(chamber, start, DRIVE.stroke);
                     let extend = ValvePosition::Extend;
-                    let (after, _) = chambers.advance(chamber, mass, &DRIVE, extend, 1e-3);
-                    let exact = fine(&chambers, chamber, mass, 1e-3);
+                    let (after, _) = chambers.advance(chamber, mass, &DRIVE, extend);
+                    let exact = fine(&device, &chambers, chamber, mass);
                     let error = (after - exact) / exact;
                     assert!(
                         error.abs() < tolerance,
@@ -317,14 +341,12 @@ mod tests {
     #[test]
     fn the_terms_are_the_derivatives_of_the_period() {
         let device = device();
-        let chambers = Chambers::new(&device);
+        let chambers = Chambers::new(&device, 1e-3);
         let advance = |chambers: &Chambers, mass: f64, drive: Drive| {
-            chambers
-                .advance(0, mass, &drive, ValvePosition::Extend, 1e-3)
-                .0
+            chambers.advance(0, mass, &drive, ValvePosition::Extend).0
         };
         let mass = chambers.mass(0, 2.7e5, DRIVE.stroke);
-        let (_, terms) = chambers.advance(0, mass, &DRIVE, ValvePosition::Extend, 1e-3);
+        let (_, terms) = chambers.advance(0, mass, &DRIVE, ValvePosition::Extend);
         let term = |element| terms.iter().find(|t| t.0 == element).unwrap().1;
         let of_drive = |change: &dyn Fn(&mut Drive, f64), step: f64| {
             let at = |step: f64| {
@@ -342,7 +364,7 @@ mod tests {
             let at = |step: f64| {
                 let mut other = device.clone();
                 change(&mut other, step);
-                advance(&Chambers::new(&other), mass, DRIVE)
+                advance(&Chambers::new(&other, 1e-3), mass, DRIVE)
             };
             (at(1e-4) - at(-1e-4)) / 2e-4
         };

@@ -3,11 +3,12 @@
 use super::EstimationError;
 use super::belief::{
     ACCELERATION, ACCELERATION_BIAS, Belief, DEAD_VOLUME, EXHAUST, MASSES, OUTLET, PRESLIDING,
-    PRESSURE_BIAS, SIZE, SPEED, STROKE, SUPPLY, TARGET, TURNING_DEFLECTION, TURNING_STROKE, Term,
+    PRESSURE_BIAS, PRESSURE_SCALE, SIZE, SPEED, STROKE, SUPPLY, TARGET, TURNING_DEFLECTION,
+    TURNING_STROKE, Term,
 };
 use super::chambers::{Chambers, Drive};
 use super::models::Models;
-use super::output::{Estimate, ForceOutput};
+use super::output::{Estimate, ForceOutput, coverage_factor};
 use super::parameters::{EstimatorParameters, ProcessModel, Tolerances};
 use super::seals::{Seals, Way};
 use crate::device::DeviceParameters;
@@ -26,7 +27,6 @@ const START_PRESSURE: f64 = 2e3;
 
 const STROKE_TERMS: [Term; 1] = [(STROKE, 1.0)];
 const ACCELERATION_TERMS: [Term; 2] = [(ACCELERATION, 1.0), (ACCELERATION_BIAS, 1.0)];
-const PRESSURE_TERMS: [Term; 2] = [(OUTLET, 1.0), (PRESSURE_BIAS, 1.0)];
 
 /// One set of samples. A value that is not finite is a missing sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +74,6 @@ impl ProcessNoise {
 /// Estimates the contact force, sample by sample.
 #[derive(Debug, Clone)]
 pub struct ContactForceEstimator {
-    period: f64,
     /// Variances of the noise on stroke, acceleration and pressure.
     noise: [f64; 3],
     process: Vec<ProcessNoise>,
@@ -114,14 +113,13 @@ impl ContactForceEstimator {
         let noise = &parameters.noise;
         let belief = first_belief(device, parameters, initial_stroke);
         Ok(Self {
-            period,
             noise: [noise.stroke, noise.acceleration, noise.regulator_pressure].map(|s| s * s),
             process: parameters
                 .models
                 .iter()
                 .map(|model| ProcessNoise::new(model, period, lag))
                 .collect(),
-            chambers: Chambers::new(device),
+            chambers: Chambers::new(device, period),
             seals: Seals::new(device.seal_friction),
             output: ForceOutput::new(device, parameters.tolerances, parameters.gravity_along_axis),
             atmosphere: device.gas.atmosphere,
@@ -146,13 +144,7 @@ impl ContactForceEstimator {
         if self.started {
             self.models.mix();
             for (belief, noise) in self.models.beliefs.iter_mut().zip(&self.process) {
-                predict(
-                    belief,
-                    &self.chambers,
-                    noise,
-                    measurement.valve,
-                    self.period,
-                );
+                predict(belief, &self.chambers, noise, measurement.valve);
             }
         } else {
             self.fill_chambers(measurement);
@@ -191,22 +183,28 @@ impl ContactForceEstimator {
 
     /// Takes the samples in under every model and weighs the models.
     fn observe(&mut self, measurement: &Measurement) -> [f64; 3] {
-        let samples: [(&[Term], f64); 3] = [
-            (&STROKE_TERMS, measurement.stroke),
-            (&ACCELERATION_TERMS, measurement.acceleration),
-            (&PRESSURE_TERMS, measurement.regulator_pressure),
+        let samples = [
+            measurement.stroke,
+            measurement.acceleration,
+            measurement.regulator_pressure,
         ];
         let mut normalized = [f64::NAN; 3];
         let likeliest = self.models.likeliest();
         let mut likelihoods = vec![0.0; self.models.beliefs.len()];
-        for (i, (terms, sample)) in samples.into_iter().enumerate() {
+        for (i, sample) in samples.into_iter().enumerate() {
             if !sample.is_finite() {
                 continue;
             }
             let noise = self.noise[i];
             let beliefs = self.models.beliefs.iter_mut().zip(&mut likelihoods);
             for (model, (belief, log)) in beliefs.enumerate() {
-                let innovation = belief.observe(terms, sample, noise);
+                let pressure_terms = [
+                    (OUTLET, 1.0),
+                    (PRESSURE_BIAS, 1.0),
+                    (PRESSURE_SCALE, belief.mean[OUTLET]),
+                ];
+                let terms: [&[Term]; 3] = [&STROKE_TERMS, &ACCELERATION_TERMS, &pressure_terms];
+                let innovation = belief.observe(terms[i], sample, noise);
                 *log += innovation.log_likelihood();
                 if model == likeliest {
                     normalized[i] = innovation.residual / innovation.variance.sqrt();
@@ -290,6 +288,9 @@ impl ContactForceEstimator {
         Estimate {
             force,
             standard_deviation: variance.sqrt(),
+            coverage_factor: coverage_factor(
+                weighted(&|i| parts[i].fourth_powers) / (variance * variance),
+            ),
             chamber_pressures: [0, 1].map(|c| weighted(&|i| parts[i].pressures[c])),
             gas_force: weighted(&|i| parts[i].gas),
             friction: weighted(&|i| parts[i].friction),
@@ -326,6 +327,7 @@ fn first_belief(
     for (element, limit) in [
         (ACCELERATION_BIAS, tolerances.acceleration_bias),
         (PRESSURE_BIAS, tolerances.regulator_pressure_bias),
+        (PRESSURE_SCALE, tolerances.regulator_pressure_scale),
         (SUPPLY, tolerances.orifices),
         (EXHAUST, tolerances.orifices),
         (DEAD_VOLUME, tolerances.dead_volume),
@@ -342,13 +344,8 @@ fn first_belief(
 }
 
 /// Carries a belief over a period.
-fn predict(
-    belief: &mut Belief,
-    chambers: &Chambers,
-    noise: &ProcessNoise,
-    valve: ValvePosition,
-    period: f64,
-) {
+fn predict(belief: &mut Belief, chambers: &Chambers, noise: &ProcessNoise, valve: ValvePosition) {
+    let period = chambers.period();
     let mean = &belief.mean;
     let drive = Drive {
         stroke: mean[STROKE],
@@ -359,7 +356,7 @@ fn predict(
     };
     // Chambers first: they answer to the motion and outlet as they are at the start.
     for (i, element) in MASSES.into_iter().enumerate() {
-        let (mass, terms) = chambers.advance(i, belief.mean[element], &drive, valve, period);
+        let (mass, terms) = chambers.advance(i, belief.mean[element], &drive, valve);
         belief.mean[element] = mass;
         belief.combine(element, &terms);
     }
@@ -369,11 +366,11 @@ fn predict(
         &[(STROKE, 1.0), (SPEED, period), (ACCELERATION, half_square)],
     );
     belief.combine(SPEED, &[(SPEED, 1.0), (ACCELERATION, period)]);
-    let left = chambers.remaining(period);
+    let left = chambers.remaining();
     belief.combine(OUTLET, &[(OUTLET, left), (TARGET, 1.0 - left)]);
     belief.mean[STROKE] += period * drive.speed + half_square * drive.acceleration;
     belief.mean[SPEED] += period * drive.acceleration;
-    belief.mean[OUTLET] = chambers.outlet(&drive, period);
+    belief.mean[OUTLET] = chambers.outlet(&drive);
     for &(i, j, covariance) in &noise.entries {
         belief.add_noise(i, j, covariance);
     }

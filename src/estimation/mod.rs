@@ -35,7 +35,7 @@ mod seals;
 
 pub use error::EstimationError;
 pub use estimator::{ContactForceEstimator, Measurement};
-pub use output::{COVERAGE_FACTOR, Estimate};
+pub use output::Estimate;
 pub use parameters::{EstimatorParameters, ProcessModel, SensorNoise, Tolerances};
 
 #[cfg(test)]

@@ -35,6 +35,8 @@ pub struct Tolerances {
     pub presliding_displacement: f64,
     /// Bias of the regulator's outlet sensor [Pa].
     pub regulator_pressure_bias: f64,
+    /// Of the same sensor's scale, relative [1].
+    pub regulator_pressure_scale: f64,
     /// Bias of the accelerometer [m/s2]; estimated on the way, for the stroke shows it.
     pub acceleration_bias: f64,
     /// Of the component of gravity along extension [m/s2].
@@ -52,6 +54,7 @@ impl Tolerances {
         viscous_friction: 0.0,
         presliding_displacement: 0.0,
         regulator_pressure_bias: 0.0,
+        regulator_pressure_scale: 0.0,
         acceleration_bias: 0.0,
         gravity_along_axis: 0.0,
     };
@@ -74,6 +77,7 @@ impl Default for Tolerances {
             viscous_friction: 0.20,
             presliding_displacement: 0.50,
             regulator_pressure_bias: 1500.0,
+            regulator_pressure_scale: 0.0,
             acceleration_bias: 0.05,
             gravity_along_axis: 0.02,
         }
@@ -188,6 +192,10 @@ impl Tolerances {
             ("the dry friction", self.dry_friction),
             ("the viscous friction", self.viscous_friction),
             ("the presliding displacement", self.presliding_displacement),
+            (
+                "the regulator pressure's scale",
+                self.regulator_pressure_scale,
+            ),
         ];
         let absolute = [
             (

@@ -185,6 +185,7 @@ impl<'a> RigSimulation<'a> {
                     gravity_along_axis: scenario.gravity_along_extension,
                     measured_axial_force: self.readings.force,
                     stroke: self.readings.stroke,
+                    acceleration: self.readings.acceleration,
                     regulator_pressure: self.readings.regulator_pressure,
                 })
             }

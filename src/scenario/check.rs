@@ -12,7 +12,7 @@ use super::units::Unit;
 
 /// A table of a file, whose values are checked key by key.
 #[derive(Debug, Clone)]
-pub(super) struct Section<'a> {
+pub(crate) struct Section<'a> {
     document: &'a Document<'a>,
     table: String,
 }

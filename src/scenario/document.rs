@@ -12,7 +12,7 @@ use super::units::Unit;
 
 /// A file that is valid TOML.
 #[derive(Debug)]
-pub(super) struct Document<'a> {
+pub(crate) struct Document<'a> {
     file: &'a Path,
     text: &'a str,
     /// Every key and list element, tables before what they hold.
@@ -29,7 +29,7 @@ struct Entry {
 }
 
 /// Reads a file as text.
-pub(super) fn read_text(file: &Path) -> Result<String, ScenarioError> {
+pub(crate) fn read_text(file: &Path) -> Result<String, ScenarioError> {
     std::fs::read_to_string(file).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => ScenarioError::NoSuchFile {
             file: file.to_owned(),
@@ -161,7 +161,7 @@ impl<'a> Document<'a> {
 }
 
 /// `table.key`, or `key` at top level.
-pub(super) fn join(table: &str, key: &str) -> String {
+pub(crate) fn join(table: &str, key: &str) -> String {
     if table.is_empty() {
         key.to_owned()
     } else {

@@ -10,18 +10,18 @@ use crate::sensing::SensingParameters;
 
 pub mod bench;
 mod bench_file;
-mod check;
+pub(crate) mod check;
 mod device;
-mod document;
+pub(crate) mod document;
 pub mod error;
 mod file;
 mod load;
-mod sections;
+pub(crate) mod sections;
 mod sensing;
-mod suggestion;
+pub(crate) mod suggestion;
 #[cfg(test)]
 mod tests;
-mod units;
+pub(crate) mod units;
 mod workpiece;
 
 pub use bench::BenchScenario;

@@ -10,7 +10,7 @@ use super::{bench_file, file};
 type Table = (&'static str, &'static [&'static str]);
 
 /// Tables of a scenario file with their keys; `*` stands for a name that the user gives.
-pub(super) fn scenario_sections() -> Vec<Table> {
+pub(crate) fn scenario_sections() -> Vec<Table> {
     let mut sections = vec![
         ("", keys::<file::ScenarioFile>()),
         ("arm", keys::<file::ArmKeys>()),
@@ -32,7 +32,7 @@ pub(super) fn scenario_sections() -> Vec<Table> {
 }
 
 /// Tables of a bench scenario file with their keys.
-pub(super) fn bench_sections() -> Vec<Table> {
+pub(crate) fn bench_sections() -> Vec<Table> {
     let mut sections = vec![
         ("", keys::<bench_file::BenchFile>()),
         ("device", keys::<file::DeviceKeys>()),
@@ -67,7 +67,7 @@ fn sensing_sections() -> [Table; 8] {
 }
 
 /// Tables of a device model file with their keys.
-pub(super) fn model_sections() -> Vec<Table> {
+pub(crate) fn model_sections() -> Vec<Table> {
     vec![
         ("", keys::<file::ModelFile>()),
         ("device", keys::<file::ModelKeys>()),
@@ -75,7 +75,7 @@ pub(super) fn model_sections() -> Vec<Table> {
 }
 
 /// Keys of one table: the derived code hands its field names to the deserializer, which keeps them and stops.
-fn keys<T: for<'de> Deserialize<'de>>() -> &'static [&'static str] {
+pub(crate) fn keys<T: for<'de> Deserialize<'de>>() -> &'static [&'static str] {
     let mut names: &'static [&'static str] = &[];
     // The probe always stops with an error; the names are what was wanted of it.
     let _ = T::deserialize(Probe(&mut names));

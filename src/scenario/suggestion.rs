@@ -3,7 +3,7 @@
 use super::units::{Unit, stem};
 
 /// Tables of a file, by dotted name, with their keys.
-pub(super) type Sections = [(&'static str, &'static [&'static str])];
+pub(crate) type Sections = [(&'static str, &'static [&'static str])];
 
 /// Words of which unit suffixes are made, ours and others that people write.
 const UNIT_WORDS: [&str; 62] = [
@@ -18,7 +18,7 @@ const UNIT_WORDS: [&str; 62] = [
 const SIMILAR: f64 = 0.85;
 
 /// Advice on an unknown dotted key.
-pub(super) fn advice(key: &str, sections: &Sections) -> String {
+pub(crate) fn advice(key: &str, sections: &Sections) -> String {
     let (table, name) = split(key);
     let is_of = |section: &str| match section.strip_suffix('*') {
         Some(start) => table.starts_with(start),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 /// A unit that a key can carry.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Unit {
+pub(crate) struct Unit {
     /// End of the keys that carry it.
     suffix: &'static str,
     /// Symbol for people.
@@ -98,7 +98,7 @@ impl Unit {
 }
 
 /// A key without its unit: `feed` for `feed_mm_per_s`.
-pub(super) fn stem(key: &str) -> &str {
+pub(crate) fn stem(key: &str) -> &str {
     &key[..key.len() - Unit::of_key(key).suffix.len()]
 }
 

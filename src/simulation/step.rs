@@ -15,7 +15,7 @@ use crate::cell::Cell;
 use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::JointLaw;
 use crate::control::servo::{AxisCommand, Servo, ServoParameters};
-use crate::device::{DeviceForce, DeviceState, PistonMotion};
+use crate::device::{DeviceForce, DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
 use crate::recording::Unit;
 use crate::sensing::{Readings, SensorChain, Truth};
@@ -65,17 +65,11 @@ impl<'a> Simulation<'a> {
         let scenario = &cell.scenario;
         let mut world = World::new(&WorldDescription::of(cell));
         let reference = cell.plan.reference(0.0);
-        let mut controller = ForceController::pressure_map(&scenario.device.parameters);
+        let controller = ForceController::pressure_map(&scenario.device.parameters);
         let gravity = cell.gravity_along(reference.axis);
         let desired = scenario.process.force * cell.axial_share();
-        let set_pressure = controller.set_pressure(&ForceObservation {
-            time: 0.0,
-            desired_axial_force: desired,
-            gravity_along_axis: gravity,
-            measured_axial_force: 0.0,
-            stroke: 0.0,
-            regulator_pressure: 0.0,
-        });
+        let set_pressure =
+            PressureMap::new(&scenario.device.parameters).set_pressure(desired, gravity);
         let parameters = &scenario.device.parameters;
         let stroke = if scenario.device.locked {
             scenario.process.working_stroke
@@ -195,6 +189,7 @@ impl<'a> Simulation<'a> {
             gravity_along_axis: self.cell.gravity_along(reference.axis),
             measured_axial_force: self.readings.force,
             stroke: self.readings.stroke,
+            acceleration: self.readings.acceleration,
             regulator_pressure: self.readings.regulator_pressure,
         };
         let wanted = self.controller.set_pressure(&observation);

@@ -35,7 +35,6 @@ fn check(parameters: DeviceParameters) {
 
 // Catches: G / (m c_v) left out of the rates that the sub-steps are chosen by.
 #[test]
-#[ignore = "the device leaves G / (m c_v) out of its rates"]
 fn the_largest_wall_conductance_is_integrated() {
     for (dead_volume, orifice) in [(2e-5, 2e-6), (1e-5, 1e-6)] {
         check(DeviceParameters {
@@ -63,7 +62,6 @@ fn a_small_dead_volume_survives_the_piston_in_its_stop() {
 
 // Catches: the seals' viscous coefficient over the mass left out of the same.
 #[test]
-#[ignore = "the device leaves the viscous coefficient out of its rates"]
 fn the_most_viscous_seals_are_integrated() {
     check(DeviceParameters {
         seal_friction: SealFriction {

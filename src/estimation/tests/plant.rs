@@ -98,11 +98,11 @@ pub struct Sample {
 /// How one device deviates from its data, in shares of the tolerances: -1..=1.
 #[derive(Debug, Clone, Copy)]
 pub struct Deviation {
-    shares: [f64; 10],
+    shares: [f64; 11],
 }
 
 impl Deviation {
-    pub const NONE: Self = Self { shares: [0.0; 10] };
+    pub const NONE: Self = Self { shares: [0.0; 11] };
 
     /// Anywhere within the limits.
     pub fn drawn(generator: &mut ChaCha8Rng) -> Self {
@@ -111,8 +111,8 @@ impl Deviation {
         }
     }
 
-    /// The true device, and biases of pressure [Pa], acceleration [m/s2] and gravity [m/s2].
-    fn apply(&self, data: &DeviceParameters, limits: &Tolerances) -> (DeviceParameters, [f64; 3]) {
+    /// The true device, and biases of pressure [Pa], acceleration [m/s2] and gravity [m/s2], relative error of pressure [1].
+    fn apply(&self, data: &DeviceParameters, limits: &Tolerances) -> (DeviceParameters, [f64; 4]) {
         let s = &self.shares;
         let mut device = data.clone();
         device.moving_mass *= 1.0 + s[0] * limits.moving_mass;
@@ -128,6 +128,7 @@ impl Deviation {
             s[7] * limits.regulator_pressure_bias,
             s[8] * limits.acceleration_bias,
             s[9] * limits.gravity_along_axis,
+            s[10] * limits.regulator_pressure_scale,
         ];
         (device, biases)
     }
@@ -156,6 +157,9 @@ impl Plant<'_> {
     fn outlet(&self, time: f64) -> f64 {
         let weight = self.data.moving_mass * self.motion.gravity;
         let pressure = |force: f64| ((force - weight) / self.data.areas().extending).max(0.0);
+        if self.motion.force == self.motion.later_force {
+            return pressure(self.motion.force);
+        }
         let (first, later) = (
             pressure(self.motion.force),
             pressure(self.motion.later_force),
@@ -231,7 +235,7 @@ pub fn run(
     motion: &Motion,
     seed: u64,
 ) -> Vec<Sample> {
-    let (device, [pressure_bias, acceleration_bias, tilt]) =
+    let (device, [pressure_bias, acceleration_bias, tilt, scale]) =
         deviation.apply(data, &parameters.tolerances);
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let gas = device.gas;
@@ -270,7 +274,7 @@ pub fn run(
                 stroke: noisy(state[2], noise.stroke),
                 acceleration: noisy(acceleration + acceleration_bias, noise.acceleration),
                 regulator_pressure: noisy(
-                    plant.outlet(time) + pressure_bias,
+                    plant.outlet(time) * (1.0 + scale) + pressure_bias,
                     noise.regulator_pressure,
                 ),
                 valve: ValvePosition::Extend,
