@@ -13,7 +13,6 @@
 //! - [`recording`]: sampled signals, Parquet, Rerun
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
-//! - [`estimation`]: contact force without a load cell
 //! - [`design`]: the design study
 //! - [`metrics`]: the numbers of a run
 //! - [`figure`]: signals as SVG pictures
@@ -28,7 +27,6 @@ pub mod cell;
 pub mod control;
 pub mod design;
 pub mod device;
-pub mod estimation;
 pub mod figure;
 pub mod metrics;
 pub mod path;

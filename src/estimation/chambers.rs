@@ -101,7 +101,7 @@ impl Chambers {
         let volume = self.chambers[chamber].volume(stroke);
         let pressure = self.gas.pressure(mass, volume);
         [
-            pressure / mass,
+            self.gas.pressure(1.0, volume),
             -pressure / volume * self.volume_by_stroke(chamber),
             -pressure / volume * self.dead_volume,
         ]
@@ -208,7 +208,8 @@ impl Chambers {
             .flow
             .mass_flow(area, around.upstream, around.upstream - difference);
         let by_pressure = flow / difference;
-        by_pressure * pressure / mass
+        let volume = self.chambers[chamber].volume(around.stroke);
+        by_pressure * self.gas.pressure(1.0, volume)
     }
 
     /// Derivatives of the flow at a state. The flow is homogeneous of degree one in its pressures, so one slope gives both (Euler).

@@ -2,14 +2,14 @@
 
 use super::EstimationError;
 use super::belief::{
-    ACCELERATION, ACCELERATION_BIAS, Belief, DEAD_VOLUME, EXHAUST, MASSES, OUTLET, PRESLIDING,
-    PRESSURE_BIAS, PRESSURE_SCALE, SIZE, SPEED, STROKE, SUPPLY, TARGET, TURNING_DEFLECTION,
-    TURNING_STROKE, Term,
+    ACCELERATION, ACCELERATION_BIAS, Belief, DEAD_VOLUME, MASSES, OUTLET, PRESLIDING,
+    PRESSURE_BIAS, PRESSURE_SCALE, SPEED, STROKE, TURNING_DEFLECTION, TURNING_STROKE, Term,
 };
-use super::chambers::{Chambers, Drive};
+use super::chambers::Chambers;
 use super::models::Models;
 use super::output::{Estimate, ForceOutput, coverage_factor};
-use super::parameters::{EstimatorParameters, ProcessModel, Tolerances};
+use super::parameters::EstimatorParameters;
+use super::process::{ProcessNoise, first_belief, predict};
 use super::seals::{Seals, Way};
 use crate::device::DeviceParameters;
 use crate::physics::valve::ValvePosition;
@@ -20,15 +20,20 @@ const LONGEST_PERIOD: f64 = 0.02;
 const TURN: f64 = 4.0;
 /// Standard deviations of the displacement by which a halted motion must exceed its turning point to have gone on.
 const RESUME: f64 = 1.0;
-/// What the motion may be before the first sample, standard deviations: stroke [m], speed [m/s], acceleration [m/s2].
-const START_MOTION: [f64; 3] = [1e-3, 0.05, 1.0];
 /// Standard deviation of a chamber's pressure about its source before the first sample [Pa].
 const START_PRESSURE: f64 = 2e3;
+
+/// Least pressure of a chamber, in atmospheres [1].
+const LEAST_PRESSURE: f64 = 0.01;
+
+/// Acceleration that no accelerometer of such a device shows [m/s2].
+const LARGEST_ACCELERATION: f64 = 1e4;
 
 const STROKE_TERMS: [Term; 1] = [(STROKE, 1.0)];
 const ACCELERATION_TERMS: [Term; 2] = [(ACCELERATION, 1.0), (ACCELERATION_BIAS, 1.0)];
 
-/// One set of samples. A value that is not finite is a missing sample.
+/// One set of samples. What is not finite, or no sensor of the device could mean, counts as missing: a stroke off by more than the full stroke, an
+/// acceleration beyond 1e4 m/s2, a pressure below vacuum or beyond twice the supply.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
     /// Stroke [m].
@@ -41,41 +46,13 @@ pub struct Measurement {
     pub valve: ValvePosition,
 }
 
-/// Process noise of one model over one period.
-#[derive(Debug, Clone)]
-struct ProcessNoise {
-    /// Covariances between two elements.
-    entries: [(usize, usize, f64); 9],
-}
-
-impl ProcessNoise {
-    /// A walk of the acceleration integrated twice, one of the regulator's target seen through its lag.
-    fn new(model: &ProcessModel, period: f64, time_constant: f64) -> Self {
-        let q = model.acceleration_walk.powi(2);
-        let t = period;
-        let w = model.pressure_walk.powi(2);
-        let lag = time_constant.max(t);
-        Self {
-            entries: [
-                (STROKE, STROKE, q * t.powi(5) / 20.0),
-                (STROKE, SPEED, q * t.powi(4) / 8.0),
-                (STROKE, ACCELERATION, q * t.powi(3) / 6.0),
-                (SPEED, SPEED, q * t.powi(3) / 3.0),
-                (SPEED, ACCELERATION, q * t * t / 2.0),
-                (ACCELERATION, ACCELERATION, q * t),
-                (OUTLET, OUTLET, w * t.powi(3) / (3.0 * lag * lag)),
-                (OUTLET, TARGET, w * t * t / (2.0 * lag)),
-                (TARGET, TARGET, w * t),
-            ],
-        }
-    }
-}
-
 /// Estimates the contact force, sample by sample.
 #[derive(Debug, Clone)]
 pub struct ContactForceEstimator {
     /// Variances of the noise on stroke, acceleration and pressure.
     noise: [f64; 3],
+    /// What each can mean.
+    plausible: [std::ops::RangeInclusive<f64>; 3],
     process: Vec<ProcessNoise>,
     chambers: Chambers,
     seals: Seals,
@@ -111,9 +88,15 @@ impl ContactForceEstimator {
         }
         let lag = device.regulator.time_constant;
         let noise = &parameters.noise;
+        let (stroke, supply) = (device.full_stroke, device.regulator.supply);
         let belief = first_belief(device, parameters, initial_stroke);
         Ok(Self {
             noise: [noise.stroke, noise.acceleration, noise.regulator_pressure].map(|s| s * s),
+            plausible: [
+                -stroke..=2.0 * stroke,
+                -LARGEST_ACCELERATION..=LARGEST_ACCELERATION,
+                -device.gas.atmosphere..=2.0 * supply,
+            ],
             process: parameters
                 .models
                 .iter()
@@ -123,7 +106,7 @@ impl ContactForceEstimator {
             seals: Seals::new(device.seal_friction),
             output: ForceOutput::new(device, parameters.tolerances, parameters.gravity_along_axis),
             atmosphere: device.gas.atmosphere,
-            supply: device.regulator.supply,
+            supply,
             models: Models::new(&parameters.models, &belief, period),
             started: false,
         })
@@ -192,7 +175,8 @@ impl ContactForceEstimator {
         let likeliest = self.models.likeliest();
         let mut likelihoods = vec![0.0; self.models.beliefs.len()];
         for (i, sample) in samples.into_iter().enumerate() {
-            if !sample.is_finite() {
+            // Not a number is in no range either.
+            if !self.plausible[i].contains(&sample) {
                 continue;
             }
             let noise = self.noise[i];
@@ -215,6 +199,11 @@ impl ContactForceEstimator {
         for belief in &mut self.models.beliefs {
             let mean = &mut belief.mean;
             mean[OUTLET] = mean[OUTLET].clamp(-self.atmosphere, self.supply + self.atmosphere);
+            // A sample far off must not leave a chamber without air.
+            for (i, element) in MASSES.into_iter().enumerate() {
+                let vacuum = LEAST_PRESSURE * self.atmosphere;
+                mean[element] = mean[element].max(self.chambers.mass(i, vacuum, mean[STROKE]));
+            }
             mean[TURNING_DEFLECTION] = self.seals.limited(mean[TURNING_DEFLECTION]);
         }
         normalized
@@ -299,79 +288,5 @@ impl ContactForceEstimator {
             acceleration: element(ACCELERATION),
             normalized_innovations,
         }
-    }
-}
-
-/// Before the first sample: motion within its start, outlet anywhere within the supply, parameters within their tolerances.
-fn first_belief(
-    device: &DeviceParameters,
-    parameters: &EstimatorParameters,
-    initial_stroke: f64,
-) -> Belief {
-    let tolerances = &parameters.tolerances;
-    let mut mean = [0.0; SIZE];
-    mean[STROKE] = initial_stroke;
-    let mut deviations = [0.0; SIZE];
-    [
-        deviations[STROKE],
-        deviations[SPEED],
-        deviations[ACCELERATION],
-    ] = START_MOTION;
-    deviations[OUTLET] = device.regulator.supply;
-    // Any deflection within the presliding range is as likely as any other.
-    deviations[TURNING_DEFLECTION] = if device.seal_friction.is_dry() {
-        Tolerances::standard(device.seal_friction.static_force / device.seal_friction.coulomb)
-    } else {
-        0.0
-    };
-    for (element, limit) in [
-        (ACCELERATION_BIAS, tolerances.acceleration_bias),
-        (PRESSURE_BIAS, tolerances.regulator_pressure_bias),
-        (PRESSURE_SCALE, tolerances.regulator_pressure_scale),
-        (SUPPLY, tolerances.orifices),
-        (EXHAUST, tolerances.orifices),
-        (DEAD_VOLUME, tolerances.dead_volume),
-        (PRESLIDING, tolerances.presliding_displacement),
-    ] {
-        deviations[element] = Tolerances::standard(limit);
-    }
-    let mut belief = Belief::uncorrelated(mean, deviations);
-    // The turning point is where it stands, and the outlet has long followed its target.
-    belief.mean[TURNING_STROKE] = initial_stroke;
-    belief.combine(TURNING_STROKE, &[(STROKE, 1.0)]);
-    belief.combine(TARGET, &[(OUTLET, 1.0)]);
-    belief
-}
-
-/// Carries a belief over a period.
-fn predict(belief: &mut Belief, chambers: &Chambers, noise: &ProcessNoise, valve: ValvePosition) {
-    let period = chambers.period();
-    let mean = &belief.mean;
-    let drive = Drive {
-        stroke: mean[STROKE],
-        speed: mean[SPEED],
-        acceleration: mean[ACCELERATION],
-        outlet: mean[OUTLET],
-        target: mean[TARGET],
-    };
-    // Chambers first: they answer to the motion and outlet as they are at the start.
-    for (i, element) in MASSES.into_iter().enumerate() {
-        let (mass, terms) = chambers.advance(i, belief.mean[element], &drive, valve);
-        belief.mean[element] = mass;
-        belief.combine(element, &terms);
-    }
-    let half_square = 0.5 * period * period;
-    belief.combine(
-        STROKE,
-        &[(STROKE, 1.0), (SPEED, period), (ACCELERATION, half_square)],
-    );
-    belief.combine(SPEED, &[(SPEED, 1.0), (ACCELERATION, period)]);
-    let left = chambers.remaining();
-    belief.combine(OUTLET, &[(OUTLET, left), (TARGET, 1.0 - left)]);
-    belief.mean[STROKE] += period * drive.speed + half_square * drive.acceleration;
-    belief.mean[SPEED] += period * drive.acceleration;
-    belief.mean[OUTLET] = chambers.outlet(&drive);
-    for &(i, j, covariance) in &noise.entries {
-        belief.add_noise(i, j, covariance);
     }
 }

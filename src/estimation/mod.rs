@@ -10,8 +10,8 @@
 //!
 //! | what | model between samples | file |
 //! | --- | --- | --- |
-//! | stroke, speed, acceleration | random walk of the acceleration | `belief` |
-//! | regulator outlet | lag behind a set value that walks | `belief` |
+//! | stroke, speed, acceleration | random walk of the acceleration | `process` |
+//! | regulator outlet | lag behind a set value that walks | `process` |
 //! | air in each chamber | eqs. (9) to (11) and the estimated motion | `chambers` |
 //! | bristles of the seals | closed form over the path since the last turning point | `seals` |
 //!
@@ -31,6 +31,7 @@ mod estimator;
 mod models;
 mod output;
 mod parameters;
+mod process;
 mod seals;
 
 pub use error::EstimationError;

@@ -154,7 +154,7 @@ impl Carrier for Counting {
 #[test]
 fn a_tool_at_rest_on_its_load_stays_and_costs_no_more_than_its_substeps() {
     for (name, parameters, most) in [
-        ("usual", usual(), 2.0),
+        ("usual", usual(), 3.0),
         ("0.3 cm3 and 5 mm2", nervous(), 200.0),
     ] {
         let device = Device::new(parameters);

@@ -49,8 +49,9 @@ fn chamber_pressures_come_out_within_noise() {
     let mut squares = [0.0; 2];
     let mut lag: f64 = 0.0;
     for (sample, estimate) in samples.iter().zip(&estimates).skip(300) {
-        for i in 0..2 {
-            squares[i] += (estimate.chamber_pressures[i] - sample.pressures[i]).powi(2);
+        let pressures = estimate.chamber_pressures.iter().zip(sample.pressures);
+        for (square, (estimated, true_one)) in squares.iter_mut().zip(pressures) {
+            *square += (estimated - true_one).powi(2);
         }
         lag = lag.max((sample.pressures[0] - 101_325.0 - 290.0 / device().areas().extending).abs());
     }
@@ -92,6 +93,31 @@ fn a_missing_sample_is_skipped_and_costs_certainty() {
     let mut estimator = ContactForceEstimator::new(&data, &told, 0.035, PERIOD).unwrap();
     let blind = estimator.update(&samples[1050].measurement);
     assert!(blind.force.is_finite() && blind.standard_deviation > 300.0);
+}
+
+#[test]
+fn samples_far_off_leave_no_lasting_trace() {
+    let data = device();
+    let told = parameters(&data, Tolerances::default());
+    let mut samples = run(&data, &told, &Deviation::NONE, &moved(290.0, 0.5), 7);
+    let spikes = [
+        (500, [0.1, 9e3, 1.1e6]),
+        (700, [-0.05, -9e3, -1e5]),
+        (900, [1e9, -1e9, 1e30]),
+        (1100, [-1e300, f64::MAX, f64::NEG_INFINITY]),
+    ];
+    for (at, [stroke, acceleration, pressure]) in spikes {
+        samples[at].measurement.stroke = stroke;
+        samples[at + 50].measurement.acceleration = acceleration;
+        samples[at + 100].measurement.regulator_pressure = pressure;
+    }
+    let estimates = follow(&data, &told, 0.035, &samples);
+    let finite = |e: &Estimate| e.force.is_finite() && e.standard_deviation.is_finite();
+    assert_eq!(estimates.iter().position(|e| !finite(e)), None);
+    for (sample, estimate) in samples.iter().zip(&estimates).skip(2000) {
+        let error = estimate.force - sample.force;
+        assert!(error.abs() < 20.0, "{} s: {error} N", sample.time);
+    }
 }
 
 /// Share of samples within the band from a time on, and largest error over the last 0.3 s [N].
