@@ -1,0 +1,101 @@
+//! The effects that are known.
+#![allow(clippy::too_many_lines)]
+use super::effect::*;
+use super::quantity::{Coordinate::*, Quantity};
+use crate::plant::*;
+use crate::physics::gas_process::GasProcess;
+use crate::physics::hose::Hose;
+
+macro_rules! quantity {
+    ($name:literal, $p:ident => $($place:tt)+) => { Quantity { name: $name, get: |$p| $($place)+, set: |$p, value| $($place)+ = value } };
+}
+fn reported(quantity: Quantity, coordinate: super::quantity::Coordinate, bounds: [f64; 2]) -> Parameter { Parameter { quantity, coordinate, bounds, reported: true } }
+fn hidden(quantity: Quantity, coordinate: super::quantity::Coordinate, bounds: [f64; 2]) -> Parameter { Parameter { quantity, coordinate, bounds, reported: false } }
+
+const COULOMB: Quantity = Quantity { name: "coulomb_force_n", get: |p| p.device.seal_friction.coulomb, set: |p, v| { let s = &mut p.device.seal_friction; let extra = s.static_force - s.coulomb; s.coulomb = v; s.static_force = v + extra; } };
+const STATIC: Quantity = Quantity { name: "static_force_n", get: |p| p.device.seal_friction.static_force, set: |p, v| { let s = &mut p.device.seal_friction; s.static_force = v.max(s.coulomb); } };
+const STRIBECK: Quantity = quantity!("stribeck_velocity_m_per_s", p => p.device.seal_friction.stribeck_velocity);
+const VISCOUS: Quantity = quantity!("viscous_coefficient_n_s_per_m", p => p.device.seal_friction.viscous);
+const PRESLIDING: Quantity = quantity!("presliding_displacement_m", p => p.device.seal_friction.presliding_displacement);
+pub const STIFFNESS: Quantity = Quantity { name: "stiffness_n_per_m", get: |p| match p.contact.law { ContactLaw::Linear { stiffness } | ContactLaw::Hertz { stiffness } => stiffness }, set: |p, v| p.contact.law = match p.contact.law { ContactLaw::Linear { .. } => ContactLaw::Linear { stiffness: v }, ContactLaw::Hertz { .. } => ContactLaw::Hertz { stiffness: v } } };
+const HERTZ: Quantity = Quantity { name: "stiffness_n_per_m15", get: |p| match p.contact.law { ContactLaw::Hertz { stiffness } => stiffness, ContactLaw::Linear { .. } => 0.0 }, set: |p, v| p.contact.law = ContactLaw::Hertz { stiffness: v } };
+fn wall(p: &PlantParameters) -> f64 { match p.device.gas_process { GasProcess::WallHeat { conductance } => conductance, GasProcess::Isothermal => f64::INFINITY } }
+
+const FAR: f64 = 1e3;
+
+fn friction_parameters(first: &[Parameter], rest: &[Parameter]) -> Vec<Parameter> { first.iter().chain(rest).copied().collect() }
+
+/// All effects.
+pub static CATALOGUE: &[Effect] = &[
+    Effect { name: "coulomb_viscous_friction", subsystem: Subsystem::ForceBalance, group: Some("friction"),
+        parameters: |_| friction_parameters(&[reported(COULOMB, Logarithmic, [0.05, 500.0]), reported(VISCOUS, Linear(20.0), [0.0, 5000.0])], &[hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4])]),
+        starts: |_| vec![vec![8.0, 40.0, 5e-5]] },
+    Effect { name: "stribeck_friction", subsystem: Subsystem::ForceBalance, group: Some("friction"),
+        parameters: |_| vec![reported(COULOMB, Logarithmic, [0.05, 500.0]), reported(Quantity { name: "static_force_n", ..STATIC }, Linear(5.0), [0.05, 1000.0]), reported(STRIBECK, Logarithmic, [5e-4, 0.2]), hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]), hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4])],
+        starts: |_| vec![vec![7.0, 13.0, 0.008, 40.0, 5e-5]] },
+    Effect { name: "presliding_hysteresis", subsystem: Subsystem::ForceBalance, group: Some("friction"),
+        parameters: |_| vec![reported(COULOMB, Logarithmic, [0.05, 500.0]), reported(PRESLIDING, Logarithmic, [1e-4, 1e-2]), hidden(VISCOUS, Linear(20.0), [0.0, 5000.0])],
+        starts: |_| vec![vec![12.0, 6e-4, 40.0]] },
+    Effect { name: "moving_mass_error", subsystem: Subsystem::ForceBalance, group: None,
+        parameters: |p| { let m = p.device.moving_mass; vec![reported(quantity!("mass_kg", p => p.device.moving_mass), Logarithmic, [0.2 * m, 5.0 * m])] },
+        starts: |c| { let m = c.plant.device.moving_mass; vec![vec![0.9 * m], vec![1.1 * m]] } },
+    Effect { name: "heat_transfer", subsystem: Subsystem::Chambers, group: None,
+        parameters: |_| vec![reported(Quantity { name: "wall_conductance_w_per_k", get: wall, set: |p, v| p.device.gas_process = GasProcess::WallHeat { conductance: v } }, Logarithmic, [1e-3, 10.0])],
+        starts: |_| vec![vec![0.05], vec![0.3]] },
+    Effect { name: "exhaust_restriction", subsystem: Subsystem::Chambers, group: None,
+        parameters: |p| { let a = p.device.exhaust_orifice; vec![reported(quantity!("orifice_area_m2", p => p.device.exhaust_orifice), Logarithmic, [0.05 * a, 20.0 * a])] },
+        starts: |c| { let a = c.plant.device.exhaust_orifice; vec![vec![0.8 * a], vec![1.25 * a]] } },
+    Effect { name: "supply_restriction", subsystem: Subsystem::Chambers, group: None,
+        parameters: |p| { let a = p.device.supply_orifice; vec![reported(quantity!("orifice_area_m2", p => p.device.supply_orifice), Logarithmic, [0.05 * a, 20.0 * a])] },
+        starts: |c| { let a = c.plant.device.supply_orifice; vec![vec![0.8 * a], vec![1.25 * a]] } },
+    Effect { name: "extra_dead_volume", subsystem: Subsystem::Chambers, group: None,
+        parameters: |p| { let a = p.device.dead_volume; vec![reported(quantity!("dead_volume_m3", p => p.device.dead_volume), Logarithmic, [0.1 * a, 20.0 * a])] },
+        starts: |c| { let a = c.plant.device.dead_volume; vec![vec![0.8 * a], vec![1.25 * a]] } },
+    Effect { name: "hose_volume", subsystem: Subsystem::Chambers, group: None,
+        parameters: |_| vec![
+            reported(Quantity { name: "volume_m3", get: |p| p.device.hose.map_or(0.0, |h| h.volume), set: |p, v| p.device.hose = Some(Hose { volume: v, ..p.device.hose.unwrap_or(Hose { volume: v, resistance: 1e8 }) }) }, Logarithmic, [1e-6, 2e-3]),
+            reported(Quantity { name: "resistance_pa_s_per_kg", get: |p| p.device.hose.map_or(0.0, |h| h.resistance), set: |p, v| p.device.hose = Some(Hose { resistance: v, ..p.device.hose.unwrap_or(Hose { volume: 1e-5, resistance: v }) }) }, Logarithmic, [1e6, 5e9])],
+        starts: |_| vec![vec![5e-5, 5e7], vec![1.5e-4, 2e8]] },
+    Effect { name: "transport_delay", subsystem: Subsystem::Regulator, group: None,
+        parameters: |_| vec![reported(quantity!("delay_s", p => p.device.regulator.dead_time), Logarithmic, [5e-4, 2.0])],
+        starts: |_| vec![vec![0.03], vec![0.2]] },
+    Effect { name: "regulator_gain_error", subsystem: Subsystem::Regulator, group: None,
+        parameters: |p| { let g = p.device.regulator.gain; vec![reported(quantity!("gain", p => p.device.regulator.gain), Logarithmic, [0.3 * g, 3.0 * g])] },
+        starts: |c| { let g = c.plant.device.regulator.gain; vec![vec![0.97 * g], vec![1.03 * g]] } },
+    Effect { name: "contact_stiffness_error", subsystem: Subsystem::Contact, group: Some("contact_law"),
+        parameters: |p| { let k = (STIFFNESS.get)(p); vec![reported(STIFFNESS, Logarithmic, [0.01 * k, 50.0 * k])] },
+        starts: |c| { let k = (STIFFNESS.get)(c.plant); vec![vec![0.6 * k], vec![1.6 * k]] } },
+    Effect { name: "hertzian_contact", subsystem: Subsystem::Contact, group: Some("contact_law"),
+        parameters: |_| vec![reported(HERTZ, Logarithmic, [1e5, 1e10])],
+        starts: |c| { let k = (STIFFNESS.get)(c.plant); let d = 120.0 / k; vec![vec![120.0 / d.powf(1.5)]] } },
+    Effect { name: "tool_runout", subsystem: Subsystem::Contact, group: None,
+        parameters: |_| vec![reported(quantity!("frequency_hz", p => p.contact.runout.frequency), Linear(0.02), [11.0, 200.0]), hidden(quantity!("sine_m", p => p.contact.runout.sine), Linear(2e-5), [-0.01, 0.01]), hidden(quantity!("cosine_m", p => p.contact.runout.cosine), Linear(2e-5), [-0.01, 0.01])],
+        starts: |c| c.periodic.iter().filter(|f| **f >= 11.0).take(2).flat_map(|f| [vec![*f, 1e-5, 0.0], vec![*f, 0.0, 1e-5]]).collect() },
+    Effect { name: "surface_waviness", subsystem: Subsystem::Contact, group: None,
+        parameters: |_| vec![reported(quantity!("frequency_hz", p => p.contact.waviness.frequency), Linear(0.02), [0.3, 11.0]), hidden(quantity!("sine_m", p => p.contact.waviness.sine), Linear(2e-5), [-0.02, 0.02]), hidden(quantity!("cosine_m", p => p.contact.waviness.cosine), Linear(2e-5), [-0.02, 0.02])],
+        starts: |c| c.periodic.iter().filter(|f| **f < 11.0).take(2).flat_map(|f| [vec![*f, 1e-5, 0.0], vec![*f, 0.0, 1e-5]]).collect() },
+    Effect { name: "surface_offset", subsystem: Subsystem::Contact, group: None,
+        parameters: |_| vec![reported(quantity!("offset_m", p => p.contact.surface_offset), Linear(5e-4), [-0.02, 0.02])],
+        starts: |_| vec![vec![5e-4], vec![-5e-4]] },
+    Effect { name: "force_sensor_bias_drift", subsystem: Subsystem::Sensors, group: None,
+        parameters: |_| vec![reported(quantity!("bias_n", p => p.sensors.force_bias), Linear(1.0), [-FAR, FAR]), reported(quantity!("drift_n_per_s", p => p.sensors.force_drift), Linear(0.1), [-FAR, FAR])],
+        starts: |_| vec![vec![0.0, 0.0]] },
+    Effect { name: "force_sensor_gain_error", subsystem: Subsystem::Sensors, group: None,
+        parameters: |_| vec![reported(quantity!("gain", p => p.sensors.force_gain), Linear(0.02), [0.2, 5.0])],
+        starts: |_| vec![vec![1.0]] },
+    Effect { name: "force_sensor_lag", subsystem: Subsystem::Sensors, group: None,
+        parameters: |_| vec![reported(quantity!("time_constant_s", p => p.sensors.force_lag), Logarithmic, [1e-4, 2.0])],
+        starts: |_| vec![vec![0.02]] },
+    Effect { name: "force_sensor_saturation", subsystem: Subsystem::Sensors, group: None,
+        parameters: |c| { let _ = c; vec![reported(quantity!("limit_n", p => p.sensors.force_limit), Linear(2.0), [5.0, 5000.0])] },
+        starts: |c| vec![vec![c.largest_force]] },
+    Effect { name: "inertial_crosstalk", subsystem: Subsystem::Sensors, group: None,
+        parameters: |_| vec![reported(quantity!("mass_kg", p => p.sensors.crosstalk_mass), Linear(0.1), [-20.0, 20.0])],
+        starts: |_| vec![vec![0.0]] },
+    Effect { name: "stroke_sensor_gain_error", subsystem: Subsystem::Sensors, group: None,
+        parameters: |_| vec![reported(quantity!("gain", p => p.sensors.stroke_gain), Linear(0.01), [0.2, 5.0])],
+        starts: |_| vec![vec![1.0]] },
+    Effect { name: "channel_time_offset", subsystem: Subsystem::Sensors, group: None,
+        parameters: |_| vec![reported(quantity!("offset_s", p => p.sensors.force_delay), Linear(0.005), [-0.5, 0.5])],
+        starts: |_| vec![vec![0.01]] },
+];

@@ -1,0 +1,193 @@
+//! Bounded, robust least squares in the simulator: Levenberg-Marquardt on whitened residuals with priors.
+//!
+//!     minimise   sum rho(r_i) + sum ((value - mean)/deviation)^2,     rho(r) = r^2 for |r| <= c,   2 c |r| - c^2 beyond    (Huber)
+
+use super::evidence::{Evidence, Prediction};
+use super::quantity::Free;
+use crate::plant::PlantParameters;
+use nalgebra::{DMatrix, DVector};
+
+/// Residual beyond which a sample counts in proportion only, in standard deviations [1].
+const HUBER: f64 = 4.0;
+/// Step of the difference quotients in the fit's coordinate [1].
+const STEP: f64 = 1e-3;
+/// Gain below which a fit has come to its end, in units of a sum of squares [1].
+const LEAST_GAIN: f64 = 0.05;
+
+/// A fitted description.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// What was free.
+    pub free: Vec<Free>,
+    /// Values of the free quantities.
+    pub values: Vec<f64>,
+    /// The description with what it gives.
+    pub prediction: Prediction,
+    /// Robust sum of squares of the samples [1].
+    pub misfit: f64,
+    /// Sum of squares of the priors [1].
+    pub prior: f64,
+    /// Derivatives of the residuals by the coordinates, one column each, from the last iteration.
+    pub columns: Vec<Vec<f64>>,
+    /// Information matrix in the fit's coordinates, priors included.
+    pub information: DMatrix<f64>,
+}
+
+impl Fit {
+    /// What the fit minimises.
+    pub fn cost(&self) -> f64 {
+        self.misfit + self.prior
+    }
+}
+
+/// Robust sum of squares.
+pub fn robust_sum(residuals: &[f64]) -> f64 {
+    residuals.iter().filter(|r| !r.is_nan()).map(|r| {
+        let size = r.abs().min(1e6);
+        if size <= HUBER { size * size } else { HUBER * (2.0 * size - HUBER) }
+    }).sum()
+}
+
+fn weight(residual: f64) -> f64 {
+    let size = residual.abs();
+    if size <= HUBER { 1.0 } else { HUBER / size }
+}
+
+fn prior_sum(free: &[Free], values: &[f64]) -> f64 {
+    free.iter().zip(values).map(|(f, v)| f.departure(*v).powi(2)).sum()
+}
+
+/// A description with quantities set.
+pub fn with_values(plant: &PlantParameters, free: &[Free], values: &[f64]) -> PlantParameters {
+    let mut changed = plant.clone();
+    for (f, value) in free.iter().zip(values) {
+        (f.quantity.set)(&mut changed, *value);
+    }
+    changed
+}
+
+/// Derivatives of the residuals by the coordinates of `free[from..]`.
+fn jacobian(evidence: &Evidence, here: &Prediction, free: &[Free], values: &[f64], from: usize) -> Vec<Vec<f64>> {
+    let mut steps = Vec::with_capacity(free.len());
+    let plants: Vec<PlantParameters> = (from..free.len()).map(|i| {
+        let f = &free[i];
+        let at = f.coordinate.of(values[i]);
+        let mut step = STEP;
+        if f.coordinate.value(at + step) > f.bounds[1] {
+            step = -step;
+        }
+        steps.push(step);
+        let mut plant = here.plant.clone();
+        (f.quantity.set)(&mut plant, f.coordinate.value(at + step));
+        plant
+    }).collect();
+    let mut columns = evidence.residuals_of(&plants, here);
+    for (column, step) in columns.iter_mut().zip(steps) {
+        for (moved, here) in column.iter_mut().zip(&here.residuals) {
+            *moved = (*moved - here) / step;
+        }
+    }
+    columns
+}
+
+/// Information and gradient with the samples' weights, priors included.
+fn normal_equations(columns: &[Vec<f64>], residuals: &[f64], free: &[Free], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    let n = columns.len();
+    let weights: Vec<f64> = residuals.iter().map(|r| if r.is_finite() { weight(*r) } else { 0.0 }).collect();
+    let zeroed = |value: f64, w: f64| if w == 0.0 || !value.is_finite() { 0.0 } else { value };
+    let mut information = DMatrix::zeros(n, n);
+    let mut gradient = DVector::zeros(n);
+    for i in 0..n {
+        let weighted: Vec<f64> = columns[i].iter().zip(&weights).map(|(c, w)| w * zeroed(*c, *w)).collect();
+        for j in 0..=i {
+            let sum: f64 = weighted.iter().zip(&columns[j]).map(|(a, b)| if *a == 0.0 { 0.0 } else { a * b }).sum();
+            information[(i, j)] = sum;
+            information[(j, i)] = sum;
+        }
+        gradient[i] = weighted.iter().zip(residuals).map(|(a, b)| if *a == 0.0 { 0.0 } else { a * b }).sum();
+    }
+    for (i, f) in free.iter().enumerate() {
+        let slope = f.departure_slope(values[i]);
+        information[(i, i)] += slope * slope;
+        gradient[i] += slope * f.departure(values[i]);
+    }
+    (information, gradient)
+}
+
+/// How a fit goes about it.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort<'a> {
+    /// Iterations at most.
+    pub iterations: usize,
+    /// Columns of the first quantities that are taken as they are.
+    pub frozen: &'a [Vec<f64>],
+    /// Longest step in a coordinate [1].
+    pub longest_step: f64,
+}
+
+/// Fits the free quantities from where they start; `known` may spare simulations.
+pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: Effort<'_>, known: Option<&Prediction>) -> Fit {
+    let mut values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
+    let mut here = evidence.predict(&with_values(plant, free, &values), known);
+    let mut misfit = robust_sum(&here.residuals);
+    let mut prior = prior_sum(free, &values);
+    let mut damping = 1e-4;
+    let mut information = DMatrix::zeros(free.len(), free.len());
+    let mut columns: Vec<Vec<f64>> = effort.frozen.to_vec();
+    for _ in 0..effort.iterations {
+        columns.truncate(effort.frozen.len());
+        columns.extend(jacobian(evidence, &here, free, &values, effort.frozen.len()));
+        let (normal, gradient) = normal_equations(&columns, &here.residuals, free, &values);
+        information.copy_from(&normal);
+        let mut gain = 0.0;
+        for _ in 0..6 {
+            let tried = step(free, &values, &normal, &gradient, damping, effort.longest_step);
+            let Some(tried) = tried else {
+                damping *= 10.0;
+                continue;
+            };
+            let there = evidence.predict(&with_values(&here.plant, free, &tried), Some(&here));
+            let misfit_there = robust_sum(&there.residuals);
+            let prior_there = prior_sum(free, &tried);
+            if misfit_there + prior_there < misfit + prior {
+                gain = misfit + prior - misfit_there - prior_there;
+                (values, here, misfit, prior) = (tried, there, misfit_there, prior_there);
+                damping = (damping * 0.1).max(1e-9);
+                break;
+            }
+            damping *= 10.0;
+        }
+        if gain < LEAST_GAIN {
+            break;
+        }
+    }
+    Fit { free: free.to_vec(), values, prediction: here, misfit, prior, columns, information }
+}
+
+fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64, longest: f64) -> Option<Vec<f64>> {
+    // A quantity at its bound that is pushed beyond it stays out of the step.
+    let held: Vec<bool> = (0..free.len()).map(|i| {
+        let (f, v, g) = (&free[i], values[i], gradient[i]);
+        (v <= f.bounds[0] && g > 0.0) || (v >= f.bounds[1] && g < 0.0)
+    }).collect();
+    let mut damped = normal.clone();
+    let mut slope = gradient.clone();
+    for i in 0..free.len() {
+        if held[i] {
+            for j in 0..free.len() {
+                damped[(i, j)] = 0.0;
+                damped[(j, i)] = 0.0;
+            }
+            damped[(i, i)] = 1.0;
+            slope[i] = 0.0;
+        } else {
+            damped[(i, i)] += damping * normal[(i, i)].max(1e-9);
+        }
+    }
+    let mut step = damped.cholesky()?.solve(&slope);
+    let largest = step.amax();
+    if largest > longest {
+        step *= longest / largest;
+    }
+    Some(free.iter().zip(values).zip(step.iter()).map(|((f, v), s)| f.clamp(f.coordinate.value(f.coordinate.of(*v) - s))).collect())
+}

@@ -1,0 +1,96 @@
+//! What acts on the piston of a recorded rig between two samples: weight and contact.
+//!
+//!     M dv/dt = F_device + M g_a - F_contact
+
+use super::contact::{ContactParameters, Periodic};
+use crate::device::{Carrier, PistonMotion};
+
+/// Weight and contact over one step, in which the robot's surface follows a cubic.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ReplayCarrier<'a> {
+    pub contact: &'a ContactParameters,
+    /// Is there a workpiece?
+    pub present: bool,
+    /// Weight along extension [N].
+    pub weight: f64,
+    /// Time at the start of the step [s].
+    pub start: f64,
+    /// Surface over the step: coefficients of 1, t, t2, t3.
+    pub surface: [f64; 4],
+    /// Fastest rate of the contact [1/s].
+    pub rate: f64,
+}
+
+/// Cubic over a step of length `h` [s] from values and slopes at its ends.
+pub(super) fn hermite(h: f64, values: [f64; 2], slopes: [f64; 2]) -> [f64; 4] {
+    let rise = (values[1] - values[0]) / h;
+    [
+        values[0],
+        slopes[0],
+        (3.0 * rise - 2.0 * slopes[0] - slopes[1]) / h,
+        (slopes[0] + slopes[1] - 2.0 * rise) / (h * h),
+    ]
+}
+
+impl ReplayCarrier<'_> {
+    fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
+        let [a, b, c, d] = self.surface;
+        let mut surface = a + time * (b + time * (c + time * d)) + self.contact.surface_offset;
+        let mut speed = b + time * (2.0 * c + 3.0 * time * d);
+        for periodic in [&self.contact.runout, &self.contact.waviness] {
+            if *periodic != Periodic::NONE {
+                let (deviation, rate) = periodic.at(self.start + time);
+                surface += deviation;
+                speed += rate;
+            }
+        }
+        (motion.stroke - surface, motion.speed - speed)
+    }
+
+    /// Force of the tool on the workpiece [N].
+    pub fn contact_force(&self, time: f64, motion: PistonMotion) -> f64 {
+        if !self.present {
+            return 0.0;
+        }
+        let (penetration, rate) = self.penetration(time, motion);
+        self.contact.force(penetration, rate)
+    }
+}
+
+impl Carrier for ReplayCarrier<'_> {
+    const MOVES: bool = true;
+
+    fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
+        if !touching {
+            return self.weight;
+        }
+        let (penetration, rate) = self.penetration(time, motion);
+        self.weight - self.contact.pushing(penetration, rate)
+    }
+
+    fn touches(&self, time: f64, motion: PistonMotion) -> bool {
+        if !self.present {
+            return false;
+        }
+        let (penetration, rate) = self.penetration(time, motion);
+        self.contact.pushes(penetration, rate)
+    }
+
+    fn rate(&self) -> f64 {
+        self.rate
+    }
+}
+
+impl ReplayCarrier<'_> {
+    /// Begins later by a time [s].
+    pub fn move_start(&mut self, time: f64) {
+        let [a, b, c, d] = self.surface;
+        self.surface = [
+            a + time * (b + time * (c + time * d)),
+            b + time * (2.0 * c + 3.0 * time * d),
+            c + 3.0 * time * d,
+            d,
+        ];
+        self.start += time;
+    }
+}

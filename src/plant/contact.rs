@@ -1,0 +1,114 @@
+//! The tool on the workpiece: a law that pushes and never pulls, on a surface that may not be where the robot says.
+//!
+//!     F = max(0, k d + c d_dot)            spring and damper
+//!     F = max(0, k d^(3/2) + c d_dot)      Hertz, a ball on a flat (Johnson, Contact Mechanics, 1985, eq. 4.23)
+//!     x_s = x_robot + o + sum a sin(2 pi f t + phi)
+//!
+//! d penetration of the tool beyond the surface [m], x_s where the surface stands along the stroke [m], o offset [m], a amplitude [m], f frequency [Hz].
+
+use std::f64::consts::TAU;
+
+/// Force against penetration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactLaw {
+    /// In proportion; stiffness [N/m].
+    Linear {
+        /// Stiffness [N/m].
+        stiffness: f64,
+    },
+    /// With the power 3/2.
+    Hertz {
+        /// Stiffness [N/m^1.5].
+        stiffness: f64,
+    },
+}
+
+/// A periodic deviation of the surface along extension, with the same phase at the start of every recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Periodic {
+    /// Amplitude of its sine [m].
+    pub sine: f64,
+    /// Amplitude of its cosine [m].
+    pub cosine: f64,
+    /// Frequency [Hz].
+    pub frequency: f64,
+}
+
+impl Periodic {
+    /// No deviation.
+    pub const NONE: Self = Self {
+        sine: 0.0,
+        cosine: 0.0,
+        frequency: 1.0,
+    };
+
+    /// Zero to peak [m].
+    pub fn amplitude(&self) -> f64 {
+        self.sine.hypot(self.cosine)
+    }
+
+    /// Deviation [m] and its rate [m/s] at a time [s].
+    pub fn at(&self, time: f64) -> (f64, f64) {
+        let rate = TAU * self.frequency;
+        let (sine, cosine) = (rate * time).sin_cos();
+        (
+            self.sine * sine + self.cosine * cosine,
+            rate * (self.sine * cosine - self.cosine * sine),
+        )
+    }
+}
+
+/// Contact of tool and workpiece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactParameters {
+    /// The elastic part.
+    pub law: ContactLaw,
+    /// Damping [N s/m].
+    pub damping: f64,
+    /// The surface lies off where the robot says, positive along extension [m].
+    pub surface_offset: f64,
+    /// The tool turns off centre.
+    pub runout: Periodic,
+    /// The surface is wavy.
+    pub waviness: Periodic,
+}
+
+impl ContactParameters {
+    /// Force at a penetration [m] and its rate [m/s] as it holds while it pushes [N].
+    pub fn pushing(&self, penetration: f64, rate: f64) -> f64 {
+        let elastic = match self.law {
+            ContactLaw::Linear { stiffness } => stiffness * penetration,
+            ContactLaw::Hertz { stiffness } => {
+                let depth = penetration.max(0.0);
+                stiffness * depth * depth.sqrt()
+            }
+        };
+        elastic + self.damping * rate
+    }
+
+    /// Does it push?
+    pub fn pushes(&self, penetration: f64, rate: f64) -> bool {
+        penetration > 0.0 && self.pushing(penetration, rate) > 0.0
+    }
+
+    /// Force [N].
+    pub fn force(&self, penetration: f64, rate: f64) -> f64 {
+        if penetration > 0.0 {
+            self.pushing(penetration, rate).max(0.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// Fastest rate of a mass [kg] on it [1/s], under a force of the order of that of the device.
+    pub fn rate(&self, mass: f64) -> f64 {
+        /// A force that a deburring device does not exceed by much [N].
+        const LARGE_FORCE: f64 = 600.0;
+        let stiffness = match self.law {
+            ContactLaw::Linear { stiffness } => stiffness,
+            // dF/dd = 3/2 k^(2/3) F^(1/3)
+            ContactLaw::Hertz { stiffness } => 1.5 * (stiffness * stiffness * LARGE_FORCE).cbrt(),
+        };
+        (stiffness / mass).sqrt().max(self.damping / mass)
+    }
+}

@@ -1,0 +1,96 @@
+//! What drives a rig in a recording: set pressure, valve, surface.
+
+/// Inputs, one of each per sample time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlantInputs {
+    /// Sample times [s], increasing.
+    pub time: Vec<f64>,
+    /// Set pressure [Pa gauge], held from its sample to the next.
+    pub set_pressure: Vec<f64>,
+    /// Does the 5/2 valve extend? Held likewise.
+    pub extends: Vec<bool>,
+    /// Where the surface stands along the stroke [m], a smooth motion; NaN where there is no workpiece.
+    pub surface: Vec<f64>,
+}
+
+/// Inputs that do not fit together.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum InputError {
+    /// Another number of values than of times.
+    #[error("{quantity} has {found} values, expected {expected}, one per time")]
+    Length {
+        /// Which input.
+        quantity: &'static str,
+        /// How many.
+        found: usize,
+        /// How many times there are.
+        expected: usize,
+    },
+    /// Less than two samples.
+    #[error("{found} samples, expected at least 2")]
+    TooShort {
+        /// How many.
+        found: usize,
+    },
+    /// Time stands still or goes back.
+    #[error("time {value} s of sample {index} is not after {before} s")]
+    Time {
+        /// Which sample.
+        index: usize,
+        /// Its time [s].
+        value: f64,
+        /// The time before [s].
+        before: f64,
+    },
+}
+
+impl PlantInputs {
+    /// Checks that the inputs fit together.
+    ///
+    /// # Errors
+    /// Lengths differ, less than two samples, time not increasing.
+    pub fn check(&self) -> Result<(), InputError> {
+        let expected = self.time.len();
+        let lengths = [
+            ("set pressure", self.set_pressure.len()),
+            ("valve", self.extends.len()),
+            ("surface", self.surface.len()),
+        ];
+        if let Some(&(quantity, found)) = lengths.iter().find(|(_, found)| *found != expected) {
+            return Err(InputError::Length {
+                quantity,
+                found,
+                expected,
+            });
+        }
+        if expected < 2 {
+            return Err(InputError::TooShort { found: expected });
+        }
+        match (1..expected).find(|&i| !(self.time[i] > self.time[i - 1])) {
+            None => Ok(()),
+            Some(index) => Err(InputError::Time {
+                index,
+                value: self.time[index],
+                before: self.time[index - 1],
+            }),
+        }
+    }
+
+    /// Slope of the surface at a sample, from its neighbours [m/s].
+    pub(super) fn surface_slope(&self, index: usize) -> f64 {
+        let before = index.saturating_sub(1);
+        let after = (index + 1).min(self.time.len() - 1);
+        let usable = |i: usize| {
+            if self.surface[i].is_finite() {
+                i
+            } else {
+                index
+            }
+        };
+        let (before, after) = (usable(before), usable(after));
+        if before == after {
+            return 0.0;
+        }
+        (self.surface[after] - self.surface[before]) / (self.time[after] - self.time[before])
+    }
+}

@@ -1,0 +1,21 @@
+//! A bench rig as one description, driven by the inputs of a recording: what would have been measured if the description were true.
+//!
+//!     set pressure -> regulator -> line and valve -> chambers -> piston <- contact <- surface
+//!                         |                                        |         |
+//!                         +-------------- sensors -----------------+---------+
+//!
+//! The device is that of every other simulation ([`crate::device`]); contact and sensors have their own errors here, because a recording shows them
+//! only through each other.
+
+mod carrier;
+mod contact;
+mod inputs;
+mod parameters;
+mod sensors;
+mod simulate;
+
+pub use contact::{ContactLaw, ContactParameters, Periodic};
+pub use inputs::{InputError, PlantInputs};
+pub use parameters::PlantParameters;
+pub use sensors::SensorErrors;
+pub use simulate::{CHANNELS, Channel, PlantCourse, Trajectory, readings, simulate, trajectory};

@@ -1,0 +1,27 @@
+//! What does not change in a rig while it is recorded.
+
+use super::contact::ContactParameters;
+use super::sensors::SensorErrors;
+use crate::device::DeviceParameters;
+
+/// A rig: device, contact, sensors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlantParameters {
+    /// The device.
+    pub device: DeviceParameters,
+    /// Component of gravity along extension [m/s2].
+    pub gravity_along_extension: f64,
+    /// Tool on workpiece.
+    pub contact: ContactParameters,
+    /// What the sensors do to what they measure.
+    pub sensors: SensorErrors,
+}
+
+impl PlantParameters {
+    /// Does the rig move as another one does, whatever its sensors say?
+    pub fn moves_as(&self, other: &Self) -> bool {
+        self.device == other.device
+            && self.gravity_along_extension == other.gravity_along_extension
+            && self.contact == other.contact
+    }
+}

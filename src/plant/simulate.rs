@@ -1,0 +1,176 @@
+//! A rig run on the inputs of a recording.
+
+use super::carrier::{ReplayCarrier, hermite};
+use super::inputs::PlantInputs;
+use super::parameters::PlantParameters;
+use super::sensors::SensorErrors;
+use crate::device::{Device, DeviceState, PistonMotion};
+use crate::physics::valve::ValvePosition;
+
+/// A measured channel of a rig.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Channel {
+    /// Outlet of the regulator [Pa gauge].
+    RegulatorPressure,
+    /// Stroke from the retracted end [m].
+    Stroke,
+    /// Load cell, pushing positive [N].
+    Force,
+    /// Acceleration along extension [m/s2].
+    Acceleration,
+}
+
+/// All channels, in the order of a file's columns.
+pub const CHANNELS: [Channel; 4] = [
+    Channel::RegulatorPressure,
+    Channel::Stroke,
+    Channel::Force,
+    Channel::Acceleration,
+];
+
+/// What really happens in a rig, one value per sample time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trajectory {
+    /// Outlet of the regulator [Pa gauge].
+    pub outlet: Vec<f64>,
+    /// Stroke [m].
+    pub stroke: Vec<f64>,
+    /// Speed of extension [m/s].
+    pub speed: Vec<f64>,
+    /// Acceleration along extension [m/s2].
+    pub acceleration: Vec<f64>,
+    /// Contact force [N].
+    pub contact_force: Vec<f64>,
+    /// Pressures of chambers 1 and 2 [Pa absolute].
+    pub pressures: [Vec<f64>; 2],
+}
+
+/// A simulated recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlantCourse {
+    /// What really happens.
+    pub truth: Trajectory,
+    /// What the sensors read, without noise, in the order of [`CHANNELS`].
+    pub readings: [Vec<f64>; 4],
+}
+
+/// Runs a rig and reads its sensors.
+pub fn simulate(plant: &PlantParameters, inputs: &PlantInputs) -> PlantCourse {
+    let truth = trajectory(plant, inputs);
+    let readings = readings(&plant.sensors, inputs, &truth);
+    PlantCourse { truth, readings }
+}
+
+/// What the sensors read, in the order of [`CHANNELS`].
+pub fn readings(
+    sensors: &SensorErrors,
+    inputs: &PlantInputs,
+    truth: &Trajectory,
+) -> [Vec<f64>; 4] {
+    [
+        truth.outlet.clone(),
+        truth
+            .stroke
+            .iter()
+            .map(|stroke| sensors.stroke_gain * stroke)
+            .collect(),
+        sensors.force_readings(&inputs.time, &truth.contact_force, &truth.acceleration),
+        truth.acceleration.clone(),
+    ]
+}
+
+/// Runs a rig from rest on the retracted stop, both chambers and the regulator's outlet at the atmosphere. A rig that is out of all proportion
+/// gives values that are not finite.
+pub fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
+    let device = Device::new(plant.device.clone());
+    let weight = plant.device.moving_mass * plant.gravity_along_extension;
+    let mut motion = PistonMotion {
+        stroke: weight.min(0.0) / plant.device.end_stop.stiffness,
+        speed: 0.0,
+    };
+    let mut state = device.at_rest(motion.stroke, 0.0);
+    let count = inputs.time.len();
+    let mut truth = Trajectory::default();
+    let rate = plant.contact.rate(plant.device.moving_mass);
+    let usual = usual_step(&inputs.time);
+    for i in 0..count {
+        state.valve = if inputs.extends[i] {
+            ValvePosition::Extend
+        } else {
+            ValvePosition::Retract
+        };
+        let last = i + 1 == count;
+        let h = if last { usual } else { inputs.time[i + 1] - inputs.time[i] };
+        let next = if last { i } else { i + 1 };
+        let present = inputs.surface[i].is_finite() && inputs.surface[next].is_finite();
+        let mut carrier = ReplayCarrier {
+            contact: &plant.contact,
+            present,
+            weight,
+            start: inputs.time[i],
+            surface: [0.0; 4],
+            rate: if present { rate } else { 0.0 },
+        };
+        if present {
+            carrier.surface = hermite(
+                h,
+                [inputs.surface[i], inputs.surface[next]],
+                [inputs.surface_slope(i), inputs.surface_slope(next)],
+            );
+        }
+        truth.note(&device, &state, motion, &carrier);
+        if last {
+            break;
+        }
+        // Over a gap in the recording the inputs are held, in steps of the usual length.
+        let parts = (h / usual - 0.01).ceil().max(1.0);
+        for part in 0..parts as usize {
+            let mut leg = carrier;
+            if part > 0 {
+                leg.move_start(h * part as f64 / parts);
+            }
+            device.advance_carried_unaudited(
+                &mut state,
+                &mut motion,
+                inputs.set_pressure[i],
+                &leg,
+                h / parts,
+                1,
+            );
+        }
+    }
+    truth
+}
+
+/// The median distance of samples [s].
+fn usual_step(time: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+impl Trajectory {
+    fn note(
+        &mut self,
+        device: &Device,
+        state: &DeviceState,
+        motion: PistonMotion,
+        carrier: &ReplayCarrier<'_>,
+    ) {
+        let mass = device.parameters().moving_mass;
+        let pressures = device.pressures(state, motion.stroke);
+        let contact_force = carrier.contact_force(0.0, motion);
+        let force = device.gas_force(state, motion.stroke)
+            + device.seal_force(state, motion.speed)
+            + device.stop_force(motion)
+            + carrier.weight
+            - contact_force;
+        self.outlet.push(state.regulator.outlet);
+        self.stroke.push(motion.stroke);
+        self.speed.push(motion.speed);
+        self.acceleration.push(force / mass);
+        self.contact_force.push(contact_force);
+        self.pressures[0].push(pressures[0]);
+        self.pressures[1].push(pressures[1]);
+    }
+}
