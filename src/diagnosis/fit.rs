@@ -3,7 +3,7 @@
 //!     minimise   sum rho(r_i) + sum ((value - mean)/deviation)^2,     rho(r) = r^2 for |r| <= c,   2 c |r| - c^2 beyond    (Huber)
 
 use super::evidence::{Evidence, Prediction};
-use super::quantity::Free;
+use super::free::Free;
 use crate::plant::PlantParameters;
 use nalgebra::{DMatrix, DVector};
 

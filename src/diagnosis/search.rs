@@ -1,10 +1,9 @@
 //! Which effects explain what the believed model leaves.
 
-use super::catalogue::CATALOGUE;
-use super::effect::{Clues, Effect};
 use super::evidence::Evidence;
 use super::fit::{Effort, Fit, fit};
-use super::quantity::Free;
+use super::free::{Free, free_of};
+use crate::effects::{CATALOGUE, Clues, Effect};
 use crate::plant::PlantParameters;
 
 /// A set of effects, fitted together with what is tolerated.
@@ -59,7 +58,7 @@ impl Search<'_> {
             let mut best: Option<Hypothesis> = None;
             for start in (effect.starts)(&clues) {
                 let mut free: Vec<Free> = from.fit.free.iter().zip(&from.fit.values).map(|(f, v)| Free { start: *v, ..*f }).collect();
-                let new = effect.free(&self.believed, &start);
+                let new = free_of(effect, &self.believed, &start);
                 // What an effect frees is no longer held to its tolerance.
                 let mut frozen: Vec<Vec<f64>> = Vec::new();
                 let mut kept = Vec::new();

@@ -1,7 +1,7 @@
 //! The effects that are known.
 #![allow(clippy::too_many_lines)]
 use super::effect::*;
-use super::quantity::{Coordinate::*, Quantity};
+use super::quantity::{Coordinate, Coordinate::*, Quantity};
 use crate::plant::*;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::hose::Hose;
@@ -9,8 +9,8 @@ use crate::physics::hose::Hose;
 macro_rules! quantity {
     ($name:literal, $p:ident => $($place:tt)+) => { Quantity { name: $name, get: |$p| $($place)+, set: |$p, value| $($place)+ = value } };
 }
-fn reported(quantity: Quantity, coordinate: super::quantity::Coordinate, bounds: [f64; 2]) -> Parameter { Parameter { quantity, coordinate, bounds, reported: true } }
-fn hidden(quantity: Quantity, coordinate: super::quantity::Coordinate, bounds: [f64; 2]) -> Parameter { Parameter { quantity, coordinate, bounds, reported: false } }
+fn reported(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Parameter { Parameter { quantity, coordinate, bounds, reported: true } }
+fn hidden(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Parameter { Parameter { quantity, coordinate, bounds, reported: false } }
 
 const COULOMB: Quantity = Quantity { name: "coulomb_force_n", get: |p| p.device.seal_friction.coulomb, set: |p, v| { let s = &mut p.device.seal_friction; let extra = s.static_force - s.coulomb; s.coulomb = v; s.static_force = v + extra; } };
 const STATIC: Quantity = Quantity { name: "static_force_n", get: |p| p.device.seal_friction.static_force, set: |p, v| { let s = &mut p.device.seal_friction; s.static_force = v.max(s.coulomb); } };

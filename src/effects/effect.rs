@@ -1,6 +1,6 @@
 //! A physical effect that a model may lack: an edit of the rig's description.
 
-use super::quantity::{Coordinate, Free, Prior, Quantity};
+use super::quantity::{Coordinate, Quantity};
 use crate::plant::PlantParameters;
 
 /// Part of the chain in which an effect enters.
@@ -71,22 +71,5 @@ pub struct Effect {
 impl std::fmt::Debug for Effect {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str(self.name)
-    }
-}
-
-impl Effect {
-    /// Its numbers as free quantities from a start.
-    pub fn free(&self, plant: &PlantParameters, start: &[f64]) -> Vec<Free> {
-        (self.parameters)(plant)
-            .into_iter()
-            .zip(start)
-            .map(|(parameter, start)| Free {
-                quantity: parameter.quantity,
-                start: *start,
-                coordinate: parameter.coordinate,
-                bounds: parameter.bounds,
-                prior: Prior::Flat,
-            })
-            .collect()
     }
 }

@@ -1,0 +1,71 @@
+//! A quantity that a fit may move, and what is believed of it before the recordings are looked at.
+
+use crate::effects::{Coordinate, Effect, Quantity};
+use crate::plant::PlantParameters;
+
+/// What is believed of a quantity before the recordings are looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Prior {
+    /// Normal, in the quantity's unit.
+    Normal {
+        /// Mean.
+        mean: f64,
+        /// Standard deviation.
+        deviation: f64,
+    },
+    /// Anything between the bounds.
+    Flat,
+}
+
+/// A quantity that a fit may move.
+#[derive(Debug, Clone, Copy)]
+pub struct Free {
+    /// What.
+    pub quantity: Quantity,
+    /// Where it starts.
+    pub start: f64,
+    /// Coordinate of the fit.
+    pub coordinate: Coordinate,
+    /// Least and largest value.
+    pub bounds: [f64; 2],
+    /// What is believed.
+    pub prior: Prior,
+}
+
+impl Free {
+    /// The nearest value within the bounds.
+    pub fn clamp(&self, value: f64) -> f64 {
+        value.clamp(self.bounds[0], self.bounds[1])
+    }
+
+    /// Departure from the prior in its standard deviations.
+    pub fn departure(&self, value: f64) -> f64 {
+        match self.prior {
+            Prior::Normal { mean, deviation } => (value - mean) / deviation,
+            Prior::Flat => 0.0,
+        }
+    }
+
+    /// d departure / d coordinate at a value.
+    pub fn departure_slope(&self, value: f64) -> f64 {
+        match self.prior {
+            Prior::Normal { deviation, .. } => self.coordinate.slope(value) / deviation,
+            Prior::Flat => 0.0,
+        }
+    }
+}
+
+/// The numbers of an effect as free quantities from a start.
+pub fn free_of(effect: &Effect, plant: &PlantParameters, start: &[f64]) -> Vec<Free> {
+    (effect.parameters)(plant)
+        .into_iter()
+        .zip(start)
+        .map(|(parameter, start)| Free {
+            quantity: parameter.quantity,
+            start: *start,
+            coordinate: parameter.coordinate,
+            bounds: parameter.bounds,
+            prior: Prior::Flat,
+        })
+        .collect()
+}

@@ -1,0 +1,9 @@
+//! The physics that a rig's model may lack: each effect an edit of its description, with the numbers that it needs.
+
+mod catalogue;
+mod effect;
+mod quantity;
+
+pub use catalogue::CATALOGUE;
+pub use effect::{Clues, Effect, Parameter, Subsystem};
+pub use quantity::{Coordinate, Quantity};
