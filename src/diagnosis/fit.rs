@@ -42,15 +42,32 @@ impl Fit {
 
 /// Robust sum of squares.
 pub fn robust_sum(residuals: &[f64]) -> f64 {
+    robust_sum_beyond(residuals, HUBER)
+}
+
+fn robust_sum_beyond(residuals: &[f64], limit: f64) -> f64 {
     residuals.iter().filter(|r| !r.is_nan()).map(|r| {
         let size = r.abs().min(1e6);
-        if size <= HUBER { size * size } else { HUBER * (2.0 * size - HUBER) }
+        if size <= limit { size * size } else { limit * (2.0 * size - limit) }
     }).sum()
 }
 
-fn weight(residual: f64) -> f64 {
+fn weight(residual: f64, limit: f64) -> f64 {
     let size = residual.abs();
-    if size <= HUBER { 1.0 } else { HUBER / size }
+    if size <= limit { 1.0 } else { limit / size }
+}
+
+/// Where the loss turns from square to proportional for now: far out while much is unexplained, because a proportional loss has no curvature and
+/// converges slowly; at `HUBER` in the end.
+fn limit_for(residuals: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = residuals.iter().filter(|r| r.is_finite()).map(|r| r.abs()).collect();
+    if sizes.is_empty() {
+        return HUBER;
+    }
+    let high = sizes.len() * 49 / 50;
+    let quantile = *sizes.select_nth_unstable_by(high, f64::total_cmp).1;
+    // Of noise alone, one in fifty is beyond 2.33.
+    HUBER * (quantile / 2.5).max(1.0)
 }
 
 fn prior_sum(free: &[Free], values: &[f64]) -> f64 {
@@ -91,9 +108,9 @@ fn jacobian(evidence: &Evidence, here: &Prediction, free: &[Free], values: &[f64
 }
 
 /// Information and gradient with the samples' weights, priors included.
-fn normal_equations(columns: &[Vec<f64>], residuals: &[f64], free: &[Free], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+fn normal_equations(columns: &[Vec<f64>], residuals: &[f64], limit: f64, free: &[Free], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     let n = columns.len();
-    let weights: Vec<f64> = residuals.iter().map(|r| if r.is_finite() { weight(*r) } else { 0.0 }).collect();
+    let weights: Vec<f64> = residuals.iter().map(|r| if r.is_finite() { weight(*r, limit) } else { 0.0 }).collect();
     let zeroed = |value: f64, w: f64| if w == 0.0 || !value.is_finite() { 0.0 } else { value };
     let mut information = DMatrix::zeros(n, n);
     let mut gradient = DVector::zeros(n);
@@ -129,7 +146,6 @@ pub struct Effort<'a> {
 pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: Effort<'_>, known: Option<&Prediction>) -> Fit {
     let mut values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
     let mut here = evidence.predict(&with_values(plant, free, &values), known);
-    let mut misfit = robust_sum(&here.residuals);
     let mut prior = prior_sum(free, &values);
     let mut damping = 1e-4;
     let mut information = DMatrix::zeros(free.len(), free.len());
@@ -137,7 +153,9 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
     for _ in 0..effort.iterations {
         columns.truncate(effort.frozen.len());
         columns.extend(jacobian(evidence, &here, free, &values, effort.frozen.len()));
-        let (normal, gradient) = normal_equations(&columns, &here.residuals, free, &values);
+        let limit = limit_for(&here.residuals);
+        let before = robust_sum_beyond(&here.residuals, limit) + prior;
+        let (normal, gradient) = normal_equations(&columns, &here.residuals, limit, free, &values);
         information.copy_from(&normal);
         let mut gain = 0.0;
         for _ in 0..6 {
@@ -147,20 +165,22 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
                 continue;
             };
             let there = evidence.predict(&with_values(&here.plant, free, &tried), Some(&here));
-            let misfit_there = robust_sum(&there.residuals);
             let prior_there = prior_sum(free, &tried);
-            if misfit_there + prior_there < misfit + prior {
-                gain = misfit + prior - misfit_there - prior_there;
-                (values, here, misfit, prior) = (tried, there, misfit_there, prior_there);
+            let after = robust_sum_beyond(&there.residuals, limit) + prior_there;
+            if after < before {
+                gain = before - after;
+                (values, here, prior) = (tried, there, prior_there);
                 damping = (damping * 0.1).max(1e-9);
                 break;
             }
             damping *= 10.0;
         }
+        if std::env::var("T").is_ok() { eprintln!("    it limit {limit:.1} before {before:.0} gain {gain:.2} damping {damping:.0e} {values:?}"); }
         if gain < LEAST_GAIN {
             break;
         }
     }
+    let misfit = robust_sum(&here.residuals);
     Fit { free: free.to_vec(), values, prediction: here, misfit, prior, columns, information }
 }
 

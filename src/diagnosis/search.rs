@@ -2,9 +2,21 @@
 
 use super::evidence::Evidence;
 use super::fit::{Effort, Fit, fit};
-use super::free::{Free, free_of};
+use super::free::{Free, Prior, free_of};
 use crate::effects::{CATALOGUE, Clues, Effect};
 use crate::plant::PlantParameters;
+use rayon::prelude::*;
+
+/// Iterations in a rough fit.
+const SCREENING_ITERATIONS: usize = 3;
+/// Effects at most.
+const MOST_EFFECTS: usize = 3;
+/// Hypotheses that are carried on from each number of effects.
+const PARENTS: usize = 2;
+/// Candidates of each that are fitted in full.
+const REFINED: usize = 4;
+/// Cost of having looked at so many effects: twice the logarithm of their number [1].
+const LOOK_ELSEWHERE: f64 = 7.0;
 
 /// A set of effects, fitted together with what is tolerated.
 #[derive(Debug, Clone)]
@@ -33,8 +45,9 @@ impl Search<'_> {
 
     /// Penalty for the numbers of an effect: Schwarz's.
     pub fn penalty(&self, hypothesis: &Hypothesis) -> f64 {
-        let numbers = hypothesis.fit.free.len() - self.tolerated.len();
-        numbers as f64 * (self.evidence.count() as f64).ln()
+        let count = |effect: &&'static Effect| (effect.parameters)(&self.believed).len();
+        let numbers: usize = hypothesis.effects.iter().map(count).sum();
+        numbers as f64 * (self.evidence.count() as f64).ln() + LOOK_ELSEWHERE * hypothesis.effects.len() as f64
     }
 
     /// Cost with its penalty.
@@ -42,8 +55,8 @@ impl Search<'_> {
         hypothesis.fit.cost() + self.penalty(hypothesis)
     }
 
-    /// What more each effect could explain, roughly: columns of what is free already are taken as they are.
-    pub fn screen(&self, from: &Hypothesis, iterations: usize) -> Vec<Hypothesis> {
+    /// What more each effect could explain, roughly: columns of what is free already are taken as they are. Best first.
+    pub fn screen(&self, from: &Hypothesis) -> Vec<Hypothesis> {
         let periodic = super::spectrum::strongest(self.evidence, &from.fit.prediction);
         let readings = self.evidence.recordings.iter().flat_map(|m| m.readings[2].iter());
         let clues = Clues {
@@ -51,45 +64,90 @@ impl Search<'_> {
             largest_force: readings.filter(|f| f.is_finite()).fold(0.0, |a, b| b.max(a)),
             periodic: &periodic,
         };
-        let mut found: Vec<Hypothesis> = Vec::new();
-        for effect in CATALOGUE {
-            let excluded = from.effects.iter().any(|e| e.name == effect.name || (e.group.is_some() && e.group == effect.group));
-            if excluded { continue; }
-            let mut best: Option<Hypothesis> = None;
-            for start in (effect.starts)(&clues) {
-                let mut free: Vec<Free> = from.fit.free.iter().zip(&from.fit.values).map(|(f, v)| Free { start: *v, ..*f }).collect();
-                let new = free_of(effect, &self.believed, &start);
-                // What an effect frees is no longer held to its tolerance.
-                let mut frozen: Vec<Vec<f64>> = Vec::new();
-                let mut kept = Vec::new();
-                for (f, column) in free.drain(..).zip(&from.fit.columns) {
-                    if new.iter().any(|n| same(n, &f, &self.believed)) { continue; }
-                    kept.push(f);
-                    frozen.push(column.clone());
-                }
-                kept.extend(new);
-                let mut plant = from.fit.prediction.plant.clone();
-                for f in &kept { (f.quantity.set)(&mut plant, f.start); }
-                let fitted = fit(self.evidence, &plant, &kept, Effort { iterations, frozen: &frozen, longest_step: 3.0 }, Some(&from.fit.prediction));
-                if best.as_ref().is_none_or(|b| fitted.cost() < b.fit.cost()) {
-                    let mut effects = from.effects.clone();
-                    effects.push(effect);
-                    best = Some(Hypothesis { effects, fit: fitted });
-                }
+        let starts: Vec<(&'static Effect, Vec<f64>)> = CATALOGUE
+            .iter()
+            .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
+            .flat_map(|effect| (effect.starts)(&clues).into_iter().map(move |start| (effect, start)))
+            .collect();
+        let first: Vec<Hypothesis> = starts.par_iter().map(|(effect, start)| self.add(from, effect, start, SCREENING_ITERATIONS)).collect();
+        let mut best: Vec<Hypothesis> = Vec::new();
+        for hypothesis in first {
+            let name = hypothesis.effects.last().map(|e| e.name);
+            match best.iter_mut().find(|b| b.effects.last().map(|e| e.name) == name) {
+                Some(known) if known.fit.cost() <= hypothesis.fit.cost() => {}
+                Some(known) => *known = hypothesis,
+                None => best.push(hypothesis),
             }
-            found.extend(best);
         }
-        found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        found
+        best.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        best
     }
 
-    /// Fits everything that is free in a hypothesis from where it is.
-    pub fn refine(&self, hypothesis: &Hypothesis, iterations: usize) -> Hypothesis {
-        let free: Vec<Free> = hypothesis.fit.free.iter().zip(&hypothesis.fit.values).map(|(f, v)| Free { start: *v, ..*f }).collect();
-        Hypothesis {
-            effects: hypothesis.effects.clone(),
-            fit: fit(self.evidence, &hypothesis.fit.prediction.plant, &free, Effort { iterations, frozen: &[], longest_step: 3.0 }, Some(&hypothesis.fit.prediction)),
+    /// A hypothesis with one more effect from a start, fitted roughly.
+    fn add(&self, from: &Hypothesis, effect: &'static Effect, start: &[f64], iterations: usize) -> Hypothesis {
+        let new = free_of(effect, &self.believed, start);
+        let mut kept = Vec::new();
+        let mut frozen = Vec::new();
+        for ((f, value), column) in from.fit.free.iter().zip(&from.fit.values).zip(&from.fit.columns) {
+            // What an effect frees is no longer held to its tolerance.
+            if !new.iter().any(|n| same(n, f, &self.believed)) {
+                kept.push(Free { start: *value, ..*f });
+                frozen.push(column.clone());
+            }
         }
+        kept.extend(new);
+        let effort = Effort { iterations, frozen: &frozen, longest_step: 3.0 };
+        let mut effects = from.effects.clone();
+        effects.push(effect);
+        Hypothesis { effects, fit: fit(self.evidence, &from.fit.prediction.plant, &kept, effort, Some(&from.fit.prediction)) }
+    }
+
+    /// The explanation that costs least, and those that come near.
+    pub fn run(&self, say: &mut dyn FnMut(&str)) -> Vec<Hypothesis> {
+        let mut ranked = vec![self.baseline()];
+        say(&format!("baseline {:.0} of {}", ranked[0].fit.cost(), self.evidence.count()));
+        let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
+        for depth in 0..MOST_EFFECTS {
+            let before = self.score(&ranked[0]);
+            let parents: Vec<Hypothesis> = ranked.iter().filter(|h| h.effects.len() == depth).take(PARENTS).cloned().collect();
+            for parent in &parents {
+                let screened = self.screen(parent);
+                let parent_score = self.score(parent);
+                for candidate in screened.iter().take(REFINED) {
+                    let gain = parent_score - self.score(candidate);
+                    say(&format!("  {:?} screened {gain:.1}", candidate.effects));
+                    if gain < -LOOK_ELSEWHERE {
+                        continue;
+                    }
+                    let mut names: Vec<&'static str> = candidate.effects.iter().map(|e| e.name).collect();
+                    names.sort_unstable();
+                    if tried.contains(&names) {
+                        continue;
+                    }
+                    tried.push(names);
+                    let refined = self.refine(candidate, 8);
+                    say(&format!("  {:?} refined {:.1} left {:.0}", refined.effects, parent_score - self.score(&refined), refined.fit.cost() - self.evidence.count() as f64));
+                    ranked.push(refined);
+                }
+            }
+            ranked.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if before - self.score(&ranked[0]) <= 0.0 {
+                break;
+            }
+        }
+        ranked
+    }
+
+    /// Fits everything that is free in a hypothesis: the effects from where they are, what is tolerated from what was believed, because a model that
+    /// lacks something bends it out of shape.
+    pub fn refine(&self, hypothesis: &Hypothesis, iterations: usize) -> Hypothesis {
+        let fitted = &hypothesis.fit;
+        let free: Vec<Free> = fitted.free.iter().zip(&fitted.values).map(|(f, value)| match f.prior {
+            Prior::Normal { mean, .. } => Free { start: mean, ..*f },
+            Prior::Flat => Free { start: *value, ..*f },
+        }).collect();
+        let effort = Effort { iterations, frozen: &[], longest_step: 3.0 };
+        Hypothesis { effects: hypothesis.effects.clone(), fit: fit(self.evidence, &fitted.prediction.plant, &free, effort, Some(&fitted.prediction)) }
     }
 }
 
