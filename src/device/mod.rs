@@ -6,7 +6,9 @@
 
 mod carrier;
 mod integrate;
+mod leaks;
 mod parameters;
+mod piston;
 mod pneumatics;
 mod pressure_map;
 mod state;
@@ -16,3 +18,6 @@ pub use parameters::DeviceParameters;
 pub use pneumatics::{Device, DeviceForce};
 pub use pressure_map::PressureMap;
 pub use state::{AirState, DeviceState, EnergyLedger};
+
+#[cfg(test)]
+mod tests;

@@ -121,6 +121,7 @@ impl<'a> Layers<'a> {
                 time_constant: self.number("regulator_time_constant_s", |keys| keys.regulator_time_constant_s, 0.001..=10.0)?,
                 dead_time: self.number("regulator_dead_time_ms", |keys| keys.regulator_dead_time_ms, 0.0..=5000.0)?,
                 supply: self.number("supply_pressure_bar_gauge", |keys| keys.supply_pressure_bar_gauge, 0.1..=16.0)?,
+                ..RegulatorParameters::default()
             },
             end_stop: PushOnly {
                 stiffness: self.number("end_stop_stiffness_n_per_m", |keys| keys.end_stop_stiffness_n_per_m, 1e4..=1e9)?,
@@ -131,6 +132,7 @@ impl<'a> Layers<'a> {
             hose: self.hose(&gas)?,
             gas,
             lock_stiffness: self.number("lock_stiffness_n_per_m", |keys| keys.lock_stiffness_n_per_m, 1e5..=1e10)?,
+            ..DeviceParameters::default()
         })
     }
 
@@ -142,6 +144,7 @@ impl<'a> Layers<'a> {
             stribeck_velocity: self.number("seal_stribeck_velocity_mm_per_s", |keys| keys.seal_stribeck_velocity_mm_per_s, 0.1..=1000.0)?,
             viscous: self.number("seal_viscous_coefficient_n_s_per_m", |keys| keys.seal_viscous_coefficient_n_s_per_m, 0.0..=1e5)?,
             presliding_displacement: self.number("seal_presliding_displacement_um", |keys| keys.seal_presliding_displacement_um, 1.0..=5000.0)?,
+            ..SealFriction::NONE
         })
     }
 
