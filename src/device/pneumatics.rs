@@ -1,6 +1,7 @@
 //! The device's equations put together: flows between its parts and the force on its piston, at a state.
 
 use super::carrier::{Foretold, PistonMotion};
+use super::rates::PistonRates;
 use super::state::{AirState, DeviceState, EnergyLedger};
 use super::{Carrier, DeviceParameters};
 use crate::physics::chamber::Chamber;
@@ -32,6 +33,8 @@ pub struct Device {
     pub(super) chambers: [Chamber; 2],
     pub(super) areas: PistonAreas,
     valve: ValveParameters,
+    /// How fast its piston swings.
+    pub(super) piston_rates: PistonRates,
     /// How fast a volume comes to the pressure beside it, times that volume [m3/s].
     chamber_rate_volume: f64,
     /// How fast line and reservoir do [1/s].
@@ -72,6 +75,7 @@ impl Device {
         Self {
             chambers: parameters.chambers(),
             areas: parameters.areas(),
+            piston_rates: PistonRates::new(&parameters),
             chamber_rate_volume: adiabatic * rate_volume(port + leaks),
             line_rate: parameters.hose.map_or(0.0, |hose| {
                 (rate_volume(valve.supply_conductance) + rt / hose.resistance) / hose.volume
