@@ -142,17 +142,7 @@ impl Device {
         if !C::MOVES {
             return air;
         }
-        let mass = self.parameters.moving_mass;
-        let stop = &self.parameters.end_stop;
-        let seals = self.parameters.seal_friction.stiffness();
-        let mechanical = (stop.stiffness / mass)
-            .sqrt()
-            .max(stop.damping / mass)
-            .max((seals / mass).sqrt())
-            .max(self.parameters.seal_friction.viscous / mass)
-            .max((self.parameters.axial_load.return_stiffness / mass).sqrt())
-            .max(self.parameters.end_cushioning.damping / mass)
-            .max(carrier.rate());
+        let mechanical = self.piston_rates.within(carrier, motion, dt);
         air.min(MECHANICAL_LIMIT / mechanical)
     }
 }

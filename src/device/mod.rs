@@ -11,6 +11,7 @@ mod parameters;
 mod piston;
 mod pneumatics;
 mod pressure_map;
+mod rates;
 mod state;
 
 pub use carrier::{Carrier, PistonMotion};

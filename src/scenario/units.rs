@@ -23,8 +23,13 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 30] = [
+const UNITS: [Unit; 35] = [
     unit("_mv_per_v", "mV/V", Divide(1e3)),
+    unit("_pa_s_per_kg", "Pa s/kg", Divide(1.0)),
+    unit("_rad_per_s", "rad/s", Divide(1.0)),
+    unit("_pa_per_s", "Pa/s", Divide(1.0)),
+    unit("_kg_per_s", "kg/s", Divide(1.0)),
+    unit("_n_per_pa", "N/Pa", Divide(1.0)),
     unit("_n_s_per_m", "N s/m", Divide(1.0)),
     unit("_n_per_m", "N/m", Divide(1.0)),
     unit("_n_m", "N m", Divide(1.0)),
@@ -141,6 +146,11 @@ mod tests {
             ("standard_deviation_pa", 600.0, "Pa", 600.0),
             ("seal_presliding_displacement_um", 50.0, "um", 5e-5),
             ("wall_conductance_w_per_k", 0.5, "W/K", 0.5),
+            ("hose_resistance_pa_s_per_kg", 2e7, "Pa s/kg", 2e7),
+            ("regulator_natural_frequency_rad_per_s", 30.0, "rad/s", 30.0),
+            ("regulator_rise_limit_pa_per_s", 4e5, "Pa/s", 4e5),
+            ("compressor_flow_kg_per_s", 1e-4, "kg/s", 1e-4),
+            ("seal_pressure_coefficient_n_per_pa", 2e-5, "N/Pa", 2e-5),
             ("excitation_v", 5.0, "V", 5.0),
             ("noise_steps", 2.0, "", 2.0),
             ("damping_ratio", 0.7, "", 0.7),

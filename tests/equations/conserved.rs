@@ -375,6 +375,6 @@ fn every_effect_keeps_both_accounts() {
     reached(
         "energy of the piston with every effect, 4 sub-steps",
         worst[2],
-        1e-5,
+        1e-6,
     );
 }

@@ -64,7 +64,10 @@ impl RateLimit {
     ) -> (Law, f64) {
         let rate = rate.clamp(-self.fall, self.rise);
         let free = Law::Oscillation { oscillator, rate };
-        if *self == Self::NONE {
+        let deviation = start - target;
+        // Its energy only falls, so that its rate stays below this.
+        let fastest = rate.hypot(oscillator.natural_frequency * deviation);
+        if fastest <= self.rise.min(self.fall) {
             return (free, longest);
         }
         let limit = self.towards(rate);
@@ -75,7 +78,6 @@ impl RateLimit {
         if at_limit && left > ROUNDING * (target.abs() + (share * limit).abs()) {
             return (Law::Ramp { rate: limit }, left / limit.abs());
         }
-        let deviation = start - target;
         let acceleration = oscillator.acceleration(deviation, rate);
         let jerk = oscillator.acceleration(rate, acceleration);
         let span = longest.min(oscillator.next_zero(acceleration, jerk));
