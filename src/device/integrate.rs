@@ -34,6 +34,7 @@ struct Flow {
 }
 
 impl Flow {
+    #[inline(always)]
     fn after(&self, rates: &Self, time: f64, ledger: bool) -> Self {
         Self {
             air: self.air.after(&rates.air, time),

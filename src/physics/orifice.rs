@@ -50,6 +50,7 @@ impl FlowFunction {
     }
 
     /// f of eq. (10) [1] at a pressure ratio in 0..=1.
+    #[inline]
     pub fn value(&self, ratio: f64) -> f64 {
         if ratio < self.critical_ratio {
             self.choked
@@ -71,6 +72,7 @@ impl FlowFunction {
     }
 
     /// Mass flow from `from` to `to` [kg/s], negative when `to` has the higher pressure. `conductance_area` is A C [m2], pressures absolute [Pa].
+    #[inline]
     pub fn mass_flow(&self, conductance_area: f64, from: f64, to: f64) -> f64 {
         let (upstream, downstream, sign) = if from >= to {
             (from, to, 1.0)
