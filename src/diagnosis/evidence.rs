@@ -27,14 +27,16 @@ pub struct Evidence {
     /// Motions measured, one per recording.
     guides: Vec<Guide>,
     /// What was found before.
-    shares: Mutex<Vec<(f64, Arc<Vec<f64>>)>>,
+    shares: Mutex<Vec<((f64, bool), Arc<Vec<f64>>)>>,
 }
 
 impl Evidence {
     /// Recordings with the standard deviation of each channel's noise, in the order of [`CHANNELS`].
     pub fn new(recordings: Vec<Measured>, noise: [f64; 4]) -> Self {
         let guide = |measured: &Measured| {
-            Guide::new(&measured.inputs.time, &measured.readings[1], &measured.readings[3], noise[1], noise[3])
+            let force = &measured.readings[2];
+            let touching = |i: usize| force[i].abs() > 6.0 * noise[2];
+            Guide::new(&measured.inputs.time, &measured.readings[1], &measured.readings[3], noise[1], noise[3], touching)
         };
         Self {
             guides: recordings.iter().map(guide).collect(),
@@ -116,21 +118,26 @@ impl Evidence {
     }
 
     /// What each residual counts when errors in time [s] are forgiven: noise over noise and slope times that error together.
-    pub fn shares(&self, forgiven: f64) -> Arc<Vec<f64>> {
+    pub fn shares(&self, forgiven: f64, guided: bool) -> Arc<Vec<f64>> {
         let mut known = self.shares.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some((_, shares)) = known.iter().find(|(of, _)| *of == forgiven) {
+        if let Some((_, shares)) = known.iter().find(|(of, _)| *of == (forgiven, guided)) {
             return shares.clone();
         }
-        let shares = Arc::new(self.compute_shares(forgiven));
-        known.push((forgiven, shares.clone()));
+        let shares = Arc::new(self.compute_shares(forgiven, guided));
+        known.push(((forgiven, guided), shares.clone()));
         shares
     }
 
-    fn compute_shares(&self, forgiven: f64) -> Vec<f64> {
+    fn compute_shares(&self, forgiven: f64, guided: bool) -> Vec<f64> {
         let mut all = Vec::new();
         for measured in &self.recordings {
-            for (readings, noise) in measured.readings.iter().zip(self.noise) {
+            for (channel, (readings, noise)) in measured.readings.iter().zip(self.noise).enumerate() {
                 let count = readings.len();
+                // The acceleration went into the motion that the piston is held to.
+                if guided && channel == 3 {
+                    all.extend(std::iter::repeat_n(0.0, count));
+                    continue;
+                }
                 if forgiven == 0.0 {
                     all.extend(std::iter::repeat_n(1.0, count));
                     continue;

@@ -194,7 +194,7 @@ pub const FULL: &[Stage] = &[
     Stage { forgiven: 0.0, guided: false, bounded: false, gain: 0.0 },
 ];
 /// Error in time that a rough fit forgives [s].
-const ROUGH_TIME: f64 = 0.002;
+const ROUGH_TIME: f64 = 0.006;
 
 /// How a fit goes about it.
 #[derive(Debug, Clone, Copy)]
@@ -222,7 +222,7 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
         if here.guided != guided {
             here = evidence.predict(&here.plant, guided, None);
         }
-        let shares = evidence.shares(forgiven);
+        let shares = evidence.shares(forgiven, guided);
         while left > 0 {
             left -= 1;
             columns.truncate(effort.frozen.len());
@@ -259,15 +259,19 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
         }
     }
     let misfit = robust_sum(&here.residuals);
-    let shares = evidence.shares(ROUGH[0].forgiven);
-    let rough = Weighing { shares: &shares, limit: HUBER, bounded: true }.sum(&here.residuals) + prior;
+    let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
+    let rough = if here.guided {
+        Weighing { shares: &shares, limit: HUBER, bounded: ROUGH[0].bounded }.sum(&here.residuals) + prior
+    } else {
+        f64::NAN
+    };
     Fit { free: free.to_vec(), values, prediction: here, misfit, rough, prior, columns, information }
 }
 
 /// Rough cost that a description could come to if what was free before were adjusted, by the derivatives known, without a simulation more.
 pub fn foretold_rough(evidence: &Evidence, there: &Prediction, free: &[Free], values: &[f64], columns: &[Vec<f64>]) -> f64 {
-    let shares = evidence.shares(ROUGH[0].forgiven);
-    let wide = Weighing { shares: &shares, limit: limit_for(&there.residuals, &shares), bounded: true };
+    let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
+    let wide = Weighing { shares: &shares, limit: limit_for(&there.residuals, &shares), bounded: ROUGH[0].bounded };
     let (normal, gradient) = normal_equations(columns, &there.residuals, &wide, free, values);
     let mut adjusted = there.residuals.clone();
     if let Some((tried, _)) = step(free, values, &normal, &gradient, 1e-4, 3.0) {
@@ -278,7 +282,7 @@ pub fn foretold_rough(evidence: &Evidence, there: &Prediction, free: &[Free], va
             }
         }
     }
-    Weighing { shares: &shares, limit: HUBER, bounded: true }.sum(&adjusted)
+    Weighing { shares: &shares, limit: HUBER, bounded: ROUGH[0].bounded }.sum(&adjusted)
 }
 
 /// Damped step to where the quadratic model is least within the bounds, by an active set: values tried and the gain promised.
@@ -338,13 +342,7 @@ fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector
 
 /// The rough cost that noise alone has [1].
 pub fn rough_noise(evidence: &Evidence) -> f64 {
-    let shares = evidence.shares(ROUGH[0].forgiven);
+    let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
     let readings = evidence.recordings.iter().flat_map(|m| &m.readings).flatten();
-    let square = HUBER * HUBER;
-    // Seven-point Gauss-Hermite rule of the standard normal distribution.
-    const NODES: [(f64, f64); 4] = [(0.0, 0.457142857142857), (1.154405394739968, 0.240123178605013), (2.366759410734541, 0.030757123967586), (3.750439717725742, 0.000548268855972)];
-    readings.zip(shares.iter()).filter(|(value, _)| value.is_finite()).map(|(_, share)| {
-        let loss = |z: f64| square * ((z * share).powi(2) / square).ln_1p();
-        NODES.iter().map(|(z, weight)| if *z == 0.0 { weight * loss(0.0) } else { 2.0 * weight * loss(*z) }).sum::<f64>()
-    }).sum()
+    readings.zip(shares.iter()).filter(|(value, _)| value.is_finite()).map(|(_, share)| share * share).sum()
 }

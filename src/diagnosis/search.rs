@@ -19,6 +19,8 @@ const MOST_EFFECTS: usize = 3;
 const PARENTS: usize = 2;
 /// Candidates of each that are fitted in full.
 const REFINED: usize = 4;
+/// Rough cost behind the best at which a hypothesis is given up [1].
+const HOPELESS: f64 = 300.0;
 /// Cost of having looked at so many effects: twice the logarithm of their number [1].
 const LOOK_ELSEWHERE: f64 = 7.0;
 
@@ -44,7 +46,7 @@ pub struct Search<'a> {
 impl Search<'_> {
     /// The believed model within its tolerances, roughly.
     pub fn baseline(&self) -> Hypothesis {
-        self.fitted(vec![], &self.believed, &self.tolerated, ROUGH, 12, None)
+        self.fitted(vec![], &self.believed, &self.tolerated, ROUGH, 15, None)
     }
 
     fn fitted(&self, effects: Vec<&'static Effect>, plant: &PlantParameters, free: &[Free], stages: &[Stage], iterations: usize, known: Option<&Prediction>) -> Hypothesis {
@@ -152,7 +154,10 @@ impl Search<'_> {
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
         for depth in 0..MOST_EFFECTS {
             let best = self.rough_score(&rough[0]);
-            let parents: Vec<Hypothesis> = rough.iter().filter(|h| h.effects.len() == depth).take(PARENTS).cloned().collect();
+            // Beside one that leaves noise alone, no other need be carried on.
+            let spread = 6.0 * (2.0 * noise).sqrt();
+            let settled = rough[0].fit.rough < noise + spread;
+            let parents: Vec<Hypothesis> = rough.iter().filter(|h| h.effects.len() == depth).take(if settled { 1 } else { PARENTS }).cloned().collect();
             for parent in &parents {
                 let score = self.rough_score(parent);
                 for candidate in self.screen(parent, ROUGH) {
@@ -167,8 +172,12 @@ impl Search<'_> {
             }
             rough.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
             // The few that lead are fitted roughly with everything free.
+            let near = self.rough_score(&rough[0]).max(noise);
             for leading in rough.iter_mut().filter(|h| h.effects.len() == depth + 1).take(REFINED) {
-                let refitted = self.refine(leading, ROUGH, 8);
+                if depth > 0 && self.rough_score(leading) > 3.0 * near {
+                    break;
+                }
+                let refitted = self.refine(leading, ROUGH, 15);
                 if refitted.fit.rough < leading.fit.rough {
                     *leading = refitted;
                 }
@@ -180,7 +189,11 @@ impl Search<'_> {
             }
         }
         let mut full: Vec<Hypothesis> = Vec::new();
+        let leading = self.rough_score(&rough[0]);
         for candidate in rough.iter().take(REFINED) {
+            if self.rough_score(candidate) > leading + HOPELESS {
+                break;
+            }
             let refined = self.refine(candidate, FULL, FULL_ITERATIONS);
             say(&format!("  {:?} full {:.1} left {:.0}", refined.effects, self.score(&refined), refined.fit.cost() - self.evidence.count() as f64));
             full.push(refined);

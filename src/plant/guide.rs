@@ -12,6 +12,11 @@
 /// Rate of the hold [rad/s].
 const RATE: f64 = 62.8;
 
+/// Speed below which a piston counts as resting [m/s].
+const SLOW: f64 = 0.01;
+/// Samples on either side in which a jump of the acceleration is felt.
+const NEAR: usize = 3;
+
 /// A motion, one value per sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guide {
@@ -19,6 +24,8 @@ pub struct Guide {
     pub stroke: Vec<f64>,
     /// Its rate [m/s].
     pub speed: Vec<f64>,
+    /// How firmly the piston is held, 0 to 1: hardly where the acceleration jumps, because how an impact ends decides how the seals are left.
+    pub firmness: Vec<f64>,
 }
 
 impl Guide {
@@ -34,6 +41,7 @@ impl Guide {
         acceleration: &[f64],
         stroke_noise: f64,
         acceleration_noise: f64,
+        touching: impl Fn(usize) -> bool,
     ) -> Self {
         let count = time.len();
         // An impact between two samples moves the speed by more than the accelerometer's noise tells.
@@ -107,7 +115,24 @@ impl Guide {
             let d = [smooth[i + 1][0] - xp[0], smooth[i + 1][1] - xp[1]];
             smooth[i] = [x[0] + c[0] * d[0] + c[1] * d[1], x[1] + c[2] * d[0] + c[3] * d[1]];
         }
+        let firmness = |i: usize| {
+            let near = &acceleration[i.saturating_sub(NEAR)..(i + NEAR + 1).min(count)];
+            let known = near.iter().filter(|a| a.is_finite());
+            let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+            // Seven samples of noise range over 2.7 standard deviations.
+            let jump = ((high - low) / (6.0 * acceleration_noise)).max(0.0);
+            1.0 / (1.0 + jump.powi(4))
+        };
+        // At rest and in contact there is no timing to lose, and to shake a resting piston would undo its seals' friction.
+        let moving = |i: usize| {
+            let speed = smooth[i][1] / SLOW;
+            let square = speed * speed;
+            square / (1.0 + square)
+        };
         Self {
+            firmness: (0..count)
+                .map(|i| if touching(i) { 0.0 } else { moving(i) * firmness(i) })
+                .collect(),
             stroke: smooth.iter().map(|s| s[0]).collect(),
             speed: smooth.iter().map(|s| s[1]).collect(),
         }
@@ -125,7 +150,7 @@ mod tests {
         let noise = |i: usize| ((i * 7919 % 1000) as f64 / 500.0 - 1.0) * 1.7;
         let stroke: Vec<f64> = time.iter().enumerate().map(|(i, t)| 0.02 * (w * t).sin() + 2e-5 * noise(i)).collect();
         let acceleration: Vec<f64> = time.iter().enumerate().map(|(i, t)| -0.02 * w * w * (w * t).sin() + 0.15 * noise(i + 3)).collect();
-        let guide = Guide::new(&time, &stroke, &acceleration, 2e-5, 0.15);
+        let guide = Guide::new(&time, &stroke, &acceleration, 2e-5, 0.15, |_| false);
         let worst = (5..995).map(|i| (guide.speed[i] - 0.02 * w * (w * time[i]).cos()).abs()).fold(0.0, f64::max);
         assert!(worst < 4e-3, "{worst}");
     }

@@ -125,8 +125,8 @@ pub fn trajectory(
             let pair = |values: &[f64]| [values[i] / gain, values[next] / gain];
             carrier.hold = Some(Hold {
                 stroke: hermite(h, pair(&guide.stroke), pair(&guide.speed)),
-                stiffness,
-                damping,
+                stiffness: guide.firmness[i] * stiffness,
+                damping: guide.firmness[i] * damping,
             });
         }
         if present {
