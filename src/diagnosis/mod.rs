@@ -1,6 +1,9 @@
 //! Finds what physics recordings contain that the believed model leaves out.
+pub mod answer;
+pub mod clean;
 pub mod evidence;
 pub mod fit;
 pub mod free;
+pub mod recorded;
 pub mod search;
 pub mod spectrum;
