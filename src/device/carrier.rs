@@ -23,6 +23,11 @@ pub trait Carrier {
 
     /// The fastest rate [1/s] of whatever hangs on the piston, for the choice of sub-steps.
     fn rate(&self) -> f64;
+
+    /// As `rate`, of what the piston can meet over a step of `dt` [s] in which it moves no further than `reach` [m].
+    fn rate_within(&self, _motion: PistonMotion, _reach: f64, _dt: f64) -> f64 {
+        self.rate()
+    }
 }
 
 /// A piston that somebody else moves: at the same speed throughout.

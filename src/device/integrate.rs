@@ -56,6 +56,8 @@ impl Flow {
 struct Mode {
     touching: bool,
     stop: i8,
+    /// The end cushion that is being pressed.
+    cushion: i8,
     /// Direction of sliding, where seals rub.
     direction: i8,
 }
@@ -85,6 +87,8 @@ impl Device {
     ) -> f64 {
         let regulator = &self.parameters.regulator;
         state.regulator.command(regulator, set_pressure);
+        let delay = self.parameters.switching_delay;
+        state.spool.command(state.valve, delay);
         let longest = (dt / substeps as f64)
             .min(self.longest_substep(carrier, *motion, dt))
             .max(dt / MOST_SUBSTEPS);
@@ -96,14 +100,17 @@ impl Device {
         };
         let mut time = 0.0;
         while time < dt {
-            let course = state.regulator.course(regulator, dt - time);
+            let until_switching = state.spool.remaining();
+            let course = state
+                .regulator
+                .course(regulator, (dt - time).min(until_switching));
             // A hair's breadth less than one more sub-step is rounding.
             let count = (course.duration / longest - 1e-9).ceil().max(1.0);
             let h = course.duration / count;
             let mut leg = Leg {
                 device: self,
                 carrier,
-                valve: state.valve,
+                valve: state.spool.position(state.valve),
                 course,
                 course_start: time,
                 deflection: state.seal_deflection,
@@ -112,7 +119,13 @@ impl Device {
                 leg.advance::<LEDGER>(&mut flow, time + h * i as f64, h);
             }
             state.seal_deflection = leg.deflection;
-            state.regulator.follow(&course);
+            state.regulator.follow(regulator, &course);
+            state.spool.advance(course.duration);
+            if let Some(reservoir) = &self.parameters.supply_reservoir {
+                let gas = &self.parameters.gas;
+                let stored = reservoir.pressure(gas, flow.air.reservoir_mass);
+                state.regulator.starve(stored - gas.atmosphere);
+            }
             time += course.duration;
         }
         state.air = flow.air;
@@ -129,15 +142,7 @@ impl Device {
         if !C::MOVES {
             return air;
         }
-        let mass = self.parameters.moving_mass;
-        let stop = &self.parameters.end_stop;
-        let seals = self.parameters.seal_friction.stiffness();
-        let mechanical = (stop.stiffness / mass)
-            .sqrt()
-            .max(stop.damping / mass)
-            .max((seals / mass).sqrt())
-            .max(self.parameters.seal_friction.viscous / mass)
-            .max(carrier.rate());
+        let mechanical = self.piston_rates.within(carrier, motion, dt);
         air.min(MECHANICAL_LIMIT / mechanical)
     }
 }
@@ -179,8 +184,10 @@ impl<C: Carrier> Leg<'_, C> {
     }
 
     fn accept(&mut self, flow: &mut Flow, next: Flow) {
-        let seals = &self.device.parameters.seal_friction;
-        if C::MOVES && seals.is_dry() {
+        let device = self.device;
+        if C::MOVES && device.parameters.seal_friction.is_dry() {
+            let ends = [&*flow, &next].map(|flow| (&flow.air, flow.motion.stroke));
+            let seals = device.seals_over(ends);
             let moved = next.motion.stroke - flow.motion.stroke;
             let speed = 0.5 * (flow.motion.speed + next.motion.speed);
             self.deflection = seals.deflection_after(self.deflection, moved, speed);
@@ -193,6 +200,7 @@ impl<C: Carrier> Leg<'_, C> {
             return Mode {
                 touching: false,
                 stop: 0,
+                cushion: 0,
                 direction: 0,
             };
         }
@@ -200,6 +208,7 @@ impl<C: Carrier> Leg<'_, C> {
         Mode {
             touching: self.carrier.touches(time, motion),
             stop: self.device.stop_at(motion),
+            cushion: self.device.cushion_at(motion),
             direction: if dry { motion.speed.signum() as i8 } else { 0 },
         }
     }
@@ -247,19 +256,26 @@ impl<C: Carrier> Leg<'_, C> {
             impulse: gas_force,
         };
         if C::MOVES {
-            let seals = &parameters.seal_friction;
+            let seals = parameters
+                .seal_friction
+                .under(air.pressures[0] - air.pressures[1]);
             let moved = motion.stroke - substep_stroke;
             let deflection = seals.deflection_after(self.deflection, moved, motion.speed);
             let seal = seals.force(deflection, motion.speed);
             let stop = device.stop_force_of(mode.stop, motion);
+            let cushion = device.cushion_force_of(mode.cushion, motion);
+            let axial = device.axial_force(motion.stroke);
             let carrier = self.carrier.force(time, motion, mode.touching);
-            rates.motion.speed = (gas_force - seal + stop + carrier) / parameters.moving_mass;
+            let force = gas_force - seal + stop + cushion + axial + carrier;
+            rates.motion.speed = force / parameters.moving_mass;
             if LEDGER {
                 let rod = atmosphere * device.areas.rod() * motion.speed;
                 rates.ledger.atmosphere_work = rod;
                 rates.ledger.chamber_work = gas_force * motion.speed + rod;
                 rates.ledger.seal_work = seal * motion.speed;
                 rates.ledger.stop_work = -stop * motion.speed;
+                rates.ledger.cushion_work = -cushion * motion.speed;
+                rates.ledger.axial_work = axial * motion.speed;
                 rates.ledger.carrier_work = carrier * motion.speed;
             }
         }

@@ -6,9 +6,12 @@
 
 mod carrier;
 mod integrate;
+mod leaks;
 mod parameters;
+mod piston;
 mod pneumatics;
 mod pressure_map;
+mod rates;
 mod state;
 
 pub use carrier::{Carrier, PistonMotion};
@@ -16,3 +19,6 @@ pub use parameters::DeviceParameters;
 pub use pneumatics::{Device, DeviceForce};
 pub use pressure_map::PressureMap;
 pub use state::{AirState, DeviceState, EnergyLedger};
+
+#[cfg(test)]
+mod tests;

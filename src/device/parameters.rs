@@ -1,13 +1,17 @@
 //! What does not change in a device during a run, strict SI.
 
+use crate::physics::axial_load::AxialLoad;
 use crate::physics::chamber::{Chamber, Side};
+use crate::physics::end_cushioning::EndCushioning;
 use crate::physics::gas::Gas;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::hose::Hose;
+use crate::physics::leakage::Leakage;
 use crate::physics::piston::PistonAreas;
 use crate::physics::push_only::PushOnly;
 use crate::physics::regulator::RegulatorParameters;
 use crate::physics::seal_friction::SealFriction;
+use crate::physics::supply_reservoir::SupplyReservoir;
 use crate::physics::valve::ValveParameters;
 
 /// Parameters of the device, all cylinders together.
@@ -45,6 +49,48 @@ pub struct DeviceParameters {
     pub hose: Option<Hose>,
     /// Stiffness of the clamp that holds a locked device [N/m].
     pub lock_stiffness: f64,
+    /// Air that passes seals and fittings.
+    pub leakage: Leakage,
+    /// What hangs on the piston all along its stroke.
+    pub axial_load: AxialLoad,
+    /// Cushions at the ends of the stroke.
+    pub end_cushioning: EndCushioning,
+    /// Reservoir in front of the regulator, if it is finite.
+    pub supply_reservoir: Option<SupplyReservoir>,
+    /// Time from the valve's command to its switching [s].
+    pub switching_delay: f64,
+}
+
+impl Default for DeviceParameters {
+    /// The device of models/device.toml, which a test holds it to: nothing in it that a device need not have.
+    fn default() -> Self {
+        Self {
+            cylinder_count: 2,
+            bore: 0.032,
+            rod: 0.012,
+            full_stroke: 0.05,
+            dead_volume: 2e-5,
+            moving_mass: 4.0,
+            supply_orifice: 2.5e-6,
+            exhaust_orifice: 2e-6,
+            discharge_coefficient: 0.95,
+            regulator: RegulatorParameters::default(),
+            end_stop: PushOnly {
+                stiffness: 1e6,
+                damping: 2e3,
+            },
+            seal_friction: SealFriction::NONE,
+            gas: Gas::default(),
+            gas_process: GasProcess::Isothermal,
+            hose: None,
+            lock_stiffness: 1e8,
+            leakage: Leakage::NONE,
+            axial_load: AxialLoad::NONE,
+            end_cushioning: EndCushioning::NONE,
+            supply_reservoir: None,
+            switching_delay: 0.0,
+        }
+    }
 }
 
 impl DeviceParameters {

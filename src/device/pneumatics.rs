@@ -1,6 +1,7 @@
 //! The device's equations put together: flows between its parts and the force on its piston, at a state.
 
 use super::carrier::{Foretold, PistonMotion};
+use super::rates::PistonRates;
 use super::state::{AirState, DeviceState, EnergyLedger};
 use super::{Carrier, DeviceParameters};
 use crate::physics::chamber::Chamber;
@@ -8,6 +9,7 @@ use crate::physics::gas_process::GasProcess;
 use crate::physics::orifice::FlowFunction;
 use crate::physics::piston::PistonAreas;
 use crate::physics::regulator::RegulatorState;
+use crate::physics::switching_delay::Spool;
 use crate::physics::valve::{ValveParameters, ValvePosition};
 
 /// Force of the device on its moving part over a step, for a solver that treats it implicitly:
@@ -17,9 +19,9 @@ use crate::physics::valve::{ValveParameters, ValvePosition};
 pub struct DeviceForce {
     /// Mean force along extension on the foretold motion [N].
     pub force: f64,
-    /// Damping of stops and seals [N s/m].
+    /// Damping of stops, cushions and seals [N s/m].
     pub damping: f64,
-    /// Stiffness of the seals before they slide [N/m].
+    /// Stiffness of the seals before they slide, and of the axial load [N/m].
     pub stiffness: f64,
 }
 
@@ -27,13 +29,15 @@ pub struct DeviceForce {
 #[derive(Debug, Clone)]
 pub struct Device {
     pub(super) parameters: DeviceParameters,
-    flow: FlowFunction,
+    pub(super) flow: FlowFunction,
     pub(super) chambers: [Chamber; 2],
     pub(super) areas: PistonAreas,
     valve: ValveParameters,
+    /// How fast its piston swings.
+    pub(super) piston_rates: PistonRates,
     /// How fast a volume comes to the pressure beside it, times that volume [m3/s].
     chamber_rate_volume: f64,
-    /// How fast the line does [1/s].
+    /// How fast line and reservoir do [1/s].
     line_rate: f64,
 }
 
@@ -56,14 +60,26 @@ impl Device {
             GasProcess::Isothermal => 1.0,
             GasProcess::WallHeat { .. } => gas.heat_capacity_ratio,
         };
+        let leakage = &parameters.leakage;
+        // A leak between the chambers works on both.
+        let leaks =
+            parameters.discharge_coefficient * (2.0 * leakage.cross_piston + leakage.external);
+        let port = valve.supply_conductance.max(valve.exhaust_conductance);
+        let before_valve = match &parameters.hose {
+            None => rate_volume(valve.supply_conductance),
+            Some(hose) => rt / hose.resistance,
+        };
+        let reservoir_rate = parameters.supply_reservoir.map_or(0.0, |reservoir| {
+            reservoir.rate(gas) + before_valve / reservoir.volume
+        });
         Self {
             chambers: parameters.chambers(),
             areas: parameters.areas(),
-            chamber_rate_volume: adiabatic
-                * rate_volume(valve.supply_conductance.max(valve.exhaust_conductance)),
+            piston_rates: PistonRates::new(&parameters),
+            chamber_rate_volume: adiabatic * rate_volume(port + leaks),
             line_rate: parameters.hose.map_or(0.0, |hose| {
                 (rate_volume(valve.supply_conductance) + rt / hose.resistance) / hose.volume
-            }),
+            }) + reservoir_rate,
             flow,
             valve,
             parameters,
@@ -75,10 +91,13 @@ impl Device {
         &self.parameters
     }
 
-    /// State at rest at a stroke [m], chamber 1 at the regulated pressure [Pa gauge] and chamber 2 at the atmosphere.
+    /// State at rest at a stroke [m], chamber 1 at the regulated pressure [Pa gauge] and chamber 2 at the atmosphere, a reservoir full.
     pub fn at_rest(&self, stroke: f64, set_pressure: f64) -> DeviceState {
         let gas = &self.parameters.gas;
-        let regulator = RegulatorState::at_rest(&self.parameters.regulator, set_pressure);
+        let mut regulator = RegulatorState::at_rest(&self.parameters.regulator, set_pressure);
+        if let Some(reservoir) = &self.parameters.supply_reservoir {
+            regulator.starve(reservoir.full_pressure - gas.atmosphere);
+        }
         let pressures = [gas.atmosphere + regulator.outlet, gas.atmosphere];
         let masses = [0, 1].map(|i| gas.mass(pressures[i], self.chambers[i].volume(stroke)));
         let air = AirState {
@@ -88,12 +107,17 @@ impl Device {
                 .parameters
                 .hose
                 .map_or(0.0, |hose| gas.mass(pressures[0], hose.volume)),
+            reservoir_mass: self
+                .parameters
+                .supply_reservoir
+                .map_or(0.0, |reservoir| reservoir.full_mass(gas)),
             ..AirState::default()
         };
         DeviceState {
             air,
             regulator,
             valve: ValvePosition::Extend,
+            spool: Spool::default(),
             seal_deflection: 0.0,
             seal_stroke: stroke,
             ledger: EnergyLedger::default(),
@@ -157,17 +181,21 @@ impl Device {
         let mut moved = motion;
         let impulse =
             self.integrate::<_, false>(state, &mut moved, set_pressure, &Foretold, dt, substeps);
-        let seals = &self.parameters.seal_friction;
+        let seals = self.seals_over([(&state.air, motion.stroke + motion.speed * dt)]);
         let deflection =
             seals.deflection_after(state.seal_deflection, motion.speed * dt, motion.speed);
         let stop_damping = match self.stop_at(motion) {
             0 => 0.0,
             _ => self.parameters.end_stop.damping,
         };
+        let cushion_damping = self.cushion_damping(self.cushion_at(motion), motion.stroke);
+        let seal_stiffness = seals.tangent_stiffness(deflection, motion.speed);
         DeviceForce {
-            force: impulse / dt + self.stop_force(motion) - seals.force(deflection, motion.speed),
-            damping: stop_damping + seals.viscous,
-            stiffness: seals.tangent_stiffness(deflection, motion.speed),
+            force: impulse / dt + self.stop_force(motion) - seals.force(deflection, motion.speed)
+                + self.cushion_force(motion)
+                + self.axial_force(motion.stroke + motion.speed * dt),
+            damping: stop_damping + cushion_damping + seals.viscous,
+            stiffness: seal_stiffness + self.parameters.axial_load.return_stiffness,
         }
     }
 
@@ -200,7 +228,8 @@ impl Device {
 
     /// Bends the bristles by the motion since they were last looked at.
     fn drag_seals(&self, state: &mut DeviceState, motion: PistonMotion) {
-        state.seal_deflection = self.parameters.seal_friction.deflection_after(
+        let seals = self.seals_over([(&state.air, motion.stroke)]);
+        state.seal_deflection = seals.deflection_after(
             state.seal_deflection,
             motion.stroke - state.seal_stroke,
             motion.speed,
@@ -236,18 +265,24 @@ impl Device {
         }
     }
 
-    fn pressures_of(&self, air: &AirState, volumes: [f64; 2]) -> [f64; 2] {
+    pub(super) fn pressures_of(&self, air: &AirState, volumes: [f64; 2]) -> [f64; 2] {
         let gas = &self.parameters.gas;
         match self.parameters.gas_process {
-            GasProcess::Isothermal => [0, 1].map(|i| gas.pressure(air.masses[i], volumes[i])),
+            GasProcess::Isothermal => [
+                gas.pressure(air.masses[0], volumes[0]),
+                gas.pressure(air.masses[1], volumes[1]),
+            ],
             GasProcess::WallHeat { .. } => {
                 let share = gas.heat_capacity_ratio - 1.0;
-                [0, 1].map(|i| share * air.energies[i] / volumes[i])
+                [
+                    share * air.energies[0] / volumes[0],
+                    share * air.energies[1] / volumes[1],
+                ]
             }
         }
     }
 
-    fn temperature_of(&self, air: &AirState, chamber: usize) -> f64 {
+    pub(super) fn temperature_of(&self, air: &AirState, chamber: usize) -> f64 {
         let gas = &self.parameters.gas;
         match self.parameters.gas_process {
             GasProcess::Isothermal => gas.temperature,
@@ -257,7 +292,8 @@ impl Device {
         }
     }
 
-    /// Rates of the air at an outlet pressure of the regulator [Pa absolute].
+    /// Rates of the air at an outlet pressure of the regulator [Pa absolute]. Into its one caller: a tenth of a step.
+    #[inline(always)]
     pub(super) fn air_rates<const LEDGER: bool>(
         &self,
         air: &AirState,
@@ -266,12 +302,17 @@ impl Device {
         motion: PistonMotion,
     ) -> AirRates {
         let gas = &self.parameters.gas;
-        let volumes = [0, 1].map(|i| self.chambers[i].volume(motion.stroke));
+        // Written out, here and in `pressures_of`: `map` is not inlined, and costs a tenth of a step.
+        let [first, second] = &self.chambers;
+        let volumes = [first.volume(motion.stroke), second.volume(motion.stroke)];
         let pressures = self.pressures_of(air, volumes);
         let (supplied, vented) = match valve {
             ValvePosition::Extend => (0, 1),
             ValvePosition::Retract => (1, 0),
         };
+        let reservoir = self.parameters.supply_reservoir.as_ref();
+        let stored = reservoir.map_or(f64::INFINITY, |r| r.pressure(gas, air.reservoir_mass));
+        let outlet = outlet.min(stored);
         let before = match &self.parameters.hose {
             None => outlet,
             Some(hose) => gas.pressure(air.hose_mass, hose.volume),
@@ -285,6 +326,7 @@ impl Device {
             gas.atmosphere,
             pressures[vented],
         );
+        let leaks = self.leak_flows(air, pressures);
         let mut rates = AirState::default();
         let mut ledger = EnergyLedger::default();
         if let GasProcess::WallHeat { conductance } = self.parameters.gas_process {
@@ -292,7 +334,8 @@ impl Device {
                 let own = self.temperature_of(air, i);
                 let upstream = if flows[i] > 0.0 { gas.temperature } else { own };
                 flows[i] *= (gas.temperature / upstream).sqrt();
-                let enthalpy = gas.specific_heat_pressure() * upstream * flows[i];
+                let enthalpy =
+                    gas.specific_heat_pressure() * upstream * flows[i] + leaks.enthalpies[i];
                 let heat = conductance * (gas.temperature - own);
                 let work = pressures[i] * self.chambers[i].growth() * motion.speed;
                 rates.energies[i] = enthalpy + heat - work;
@@ -303,11 +346,12 @@ impl Device {
             let rt = gas.specific_gas_constant * gas.temperature;
             for i in 0..2 {
                 let work = pressures[i] * self.chambers[i].growth() * motion.speed;
-                ledger.enthalpy_in += gas.specific_heat_pressure() * gas.temperature * flows[i];
-                ledger.heat_in += work - rt * flows[i];
+                let flow = flows[i] + leaks.masses[i];
+                ledger.enthalpy_in += gas.specific_heat_pressure() * gas.temperature * flow;
+                ledger.heat_in += work - rt * flow;
             }
         }
-        rates.masses = flows;
+        rates.masses = [flows[0] + leaks.masses[0], flows[1] + leaks.masses[1]];
         let from_regulator = match &self.parameters.hose {
             None => flows[supplied],
             Some(hose) => {
@@ -316,8 +360,12 @@ impl Device {
                 inflow
             }
         };
-        rates.entered = from_regulator.max(0.0) + flows[vented].max(0.0);
-        rates.left = -(from_regulator.min(0.0) + flows[vented].min(0.0));
+        if let Some(reservoir) = reservoir {
+            rates.reservoir_mass = reservoir.compressed(stored) - from_regulator.max(0.0);
+        }
+        let from_air = [flows[vented], leaks.external];
+        rates.entered = from_regulator.max(0.0) + from_air[0].max(0.0) + from_air[1].max(0.0);
+        rates.left = -(from_regulator.min(0.0) + from_air[0].min(0.0) + from_air[1].min(0.0));
         AirRates {
             air: rates,
             ledger,

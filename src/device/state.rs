@@ -1,6 +1,7 @@
 //! What changes in a device during a run.
 
 use crate::physics::regulator::RegulatorState;
+use crate::physics::switching_delay::Spool;
 use crate::physics::valve::ValvePosition;
 
 /// State of a device; the piston's motion belongs to whoever carries it.
@@ -8,8 +9,10 @@ use crate::physics::valve::ValvePosition;
 pub struct DeviceState {
     /// The regulator.
     pub regulator: RegulatorState,
-    /// Position of the solenoid valve.
+    /// Position that the solenoid valve is told to take.
     pub valve: ValvePosition,
+    /// Its spool, which takes it after the switching delay.
+    pub spool: Spool,
     /// The air in it.
     pub air: AirState,
     /// Deflection of the seals' bristles [m].
@@ -29,7 +32,9 @@ pub struct AirState {
     pub energies: [f64; 2],
     /// Air in the line between regulator and valve [kg]; 0 without one.
     pub hose_mass: f64,
-    /// Air that has come in since the start, from the regulator and from the atmosphere [kg].
+    /// Air in the reservoir in front of the regulator [kg]; 0 without one. It is not inside the device.
+    pub reservoir_mass: f64,
+    /// Air that has come in since the start, from the regulator and from the atmosphere, through the valve or a leak [kg].
     pub entered: f64,
     /// Air that has gone out since the start [kg].
     pub left: f64,
@@ -48,6 +53,7 @@ impl AirState {
             masses: pair(self.masses, rates.masses),
             energies: pair(self.energies, rates.energies),
             hose_mass: self.hose_mass + time * rates.hose_mass,
+            reservoir_mass: self.reservoir_mass + time * rates.reservoir_mass,
             entered: self.entered + time * rates.entered,
             left: self.left + time * rates.left,
         }
@@ -59,7 +65,7 @@ impl AirState {
 /// Two balances hold, at any time between any two states:
 ///
 ///     U(air in the chambers) = U_0 + enthalpy_in + heat_in - chamber_work
-///     M v^2/2                = M v_0^2/2 + chamber_work - atmosphere_work - seal_work - stop_work + carrier_work
+///     M v^2/2                = M v_0^2/2 + chamber_work - atmosphere_work - seal_work - stop_work - cushion_work + axial_work + carrier_work
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EnergyLedger {
     /// Enthalpy of the air that came into the chambers, less that of what went out.
@@ -74,6 +80,10 @@ pub struct EnergyLedger {
     pub seal_work: f64,
     /// Work of the piston on the end stops.
     pub stop_work: f64,
+    /// Work of the piston on the cushions at its ends.
+    pub cushion_work: f64,
+    /// Work of the axial load on the piston.
+    pub axial_work: f64,
     /// Work of whoever carries the piston on it.
     pub carrier_work: f64,
 }
@@ -87,6 +97,8 @@ impl EnergyLedger {
             atmosphere_work: self.atmosphere_work + time * rates.atmosphere_work,
             seal_work: self.seal_work + time * rates.seal_work,
             stop_work: self.stop_work + time * rates.stop_work,
+            cushion_work: self.cushion_work + time * rates.cushion_work,
+            axial_work: self.axial_work + time * rates.axial_work,
             carrier_work: self.carrier_work + time * rates.carrier_work,
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::plant::{CHANNELS, PlantCourse, PlantInputs, PlantParameters, Trajectory, readings, trajectory};
 use rayon::prelude::*;
+use std::sync::{Arc, Mutex};
 
 /// One recording with what was measured in it.
 #[derive(Debug, Clone)]
@@ -12,15 +13,30 @@ pub struct Measured {
     pub inputs: PlantInputs,
     /// Readings in the order of [`CHANNELS`]; NaN where there is none or none that counts.
     pub readings: [Vec<f64>; 4],
+    /// Is there no workpiece?
+    pub free: bool,
 }
 
 /// Recordings and the noise of their channels.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Evidence {
     /// The recordings.
     pub recordings: Vec<Measured>,
     /// Standard deviation of each channel's noise, in the order of [`CHANNELS`].
     pub noise: [f64; 4],
+    /// What was found before.
+    shares: Mutex<Vec<(f64, Arc<Vec<f64>>)>>,
+}
+
+impl Evidence {
+    /// Recordings with the standard deviation of each channel's noise, in the order of [`CHANNELS`].
+    pub fn new(recordings: Vec<Measured>, noise: [f64; 4]) -> Self {
+        Self {
+            recordings,
+            noise,
+            shares: Mutex::default(),
+        }
+    }
 }
 
 /// A description with what it gives.
@@ -37,9 +53,14 @@ pub struct Prediction {
 impl Evidence {
     /// What a description gives; trajectories are taken from `known` where only sensors differ.
     pub fn predict(&self, plant: &PlantParameters, known: Option<&Prediction>) -> Prediction {
-        let reusable = known.filter(|known| plant.moves_as(&known.plant));
+        let reusable = |measured: &Measured| {
+            known.filter(|known| {
+                plant.moves_as(&known.plant)
+                    || (measured.free && plant.moves_freely_as(&known.plant))
+            })
+        };
         let course = |(index, measured): (usize, &Measured)| {
-            let truth: Trajectory = match reusable {
+            let truth: Trajectory = match reusable(measured) {
                 Some(known) => known.courses[index].truth.clone(),
                 None => trajectory(plant, &measured.inputs),
             };
@@ -80,5 +101,40 @@ impl Evidence {
     pub fn count(&self) -> usize {
         let readings = self.recordings.iter().flat_map(|m| &m.readings);
         readings.flatten().filter(|value| value.is_finite()).count()
+    }
+
+    /// What each residual counts when errors in time [s] are forgiven: noise over noise and slope times that error together.
+    pub fn shares(&self, forgiven: f64) -> Arc<Vec<f64>> {
+        let mut known = self.shares.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some((_, shares)) = known.iter().find(|(of, _)| *of == forgiven) {
+            return shares.clone();
+        }
+        let shares = Arc::new(self.compute_shares(forgiven));
+        known.push((forgiven, shares.clone()));
+        shares
+    }
+
+    fn compute_shares(&self, forgiven: f64) -> Vec<f64> {
+        let mut all = Vec::new();
+        for measured in &self.recordings {
+            for (readings, noise) in measured.readings.iter().zip(self.noise) {
+                let count = readings.len();
+                if forgiven == 0.0 {
+                    all.extend(std::iter::repeat_n(1.0, count));
+                    continue;
+                }
+                let time = &measured.inputs.time;
+                for i in 0..count {
+                    let from = time.partition_point(|t| *t < time[i] - forgiven);
+                    let to = time.partition_point(|t| *t <= time[i] + forgiven);
+                    let near = readings[from.min(i.saturating_sub(1))..to.max((i + 2).min(count))].iter().filter(|v| v.is_finite());
+                    let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+                    // The range of noise alone is not a slope.
+                    let swing = (0.5 * (high - low) / noise - 2.0).max(0.0);
+                    all.push(1.0 / (1.0 + swing * swing).sqrt());
+                }
+            }
+        }
+        all
     }
 }

@@ -10,9 +10,12 @@ use nalgebra::{DMatrix, DVector};
 /// Residual beyond which a sample counts in proportion only, in standard deviations [1].
 const HUBER: f64 = 4.0;
 /// Step of the difference quotients in the fit's coordinate [1].
-const STEP: f64 = 1e-3;
+const STEP: f64 = 0.03;
 /// Gain below which a fit has come to its end, in units of a sum of squares [1].
 const LEAST_GAIN: f64 = 0.05;
+
+/// Tries of a shorter step before an iteration is given up.
+const MOST_TRIES: usize = 8;
 
 /// A fitted description.
 #[derive(Debug, Clone)]
@@ -25,6 +28,8 @@ pub struct Fit {
     pub prediction: Prediction,
     /// Robust sum of squares of the samples [1].
     pub misfit: f64,
+    /// Sum of a bounded loss that forgives errors in time, for the comparison of rough fits [1].
+    pub rough: f64,
     /// Sum of squares of the priors [1].
     pub prior: f64,
     /// Derivatives of the residuals by the coordinates, one column each, from the last iteration.
@@ -42,15 +47,65 @@ impl Fit {
 
 /// Robust sum of squares.
 pub fn robust_sum(residuals: &[f64]) -> f64 {
-    residuals.iter().filter(|r| !r.is_nan()).map(|r| {
-        let size = r.abs().min(1e6);
-        if size <= HUBER { size * size } else { HUBER * (2.0 * size - HUBER) }
-    }).sum()
+    residuals.iter().filter(|r| !r.is_nan()).map(|r| loss(*r, HUBER)).sum()
 }
 
-fn weight(residual: f64) -> f64 {
-    let size = residual.abs();
-    if size <= HUBER { 1.0 } else { HUBER / size }
+fn loss(residual: f64, limit: f64) -> f64 {
+    let size = residual.abs().min(1e6);
+    if size <= limit { size * size } else { limit * (2.0 * size - limit) }
+}
+
+/// How much each sample counts.
+struct Weighing<'a> {
+    /// One over what a residual is divided by.
+    shares: &'a [f64],
+    /// Where the loss turns from square to proportional, or to a logarithm.
+    limit: f64,
+    /// The logarithm (Cauchy): an impact that is met by one sample more or less counts for little.
+    bounded: bool,
+}
+
+impl Weighing<'_> {
+    fn sum(&self, residuals: &[f64]) -> f64 {
+        let pairs = residuals.iter().zip(self.shares).filter(|(r, _)| !r.is_nan());
+        if self.bounded {
+            let square = self.limit * self.limit;
+            pairs.map(|(r, share)| square * ((r * share).powi(2).min(1e12) / square).ln_1p()).sum()
+        } else {
+            pairs.map(|(r, share)| loss(r * share, self.limit)).sum()
+        }
+    }
+
+    /// Weights of the squares; none where there is no value.
+    fn weights(&self, residuals: &[f64]) -> Vec<f64> {
+        residuals.iter().zip(self.shares).map(|(r, share)| {
+            if !r.is_finite() {
+                return 0.0;
+            }
+            let size = (r * share).abs();
+            let weight = if self.bounded {
+                1.0 / (1.0 + (size / self.limit).powi(2))
+            } else if size <= self.limit {
+                1.0
+            } else {
+                self.limit / size
+            };
+            share * share * weight
+        }).collect()
+    }
+}
+
+/// Where the loss turns from square to proportional for now: far out while much is unexplained, because a proportional loss has no curvature and
+/// converges slowly; at `HUBER` in the end.
+fn limit_for(residuals: &[f64], shares: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = residuals.iter().zip(shares).filter(|(r, _)| r.is_finite()).map(|(r, share)| (r * share).abs()).collect();
+    if sizes.is_empty() {
+        return HUBER;
+    }
+    let high = sizes.len() * 49 / 50;
+    let quantile = *sizes.select_nth_unstable_by(high, f64::total_cmp).1;
+    // Of noise alone, one in fifty is beyond 2.33.
+    HUBER * (quantile / 2.5).max(1.0)
 }
 
 fn prior_sum(free: &[Free], values: &[f64]) -> f64 {
@@ -91,9 +146,9 @@ fn jacobian(evidence: &Evidence, here: &Prediction, free: &[Free], values: &[f64
 }
 
 /// Information and gradient with the samples' weights, priors included.
-fn normal_equations(columns: &[Vec<f64>], residuals: &[f64], free: &[Free], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+fn normal_equations(columns: &[Vec<f64>], residuals: &[f64], weighing: &Weighing<'_>, free: &[Free], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     let n = columns.len();
-    let weights: Vec<f64> = residuals.iter().map(|r| if r.is_finite() { weight(*r) } else { 0.0 }).collect();
+    let weights = weighing.weights(residuals);
     let zeroed = |value: f64, w: f64| if w == 0.0 || !value.is_finite() { 0.0 } else { value };
     let mut information = DMatrix::zeros(n, n);
     let mut gradient = DVector::zeros(n);
@@ -114,11 +169,36 @@ fn normal_equations(columns: &[Vec<f64>], residuals: &[f64], free: &[Free], valu
     (information, gradient)
 }
 
+/// A stage of a fit.
+#[derive(Debug, Clone, Copy)]
+pub struct Stage {
+    /// Errors in time that are forgiven [s]: a model that is still far off meets impacts at other times than the device, and their spikes would hold it
+    /// there.
+    pub forgiven: f64,
+    /// Is the loss bounded?
+    pub bounded: bool,
+    /// Share of the cost that an iteration must gain for the stage to go on [1].
+    pub gain: f64,
+}
+
+/// A rough fit: what it gains says whether a full one is worth its while.
+pub const ROUGH: &[Stage] = &[Stage { forgiven: 0.01, bounded: true, gain: 1e-3 }];
+/// A full fit, one stage after the other.
+pub const FULL: &[Stage] = &[
+    Stage { forgiven: 0.01, bounded: true, gain: 0.01 },
+    Stage { forgiven: 0.001, bounded: true, gain: 1e-3 },
+    Stage { forgiven: 1e-4, bounded: true, gain: 1e-3 },
+    Stage { forgiven: 0.0, bounded: true, gain: 3e-4 },
+    Stage { forgiven: 0.0, bounded: false, gain: 0.0 },
+];
+
 /// How a fit goes about it.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort<'a> {
     /// Iterations at most.
     pub iterations: usize,
+    /// Stages.
+    pub stages: &'a [Stage],
     /// Columns of the first quantities that are taken as they are.
     pub frozen: &'a [Vec<f64>],
     /// Longest step in a coordinate [1].
@@ -129,42 +209,55 @@ pub struct Effort<'a> {
 pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: Effort<'_>, known: Option<&Prediction>) -> Fit {
     let mut values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
     let mut here = evidence.predict(&with_values(plant, free, &values), known);
-    let mut misfit = robust_sum(&here.residuals);
     let mut prior = prior_sum(free, &values);
-    let mut damping = 1e-4;
     let mut information = DMatrix::zeros(free.len(), free.len());
     let mut columns: Vec<Vec<f64>> = effort.frozen.to_vec();
-    for _ in 0..effort.iterations {
-        columns.truncate(effort.frozen.len());
-        columns.extend(jacobian(evidence, &here, free, &values, effort.frozen.len()));
-        let (normal, gradient) = normal_equations(&columns, &here.residuals, free, &values);
-        information.copy_from(&normal);
-        let mut gain = 0.0;
-        for _ in 0..6 {
-            let tried = step(free, &values, &normal, &gradient, damping, effort.longest_step);
-            let Some(tried) = tried else {
+    let mut damping = 1e-4;
+    let mut left = effort.iterations;
+    for &Stage { forgiven, bounded, gain: least } in effort.stages {
+        let shares = evidence.shares(forgiven);
+        while left > 0 {
+            left -= 1;
+            columns.truncate(effort.frozen.len());
+            columns.extend(jacobian(evidence, &here, free, &values, effort.frozen.len()));
+            let weighing = Weighing { shares: &shares, limit: limit_for(&here.residuals, &shares), bounded };
+            let before = weighing.sum(&here.residuals) + prior;
+            let (normal, gradient) = normal_equations(&columns, &here.residuals, &weighing, free, &values);
+            information.copy_from(&normal);
+            let mut gain = 0.0;
+            for _ in 0..MOST_TRIES {
+                let tried = step(free, &values, &normal, &gradient, damping, effort.longest_step);
+                let Some((tried, promised)) = tried else {
+                    damping *= 10.0;
+                    continue;
+                };
+                if promised < LEAST_GAIN {
+                    break;
+                }
+                let there = evidence.predict(&with_values(&here.plant, free, &tried), Some(&here));
+                let prior_there = prior_sum(free, &tried);
+                let after = weighing.sum(&there.residuals) + prior_there;
+                if after < before {
+                    gain = before - after;
+                    (values, here, prior) = (tried, there, prior_there);
+                    damping = (damping * 0.1).max(1e-6);
+                    break;
+                }
                 damping *= 10.0;
-                continue;
-            };
-            let there = evidence.predict(&with_values(&here.plant, free, &tried), Some(&here));
-            let misfit_there = robust_sum(&there.residuals);
-            let prior_there = prior_sum(free, &tried);
-            if misfit_there + prior_there < misfit + prior {
-                gain = misfit + prior - misfit_there - prior_there;
-                (values, here, misfit, prior) = (tried, there, misfit_there, prior_there);
-                damping = (damping * 0.1).max(1e-9);
+            }
+            if std::env::var("T").is_ok() { eprintln!("    it {forgiven} {bounded} limit {:.1} before {before:.0} gain {gain:.2} damping {damping:.0e} {values:?}", weighing.limit); }
+            if gain < LEAST_GAIN.max(least * before) {
                 break;
             }
-            damping *= 10.0;
-        }
-        if gain < LEAST_GAIN {
-            break;
         }
     }
-    Fit { free: free.to_vec(), values, prediction: here, misfit, prior, columns, information }
+    let misfit = robust_sum(&here.residuals);
+    let shares = evidence.shares(ROUGH[0].forgiven);
+    let rough = Weighing { shares: &shares, limit: HUBER, bounded: true }.sum(&here.residuals) + prior;
+    Fit { free: free.to_vec(), values, prediction: here, misfit, rough, prior, columns, information }
 }
 
-fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64, longest: f64) -> Option<Vec<f64>> {
+fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64, longest: f64) -> Option<(Vec<f64>, f64)> {
     // A quantity at its bound that is pushed beyond it stays out of the step.
     let held: Vec<bool> = (0..free.len()).map(|i| {
         let (f, v, g) = (&free[i], values[i], gradient[i]);
@@ -189,5 +282,20 @@ fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector
     if largest > longest {
         step *= longest / largest;
     }
-    Some(free.iter().zip(values).zip(step.iter()).map(|((f, v), s)| f.clamp(f.coordinate.value(f.coordinate.of(*v) - s))).collect())
+    let promised = 2.0 * gradient.dot(&step) - step.dot(&(normal * &step));
+    let tried = free.iter().zip(values).zip(step.iter()).map(|((f, v), s)| f.clamp(f.coordinate.value(f.coordinate.of(*v) - s))).collect();
+    Some((tried, promised))
+}
+
+/// The rough cost that noise alone has [1].
+pub fn rough_noise(evidence: &Evidence) -> f64 {
+    let shares = evidence.shares(ROUGH[0].forgiven);
+    let readings = evidence.recordings.iter().flat_map(|m| &m.readings).flatten();
+    let square = HUBER * HUBER;
+    // Seven-point Gauss-Hermite rule of the standard normal distribution.
+    const NODES: [(f64, f64); 4] = [(0.0, 0.457142857142857), (1.154405394739968, 0.240123178605013), (2.366759410734541, 0.030757123967586), (3.750439717725742, 0.000548268855972)];
+    readings.zip(shares.iter()).filter(|(value, _)| value.is_finite()).map(|(_, share)| {
+        let loss = |z: f64| square * ((z * share).powi(2) / square).ln_1p();
+        NODES.iter().map(|(z, weight)| if *z == 0.0 { weight * loss(0.0) } else { 2.0 * weight * loss(*z) }).sum::<f64>()
+    }).sum()
 }

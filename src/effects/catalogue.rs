@@ -5,6 +5,8 @@ use super::quantity::{Coordinate, Coordinate::*, Quantity};
 use crate::plant::*;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::hose::Hose;
+use crate::physics::regulator::SecondOrder;
+use crate::physics::supply_reservoir::SupplyReservoir;
 
 macro_rules! quantity {
     ($name:literal, $p:ident => $($place:tt)+) => { Quantity { name: $name, get: |$p| $($place)+, set: |$p, value| $($place)+ = value } };
@@ -21,6 +23,15 @@ pub const STIFFNESS: Quantity = Quantity { name: "stiffness_n_per_m", get: |p| m
 const HERTZ: Quantity = Quantity { name: "stiffness_n_per_m15", get: |p| match p.contact.law { ContactLaw::Hertz { stiffness } => stiffness, ContactLaw::Linear { .. } => 0.0 }, set: |p, v| p.contact.law = ContactLaw::Hertz { stiffness: v } };
 fn wall(p: &PlantParameters) -> f64 { match p.device.gas_process { GasProcess::WallHeat { conductance } => conductance, GasProcess::Isothermal => f64::INFINITY } }
 
+const RISE: Quantity = quantity!("rise_pa_per_s", p => p.device.regulator.rate_limit.rise);
+const FALL: Quantity = quantity!("fall_pa_per_s", p => p.device.regulator.rate_limit.fall);
+fn oscillator(p: &PlantParameters) -> SecondOrder { p.device.regulator.second_order.unwrap_or(SecondOrder { natural_frequency: 1.0 / p.device.regulator.time_constant, damping_ratio: 1.0 }) }
+fn reservoir(p: &PlantParameters) -> SupplyReservoir { p.device.supply_reservoir.unwrap_or_else(|| SupplyReservoir::new(1e-3, 1e-3)) }
+const FREQUENCY: Quantity = Quantity { name: "natural_frequency_rad_per_s", get: |p| oscillator(p).natural_frequency, set: |p, v| p.device.regulator.second_order = Some(SecondOrder { natural_frequency: v, ..oscillator(p) }) };
+const DAMPING_RATIO: Quantity = Quantity { name: "damping_ratio", get: |p| oscillator(p).damping_ratio, set: |p, v| p.device.regulator.second_order = Some(SecondOrder { damping_ratio: v, ..oscillator(p) }) };
+const RESERVOIR: Quantity = Quantity { name: "reservoir_volume_m3", get: |p| reservoir(p).volume, set: |p, v| p.device.supply_reservoir = Some(SupplyReservoir { volume: v, ..reservoir(p) }) };
+const COMPRESSOR: Quantity = Quantity { name: "compressor_flow_kg_per_s", get: |p| reservoir(p).compressor_flow, set: |p, v| p.device.supply_reservoir = Some(SupplyReservoir { compressor_flow: v, ..reservoir(p) }) };
+
 const FAR: f64 = 1e3;
 
 fn friction_parameters(first: &[Parameter], rest: &[Parameter]) -> Vec<Parameter> { first.iter().chain(rest).copied().collect() }
@@ -36,6 +47,39 @@ pub static CATALOGUE: &[Effect] = &[
     Effect { name: "presliding_hysteresis", subsystem: Subsystem::ForceBalance, group: Some("friction"),
         parameters: |_| vec![reported(COULOMB, Logarithmic, [0.05, 500.0]), reported(PRESLIDING, Logarithmic, [1e-4, 1e-2]), hidden(VISCOUS, Linear(20.0), [0.0, 5000.0])],
         starts: |_| vec![vec![12.0, 6e-4, 40.0]] },
+    Effect { name: "pressure_dependent_friction", subsystem: Subsystem::ForceBalance, group: Some("friction"),
+        parameters: |_| vec![reported(quantity!("friction_per_pressure_n_per_pa", p => p.device.seal_friction.pressure_coefficient), Logarithmic, [1e-7, 1e-2]), hidden(COULOMB, Linear(3.0), [0.0, 500.0]), hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]), hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4])],
+        starts: |_| vec![vec![8e-5, 2.0, 40.0, 5e-5]] },
+    Effect { name: "return_spring_load", subsystem: Subsystem::ForceBalance, group: None,
+        parameters: |_| vec![reported(quantity!("stiffness_n_per_m", p => p.device.axial_load.return_stiffness), Linear(100.0), [-5e4, 5e4])],
+        starts: |_| vec![vec![0.0]] },
+    Effect { name: "axial_force_offset", subsystem: Subsystem::ForceBalance, group: None,
+        parameters: |_| vec![reported(quantity!("force_n", p => p.device.axial_load.force), Linear(2.0), [-500.0, 500.0])],
+        starts: |_| vec![vec![0.0]] },
+    Effect { name: "end_cushioning", subsystem: Subsystem::ForceBalance, group: None,
+        parameters: |_| vec![reported(quantity!("damping_n_s_per_m", p => p.device.end_cushioning.damping), Logarithmic, [5.0, 1e5]), reported(quantity!("length_m", p => p.device.end_cushioning.length), Logarithmic, [2e-4, 0.025])],
+        starts: |_| vec![vec![400.0, 0.005]] },
+    Effect { name: "cross_piston_leakage", subsystem: Subsystem::Chambers, group: None,
+        parameters: |_| vec![reported(quantity!("orifice_area_m2", p => p.device.leakage.cross_piston), Logarithmic, [1e-10, 1e-4])],
+        starts: |c| vec![vec![0.1 * c.plant.device.supply_orifice]] },
+    Effect { name: "external_leakage", subsystem: Subsystem::Chambers, group: None,
+        parameters: |_| vec![reported(quantity!("orifice_area_m2", p => p.device.leakage.external), Logarithmic, [1e-10, 1e-4])],
+        starts: |c| vec![vec![0.1 * c.plant.device.supply_orifice]] },
+    Effect { name: "supply_droop", subsystem: Subsystem::Chambers, group: None,
+        parameters: |_| vec![reported(RESERVOIR, Logarithmic, [1e-5, 0.1]), reported(COMPRESSOR, Logarithmic, [1e-6, 0.1])],
+        starts: |_| vec![vec![3e-4, 1e-4]] },
+    Effect { name: "regulator_hysteresis", subsystem: Subsystem::Regulator, group: None,
+        parameters: |_| vec![reported(quantity!("half_width_pa", p => p.device.regulator.hysteresis), Logarithmic, [10.0, 2e5])],
+        starts: |_| vec![vec![8e3]] },
+    Effect { name: "regulator_rate_limit", subsystem: Subsystem::Regulator, group: None,
+        parameters: |_| vec![reported(RISE, Logarithmic, [1e3, 1e8]), reported(FALL, Logarithmic, [1e3, 1e8])],
+        starts: |_| vec![vec![4e5, 4e5], vec![1.2e6, 4e5], vec![4e5, 1.2e6]] },
+    Effect { name: "regulator_second_order", subsystem: Subsystem::Regulator, group: None,
+        parameters: |_| vec![reported(FREQUENCY, Logarithmic, [0.5, 500.0]), reported(DAMPING_RATIO, Logarithmic, [0.02, 5.0])],
+        starts: |c| { let w = 1.0 / c.plant.device.regulator.time_constant; vec![vec![1.5 * w, 0.6]] } },
+    Effect { name: "solenoid_switching_delay", subsystem: Subsystem::Regulator, group: None,
+        parameters: |_| vec![reported(quantity!("delay_s", p => p.device.switching_delay), Logarithmic, [1e-3, 1.0])],
+        starts: |_| vec![vec![0.04]] },
     Effect { name: "moving_mass_error", subsystem: Subsystem::ForceBalance, group: None,
         parameters: |p| { let m = p.device.moving_mass; vec![reported(quantity!("mass_kg", p => p.device.moving_mass), Logarithmic, [0.2 * m, 5.0 * m])] },
         starts: |c| { let m = c.plant.device.moving_mass; vec![vec![0.9 * m], vec![1.1 * m]] } },

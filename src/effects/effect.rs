@@ -73,3 +73,10 @@ impl std::fmt::Debug for Effect {
         formatter.write_str(self.name)
     }
 }
+
+impl Effect {
+    /// Can it not stand beside another one?
+    pub fn excludes(&self, other: &Effect) -> bool {
+        self.name == other.name || (self.group.is_some() && self.group == other.group)
+    }
+}

@@ -7,7 +7,7 @@
 //!
 //! Eq. (6) is the derivative of P V = m R T at constant T, so the mass is carried as the state and the pressure follows exactly from eq. (4):
 //! no air is lost to the integrator, however coarse its step.
-//! Heat exchange with the walls: `gas_process`. Leaves out: leakage.
+//! Heat exchange with the walls: `gas_process`; leakage: `leakage`.
 
 use super::gas::Gas;
 

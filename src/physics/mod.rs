@@ -2,14 +2,19 @@
 //!
 //! Pressures are absolute [Pa], mass flows positive into the chamber, forces positive in extension.
 
+pub mod axial_load;
 pub mod chamber;
+pub mod end_cushioning;
 pub mod gas;
 pub mod gas_process;
 pub mod hose;
 pub mod iso_6358;
+pub mod leakage;
 pub mod orifice;
 pub mod piston;
 pub mod push_only;
 pub mod regulator;
 pub mod seal_friction;
+pub mod supply_reservoir;
+pub mod switching_delay;
 pub mod valve;

@@ -11,6 +11,11 @@
 //!     z(d) = z_inf + (z_0 - z_inf) exp(-s |d| / g),   z_inf = sign(d) g / s
 //!
 //! so sliding, however fast, is never stiff.
+//!
+//! A seal is pressed against its bore by the pressure across it: F_c and F_s then grow by c |p_1 - p_2|, while the bristles keep their stiffness, which
+//! is that of z_p at 1 bar across them (Raparelli, Manuello Bertetto and Mazza 1997).
+//!
+//! c pressure coefficient [N/Pa], p_1 and p_2 chamber pressures [Pa].
 
 /// Friction of all cylinders together, at the piston.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +30,12 @@ pub struct SealFriction {
     pub viscous: f64,
     /// Presliding displacement [m].
     pub presliding_displacement: f64,
+    /// Growth of Coulomb and static friction with the pressure difference across the piston [N/Pa].
+    pub pressure_coefficient: f64,
 }
+
+/// Pressure difference at which the presliding displacement holds, if friction depends on it [Pa].
+const REFERENCE_DIFFERENCE: f64 = 1e5;
 
 impl SealFriction {
     /// No friction.
@@ -35,16 +45,34 @@ impl SealFriction {
         stribeck_velocity: 0.01,
         viscous: 0.0,
         presliding_displacement: 5e-5,
+        pressure_coefficient: 0.0,
     };
 
     /// Is there dry friction?
     pub fn is_dry(&self) -> bool {
-        self.coulomb > 0.0
+        self.coulomb > 0.0 || self.pressure_coefficient > 0.0
+    }
+
+    /// The same seals with a pressure difference across them [Pa], as they are while it lasts.
+    pub fn under(&self, pressure_difference: f64) -> Self {
+        if self.pressure_coefficient == 0.0 {
+            return *self;
+        }
+        let growth = self.pressure_coefficient * pressure_difference.abs();
+        let coulomb = self.coulomb + growth;
+        Self {
+            coulomb,
+            static_force: self.static_force + growth,
+            presliding_displacement: coulomb / self.stiffness(),
+            pressure_coefficient: 0.0,
+            ..*self
+        }
     }
 
     /// Stiffness of the bristles before they slide [N/m].
     pub fn stiffness(&self) -> f64 {
-        self.coulomb / self.presliding_displacement
+        let coulomb = self.coulomb + self.pressure_coefficient * REFERENCE_DIFFERENCE;
+        coulomb / self.presliding_displacement
     }
 
     /// g: dry friction at a steady speed [N].
@@ -95,6 +123,7 @@ mod tests {
         stribeck_velocity: 0.01,
         viscous: 50.0,
         presliding_displacement: 2e-5,
+        pressure_coefficient: 0.0,
     };
 
     #[test]
@@ -140,5 +169,26 @@ mod tests {
             x = next;
         }
         assert!(work > 1e-3, "{work}");
+    }
+
+    #[test]
+    fn pressure_raises_the_level_and_not_the_stiffness() {
+        let seals = SealFriction {
+            pressure_coefficient: 3e-5,
+            ..SEALS
+        };
+        let pressed = seals.under(-2e5);
+        assert!((pressed.stiffness() / seals.stiffness() - 1.0).abs() < 1e-14);
+        let z = pressed.deflection_after(0.0, 0.01, 0.2);
+        assert!((seals.force(z, 0.2) - (10.0 + 3e-5 * 2e5 + 50.0 * 0.2)).abs() < 1e-9);
+        let breakaway = pressed.deflection_after(0.0, 0.001, 1e-5);
+        assert!((seals.force(breakaway, 0.0) - (14.0 + 6.0)).abs() < 1e-3);
+        // The whole of it may come from the pressure; without any it is gone.
+        let bare = SealFriction {
+            pressure_coefficient: 3e-5,
+            ..SealFriction::NONE
+        };
+        assert!(bare.is_dry() && !bare.under(0.0).is_dry());
+        assert!((bare.stiffness() - 3.0 / 5e-5).abs() < 1e-9);
     }
 }

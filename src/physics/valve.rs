@@ -2,7 +2,7 @@
 //!
 //! Extending, chamber 1 is joined to the regulator's outlet through the supply orifice and chamber 2 to the atmosphere through the exhaust orifice;
 //! retracting, the other way round (source paper, section 2.1 and fig. 2). Flow goes either way through each: the regulator relieves.
-//! Leaves out: the spool's switching time.
+//! When the spool goes over: `switching_delay`.
 
 /// Position of the spool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -18,10 +18,14 @@ pub struct PlantParameters {
 }
 
 impl PlantParameters {
-    /// Does the rig move as another one does, whatever its sensors say?
-    pub fn moves_as(&self, other: &Self) -> bool {
+    /// Does the rig move as another one does where there is no workpiece?
+    pub fn moves_freely_as(&self, other: &Self) -> bool {
         self.device == other.device
             && self.gravity_along_extension == other.gravity_along_extension
-            && self.contact == other.contact
+    }
+
+    /// Does the rig move as another one does, whatever its sensors say?
+    pub fn moves_as(&self, other: &Self) -> bool {
+        self.moves_freely_as(other) && self.contact == other.contact
     }
 }

@@ -119,4 +119,14 @@ impl Carrier for BenchCarrier {
                 .max(law.damping / self.mass)
         })
     }
+
+    fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
+        let [surface, speed, acceleration] = self.surface;
+        let moved = dt * (speed.abs() + 0.5 * dt * acceleration.abs());
+        if motion.stroke + reach + moved < surface {
+            0.0
+        } else {
+            self.rate()
+        }
+    }
 }

@@ -198,9 +198,7 @@ impl<'a> RigSimulation<'a> {
         let carrier = BenchCarrier::at(scenario, self.time());
         let device = &self.rig.device;
         let mass = scenario.device.parameters.moving_mass;
-        let force = device.gas_force(&self.device, self.motion.stroke)
-            + device.seal_force(&self.device, self.motion.speed)
-            + device.stop_force(self.motion);
+        let force = device.piston_force(&self.device, self.motion);
         let contact_force = carrier.contact_force(0.0, self.motion);
         let outside = mass * scenario.gravity_along_extension - carrier.hand_force();
         RigTruth {

@@ -4,11 +4,13 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use crate::device::DeviceParameters;
+use crate::physics::axial_load::AxialLoad;
+use crate::physics::end_cushioning::EndCushioning;
 use crate::physics::gas::Gas;
 use crate::physics::gas_process::GasProcess;
-use crate::physics::hose::Hose;
+use crate::physics::leakage::Leakage;
 use crate::physics::push_only::PushOnly;
-use crate::physics::regulator::RegulatorParameters;
+use crate::physics::regulator::{RateLimit, RegulatorParameters};
 use crate::physics::seal_friction::SealFriction;
 
 use super::DeviceScenario;
@@ -17,6 +19,8 @@ use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{GasProcessKind, ModelFile, ModelKeys, SCHEMA};
 use super::sections::model_sections;
+
+mod parts;
 
 /// Reads a device model file: the device as it comes, not locked.
 pub fn load_device(path: &Path) -> Result<DeviceScenario, ScenarioError> {
@@ -121,6 +125,12 @@ impl<'a> Layers<'a> {
                 time_constant: self.number("regulator_time_constant_s", |keys| keys.regulator_time_constant_s, 0.001..=10.0)?,
                 dead_time: self.number("regulator_dead_time_ms", |keys| keys.regulator_dead_time_ms, 0.0..=5000.0)?,
                 supply: self.number("supply_pressure_bar_gauge", |keys| keys.supply_pressure_bar_gauge, 0.1..=16.0)?,
+                hysteresis: self.number("regulator_hysteresis_pa", |keys| keys.regulator_hysteresis_pa, 0.0..=2e5)?,
+                rate_limit: RateLimit {
+                    rise: self.number("regulator_rise_limit_pa_per_s", |keys| keys.regulator_rise_limit_pa_per_s, 1000.0..=f64::INFINITY)?,
+                    fall: self.number("regulator_fall_limit_pa_per_s", |keys| keys.regulator_fall_limit_pa_per_s, 1000.0..=f64::INFINITY)?,
+                },
+                second_order: self.second_order()?,
             },
             end_stop: PushOnly {
                 stiffness: self.number("end_stop_stiffness_n_per_m", |keys| keys.end_stop_stiffness_n_per_m, 1e4..=1e9)?,
@@ -129,8 +139,22 @@ impl<'a> Layers<'a> {
             seal_friction: self.seal_friction()?,
             gas_process: self.gas_process()?,
             hose: self.hose(&gas)?,
-            gas,
             lock_stiffness: self.number("lock_stiffness_n_per_m", |keys| keys.lock_stiffness_n_per_m, 1e5..=1e10)?,
+            leakage: Leakage {
+                cross_piston: self.number("cross_piston_leak_mm2", |keys| keys.cross_piston_leak_mm2, 0.0..=10.0)?,
+                external: self.number("external_leak_mm2", |keys| keys.external_leak_mm2, 0.0..=10.0)?,
+            },
+            axial_load: AxialLoad {
+                force: self.number("axial_load_n", |keys| keys.axial_load_n, -2000.0..=2000.0)?,
+                return_stiffness: self.number("return_stiffness_n_per_m", |keys| keys.return_stiffness_n_per_m, 0.0..=1e5)?,
+            },
+            end_cushioning: EndCushioning {
+                damping: self.number("end_cushioning_damping_n_s_per_m", |keys| keys.end_cushioning_damping_n_s_per_m, 0.0..=1e5)?,
+                length: self.number("end_cushioning_length_mm", |keys| keys.end_cushioning_length_mm, 0.1..=250.0)?,
+            },
+            supply_reservoir: self.supply_reservoir()?,
+            switching_delay: self.number("valve_switching_delay_ms", |keys| keys.valve_switching_delay_ms, 0.0..=1000.0)?,
+            gas,
         })
     }
 
@@ -142,6 +166,7 @@ impl<'a> Layers<'a> {
             stribeck_velocity: self.number("seal_stribeck_velocity_mm_per_s", |keys| keys.seal_stribeck_velocity_mm_per_s, 0.1..=1000.0)?,
             viscous: self.number("seal_viscous_coefficient_n_s_per_m", |keys| keys.seal_viscous_coefficient_n_s_per_m, 0.0..=1e5)?,
             presliding_displacement: self.number("seal_presliding_displacement_um", |keys| keys.seal_presliding_displacement_um, 1.0..=5000.0)?,
+            pressure_coefficient: self.number("seal_pressure_coefficient_n_per_pa", |keys| keys.seal_pressure_coefficient_n_per_pa, 0.0..=0.01)?,
         })
     }
 
@@ -156,19 +181,6 @@ impl<'a> Layers<'a> {
             GasProcessKind::Isothermal => GasProcess::Isothermal,
             GasProcessKind::WallHeat => GasProcess::WallHeat { conductance },
         })
-    }
-
-    /// The line, its resistance at the density of half the supply pressure; none of no length.
-    fn hose(&self, gas: &Gas) -> Result<Option<Hose>, ScenarioError> {
-        let length = self.number("hose_length_m", |keys| keys.hose_length_m, 0.0..=50.0)?;
-        let diameter = self.number("hose_diameter_mm", |keys| keys.hose_diameter_mm, 1.0..=25.0)?;
-        let supply = self.number(
-            "supply_pressure_bar_gauge",
-            |keys| keys.supply_pressure_bar_gauge,
-            0.1..=16.0,
-        )?;
-        let density = gas.mass(gas.atmosphere + 0.5 * supply, 1.0);
-        Ok((length > 0.0).then(|| Hose::of_geometry(length, diameter, density)))
     }
 
     /// What the values must be to each other.

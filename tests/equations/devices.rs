@@ -30,6 +30,7 @@ pub fn usual() -> DeviceParameters {
             time_constant: 0.15,
             dead_time: 0.02,
             supply: 6e5,
+            ..RegulatorParameters::default()
         },
         end_stop: PushOnly {
             stiffness: 1e6,
@@ -40,6 +41,7 @@ pub fn usual() -> DeviceParameters {
         gas_process: GasProcess::Isothermal,
         hose: None,
         lock_stiffness: 1e8,
+        ..DeviceParameters::default()
     }
 }
 

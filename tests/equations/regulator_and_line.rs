@@ -14,6 +14,7 @@ fn paper() -> DeviceParameters {
             time_constant: 0.5,
             dead_time: 0.5,
             supply: 6e5,
+            ..RegulatorParameters::default()
         },
         ..usual()
     }

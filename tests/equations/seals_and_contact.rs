@@ -13,6 +13,7 @@ const SEALS: SealFriction = SealFriction {
     stribeck_velocity: 0.01,
     viscous: 50.0,
     presliding_displacement: 5e-5,
+    pressure_coefficient: 0.0,
 };
 
 /// Nothing in the chambers and no way in; with it, the force along extension that balances the atmosphere on the rods [N].

@@ -103,6 +103,7 @@ mod tests {
             time_constant: 0.15,
             dead_time: 0.02,
             supply: 6e5,
+            ..RegulatorParameters::default()
         };
         for (from, to, set) in [(0.6e5, 1.2e5, 6e5), (1.2e5, 0.6e5, 0.0)] {
             let time = least_settling_time(&parameters, from, to, 0.05);

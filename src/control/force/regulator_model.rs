@@ -139,6 +139,7 @@ mod tests {
             time_constant: 0.15,
             dead_time,
             supply: 6e5,
+            ..RegulatorParameters::default()
         }
     }
 

@@ -34,6 +34,7 @@ pub fn device(coulomb: f64) -> DeviceParameters {
             time_constant: 0.15,
             dead_time: 0.02,
             supply: 6e5,
+            ..RegulatorParameters::default()
         },
         end_stop: PushOnly {
             stiffness: 1e6,
@@ -48,6 +49,7 @@ pub fn device(coulomb: f64) -> DeviceParameters {
         gas_process: GasProcess::Isothermal,
         hose: None,
         lock_stiffness: 1e8,
+        ..DeviceParameters::default()
     }
 }
 

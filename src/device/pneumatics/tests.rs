@@ -22,6 +22,7 @@ fn parameters() -> DeviceParameters {
             time_constant: 0.15,
             dead_time: 0.02,
             supply: 6e5,
+            ..RegulatorParameters::default()
         },
         end_stop: PushOnly {
             stiffness: 1e6,
@@ -32,6 +33,7 @@ fn parameters() -> DeviceParameters {
         gas_process: GasProcess::Isothermal,
         hose: None,
         lock_stiffness: 1e8,
+        ..DeviceParameters::default()
     }
 }
 

@@ -5,11 +5,7 @@ use rand_distr::StandardNormal;
 
 use super::*;
 use crate::device::DeviceParameters;
-use crate::physics::gas::Gas;
-use crate::physics::gas_process::GasProcess;
-use crate::physics::push_only::PushOnly;
 use crate::physics::regulator::RegulatorParameters;
-use crate::physics::seal_friction::SealFriction;
 use crate::plant::*;
 
 const NOISE: [f64; 4] = [400.0, 2e-5, 0.8, 0.15];
@@ -18,35 +14,18 @@ const MASS: f64 = 5.0;
 fn plant() -> PlantParameters {
     PlantParameters {
         device: DeviceParameters {
-            cylinder_count: 2,
             bore: 0.025,
             rod: 0.01,
-            full_stroke: 0.05,
             dead_volume: 1.4e-5,
             moving_mass: MASS,
             supply_orifice: 1.6e-6,
             exhaust_orifice: 1.3e-6,
-            discharge_coefficient: 0.95,
             regulator: RegulatorParameters {
-                gain: 1.0,
                 time_constant: 0.1,
                 dead_time: 0.0,
-                supply: 16e5,
+                ..RegulatorParameters::default()
             },
-            end_stop: PushOnly {
-                stiffness: 1e6,
-                damping: 2e3,
-            },
-            seal_friction: SealFriction::NONE,
-            gas: Gas {
-                specific_gas_constant: 287.05,
-                heat_capacity_ratio: 1.4,
-                temperature: 293.15,
-                atmosphere: 101_325.0,
-            },
-            gas_process: GasProcess::Isothermal,
-            hose: None,
-            lock_stiffness: 1e8,
+            ..DeviceParameters::default()
         },
         gravity_along_extension: -9.81,
         contact: ContactParameters {

@@ -2,11 +2,7 @@
 
 use crate::device::DeviceParameters;
 use crate::effects::Quantity;
-use crate::physics::gas::Gas;
-use crate::physics::gas_process::GasProcess;
-use crate::physics::push_only::PushOnly;
 use crate::physics::regulator::RegulatorParameters;
-use crate::physics::seal_friction::SealFriction;
 use crate::plant::{ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors};
 
 /// A number of the file.
@@ -80,45 +76,19 @@ const AMPLE_SUPPLY: f64 = 16e5;
 
 /// The believed model with all that a file does not say: no friction, no leaks, isothermal chambers, ideal sensors. Its numbers are for the file to set.
 pub(super) fn blank() -> PlantParameters {
-    let nothing = PushOnly {
-        stiffness: f64::NAN,
-        damping: f64::NAN,
-    };
     PlantParameters {
         device: DeviceParameters {
-            cylinder_count: 0,
-            bore: f64::NAN,
-            rod: f64::NAN,
-            full_stroke: f64::NAN,
-            dead_volume: f64::NAN,
-            moving_mass: f64::NAN,
-            supply_orifice: f64::NAN,
-            exhaust_orifice: f64::NAN,
-            discharge_coefficient: f64::NAN,
             regulator: RegulatorParameters {
-                gain: f64::NAN,
-                time_constant: f64::NAN,
                 dead_time: 0.0,
                 supply: AMPLE_SUPPLY,
+                ..RegulatorParameters::default()
             },
-            end_stop: nothing,
-            seal_friction: SealFriction::NONE,
-            gas: Gas {
-                specific_gas_constant: f64::NAN,
-                heat_capacity_ratio: f64::NAN,
-                temperature: f64::NAN,
-                atmosphere: f64::NAN,
-            },
-            gas_process: GasProcess::Isothermal,
-            hose: None,
-            lock_stiffness: 1e8,
+            ..DeviceParameters::default()
         },
-        gravity_along_extension: f64::NAN,
+        gravity_along_extension: 0.0,
         contact: ContactParameters {
-            law: ContactLaw::Linear {
-                stiffness: f64::NAN,
-            },
-            damping: f64::NAN,
+            law: ContactLaw::Linear { stiffness: 0.0 },
+            damping: 0.0,
             surface_offset: 0.0,
             runout: Periodic::NONE,
             waviness: Periodic::NONE,

@@ -3,6 +3,7 @@
 use super::super::bench::{CommandScenario, LoadScenario};
 use super::super::{AnyScenario, EdgeSelection, load, load_any, load_bench, load_device};
 use super::scenarios;
+use crate::device::DeviceParameters;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::valve::ValvePosition;
 
@@ -141,6 +142,7 @@ fn locked_tool_is_misplaced_part_but_for_the_lock() {
 fn the_device_model_is_the_device_of_the_issue() {
     let device = load_device(&scenarios().join("../models/device.toml")).unwrap();
     let parameters = &device.parameters;
+    assert_eq!(*parameters, DeviceParameters::default());
     assert!((3e5 * parameters.areas().extending - 482.5).abs() < 0.1);
     assert_eq!(
         (parameters.full_stroke, parameters.dead_volume),

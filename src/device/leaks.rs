@@ -1,0 +1,46 @@
+//! What leaks between the chambers and out of chamber 1, with the enthalpy that it carries.
+
+use super::pneumatics::Device;
+use super::state::AirState;
+
+/// Flows of the leaks.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct LeakFlows {
+    /// Into each chamber [kg/s].
+    pub masses: [f64; 2],
+    /// Enthalpy into each chamber [W].
+    pub enthalpies: [f64; 2],
+    /// From the atmosphere into chamber 1 [kg/s].
+    pub external: f64,
+}
+
+impl Device {
+    /// Flows at absolute chamber pressures [Pa].
+    pub(super) fn leak_flows(&self, air: &AirState, pressures: [f64; 2]) -> LeakFlows {
+        if self.parameters.leakage.is_none() {
+            return LeakFlows::default();
+        }
+        let leakage = &self.parameters.leakage;
+        let gas = &self.parameters.gas;
+        let discharge = self.parameters.discharge_coefficient;
+        let flow = |area: f64, from: (f64, f64), to: (f64, f64)| {
+            let mass = self.flow.mass_flow(area * discharge, from.0, to.0);
+            let upstream = if mass > 0.0 { from.1 } else { to.1 };
+            // The flow function is that of the surroundings' temperature.
+            let mass = mass * (gas.temperature / upstream).sqrt();
+            (mass, gas.specific_heat_pressure() * upstream * mass)
+        };
+        let chambers = [0, 1].map(|i| (pressures[i], self.temperature_of(air, i)));
+        let cross = flow(leakage.cross_piston, chambers[0], chambers[1]);
+        let external = flow(
+            leakage.external,
+            (gas.atmosphere, gas.temperature),
+            chambers[0],
+        );
+        LeakFlows {
+            masses: [external.0 - cross.0, cross.0],
+            enthalpies: [external.1 - cross.1, cross.1],
+            external: external.0,
+        }
+    }
+}

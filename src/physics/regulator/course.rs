@@ -1,0 +1,50 @@
+//! The outlet over a time in which one law holds: lag, ramp or oscillation.
+
+use super::second_order::SecondOrder;
+
+/// How a pressure moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Law {
+    /// Exponentially to the target, at one over the time constant [1/s].
+    Lag { rate: f64 },
+    /// At a constant rate [Pa/s].
+    Ramp { rate: f64 },
+    /// As an oscillator about the target, with a rate at the start [Pa/s].
+    Oscillation { oscillator: SecondOrder, rate: f64 },
+}
+
+/// The outlet over a time in which no new set pressure arrives and one law holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutletCourse {
+    /// Pressure at its start, gauge [Pa].
+    pub(super) start: f64,
+    /// Where the regulator would take it, gauge [Pa].
+    pub(super) target: f64,
+    /// The highest there can be, gauge [Pa].
+    pub(super) supply: f64,
+    pub(super) law: Law,
+    /// How long it holds [s].
+    pub duration: f64,
+}
+
+impl OutletCourse {
+    /// Outlet pressure, gauge [Pa], at a time since its start [s]. What would swing beyond the supply or below the atmosphere is cut off there.
+    pub fn at(&self, time: f64) -> f64 {
+        match self.law {
+            Law::Lag { rate } => self.target + (self.start - self.target) * (-time * rate).exp(),
+            _ => self.state_at(time).0.clamp(0.0, self.supply),
+        }
+    }
+
+    /// Pressure [Pa gauge], nothing cut off, and its rate [Pa/s] at a time since its start [s]; a lag needs no rate and tells none.
+    pub(super) fn state_at(&self, time: f64) -> (f64, f64) {
+        match self.law {
+            Law::Lag { .. } => (self.at(time), 0.0),
+            Law::Ramp { rate } => (self.start + rate * time, rate),
+            Law::Oscillation { oscillator, rate } => {
+                let (deviation, rate) = oscillator.after(self.start - self.target, rate, time);
+                (self.target + deviation, rate)
+            }
+        }
+    }
+}
