@@ -15,13 +15,15 @@ use keys::{RigKeys, sections};
 use values::{check_together, recordings, sensors};
 
 mod effect;
+mod improved;
 mod keys;
 mod number;
 mod quantities;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod values;
 
+pub use improved::{ImprovedEffect, as_written, improved_text};
 pub(super) use number::NUMBER_OR_TABLE;
 
 /// Version of the format.

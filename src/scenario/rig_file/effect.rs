@@ -34,9 +34,7 @@ pub(super) fn effects(
         let Some(numbers) = tables.get(effect.name) else {
             continue;
         };
-        let other = found
-            .iter()
-            .find(|(other, _)| other.group.is_some() && other.group == effect.group);
+        let other = found.iter().find(|(other, _)| other.excludes(effect));
         if let Some((other, _)) = other {
             let reason = format!("effect.{} stands in its place", other.name);
             return Err(Section::new(document, "effect").misplaced(effect.name, reason));

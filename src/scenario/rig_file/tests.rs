@@ -7,7 +7,7 @@ use super::*;
 use crate::plant::{ContactLaw, SensorErrors};
 
 /// A rig file as its owner writes it.
-pub(super) const RIG: &str = r#"# The device as its owner believes it to be.
+pub(crate) const RIG: &str = r#"# The device as its owner believes it to be.
 schema = 1
 
 [cylinder]
@@ -55,7 +55,7 @@ predict = "predict.csv"
 "#;
 
 /// Friction and a late load cell, as a diagnosis adds them.
-pub(super) const EFFECTS: &str = r"
+pub(crate) const EFFECTS: &str = r"
 [effect.channel_time_offset]
 offset_s = 0.012
 
@@ -65,7 +65,7 @@ viscous_coefficient_n_s_per_m = 90
 presliding_displacement_m = 4e-5
 ";
 
-pub(super) fn read(text: &str) -> RigFile {
+fn read(text: &str) -> RigFile {
     from_text(Path::new("rig.toml"), text).unwrap()
 }
 
@@ -336,4 +336,99 @@ fn values_that_are_wrong_are_refused_with_what_was_expected() {
         "[effect.stribeck_friction]\ncoulomb_force_n = 8\nstatic_force_n = 12\nstribeck_velocity_m_per_s = 0.01\nviscous_coefficient_n_s_per_m = 9\npresliding_displacement_m = 4e-5",
         "47:9: `effect.stribeck_friction` cannot stand here: effect.coulomb_viscous_friction stands in its place",
     );
+}
+
+/// The whole catalogue, each at a start of its own, groups apart.
+fn found() -> Vec<ImprovedEffect> {
+    let rig = read(RIG);
+    let periodic = [3.0, 37.0];
+    let clues = crate::effects::Clues {
+        plant: &rig.plant,
+        largest_force: 200.0,
+        periodic: &periodic,
+    };
+    let mut groups = BTreeSet::new();
+    crate::effects::CATALOGUE
+        .iter()
+        .filter(|effect| effect.group.is_none_or(|group| groups.insert(group)))
+        .map(|effect| {
+            let start = (effect.starts)(&clues).remove(0);
+            let parameters = (effect.parameters)(&rig.plant);
+            let numbered = parameters.iter().zip(start).enumerate();
+            let parameters = numbered
+                .map(|(i, (parameter, value))| {
+                    let value = value * 1.012_345_678_9 + 1e-9;
+                    let interval = parameter.reported.then(|| [value - 1e-9, value + 1e-9]);
+                    (parameter.quantity.name, value, interval.filter(|_| i == 0))
+                })
+                .collect();
+            ImprovedEffect { effect, parameters }
+        })
+        .collect()
+}
+
+#[test]
+fn an_improved_file_reads_back_as_the_rig_that_was_found() {
+    let rig = read(RIG);
+    let found = found();
+    assert!(found.len() > 25, "{}", found.len());
+    let tolerated: Vec<(&str, f64, f64, f64)> = rig
+        .tolerances
+        .iter()
+        .map(|t| (t.key, 1.012_345_678 * t.value, t.value, 1.02 * t.value))
+        .collect();
+    let mut expected = rig.plant.clone();
+    for (tolerance, moved) in rig.tolerances.iter().zip(&tolerated) {
+        (tolerance.quantity.set)(&mut expected, as_written(moved.1));
+    }
+    for improved in &found {
+        let values: Vec<f64> = improved
+            .parameters
+            .iter()
+            .map(|p| as_written(p.1))
+            .collect();
+        effect::apply(improved.effect, &values, &mut expected);
+    }
+    let text = improved_text(&rig, &tolerated, &found);
+    let improved = read(&text);
+    assert_eq!(improved.plant, expected);
+    assert_ne!(improved.plant, rig.plant);
+    assert_eq!(improved.effects.len(), found.len());
+    assert_eq!((improved.noise, improved.fit), (rig.noise, rig.fit));
+    let mass = improved.tolerances[1];
+    assert_eq!(mass.key, "cylinder.moving_mass_kg");
+    assert!((mass.tolerance - 0.0122).abs() < 1e-4, "{}", mass.tolerance);
+    // Once more, with nothing found: the effects go, what else was found stays.
+    let again = read(&improved_text(&read(&text), &[], &[]));
+    assert!(again.effects.is_empty());
+    assert_eq!(again.tolerances[1].value, mass.value);
+}
+
+#[test]
+fn an_improved_file_differs_from_the_believed_one_by_the_diagnosis_alone() {
+    let rig = read(RIG);
+    let friction = ImprovedEffect {
+        effect: crate::effects::CATALOGUE
+            .iter()
+            .find(|effect| effect.name == "coulomb_viscous_friction")
+            .unwrap(),
+        parameters: vec![
+            ("coulomb_force_n", 13.2000004, Some([12.8, 13.6])),
+            ("viscous_coefficient_n_s_per_m", 90.123456, None),
+            ("presliding_displacement_m", 4.1234567e-5, None),
+        ],
+    };
+    let moved = [("cylinder.dead_volume_m3", 1.471_234_56e-5, 1.45e-5, 1.5e-5)];
+    let expected = RIG.replace(
+        "{ value = 1.454e-05, tolerance = 0.1 }   # each chamber",
+        "{ value = 1.47123e-5, low = 1.45e-5, high = 1.5e-5 }   # each chamber",
+    ) + "
+# Found: seals and guides rub: a dry part and one that grows with speed.
+[effect.coulomb_viscous_friction]
+coulomb_force_n = { value = 13.2, low = 12.8, high = 13.6 }
+viscous_coefficient_n_s_per_m = 90.1235
+presliding_displacement_m = 4.12346e-5
+";
+    assert_eq!(improved_text(&rig, &moved, &[friction]), expected);
+    assert_eq!(improved_text(&rig, &[], &[]), RIG);
 }

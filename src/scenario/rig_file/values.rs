@@ -119,7 +119,7 @@ pub(super) fn checked(
 }
 
 /// A number in the shorter of its usual forms.
-fn plain(value: f64) -> String {
+pub(super) fn plain(value: f64) -> String {
     let usual = value == 0.0 || (1e-3..1e6).contains(&value.abs());
     if usual || !value.is_finite() {
         value.to_string()
