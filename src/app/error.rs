@@ -1,6 +1,7 @@
 //! What ends a command early, and the exit code that goes with it.
 
 use crate::cell::CellError;
+use crate::diagnosis::recorded::RecordedError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
@@ -77,6 +78,31 @@ pub enum AppError {
     NoBench {
         /// The option.
         option: &'static str,
+    },
+    /// A recording of a rig.
+    #[error(transparent)]
+    Recorded(#[from] RecordedError),
+    /// The output would take the place of an input.
+    #[error("--out is {file}, which is read here; expected another file")]
+    Overwrites {
+        /// The file.
+        file: String,
+    },
+    /// A rig whose motion cannot be followed.
+    #[error(
+        "{rig}: the rig goes astray at {time} s of {inputs}: its {column} is {value}; expected a rig that stays finite"
+    )]
+    Astray {
+        /// Rig file.
+        rig: String,
+        /// Recording.
+        inputs: String,
+        /// When [s].
+        time: f64,
+        /// What.
+        column: &'static str,
+        /// Its value.
+        value: f64,
     },
     /// A picture.
     #[error(transparent)]

@@ -9,6 +9,7 @@ mod error;
 mod files;
 mod output;
 mod picture;
+mod predict;
 mod run;
 
 pub use bench::{FinishedBench, run_rig};
