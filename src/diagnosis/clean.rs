@@ -120,13 +120,14 @@ impl Cleaning {
             if !wild.is_empty() {
                 let times: Vec<String> = wild.iter().map(|time| format!("{time:.3}")).collect();
                 sentences.push(format!(
-                    "{} wild values of {column} set aside, at {} s",
-                    wild.len(),
+                    "{} of {column} set aside, at {} s",
+                    counted(wild.len(), "wild value"),
                     times.join(", ")
                 ));
             }
             if self.lost[channel] > 0 {
-                sentences.push(format!("{} values of {column} lost", self.lost[channel]));
+                let lost = counted(self.lost[channel], "value");
+                sentences.push(format!("{lost} of {column} lost"));
             }
             if let Some(noise) = self.noise[channel].filter(|noise| *noise > 0.0) {
                 let ratio = noise / sheet[channel];
@@ -143,10 +144,8 @@ impl Cleaning {
                 .iter()
                 .map(|gap| gap[1] - gap[0])
                 .fold(0.0, f64::max);
-            sentences.push(format!(
-                "{} gaps, the longest of {longest:.4} s",
-                self.gaps.len()
-            ));
+            let gaps = counted(self.gaps.len(), "gap");
+            sentences.push(format!("{gaps}, the longest of {longest:.4} s"));
         }
         if self.jitter > ROUNDING * self.step {
             sentences.push(format!(
@@ -156,4 +155,10 @@ impl Cleaning {
         }
         sentences
     }
+}
+
+/// A number of things: `1 gap`, `2 gaps`.
+fn counted(number: usize, thing: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {thing}{plural}")
 }

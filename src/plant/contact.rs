@@ -74,6 +74,19 @@ pub struct ContactParameters {
 }
 
 impl ContactParameters {
+    /// How far the surface stands beyond where the robot says [m] at a time [s], and the rate of that [m/s].
+    pub fn deviation(&self, time: f64) -> (f64, f64) {
+        let (mut deviation, mut rate) = (self.surface_offset, 0.0);
+        for periodic in [&self.runout, &self.waviness] {
+            if *periodic != Periodic::NONE {
+                let (more, its_rate) = periodic.at(time);
+                deviation += more;
+                rate += its_rate;
+            }
+        }
+        (deviation, rate)
+    }
+
     /// Force at a penetration [m] and its rate [m/s] as it holds while it pushes [N].
     pub fn pushing(&self, penetration: f64, rate: f64) -> f64 {
         let elastic = match self.law {

@@ -73,11 +73,11 @@ pub fn write_csv(
         let names = columns.iter().map(|(name, _)| *name);
         writer.write_record(std::iter::once(TIME).chain(names))?;
         for (row, time) in time.iter().enumerate() {
-            writer.write_field(time.to_string())?;
+            writer.write_field(format!("{time:?}"))?;
             for (_, values) in columns {
                 let value = values[row];
                 let text = if value.is_finite() {
-                    value.to_string()
+                    format!("{value:?}")
                 } else {
                     String::new()
                 };
@@ -112,7 +112,7 @@ fn check_plausible(
     let count = values.iter().filter(|value| outside(value)).count();
     let allowed = if column.is_input { 0.0 } else { MOST_WILD };
     if count as f64 > allowed * values.len() as f64
-        && let Some(index) = values.iter().position(|value| outside(value))
+        && let Some(index) = values.iter().position(outside)
     {
         let mut expected = format!("{low} to {high} {symbol}");
         if let Some(other) = column.larger_than_si {

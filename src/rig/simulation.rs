@@ -212,11 +212,16 @@ impl<'a> RigSimulation<'a> {
 
     fn sample(&mut self, set_pressure: f64) {
         let truth = self.truth();
+        let errors = &self.rig.scenario.sensor_errors;
         self.readings = self.sensors.measure(
             truth.time,
             &Truth {
-                force: truth.contact_force,
-                stroke: truth.motion.stroke,
+                force: errors.immediate_force_reading(
+                    truth.time,
+                    truth.contact_force,
+                    truth.acceleration,
+                ),
+                stroke: errors.stroke_gain * truth.motion.stroke,
                 acceleration: truth.acceleration,
                 regulator_pressure: truth.regulator_pressure,
             },

@@ -8,12 +8,13 @@ use super::bench_file::{
 use super::check::Section;
 use super::document::Document;
 use super::error::ScenarioError;
-use super::load::{device, expectations};
+use super::load::expectations;
+use super::rig_device::{BenchDevice, bench_device};
 use super::sections::bench_sections;
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
-use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
+use crate::plant::{ContactLaw, ContactParameters, SensorErrors};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
@@ -47,6 +48,8 @@ pub struct BenchScenario {
     pub seed: u64,
     /// What lies between controller and device.
     pub sensing: SensingParameters,
+    /// What the sensors of a rig file do to what they measure, ahead of that chain.
+    pub sensor_errors: SensorErrors,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
 }
@@ -60,8 +63,8 @@ pub enum LoadScenario {
     Contact {
         /// Where it stands along the stroke, from the retracted end [m].
         position: f64,
-        /// Contact law.
-        law: PushOnly,
+        /// Contact, and where the surface really stands.
+        contact: ContactParameters,
         /// How it moves; not at all on a load cell.
         motion: Option<SurfaceMotion>,
     },
@@ -115,7 +118,12 @@ pub(super) fn from_document(
     let file: BenchFile = document.parse(&bench_sections())?;
     debug_assert_eq!(file.schema, super::file::SCHEMA);
     let section = |table: &str| Section::new(document, table);
-    let device = device(&section("device"), &file.device)?;
+    let BenchDevice {
+        device,
+        gravity_along_extension,
+        contact,
+        sensor_errors,
+    } = bench_device(&section("device"), &file.device)?;
     let bench = section("bench");
     let duration = bench.number("duration_s", file.bench.duration_s, 0.01..=3600.0)?;
     let start_stroke = bench.number(
@@ -142,11 +150,13 @@ pub(super) fn from_document(
         duration,
         gravity_along_extension: bench.number(
             "gravity_along_extension_m_per_s2",
-            file.bench.gravity_along_extension_m_per_s2.unwrap_or(0.0),
+            file.bench
+                .gravity_along_extension_m_per_s2
+                .unwrap_or(gravity_along_extension),
             -30.0..=30.0,
         )?,
         start_stroke,
-        load: load(&section("load"), &file.load)?,
+        load: load(&section("load"), &file.load, contact)?,
         hand: file
             .hand
             .as_ref()
@@ -158,6 +168,7 @@ pub(super) fn from_document(
         substeps,
         seed,
         sensing,
+        sensor_errors,
         expect: expectations(&section("expect"), &file.expect)?,
         device,
     })
@@ -178,7 +189,12 @@ fn simulation(
     ))
 }
 
-fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, ScenarioError> {
+/// What the tool meets; `contact` is that of the rig, of which the keys given change a part.
+fn load(
+    section: &Section<'_>,
+    keys: &LoadKeys,
+    mut contact: ContactParameters,
+) -> Result<LoadScenario, ScenarioError> {
     let given = [
         ("position_mm", keys.position_mm.is_some()),
         ("stiffness_n_per_m", keys.stiffness_n_per_m.is_some()),
@@ -206,18 +222,13 @@ fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, Scenario
         value.ok_or_else(|| section.missing(key, "it to be given for this kind of load"))
     };
     let position = required("position_mm", keys.position_mm)?;
-    let law = PushOnly {
-        stiffness: section.number(
-            "stiffness_n_per_m",
-            keys.stiffness_n_per_m.unwrap_or(1.5e5),
-            100.0..=1e9,
-        )?,
-        damping: section.number(
-            "damping_n_s_per_m",
-            keys.damping_n_s_per_m.unwrap_or(4e2),
-            0.0..=1e6,
-        )?,
-    };
+    if let Some(stiffness) = keys.stiffness_n_per_m {
+        let stiffness = section.number("stiffness_n_per_m", stiffness, 100.0..=1e9)?;
+        contact.law = ContactLaw::Linear { stiffness };
+    }
+    if let Some(damping) = keys.damping_n_s_per_m {
+        contact.damping = section.number("damping_n_s_per_m", damping, 0.0..=1e6)?;
+    }
     let motion = if keys.kind == LoadKind::Surface {
         let peak_to_peak = required("peak_to_peak_mm", keys.peak_to_peak_mm)?;
         let frequency = required("frequency_hz", keys.frequency_hz)?;
@@ -231,7 +242,7 @@ fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, Scenario
     };
     Ok(LoadScenario::Contact {
         position: section.number("position_mm", position, -100.0..=600.0)?,
-        law,
+        contact,
         motion,
     })
 }

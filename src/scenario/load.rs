@@ -12,6 +12,7 @@ use super::device::load_with_overrides;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
+use super::rig_device::is_rig;
 use super::sections::{bench_sections, scenario_sections};
 use super::sensing::sensing;
 use super::suggestion::Sections;
@@ -181,6 +182,11 @@ pub(super) fn device(
 ) -> Result<DeviceScenario, ScenarioError> {
     let overrides = Section::new(section.document(), "device.override");
     let model = section.file("model", &keys.model)?;
+    if is_rig(&model)? {
+        let found = format!("\"{}\", a rig file", keys.model.display());
+        let expected = "a device model file; a scenario of kind = \"bench\" takes a rig file";
+        return Err(section.refuse("model", found, expected.to_owned()));
+    }
     let mut device = load_with_overrides(&model, Some((overrides, &keys.overrides)))?;
     device.locked = keys.locked.unwrap_or(false);
     Ok(device)

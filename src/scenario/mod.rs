@@ -16,6 +16,7 @@ pub(crate) mod document;
 pub mod error;
 mod file;
 mod load;
+mod rig_device;
 pub mod rig_file;
 pub(crate) mod sections;
 mod sensing;

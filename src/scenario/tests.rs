@@ -5,6 +5,7 @@ mod device;
 mod messages;
 mod readme;
 mod refusals;
+mod rig_device;
 mod sensing;
 mod shipped;
 mod values;

@@ -111,7 +111,7 @@ fn planted_wild_values_are_set_aside_and_nothing_else_is() {
     assert_eq!(kept, 4 * time.len() - 7);
     assert!(
         cleaning.account(&NOISE)[0]
-            .starts_with("1 wild values of regulator_pressure_pa set aside, at 2.800 s")
+            .starts_with("1 wild value of regulator_pressure_pa set aside, at 2.800 s")
     );
 }
 

@@ -70,8 +70,8 @@ impl Sight<'_> {
     fn stands_alone(&self, channel: usize, index: usize) -> bool {
         let departures = &self.departures[channel];
         let size = departures[index].abs();
-        // Most readings end here; NaN does too.
-        if !(size > FAR * self.noise[channel]) {
+        // Most readings end here.
+        if size.is_nan() || size <= FAR * self.noise[channel] {
             return false;
         }
         let around = index.saturating_sub(AROUND)..(index + AROUND + 1).min(departures.len());

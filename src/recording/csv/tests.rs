@@ -195,6 +195,6 @@ fn what_is_written_reads_back() {
     let text = std::fs::read_to_string(&path).unwrap();
     assert_eq!(
         text,
-        "time_s,force_n\n0,0.30000000000000004\n0.002,\n0.004,-0.0000003\n"
+        "time_s,force_n\n0.0,0.30000000000000004\n0.002,\n0.004,-3e-7\n"
     );
 }

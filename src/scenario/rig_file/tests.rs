@@ -358,7 +358,7 @@ fn found() -> Vec<ImprovedEffect> {
             let parameters = numbered
                 .map(|(i, (parameter, value))| {
                     let value = value * 1.012_345_678_9 + 1e-9;
-                    let interval = parameter.reported.then(|| [value - 1e-9, value + 1e-9]);
+                    let interval = parameter.reported.then_some([value - 1e-9, value + 1e-9]);
                     (parameter.quantity.name, value, interval.filter(|_| i == 0))
                 })
                 .collect();
