@@ -15,7 +15,7 @@ use crate::physics::valve::ValvePosition;
 /// Largest sub-step times the fastest rate of the pneumatics [1]; the method is stable to 2.78 and damps to a third here.
 const AIR_LIMIT: f64 = 1.2;
 /// Largest sub-step times the fastest rate of stops and load [rad].
-const MECHANICAL_LIMIT: f64 = 0.2;
+const MECHANICAL_LIMIT: f64 = 0.15;
 /// Sub-steps of a step beyond which a device is out of all proportion: its run then ends with the state that cannot be.
 const MOST_SUBSTEPS: f64 = 2e4;
 /// Halvings when a change of mode is sought: to 1e-7 of a sub-step.
@@ -34,6 +34,7 @@ struct Flow {
 }
 
 impl Flow {
+    #[inline(always)]
     fn after(&self, rates: &Self, time: f64, ledger: bool) -> Self {
         Self {
             air: self.air.after(&rates.air, time),

@@ -15,11 +15,8 @@ pub(super) struct LeakFlows {
 }
 
 impl Device {
-    /// Flows at absolute chamber pressures [Pa].
+    /// Flows of a leaking device at absolute chamber pressures [Pa].
     pub(super) fn leak_flows(&self, air: &AirState, pressures: [f64; 2]) -> LeakFlows {
-        if self.parameters.leakage.is_none() {
-            return LeakFlows::default();
-        }
         let leakage = &self.parameters.leakage;
         let gas = &self.parameters.gas;
         let discharge = self.parameters.discharge_coefficient;

@@ -1,6 +1,7 @@
 //! The device's equations put together: flows between its parts and the force on its piston, at a state.
 
 use super::carrier::{Foretold, PistonMotion};
+use super::leaks::LeakFlows;
 use super::rates::PistonRates;
 use super::state::{AirState, DeviceState, EnergyLedger};
 use super::{Carrier, DeviceParameters};
@@ -301,7 +302,8 @@ impl Device {
         outlet: f64,
         motion: PistonMotion,
     ) -> AirRates {
-        let gas = &self.parameters.gas;
+        let parameters = &self.parameters;
+        let gas = &parameters.gas;
         // Written out, here and in `pressures_of`: `map` is not inlined, and costs a tenth of a step.
         let [first, second] = &self.chambers;
         let volumes = [first.volume(motion.stroke), second.volume(motion.stroke)];
@@ -326,7 +328,11 @@ impl Device {
             gas.atmosphere,
             pressures[vented],
         );
-        let leaks = self.leak_flows(air, pressures);
+        let leaks = if parameters.leakage.is_none() {
+            LeakFlows::default()
+        } else {
+            self.leak_flows(air, pressures)
+        };
         let mut rates = AirState::default();
         let mut ledger = EnergyLedger::default();
         if let GasProcess::WallHeat { conductance } = self.parameters.gas_process {

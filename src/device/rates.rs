@@ -32,7 +32,11 @@ impl PistonRates {
             everywhere: (stiffness / mass).sqrt().max(seals.viscous / mass),
             stop: (stop.stiffness / mass).sqrt().max(stop.damping / mass),
             cushion: cushion.damping / mass,
-            cushion_length: if cushion.is_none() { 0.0 } else { cushion.length },
+            cushion_length: if cushion.is_none() {
+                0.0
+            } else {
+                cushion.length
+            },
             full_stroke: parameters.full_stroke,
             swiftness: parameters.regulator.supply * parameters.areas().extending / mass,
         }

@@ -47,11 +47,17 @@ impl AirState {
     }
 
     /// This, plus `rates` over a time [s].
+    #[inline(always)]
     pub(super) fn after(&self, rates: &Self, time: f64) -> Self {
-        let pair = |a: [f64; 2], b: [f64; 2]| [a[0] + time * b[0], a[1] + time * b[1]];
         Self {
-            masses: pair(self.masses, rates.masses),
-            energies: pair(self.energies, rates.energies),
+            masses: [
+                self.masses[0] + time * rates.masses[0],
+                self.masses[1] + time * rates.masses[1],
+            ],
+            energies: [
+                self.energies[0] + time * rates.energies[0],
+                self.energies[1] + time * rates.energies[1],
+            ],
             hose_mass: self.hose_mass + time * rates.hose_mass,
             reservoir_mass: self.reservoir_mass + time * rates.reservoir_mass,
             entered: self.entered + time * rates.entered,

@@ -182,9 +182,10 @@ pub struct Stage {
 }
 
 /// A rough fit: what it gains says whether a full one is worth its while.
-pub const ROUGH: &[Stage] = &[Stage { forgiven: 0.01, bounded: true, gain: 1e-3 }];
+pub const ROUGH: &[Stage] = &[Stage { forgiven: 0.03, bounded: true, gain: 1e-3 }];
 /// A full fit, one stage after the other.
 pub const FULL: &[Stage] = &[
+    Stage { forgiven: 0.03, bounded: true, gain: 0.01 },
     Stage { forgiven: 0.01, bounded: true, gain: 0.01 },
     Stage { forgiven: 0.001, bounded: true, gain: 1e-3 },
     Stage { forgiven: 1e-4, bounded: true, gain: 1e-3 },
@@ -255,6 +256,23 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
     let shares = evidence.shares(ROUGH[0].forgiven);
     let rough = Weighing { shares: &shares, limit: HUBER, bounded: true }.sum(&here.residuals) + prior;
     Fit { free: free.to_vec(), values, prediction: here, misfit, rough, prior, columns, information }
+}
+
+/// Rough cost that a description could come to if what was free before were adjusted, by the derivatives known, without a simulation more.
+pub fn foretold_rough(evidence: &Evidence, there: &Prediction, free: &[Free], values: &[f64], columns: &[Vec<f64>]) -> f64 {
+    let shares = evidence.shares(ROUGH[0].forgiven);
+    let wide = Weighing { shares: &shares, limit: limit_for(&there.residuals, &shares), bounded: true };
+    let (normal, gradient) = normal_equations(columns, &there.residuals, &wide, free, values);
+    let mut adjusted = there.residuals.clone();
+    if let Some((tried, _)) = step(free, values, &normal, &gradient, 1e-4, 3.0) {
+        for ((f, (from, to)), column) in free.iter().zip(values.iter().zip(&tried)).zip(columns) {
+            let moved = f.coordinate.of(*to) - f.coordinate.of(*from);
+            for (residual, slope) in adjusted.iter_mut().zip(column) {
+                *residual += moved * slope;
+            }
+        }
+    }
+    Weighing { shares: &shares, limit: HUBER, bounded: true }.sum(&adjusted)
 }
 
 fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64, longest: f64) -> Option<(Vec<f64>, f64)> {

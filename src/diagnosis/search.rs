@@ -1,14 +1,12 @@
 //! Which effects explain what the believed model leaves.
 
 use super::evidence::{Evidence, Prediction};
-use super::fit::{Effort, FULL, Fit, ROUGH, Stage, fit, rough_noise};
+use super::fit::{Effort, FULL, Fit, ROUGH, Stage, fit, foretold_rough, rough_noise, with_values};
 use super::free::{Free, Prior, free_of};
 use crate::effects::{CATALOGUE, Clues, Effect};
 use crate::plant::PlantParameters;
 use rayon::prelude::*;
 
-/// Iterations of the first look at an effect.
-const GLANCE: usize = 1;
 /// Iterations of the second look at those that promise most.
 const LOOK: usize = 3;
 /// How many get a second look.
@@ -85,50 +83,63 @@ impl Search<'_> {
             .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
             .flat_map(|effect| (effect.starts)(&clues).into_iter().map(move |start| (effect, start)))
             .collect();
-        let mut best: Vec<(usize, Hypothesis)> = Vec::new();
-        let glances: Vec<Hypothesis> = starts
+        let glances: Vec<f64> = starts
             .par_iter()
-            .map(|(effect, start)| self.add(from, effect, start, stages, GLANCE))
+            .map(|(effect, start)| self.glance(from, effect, start))
             .collect();
-        for (index, hypothesis) in glances.into_iter().enumerate() {
-            let name = starts[index].0.name;
-            match best.iter_mut().find(|(known, _)| starts[*known].0.name == name) {
-                Some((_, known)) if known.fit.rough <= hypothesis.fit.rough => {}
-                Some(known) => *known = (index, hypothesis),
-                None => best.push((index, hypothesis)),
+        // The best start of each effect, then the effects that promise most.
+        let mut best: Vec<usize> = Vec::new();
+        for index in 0..starts.len() {
+            match best.iter_mut().find(|known| starts[**known].0.name == starts[index].0.name) {
+                Some(known) if glances[*known] <= glances[index] => {}
+                Some(known) => *known = index,
+                None => best.push(index),
             }
         }
-        best.sort_by(|a, b| self.rough_score(&a.1).total_cmp(&self.rough_score(&b.1)));
+        best.sort_by(|a, b| glances[*a].total_cmp(&glances[*b]));
         best.truncate(LOOKED_AT);
         let mut looked: Vec<Hypothesis> = best
             .par_iter()
-            .map(|(index, glance)| {
-                let (effect, _) = starts[*index];
-                let reached = &glance.fit.values[glance.fit.values.len() - (effect.parameters)(&self.believed).len()..];
-                self.add(from, effect, reached, stages, LOOK)
-            })
+            .map(|index| self.add(from, starts[*index].0, &starts[*index].1, stages, LOOK))
             .collect();
         looked.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         looked
     }
 
+    /// What was free and still is beside an effect, with its columns.
+    fn beside(&self, from: &Hypothesis, new: &[Free]) -> (Vec<Free>, Vec<Vec<f64>>) {
+        let fitted = from.fit.free.iter().zip(&from.fit.values).zip(&from.fit.columns);
+        fitted
+            // What an effect frees is no longer held to its tolerance.
+            .filter(|((f, _), _)| !new.iter().any(|n| same(n, f, &self.believed)))
+            .map(|((f, value), column)| (Free { start: *value, ..*f }, column.clone()))
+            .unzip()
+    }
+
+    /// Rough cost with an effect at a start, what was free before adjusted.
+    fn glance(&self, from: &Hypothesis, effect: &'static Effect, start: &[f64]) -> f64 {
+        let new = free_of(effect, &self.believed, start);
+        let (kept, columns) = self.beside(from, &new);
+        let values: Vec<f64> = new.iter().map(|f| f.start).collect();
+        let plant = with_values(&from.fit.prediction.plant, &new, &values);
+        let there = self.evidence.predict(&plant, Some(&from.fit.prediction));
+        let values: Vec<f64> = kept.iter().map(|f| f.start).collect();
+        foretold_rough(self.evidence, &there, &kept, &values, &columns)
+    }
+
     /// A hypothesis with one more effect from a start, fitted roughly.
     fn add(&self, from: &Hypothesis, effect: &'static Effect, start: &[f64], stages: &[Stage], iterations: usize) -> Hypothesis {
         let new = free_of(effect, &self.believed, start);
-        let mut kept = Vec::new();
-        let mut frozen = Vec::new();
-        for ((f, value), column) in from.fit.free.iter().zip(&from.fit.values).zip(&from.fit.columns) {
-            // What an effect frees is no longer held to its tolerance.
-            if !new.iter().any(|n| same(n, f, &self.believed)) {
-                kept.push(Free { start: *value, ..*f });
-                frozen.push(column.clone());
-            }
+        let (mut free, frozen) = self.beside(from, &new);
+        free.extend(new);
+        let mut plant = from.fit.prediction.plant.clone();
+        for f in &free {
+            (f.quantity.set)(&mut plant, f.start);
         }
-        kept.extend(new);
         let effort = Effort { iterations, stages, frozen: &frozen, longest_step: 3.0 };
         let mut effects = from.effects.clone();
         effects.push(effect);
-        Hypothesis { effects, fit: fit(self.evidence, &from.fit.prediction.plant, &kept, effort, Some(&from.fit.prediction)) }
+        Hypothesis { effects, fit: fit(self.evidence, &plant, &free, effort, Some(&from.fit.prediction)) }
     }
 
     /// The explanation that costs least, and those that come near: first roughly, then in full.
@@ -195,7 +206,7 @@ fn names(hypothesis: &Hypothesis) -> Vec<&'static str> {
 }
 
 /// Do two free quantities change the same number?
-fn same(a: &Free, b: &Free, plant: &PlantParameters) -> bool {
+pub fn same(a: &Free, b: &Free, plant: &PlantParameters) -> bool {
     let value = (b.quantity.get)(plant);
     let mut changed = plant.clone();
     (a.quantity.set)(&mut changed, 1.7 * (a.quantity.get)(plant) + 1e-3);

@@ -35,6 +35,7 @@ pub struct Chamber {
 
 impl Chamber {
     /// Volume at a stroke [m3]. Held at a tenth of the dead volume beyond the mechanical end, which only a broken end stop would reach.
+    #[inline]
     pub fn volume(&self, stroke: f64) -> f64 {
         let displaced = match self.side {
             Side::Extending => stroke,
@@ -44,6 +45,7 @@ impl Chamber {
     }
 
     /// dV/dx: growth of the volume with the stroke [m2].
+    #[inline]
     pub fn growth(&self) -> f64 {
         match self.side {
             Side::Extending => self.area,

@@ -21,6 +21,7 @@ pub struct Gas {
 
 impl Gas {
     /// Pressure of a mass of gas in a volume, eq. (4): absolute [Pa] from [kg] and [m3].
+    #[inline]
     pub fn pressure(&self, mass: f64, volume: f64) -> f64 {
         mass * self.specific_gas_constant * self.temperature / volume
     }

@@ -15,6 +15,7 @@ pub mod piston;
 pub mod push_only;
 pub mod regulator;
 pub mod seal_friction;
+mod subsonic;
 pub mod supply_reservoir;
 pub mod switching_delay;
 pub mod valve;

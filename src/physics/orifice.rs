@@ -8,13 +8,13 @@
 //! A area [m2], C discharge coefficient [1], p_u and p_d absolute pressures upstream and downstream [Pa],
 //! R specific gas constant [J/(kg K)], T temperature [K], k ratio of specific heats [1].
 //!
-//! Valid for either direction: the higher pressure is upstream. With a = u^((k-1)/k), u^(2/k) = (u/a)^2, so one power serves eq. (10):
-//! f = (u/a) sqrt(2 k/(k-1) (1 - a)).
+//! Valid for either direction: the higher pressure is upstream. Eq. (10) is evaluated to the resolution of a number, but without its powers: `subsonic`.
 //!
 //! Near u = 1 eq. (10) has infinite slope. Above `LAMINAR_RATIO` the flow is laminar and taken linear in the pressure difference, as Simscape
 //! and MapleSim do (their ratio is 0.995 to 0.999); it is closer to 1 here, so that the paper's equation holds nearly everywhere.
 
 use super::gas::Gas;
+use super::subsonic::Subsonic;
 
 /// Pressure ratio above which the flow is linear in the pressure difference [1].
 pub const LAMINAR_RATIO: f64 = 0.999;
@@ -26,10 +26,8 @@ pub struct FlowFunction {
     critical_ratio: f64,
     /// f below the critical ratio.
     choked: f64,
-    /// (k-1)/k.
-    exponent: f64,
-    /// 2 k/(k-1).
-    factor: f64,
+    /// f above the critical ratio.
+    subsonic: Subsonic,
     /// f at `LAMINAR_RATIO` over its distance from 1.
     laminar_slope: f64,
     /// 1/sqrt(R T) [s/m].
@@ -40,31 +38,26 @@ impl FlowFunction {
     /// Prepares eqs. (9) to (11) for a gas.
     pub fn new(gas: &Gas) -> Self {
         let k = gas.heat_capacity_ratio;
-        let mut function = Self {
-            critical_ratio: (2.0 / (k + 1.0)).powf(k / (k - 1.0)),
+        let critical_ratio = (2.0 / (k + 1.0)).powf(k / (k - 1.0));
+        let subsonic = Subsonic::new(k, critical_ratio);
+        Self {
+            critical_ratio,
             choked: (k * (2.0 / (k + 1.0)).powf((k + 1.0) / (k - 1.0))).sqrt(),
-            exponent: (k - 1.0) / k,
-            factor: 2.0 * k / (k - 1.0),
-            laminar_slope: 0.0,
+            subsonic,
+            laminar_slope: subsonic.value(LAMINAR_RATIO) / (1.0 - LAMINAR_RATIO),
             inverse_sqrt_rt: 1.0 / (gas.specific_gas_constant * gas.temperature).sqrt(),
-        };
-        function.laminar_slope = function.subsonic(LAMINAR_RATIO) / (1.0 - LAMINAR_RATIO);
-        function
-    }
-
-    fn subsonic(&self, ratio: f64) -> f64 {
-        let a = ratio.powf(self.exponent);
-        ratio / a * (self.factor * (1.0 - a)).sqrt()
+        }
     }
 
     /// f of eq. (10) [1] at a pressure ratio in 0..=1.
+    #[inline]
     pub fn value(&self, ratio: f64) -> f64 {
         if ratio < self.critical_ratio {
             self.choked
         } else if ratio > LAMINAR_RATIO {
             self.laminar_slope * (1.0 - ratio)
         } else {
-            self.subsonic(ratio)
+            self.subsonic.value(ratio)
         }
     }
 
@@ -79,6 +72,7 @@ impl FlowFunction {
     }
 
     /// Mass flow from `from` to `to` [kg/s], negative when `to` has the higher pressure. `conductance_area` is A C [m2], pressures absolute [Pa].
+    #[inline]
     pub fn mass_flow(&self, conductance_area: f64, from: f64, to: f64) -> f64 {
         let (upstream, downstream, sign) = if from >= to {
             (from, to, 1.0)
@@ -106,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn one_power_equals_eq_10_as_printed_and_is_continuous() {
+    fn it_equals_eq_10_as_printed_and_is_continuous() {
         let function = FlowFunction::new(&Gas::default());
         let k: f64 = 1.4;
         for i in 0..470 {

@@ -28,11 +28,13 @@ impl PistonAreas {
     }
 
     /// Cross section of the rods, on which the atmosphere presses [m2].
+    #[inline]
     pub fn rod(&self) -> f64 {
         self.extending - self.retracting
     }
 
     /// Force of the gas along extension [N] from absolute pressures [Pa].
+    #[inline]
     pub fn gas_force(&self, pressure_1: f64, pressure_2: f64, atmosphere: f64) -> f64 {
         pressure_1 * self.extending - pressure_2 * self.retracting - atmosphere * self.rod()
     }

@@ -24,11 +24,13 @@ impl PushOnly {
     }
 
     /// Does it push?
+    #[inline]
     pub fn pushes(&self, penetration: f64, rate: f64) -> bool {
         penetration > 0.0 && self.linear(penetration, rate) > 0.0
     }
 
     /// The law without its limits, as it holds throughout a contact [N].
+    #[inline]
     pub fn linear(&self, penetration: f64, rate: f64) -> f64 {
         self.stiffness * penetration + self.damping * rate
     }

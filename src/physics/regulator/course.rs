@@ -29,6 +29,7 @@ pub struct OutletCourse {
 
 impl OutletCourse {
     /// Outlet pressure, gauge [Pa], at a time since its start [s]. What would swing beyond the supply or below the atmosphere is cut off there.
+    #[inline]
     pub fn at(&self, time: f64) -> f64 {
         match self.law {
             Law::Lag { rate } => self.target + (self.start - self.target) * (-time * rate).exp(),
