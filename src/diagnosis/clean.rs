@@ -3,7 +3,7 @@
 //! A reading is wild only if it stands alone and what it says of the rig is denied by another sensor (`wild`); impacts are seen by more than one.
 
 use crate::plant::CHANNELS;
-use crate::recording::csv::plausible_range;
+use crate::recording::csv::{median_step, plausible_range};
 
 use super::recorded::{COLUMNS, QUANTITIES};
 pub(super) use departure::lagrange;
@@ -42,7 +42,7 @@ pub fn clean(
     mass: f64,
 ) -> Cleaning {
     let mut cleaning = Cleaning {
-        step: usual_step(time),
+        step: median_step(time),
         ..Cleaning::default()
     };
     for pair in time.windows(2) {
@@ -95,16 +95,6 @@ fn set_aside(
             }
         }
     }
-}
-
-/// The median step [s].
-fn usual_step(time: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if steps.is_empty() {
-        return 0.0;
-    }
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 impl Cleaning {

@@ -14,7 +14,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use columns::plausible_range;
+pub use columns::{median_step, plausible_range};
 
 /// A recording with what its file holds besides.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,7 +143,7 @@ fn check_plausible(
 /// Times in milliseconds would make samples seconds apart.
 fn check_step(path: &Path, time: &[f64]) -> Result<(), RecordingError> {
     const LONGEST: f64 = 0.2;
-    let step = columns::median_step(time);
+    let step = median_step(time);
     if step <= LONGEST {
         return Ok(());
     }

@@ -66,8 +66,9 @@ pub fn plausible_range(quantity: &str) -> [f64; 2] {
         .map_or([f64::NEG_INFINITY, f64::INFINITY], |column| column.range)
 }
 
-/// The median distance of increasing times; 0 for less than two.
-pub(super) fn median_step(time: &[f64]) -> f64 {
+/// The median distance of increasing times [s]; 0 for less than two.
+#[must_use]
+pub fn median_step(time: &[f64]) -> f64 {
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if steps.is_empty() {
         return 0.0;
