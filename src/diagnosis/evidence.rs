@@ -1,6 +1,6 @@
 //! Recordings as a fit sees them: inputs, readings, their noise, and which samples count.
 
-use crate::plant::{CHANNELS, PlantCourse, PlantInputs, PlantParameters, Trajectory, readings, trajectory};
+use crate::plant::{CHANNELS, Guide, PlantCourse, PlantInputs, PlantParameters, Trajectory, readings, trajectory};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -24,6 +24,8 @@ pub struct Evidence {
     pub recordings: Vec<Measured>,
     /// Standard deviation of each channel's noise, in the order of [`CHANNELS`].
     pub noise: [f64; 4],
+    /// Motions measured, one per recording.
+    guides: Vec<Guide>,
     /// What was found before.
     shares: Mutex<Vec<(f64, Arc<Vec<f64>>)>>,
 }
@@ -31,7 +33,11 @@ pub struct Evidence {
 impl Evidence {
     /// Recordings with the standard deviation of each channel's noise, in the order of [`CHANNELS`].
     pub fn new(recordings: Vec<Measured>, noise: [f64; 4]) -> Self {
+        let guide = |measured: &Measured| {
+            Guide::new(&measured.inputs.time, &measured.readings[1], &measured.readings[3], noise[1], noise[3])
+        };
         Self {
+            guides: recordings.iter().map(guide).collect(),
             recordings,
             noise,
             shares: Mutex::default(),
@@ -44,6 +50,8 @@ impl Evidence {
 pub struct Prediction {
     /// The description.
     pub plant: PlantParameters,
+    /// Was the piston held to its measured motion?
+    pub guided: bool,
     /// One course per recording.
     pub courses: Vec<PlantCourse>,
     /// Measured less simulated, in standard deviations of the noise; recording by recording, channel by channel; NaN where nothing counts.
@@ -52,9 +60,12 @@ pub struct Prediction {
 
 impl Evidence {
     /// What a description gives; trajectories are taken from `known` where only sensors differ.
-    pub fn predict(&self, plant: &PlantParameters, known: Option<&Prediction>) -> Prediction {
+    pub fn predict(&self, plant: &PlantParameters, guided: bool, known: Option<&Prediction>) -> Prediction {
         let reusable = |measured: &Measured| {
             known.filter(|known| {
+                if known.guided != guided || (guided && plant.sensors.stroke_gain != known.plant.sensors.stroke_gain) {
+                    return false;
+                }
                 plant.moves_as(&known.plant)
                     || (measured.free && plant.moves_freely_as(&known.plant))
             })
@@ -62,7 +73,7 @@ impl Evidence {
         let course = |(index, measured): (usize, &Measured)| {
             let truth: Trajectory = match reusable(measured) {
                 Some(known) => known.courses[index].truth.clone(),
-                None => trajectory(plant, &measured.inputs),
+                None => trajectory(plant, &measured.inputs, guided.then(|| &self.guides[index])),
             };
             let readings = readings(&plant.sensors, &measured.inputs, &truth);
             PlantCourse { truth, readings }
@@ -70,6 +81,7 @@ impl Evidence {
         let courses: Vec<PlantCourse> = self.recordings.iter().enumerate().map(course).collect();
         Prediction {
             plant: plant.clone(),
+            guided,
             residuals: self.residuals(&courses),
             courses,
         }
@@ -93,7 +105,7 @@ impl Evidence {
     pub fn residuals_of(&self, plants: &[PlantParameters], known: &Prediction) -> Vec<Vec<f64>> {
         plants
             .par_iter()
-            .map(|plant| self.predict(plant, Some(known)).residuals)
+            .map(|plant| self.predict(plant, known.guided, Some(known)).residuals)
             .collect()
     }
 

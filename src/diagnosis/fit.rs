@@ -122,7 +122,7 @@ pub fn with_values(plant: &PlantParameters, free: &[Free], values: &[f64]) -> Pl
 }
 
 /// Derivatives of the residuals by the coordinates of `free[from..]`.
-fn jacobian(evidence: &Evidence, here: &Prediction, free: &[Free], values: &[f64], from: usize) -> Vec<Vec<f64>> {
+pub fn jacobian(evidence: &Evidence, here: &Prediction, free: &[Free], values: &[f64], from: usize) -> Vec<Vec<f64>> {
     let mut steps = Vec::with_capacity(free.len());
     let plants: Vec<PlantParameters> = (from..free.len()).map(|i| {
         let f = &free[i];
@@ -175,6 +175,8 @@ pub struct Stage {
     /// Errors in time that are forgiven [s]: a model that is still far off meets impacts at other times than the device, and their spikes would hold it
     /// there.
     pub forgiven: f64,
+    /// Is the piston held to its measured motion?
+    pub guided: bool,
     /// Is the loss bounded?
     pub bounded: bool,
     /// Share of the cost that an iteration must gain for the stage to go on [1].
@@ -182,16 +184,17 @@ pub struct Stage {
 }
 
 /// A rough fit: what it gains says whether a full one is worth its while.
-pub const ROUGH: &[Stage] = &[Stage { forgiven: 0.03, bounded: true, gain: 1e-3 }];
+pub const ROUGH: &[Stage] = &[Stage { forgiven: ROUGH_TIME, guided: true, bounded: false, gain: 1e-3 }];
 /// A full fit, one stage after the other.
 pub const FULL: &[Stage] = &[
-    Stage { forgiven: 0.03, bounded: true, gain: 0.01 },
-    Stage { forgiven: 0.01, bounded: true, gain: 0.01 },
-    Stage { forgiven: 0.001, bounded: true, gain: 1e-3 },
-    Stage { forgiven: 1e-4, bounded: true, gain: 1e-3 },
-    Stage { forgiven: 0.0, bounded: true, gain: 3e-4 },
-    Stage { forgiven: 0.0, bounded: false, gain: 0.0 },
+    Stage { forgiven: ROUGH_TIME, guided: true, bounded: false, gain: 1e-3 },
+    Stage { forgiven: 0.001, guided: false, bounded: true, gain: 1e-3 },
+    Stage { forgiven: 1e-4, guided: false, bounded: true, gain: 1e-3 },
+    Stage { forgiven: 0.0, guided: false, bounded: true, gain: 3e-4 },
+    Stage { forgiven: 0.0, guided: false, bounded: false, gain: 0.0 },
 ];
+/// Error in time that a rough fit forgives [s].
+const ROUGH_TIME: f64 = 0.002;
 
 /// How a fit goes about it.
 #[derive(Debug, Clone, Copy)]
@@ -209,13 +212,16 @@ pub struct Effort<'a> {
 /// Fits the free quantities from where they start; `known` may spare simulations.
 pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: Effort<'_>, known: Option<&Prediction>) -> Fit {
     let mut values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
-    let mut here = evidence.predict(&with_values(plant, free, &values), known);
+    let mut here = evidence.predict(&with_values(plant, free, &values), effort.stages[0].guided, known);
     let mut prior = prior_sum(free, &values);
     let mut information = DMatrix::zeros(free.len(), free.len());
     let mut columns: Vec<Vec<f64>> = effort.frozen.to_vec();
     let mut damping = 1e-4;
     let mut left = effort.iterations;
-    for &Stage { forgiven, bounded, gain: least } in effort.stages {
+    for &Stage { forgiven, guided, bounded, gain: least } in effort.stages {
+        if here.guided != guided {
+            here = evidence.predict(&here.plant, guided, None);
+        }
         let shares = evidence.shares(forgiven);
         while left > 0 {
             left -= 1;
@@ -235,7 +241,7 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
                 if promised < LEAST_GAIN {
                     break;
                 }
-                let there = evidence.predict(&with_values(&here.plant, free, &tried), Some(&here));
+                let there = evidence.predict(&with_values(&here.plant, free, &tried), guided, Some(&here));
                 let prior_there = prior_sum(free, &tried);
                 let after = weighing.sum(&there.residuals) + prior_there;
                 if after < before {
@@ -246,7 +252,7 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
                 }
                 damping *= 10.0;
             }
-            if std::env::var("T").is_ok() { eprintln!("    it {forgiven} {bounded} limit {:.1} before {before:.0} gain {gain:.2} damping {damping:.0e} {values:?}", weighing.limit); }
+            if std::env::var("T").is_ok() { eprintln!("    it {forgiven} {guided} {bounded} limit {:.1} before {before:.0} gain {gain:.2} damping {damping:.0e} {values:?}", weighing.limit); }
             if gain < LEAST_GAIN.max(least * before) {
                 break;
             }
@@ -275,33 +281,58 @@ pub fn foretold_rough(evidence: &Evidence, there: &Prediction, free: &[Free], va
     Weighing { shares: &shares, limit: HUBER, bounded: true }.sum(&adjusted)
 }
 
+/// Damped step to where the quadratic model is least within the bounds, by an active set: values tried and the gain promised.
 fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64, longest: f64) -> Option<(Vec<f64>, f64)> {
-    // A quantity at its bound that is pushed beyond it stays out of the step.
-    let held: Vec<bool> = (0..free.len()).map(|i| {
-        let (f, v, g) = (&free[i], values[i], gradient[i]);
-        (v <= f.bounds[0] && g > 0.0) || (v >= f.bounds[1] && g < 0.0)
-    }).collect();
+    let count = free.len();
     let mut damped = normal.clone();
-    let mut slope = gradient.clone();
-    for i in 0..free.len() {
-        if held[i] {
-            for j in 0..free.len() {
-                damped[(i, j)] = 0.0;
-                damped[(j, i)] = 0.0;
+    for i in 0..count {
+        damped[(i, i)] += damping * normal[(i, i)].max(1e-9);
+    }
+    // Ways to the bounds in the coordinates.
+    let room: Vec<[f64; 2]> = free.iter().zip(values).map(|(f, v)| {
+        let at = f.coordinate.of(*v);
+        f.bounds.map(|bound| f.coordinate.of(bound) - at)
+    }).collect();
+    // Where a coordinate is held at a bound, its way there.
+    let mut held: Vec<Option<f64>> = vec![None; count];
+    let mut way = DVector::zeros(count);
+    for _ in 0..=count {
+        let open: Vec<usize> = (0..count).filter(|i| held[*i].is_none()).collect();
+        let mut reduced = DMatrix::zeros(open.len(), open.len());
+        let mut right = DVector::zeros(open.len());
+        for (a, &i) in open.iter().enumerate() {
+            for (b, &j) in open.iter().enumerate() {
+                reduced[(a, b)] = damped[(i, j)];
             }
-            damped[(i, i)] = 1.0;
-            slope[i] = 0.0;
-        } else {
-            damped[(i, i)] += damping * normal[(i, i)].max(1e-9);
+            let known: f64 = (0..count).filter_map(|j| held[j].map(|way| damped[(i, j)] * way)).sum();
+            right[a] = -gradient[i] - known;
+        }
+        let solved = reduced.cholesky()?.solve(&right);
+        let mut furthest: Option<(f64, usize, f64)> = None;
+        for (a, &i) in open.iter().enumerate() {
+            way[i] = solved[a];
+            let bound = if solved[a] < 0.0 { room[i][0] } else { room[i][1] };
+            let beyond = solved[a].abs() - bound.abs();
+            if beyond > 1e-12 && furthest.is_none_or(|(most, _, _)| beyond > most) {
+                furthest = Some((beyond, i, bound));
+            }
+        }
+        for i in 0..count {
+            if let Some(bound) = held[i] {
+                way[i] = bound;
+            }
+        }
+        match furthest {
+            None => break,
+            Some((_, i, bound)) => held[i] = Some(bound),
         }
     }
-    let mut step = damped.cholesky()?.solve(&slope);
-    let largest = step.amax();
+    let largest = way.amax();
     if largest > longest {
-        step *= longest / largest;
+        way *= longest / largest;
     }
-    let promised = 2.0 * gradient.dot(&step) - step.dot(&(normal * &step));
-    let tried = free.iter().zip(values).zip(step.iter()).map(|((f, v), s)| f.clamp(f.coordinate.value(f.coordinate.of(*v) - s))).collect();
+    let promised = -2.0 * gradient.dot(&way) - way.dot(&(normal * &way));
+    let tried = free.iter().zip(values).zip(way.iter()).map(|((f, v), w)| f.clamp(f.coordinate.value(f.coordinate.of(*v) + w))).collect();
     Some((tried, promised))
 }
 

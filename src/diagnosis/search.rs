@@ -1,7 +1,7 @@
 //! Which effects explain what the believed model leaves.
 
 use super::evidence::{Evidence, Prediction};
-use super::fit::{Effort, FULL, Fit, ROUGH, Stage, fit, foretold_rough, rough_noise, with_values};
+use super::fit::{Effort, FULL, Fit, ROUGH, Stage, fit, foretold_rough, jacobian, rough_noise, with_values};
 use super::free::{Free, Prior, free_of};
 use crate::effects::{CATALOGUE, Clues, Effect};
 use crate::plant::PlantParameters;
@@ -116,15 +116,17 @@ impl Search<'_> {
             .unzip()
     }
 
-    /// Rough cost with an effect at a start, what was free before adjusted.
+    /// Rough cost that a hypothesis with one more effect could come to by one step from a start.
     fn glance(&self, from: &Hypothesis, effect: &'static Effect, start: &[f64]) -> f64 {
         let new = free_of(effect, &self.believed, start);
-        let (kept, columns) = self.beside(from, &new);
-        let values: Vec<f64> = new.iter().map(|f| f.start).collect();
-        let plant = with_values(&from.fit.prediction.plant, &new, &values);
-        let there = self.evidence.predict(&plant, Some(&from.fit.prediction));
-        let values: Vec<f64> = kept.iter().map(|f| f.start).collect();
-        foretold_rough(self.evidence, &there, &kept, &values, &columns)
+        let (mut free, mut columns) = self.beside(from, &new);
+        let own = free.len();
+        free.extend(new);
+        let values: Vec<f64> = free.iter().map(|f| f.start).collect();
+        let plant = with_values(&from.fit.prediction.plant, &free, &values);
+        let there = self.evidence.predict(&plant, true, Some(&from.fit.prediction));
+        columns.extend(jacobian(self.evidence, &there, &free, &values, own));
+        foretold_rough(self.evidence, &there, &free, &values, &columns)
     }
 
     /// A hypothesis with one more effect from a start, fitted roughly.

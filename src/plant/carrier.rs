@@ -19,6 +19,28 @@ pub(super) struct ReplayCarrier<'a> {
     pub surface: [f64; 4],
     /// Fastest rate of the contact [1/s].
     pub rate: f64,
+    /// What the piston is held to, if it is.
+    pub hold: Option<Hold>,
+}
+
+/// A motion over one step that the piston is held to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hold {
+    /// Stroke over the step: coefficients of 1, t, t2, t3.
+    pub stroke: [f64; 4],
+    /// Stiffness [N/m].
+    pub stiffness: f64,
+    /// Damping [N s/m].
+    pub damping: f64,
+}
+
+impl Hold {
+    fn force(&self, time: f64, motion: PistonMotion) -> f64 {
+        let [a, b, c, d] = self.stroke;
+        let stroke = a + time * (b + time * (c + time * d));
+        let speed = b + time * (2.0 * c + 3.0 * time * d);
+        self.stiffness * (stroke - motion.stroke) + self.damping * (speed - motion.speed)
+    }
 }
 
 /// Cubic over a step of length `h` [s] from values and slopes at its ends.
@@ -41,6 +63,11 @@ impl ReplayCarrier<'_> {
         (motion.stroke - surface, motion.speed - speed)
     }
 
+    /// Force that holds the piston to a measured motion [N].
+    pub fn hold_force(&self, time: f64, motion: PistonMotion) -> f64 {
+        self.hold.map_or(0.0, |hold| hold.force(time, motion))
+    }
+
     /// Force of the tool on the workpiece [N].
     pub fn contact_force(&self, time: f64, motion: PistonMotion) -> f64 {
         if !self.present {
@@ -55,11 +82,15 @@ impl Carrier for ReplayCarrier<'_> {
     const MOVES: bool = true;
 
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
-        if !touching {
-            return self.weight;
+        let mut force = self.weight;
+        if let Some(hold) = &self.hold {
+            force += hold.force(time, motion);
         }
-        let (penetration, rate) = self.penetration(time, motion);
-        self.weight - self.contact.pushing(penetration, rate)
+        if touching {
+            let (penetration, rate) = self.penetration(time, motion);
+            force -= self.contact.pushing(penetration, rate);
+        }
+        force
     }
 
     fn touches(&self, time: f64, motion: PistonMotion) -> bool {
@@ -78,13 +109,18 @@ impl Carrier for ReplayCarrier<'_> {
 impl ReplayCarrier<'_> {
     /// Begins later by a time [s].
     pub fn move_start(&mut self, time: f64) {
-        let [a, b, c, d] = self.surface;
-        self.surface = [
-            a + time * (b + time * (c + time * d)),
-            b + time * (2.0 * c + 3.0 * time * d),
-            c + 3.0 * time * d,
-            d,
-        ];
+        let later = |[a, b, c, d]: [f64; 4]| {
+            [
+                a + time * (b + time * (c + time * d)),
+                b + time * (2.0 * c + 3.0 * time * d),
+                c + 3.0 * time * d,
+                d,
+            ]
+        };
+        self.surface = later(self.surface);
+        if let Some(hold) = &mut self.hold {
+            hold.stroke = later(hold.stroke);
+        }
         self.start += time;
     }
 }

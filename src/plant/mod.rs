@@ -9,12 +9,14 @@
 
 mod carrier;
 mod contact;
+mod guide;
 mod inputs;
 mod parameters;
 mod sensors;
 mod simulate;
 
 pub use contact::{ContactLaw, ContactParameters, Periodic};
+pub use guide::Guide;
 pub use inputs::{InputError, PlantInputs};
 pub use parameters::PlantParameters;
 pub use sensors::SensorErrors;

@@ -1,6 +1,7 @@
 //! A rig run on the inputs of a recording.
 
-use super::carrier::{ReplayCarrier, hermite};
+use super::carrier::{Hold, ReplayCarrier, hermite};
+use super::guide::Guide;
 use super::inputs::PlantInputs;
 use super::parameters::PlantParameters;
 use super::sensors::SensorErrors;
@@ -43,6 +44,8 @@ pub struct Trajectory {
     pub contact_force: Vec<f64>,
     /// Pressures of chambers 1 and 2 [Pa absolute].
     pub pressures: [Vec<f64>; 2],
+    /// Force that held the piston to a measured motion [N]; none where nothing did.
+    pub hold_force: Vec<f64>,
 }
 
 /// A simulated recording.
@@ -56,7 +59,7 @@ pub struct PlantCourse {
 
 /// Runs a rig and reads its sensors.
 pub fn simulate(plant: &PlantParameters, inputs: &PlantInputs) -> PlantCourse {
-    let truth = trajectory(plant, inputs);
+    let truth = trajectory(plant, inputs, None);
     let readings = readings(&plant.sensors, inputs, &truth);
     PlantCourse { truth, readings }
 }
@@ -80,8 +83,12 @@ pub fn readings(
 }
 
 /// Runs a rig from rest on the retracted stop, both chambers and the regulator's outlet at the atmosphere. A rig that is out of all proportion
-/// gives values that are not finite.
-pub fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
+/// gives values that are not finite. A guide holds the piston to a measured motion.
+pub fn trajectory(
+    plant: &PlantParameters,
+    inputs: &PlantInputs,
+    guide: Option<&Guide>,
+) -> Trajectory {
     let device = Device::new(plant.device.clone());
     let weight = plant.device.moving_mass * plant.gravity_along_extension;
     let mut motion = PistonMotion {
@@ -110,7 +117,18 @@ pub fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
             start: inputs.time[i],
             surface: [0.0; 4],
             rate: if present { rate } else { 0.0 },
+            hold: None,
         };
+        if let Some(guide) = guide {
+            let (stiffness, damping) = Guide::hold(plant.device.moving_mass);
+            let gain = plant.sensors.stroke_gain;
+            let pair = |values: &[f64]| [values[i] / gain, values[next] / gain];
+            carrier.hold = Some(Hold {
+                stroke: hermite(h, pair(&guide.stroke), pair(&guide.speed)),
+                stiffness,
+                damping,
+            });
+        }
         if present {
             carrier.surface = hermite(
                 h,
@@ -160,16 +178,21 @@ impl Trajectory {
         let mass = device.parameters().moving_mass;
         let pressures = device.pressures(state, motion.stroke);
         let contact_force = carrier.contact_force(0.0, motion);
+        let hold_force = carrier.hold_force(0.0, motion);
         let force = device.gas_force(state, motion.stroke)
             + device.seal_force(state, motion.speed)
             + device.stop_force(motion)
+            + device.axial_force(motion.stroke)
+            + device.cushion_force(motion)
             + carrier.weight
+            + hold_force
             - contact_force;
         self.outlet.push(state.regulator.outlet);
         self.stroke.push(motion.stroke);
         self.speed.push(motion.speed);
         self.acceleration.push(force / mass);
         self.contact_force.push(contact_force);
+        self.hold_force.push(hold_force);
         self.pressures[0].push(pressures[0]);
         self.pressures[1].push(pressures[1]);
     }
