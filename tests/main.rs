@@ -11,6 +11,8 @@ mod convergence;
 mod determinism;
 mod equations;
 mod layers;
+mod paper_deviation;
+mod paper_page;
 mod program;
 mod real_robots;
 mod stops;
