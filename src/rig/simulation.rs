@@ -203,7 +203,10 @@ impl<'a> RigSimulation<'a> {
                 let Some(desired) = held(steps, time) else {
                     return 0.0;
                 };
-                if !self.steps.is_multiple_of(scenario.controller.steps(scenario.step)) {
+                if !self
+                    .steps
+                    .is_multiple_of(scenario.controller.steps(scenario.step))
+                {
                     return self.answer;
                 }
                 self.answer = self.controller.set_pressure(&ForceObservation {

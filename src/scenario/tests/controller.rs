@@ -145,7 +145,11 @@ fn a_controller_without_a_force_to_control_is_refused() {
 #[test]
 fn a_force_beyond_what_the_regulator_can_be_told_is_refused() {
     let force = |force: &str, more: &str| {
-        let text = replaced(&pressing(""), "force_n = 100", &format!("force_n = {force}"));
+        let text = replaced(
+            &pressing(""),
+            "force_n = 100",
+            &format!("force_n = {force}"),
+        );
         format!("{text}{more}")
     };
     text_refused(

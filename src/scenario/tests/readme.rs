@@ -230,9 +230,16 @@ fn every_default_is_what_leaving_the_key_out_does() {
                 defaults += 1;
             } else {
                 let worded = row.default == "none"
-                    || ["half", "third", "10 bits", "tuned", "the device's", "sample"]
-                        .iter()
-                        .any(|word| row.default.contains(word));
+                    || [
+                        "half",
+                        "third",
+                        "10 bits",
+                        "tuned",
+                        "the device's",
+                        "sample",
+                    ]
+                    .iter()
+                    .any(|word| row.default.contains(word));
                 assert!(worded, "{key}: {}", row.default);
             }
         }
