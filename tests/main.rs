@@ -7,6 +7,7 @@ mod bench_reference;
 mod command_line;
 mod common;
 mod contact;
+mod controllers;
 mod convergence;
 mod determinism;
 mod equations;

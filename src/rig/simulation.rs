@@ -7,7 +7,8 @@ use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::valve::ValvePosition;
 use crate::recording::{Recording, RecordingError};
-use crate::scenario::bench::{BenchScenario, CommandScenario};
+use crate::scenario::ScenarioError;
+use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
 use crate::sensing::{Readings, SensorChain, Truth};
 
 /// A bench rig with its job: all that does not change during a run.
@@ -17,13 +18,33 @@ pub struct Rig {
     pub scenario: BenchScenario,
     /// The device.
     pub device: Device,
+    /// What answers forces with set pressures, as it is at the start.
+    pub controller: ForceController,
 }
 
 impl Rig {
     /// Sets up a rig.
-    pub fn new(scenario: BenchScenario) -> Self {
+    ///
+    /// # Errors
+    /// A controller whose loop would be unstable.
+    pub fn new(scenario: BenchScenario) -> Result<Self, ScenarioError> {
         let device = Device::new(scenario.device.parameters.clone());
-        Self { scenario, device }
+        let contact = match scenario.load {
+            LoadScenario::Free => None,
+            LoadScenario::Contact { law, .. } => Some(law),
+        };
+        let controller = ForceController::of_scenario(
+            &scenario.controller,
+            &scenario.device.parameters,
+            &scenario.sensing,
+            contact,
+            scenario.step,
+        )?;
+        Ok(Self {
+            scenario,
+            device,
+            controller,
+        })
     }
 
     /// Runs the whole job. `progress` is told steps done and in all.
@@ -65,6 +86,8 @@ pub struct RigSimulation<'a> {
     device: DeviceState,
     motion: PistonMotion,
     controller: ForceController,
+    /// Set pressure that the controller gave last, held until its next period [Pa gauge].
+    answer: f64,
     sensors: SensorChain,
     readings: Readings,
     steps: usize,
@@ -96,7 +119,8 @@ impl<'a> RigSimulation<'a> {
             rig,
             device: rig.device.at_rest(stroke, 0.0),
             motion,
-            controller: ForceController::pressure_map(parameters),
+            controller: rig.controller.clone(),
+            answer: 0.0,
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
             steps: 0,
@@ -179,7 +203,13 @@ impl<'a> RigSimulation<'a> {
                 let Some(desired) = held(steps, time) else {
                     return 0.0;
                 };
-                self.controller.set_pressure(&ForceObservation {
+                if !self
+                    .steps
+                    .is_multiple_of(scenario.controller.steps(scenario.step))
+                {
+                    return self.answer;
+                }
+                self.answer = self.controller.set_pressure(&ForceObservation {
                     time,
                     desired_axial_force: desired,
                     gravity_along_axis: scenario.gravity_along_extension,
@@ -187,7 +217,8 @@ impl<'a> RigSimulation<'a> {
                     stroke: self.readings.stroke,
                     acceleration: self.readings.acceleration,
                     regulator_pressure: self.readings.regulator_pressure,
-                })
+                });
+                self.answer
             }
         }
     }

@@ -6,6 +6,7 @@ use super::bench_file::{
     BenchFile, BenchSimulationKeys, CommandKeys, HandKeys, LoadKeys, LoadKind, ValveKeys,
 };
 use super::check::Section;
+use super::controller::{ControllerScenario, ForceLaw, check_force, controller};
 use super::document::Document;
 use super::error::ScenarioError;
 use super::load::{device, expectations};
@@ -47,6 +48,8 @@ pub struct BenchScenario {
     pub seed: u64,
     /// What lies between controller and device.
     pub sensing: SensingParameters,
+    /// What sets the regulator's pressure where forces are commanded.
+    pub controller: ControllerScenario,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
 }
@@ -136,28 +139,45 @@ pub(super) fn from_document(
     }
     let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
     let sensing = sensing(document, &file.sensing, step)?;
+    let gravity_along_extension = bench.number(
+        "gravity_along_extension_m_per_s2",
+        file.bench.gravity_along_extension_m_per_s2.unwrap_or(0.0),
+        -30.0..=30.0,
+    )?;
+    let parameters = &device.parameters;
+    let check_force = |section: &Section<'_>, force: f64| {
+        let gravity = gravity_along_extension;
+        check_force(section, force, gravity, parameters, &sensing.command)
+    };
+    let command = commands(
+        document,
+        &file.command,
+        duration,
+        &sensing.command,
+        check_force,
+    )?;
+    let load = load(&section("load"), &file.load)?;
+    let controller = controller(document, &file.controller, parameters, &sensing, step)?;
+    check_controller(&section("controller"), &controller, &command, &load)?;
     Ok(BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
         duration,
-        gravity_along_extension: bench.number(
-            "gravity_along_extension_m_per_s2",
-            file.bench.gravity_along_extension_m_per_s2.unwrap_or(0.0),
-            -30.0..=30.0,
-        )?,
+        gravity_along_extension,
         start_stroke,
-        load: load(&section("load"), &file.load)?,
+        load,
         hand: file
             .hand
             .as_ref()
             .map(|keys| hand(&section("hand"), keys))
             .transpose()?,
-        command: commands(document, &file.command, duration, &sensing.command)?,
+        command,
         valve: valve(document, &file.valve, duration)?,
         step,
         substeps,
         seed,
         sensing,
+        controller,
         expect: expectations(&section("expect"), &file.expect)?,
         device,
     })
@@ -271,6 +291,7 @@ fn commands(
     keys: &[CommandKeys],
     duration: f64,
     chain: &CommandChain,
+    check_force: impl Fn(&Section<'_>, f64) -> Result<(), ScenarioError>,
 ) -> Result<CommandScenario, ScenarioError> {
     let times = in_order(document, "command", keys.iter().map(|k| k.at_s), duration)?;
     let by_force = keys.first().is_some_and(|first| first.force_n.is_some());
@@ -284,7 +305,11 @@ fn commands(
                 check_set_pressure(&section, key, wanted, chain)?;
                 wanted
             }
-            (true, None, Some(force)) => section.number("force_n", force, 0.0..=5000.0)?,
+            (true, None, Some(force)) => {
+                let wanted = section.number("force_n", force, 0.0..=5000.0)?;
+                check_force(&section, wanted)?;
+                wanted
+            }
             (false, _, Some(_)) => {
                 let reason = "the first command gives a set pressure, so all of them do".to_owned();
                 return Err(section.misplaced("force_n", reason));
@@ -307,6 +332,24 @@ fn commands(
     } else {
         CommandScenario::SetPressure(steps)
     })
+}
+
+/// A controller that has nothing to do, or nothing to press on, is refused.
+fn check_controller(
+    section: &Section<'_>,
+    controller: &ControllerScenario,
+    command: &CommandScenario,
+    load: &LoadScenario,
+) -> Result<(), ScenarioError> {
+    if let (CommandScenario::SetPressure(_), Some(key)) = (command, section.given().next()) {
+        let reason = "no [[command]] gives a force, so there is nothing to control".to_owned();
+        return Err(section.misplaced(key, reason));
+    }
+    if *load == LoadScenario::Free && controller.law != ForceLaw::OpenLoop {
+        let reason = "nothing is met when load.kind = \"free\", so there is no force to feed back";
+        return Err(section.misplaced("kind", reason.to_owned()));
+    }
+    Ok(())
 }
 
 fn valve(

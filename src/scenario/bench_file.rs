@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use super::controller::ControllerKeys;
 use super::file::{BoundKeys, DeviceKeys};
 use super::sensing::keys::SensingKeys;
 
@@ -45,6 +46,8 @@ pub(super) struct BenchFile {
     pub simulation: BenchSimulationKeys,
     #[serde(default)]
     pub sensing: SensingKeys,
+    #[serde(default)]
+    pub controller: ControllerKeys,
     #[serde(default)]
     pub expect: BTreeMap<String, BoundKeys>,
 }

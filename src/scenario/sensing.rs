@@ -11,7 +11,7 @@ use keys::{Preset, SensingKeys, SensorKind};
 use stages::Sensor;
 
 pub(super) mod keys;
-mod stages;
+pub(super) mod stages;
 
 /// `[sensing]` and the tables in it; `step` is the scenario's time step [s].
 pub(super) fn sensing(

@@ -23,7 +23,7 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 30] = [
+const UNITS: [Unit; 32] = [
     unit("_mv_per_v", "mV/V", Divide(1e3)),
     unit("_n_s_per_m", "N s/m", Divide(1.0)),
     unit("_n_per_m", "N/m", Divide(1.0)),
@@ -33,6 +33,8 @@ const UNITS: [Unit; 30] = [
     unit("_mm_per_s", "mm/s", Divide(1e3)),
     unit("_m_per_s2", "m/s2", Divide(1.0)),
     unit("_deg_per_s", "deg/s", Multiply(PI / 180.0)),
+    unit("_rad_per_s", "rad/s", Divide(1.0)),
+    unit("_per_s", "1/s", Divide(1.0)),
     unit("_j_per_kg_k", "J/(kg K)", Divide(1.0)),
     unit("_bar_gauge", "bar gauge", Multiply(1e5)),
     unit("_pa_absolute", "Pa absolute", Divide(1.0)),
@@ -143,6 +145,8 @@ mod tests {
             ("wall_conductance_w_per_k", 0.5, "W/K", 0.5),
             ("excitation_v", 5.0, "V", 5.0),
             ("noise_steps", 2.0, "", 2.0),
+            ("integral_gain_per_s", 5.0, "1/s", 5.0),
+            ("tracking_frequency_rad_per_s", 40.0, "rad/s", 40.0),
             ("damping_ratio", 0.7, "", 0.7),
             ("device_substeps", 2.0, "", 2.0),
         ] {

@@ -75,7 +75,7 @@ impl Sensor<'_> {
 }
 
 /// Refuses keys that a kind does not have.
-fn only(section: &Section<'_>, kind: &str, by_preset: bool, allowed: &[&str]) -> Result<()> {
+pub fn only(section: &Section<'_>, kind: &str, by_preset: bool, allowed: &[&str]) -> Result<()> {
     let is_other = |key: &&str| *key != "kind" && !allowed.contains(key);
     let Some(key) = section.given().find(is_other) else {
         return Ok(());
