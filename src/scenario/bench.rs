@@ -8,10 +8,12 @@ use super::bench_file::{
 use super::check::Section;
 use super::document::Document;
 use super::error::ScenarioError;
+use super::estimator::{EstimatorBase, estimator as set_up_estimator};
 use super::load::{device, expectations};
 use super::sections::bench_sections;
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
+use crate::estimation::ContactForceEstimator;
 use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
 use crate::sensing::{CommandChain, SensingParameters};
@@ -47,6 +49,8 @@ pub struct BenchScenario {
     pub seed: u64,
     /// What lies between controller and device.
     pub sensing: SensingParameters,
+    /// Estimator of the contact force, set up as it believes noise and device to be.
+    pub estimator: Option<ContactForceEstimator>,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
 }
@@ -136,15 +140,25 @@ pub(super) fn from_document(
     }
     let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
     let sensing = sensing(document, &file.sensing, step)?;
+    let gravity_along_extension = bench.number(
+        "gravity_along_extension_m_per_s2",
+        file.bench.gravity_along_extension_m_per_s2.unwrap_or(0.0),
+        -30.0..=30.0,
+    )?;
+    let base = EstimatorBase {
+        device: &device.parameters,
+        sensing: &sensing,
+        gravity_along_extension,
+        start_stroke,
+        step,
+    };
+    let estimator = file.estimator.as_ref();
+    let estimator = estimator.map(|keys| set_up_estimator(document, keys, &base));
     Ok(BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
         duration,
-        gravity_along_extension: bench.number(
-            "gravity_along_extension_m_per_s2",
-            file.bench.gravity_along_extension_m_per_s2.unwrap_or(0.0),
-            -30.0..=30.0,
-        )?,
+        gravity_along_extension,
         start_stroke,
         load: load(&section("load"), &file.load)?,
         hand: file
@@ -157,6 +171,7 @@ pub(super) fn from_document(
         step,
         substeps,
         seed,
+        estimator: estimator.transpose()?,
         sensing,
         expect: expectations(&section("expect"), &file.expect)?,
         device,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use super::estimator::EstimatorKeys;
 use super::file::{BoundKeys, DeviceKeys};
 use super::sensing::keys::SensingKeys;
 
@@ -45,6 +46,7 @@ pub(super) struct BenchFile {
     pub simulation: BenchSimulationKeys,
     #[serde(default)]
     pub sensing: SensingKeys,
+    pub estimator: Option<EstimatorKeys>,
     #[serde(default)]
     pub expect: BTreeMap<String, BoundKeys>,
 }

@@ -14,6 +14,7 @@ pub(crate) mod check;
 mod device;
 pub(crate) mod document;
 pub mod error;
+mod estimator;
 mod file;
 mod load;
 pub(crate) mod sections;

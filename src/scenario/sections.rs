@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
 use super::sensing::keys as sensing;
-use super::{bench_file, file};
+use super::{bench_file, estimator, file};
 
 /// A table and its keys.
 type Table = (&'static str, &'static [&'static str]);
@@ -43,6 +43,7 @@ pub(crate) fn bench_sections() -> Vec<Table> {
         ("command", keys::<bench_file::CommandKeys>()),
         ("valve", keys::<bench_file::ValveKeys>()),
         ("simulation", keys::<bench_file::BenchSimulationKeys>()),
+        ("estimator", keys::<estimator::EstimatorKeys>()),
         ("expect.*", keys::<file::BoundKeys>()),
     ];
     sections.extend(sensing_sections());

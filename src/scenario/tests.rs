@@ -1,6 +1,7 @@
 //! Tests of reading a scenario: values, messages, the files shipped, and scenarios/README.md.
 
 mod bench;
+mod estimator;
 mod messages;
 mod readme;
 mod refusals;
