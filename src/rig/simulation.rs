@@ -2,6 +2,7 @@
 
 use super::carrier::BenchCarrier;
 use super::error::RigError;
+use super::estimator::RigEstimator;
 use super::sample::{RigLog, RigSample};
 use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
@@ -67,6 +68,7 @@ pub struct RigSimulation<'a> {
     controller: ForceController,
     sensors: SensorChain,
     readings: Readings,
+    estimator: Option<RigEstimator>,
     steps: usize,
     total_steps: usize,
     log: RigLog,
@@ -99,6 +101,7 @@ impl<'a> RigSimulation<'a> {
             controller: ForceController::pressure_map(parameters),
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
+            estimator: scenario.estimator.as_ref().map(RigEstimator::new),
             steps: 0,
             total_steps,
             log: RigLog::new(total_steps + 1),
@@ -227,6 +230,10 @@ impl<'a> RigSimulation<'a> {
             CommandScenario::Force(steps) => held(steps, truth.time).unwrap_or(0.0),
             CommandScenario::SetPressure(_) => f64::NAN,
         };
+        let estimate = self
+            .estimator
+            .as_mut()
+            .and_then(|estimator| estimator.update(truth.time, &self.readings, self.device.valve));
         let carrier = BenchCarrier::at(&self.rig.scenario, truth.time);
         self.log.push(&RigSample {
             rig: self.rig,
@@ -236,6 +243,7 @@ impl<'a> RigSimulation<'a> {
             carrier: &carrier,
             set_pressure,
             desired_force: desired,
+            estimate,
         });
     }
 
