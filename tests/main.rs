@@ -10,6 +10,7 @@ mod contact;
 mod convergence;
 mod determinism;
 mod equations;
+mod estimator;
 mod layers;
 mod program;
 mod real_robots;
