@@ -11,6 +11,7 @@ mod controllers;
 mod convergence;
 mod determinism;
 mod equations;
+mod estimator;
 mod layers;
 mod paper_deviation;
 mod paper_page;

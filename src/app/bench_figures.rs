@@ -1,5 +1,6 @@
 //! figures.svg of a bench run: the source paper's pictures - pressure, force and stroke against time.
 
+use super::estimate_figure;
 use crate::figure::{Figure, FigureError, Marker, Panel, Role, Series, Stroke, svg};
 use crate::physics::valve::ValvePosition;
 use crate::recording::{Recording, schema};
@@ -123,6 +124,11 @@ pub(super) fn figures(
             bare,
         ),
     ];
+    panels[1].series.extend(estimate_figure::band(recording));
+    if let Some(mut error) = estimate_figure::error_panel(recording) {
+        error.markers.clone_from(&panels[1].markers);
+        panels.insert(2, error);
+    }
     panels.retain(|panel| !panel.series.is_empty());
     svg(&Figure {
         title: scenario.title.clone(),
@@ -209,7 +215,7 @@ mod tests {
         let mut scenario = load_bench(&path).unwrap();
         scenario.sensing = sensing;
         scenario.duration = 1.5;
-        let (recording, stop) = Rig::new(scenario.clone()).run(&mut |_, _| ()).unwrap();
+        let (recording, stop) = Rig::new(scenario.clone()).unwrap().run(&mut |_, _| ()).unwrap();
         assert_eq!(stop, None);
         figures(&scenario, &recording).unwrap()
     }

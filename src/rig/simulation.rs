@@ -2,6 +2,7 @@
 
 use super::carrier::BenchCarrier;
 use super::error::RigError;
+use super::estimator::RigEstimator;
 use super::sample::{RigLog, RigSample};
 use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
@@ -90,6 +91,7 @@ pub struct RigSimulation<'a> {
     answer: f64,
     sensors: SensorChain,
     readings: Readings,
+    estimator: Option<RigEstimator>,
     steps: usize,
     total_steps: usize,
     log: RigLog,
@@ -123,6 +125,7 @@ impl<'a> RigSimulation<'a> {
             answer: 0.0,
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
+            estimator: scenario.estimator.as_ref().map(RigEstimator::new),
             steps: 0,
             total_steps,
             log: RigLog::new(total_steps + 1),
@@ -258,6 +261,10 @@ impl<'a> RigSimulation<'a> {
             CommandScenario::Force(steps) => held(steps, truth.time).unwrap_or(0.0),
             CommandScenario::SetPressure(_) => f64::NAN,
         };
+        let estimate = self
+            .estimator
+            .as_mut()
+            .and_then(|estimator| estimator.update(truth.time, &self.readings, self.device.valve));
         let carrier = BenchCarrier::at(&self.rig.scenario, truth.time);
         self.log.push(&RigSample {
             rig: self.rig,
@@ -267,6 +274,7 @@ impl<'a> RigSimulation<'a> {
             carrier: &carrier,
             set_pressure,
             desired_force: desired,
+            estimate,
         });
     }
 

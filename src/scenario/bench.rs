@@ -9,10 +9,12 @@ use super::check::Section;
 use super::controller::{ControllerScenario, ForceLaw, check_force, controller};
 use super::document::Document;
 use super::error::ScenarioError;
+use super::estimator::{EstimatorBase, estimator as set_up_estimator};
 use super::load::{device, expectations};
 use super::sections::bench_sections;
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
+use crate::estimation::ContactForceEstimator;
 use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
 use crate::sensing::{CommandChain, SensingParameters};
@@ -50,6 +52,8 @@ pub struct BenchScenario {
     pub sensing: SensingParameters,
     /// What sets the regulator's pressure where forces are commanded.
     pub controller: ControllerScenario,
+    /// Estimator of the contact force, set up as it believes noise and device to be.
+    pub estimator: Option<ContactForceEstimator>,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
 }
@@ -159,6 +163,15 @@ pub(super) fn from_document(
     let load = load(&section("load"), &file.load)?;
     let controller = controller(document, &file.controller, parameters, &sensing, step)?;
     check_controller(&section("controller"), &controller, &command, &load)?;
+    let base = EstimatorBase {
+        device: &device.parameters,
+        sensing: &sensing,
+        gravity_along_extension,
+        start_stroke,
+        step,
+    };
+    let estimator = file.estimator.as_ref();
+    let estimator = estimator.map(|keys| set_up_estimator(document, keys, &base));
     Ok(BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
@@ -176,6 +189,7 @@ pub(super) fn from_document(
         step,
         substeps,
         seed,
+        estimator: estimator.transpose()?,
         sensing,
         controller,
         expect: expectations(&section("expect"), &file.expect)?,

@@ -15,6 +15,7 @@ pub mod controller;
 mod device;
 pub(crate) mod document;
 pub mod error;
+mod estimator;
 mod file;
 mod load;
 pub(crate) mod sections;

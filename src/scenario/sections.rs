@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
 use super::sensing::keys as sensing;
-use super::{bench_file, controller, file};
+use super::{bench_file, controller, estimator, file};
 
 /// A table and its keys.
 type Table = (&'static str, &'static [&'static str]);
@@ -45,6 +45,7 @@ pub(crate) fn bench_sections() -> Vec<Table> {
         ("valve", keys::<bench_file::ValveKeys>()),
         ("simulation", keys::<bench_file::BenchSimulationKeys>()),
         ("controller", keys::<controller::ControllerKeys>()),
+        ("estimator", keys::<estimator::EstimatorKeys>()),
         ("expect.*", keys::<file::BoundKeys>()),
     ];
     sections.extend(sensing_sections());

@@ -13,6 +13,8 @@ use stages::Sensor;
 pub(super) mod keys;
 pub(super) mod stages;
 
+pub(super) use stages::white;
+
 /// `[sensing]` and the tables in it; `step` is the scenario's time step [s].
 pub(super) fn sensing(
     document: &Document<'_>,

@@ -2,6 +2,7 @@
 
 mod bench;
 mod controller;
+mod estimator;
 mod messages;
 mod readme;
 mod refusals;
