@@ -1,5 +1,7 @@
 //! Bad input is refused with one line that a user can act on: exit code 2, and nothing is written.
 
+mod bench;
+
 use crate::program::{Bench, FILES};
 
 /// A way to spoil the nominal job, and what the program must say about it.
@@ -18,8 +20,12 @@ fn edit(bench: &Bench, from: &str, to: &str) {
 }
 
 fn check(refusals: &[Refusal]) {
+    check_scenario("plate_edge", refusals);
+}
+
+fn check_scenario(name: &str, refusals: &[Refusal]) {
     for refusal in refusals {
-        let bench = Bench::new("plate_edge");
+        let bench = Bench::new(name);
         (refusal.spoil)(&bench);
         let before = bench.contents();
         let outcome = bench.run();
