@@ -1,5 +1,7 @@
 //! Bad input is refused with one line that a user can act on: exit code 2, and nothing is written.
 
+mod bench;
+
 use crate::program::{Bench, FILES};
 
 /// A way to spoil the nominal job, and what the program must say about it.

@@ -215,7 +215,10 @@ mod tests {
         let mut scenario = load_bench(&path).unwrap();
         scenario.sensing = sensing;
         scenario.duration = 1.5;
-        let (recording, stop) = Rig::new(scenario.clone()).unwrap().run(&mut |_, _| ()).unwrap();
+        let (recording, stop) = Rig::new(scenario.clone())
+            .unwrap()
+            .run(&mut |_, _| ())
+            .unwrap();
         assert_eq!(stop, None);
         figures(&scenario, &recording).unwrap()
     }

@@ -1,4 +1,5 @@
-//! Time integration: classical Runge-Kutta of order four on the air and the piston, in sub-steps that the stiffest part allows.
+//! Time integration: classical Runge-Kutta of order four on the air and the piston, in sub-steps that the stiffest part allows; a line between
+//! regulator and valve is taken implicitly (`line_step`).
 //!
 //! The state is the air's mass (and energy), so that no air is lost however coarse the step. The regulator is solved exactly and known at every
 //! stage. Whatever makes the law not smooth - a contact or a stop made or left, the seals' reversal, a set pressure that arrives - is met where it
@@ -25,16 +26,16 @@ const MOST_EVENTS: usize = 6;
 
 /// What is integrated.
 #[derive(Debug, Clone, Copy)]
-struct Flow {
-    air: AirState,
+pub(super) struct Flow {
+    pub(super) air: AirState,
     ledger: EnergyLedger,
-    motion: PistonMotion,
+    pub(super) motion: PistonMotion,
     /// Impulse of the gas on the piston since the start of the step [N s].
     impulse: f64,
 }
 
 impl Flow {
-    fn after(&self, rates: &Self, time: f64, ledger: bool) -> Self {
+    pub(super) fn after(&self, rates: &Self, time: f64, ledger: bool) -> Self {
         Self {
             air: self.air.after(&rates.air, time),
             ledger: if ledger {
@@ -53,7 +54,7 @@ impl Flow {
 
 /// What holds over a sub-step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Mode {
+pub(super) struct Mode {
     touching: bool,
     stop: i8,
     /// Direction of sliding, where seals rub.
@@ -61,13 +62,13 @@ struct Mode {
 }
 
 /// A sub-step's surroundings.
-struct Leg<'a, C> {
-    device: &'a Device,
+pub(super) struct Leg<'a, C> {
+    pub(super) device: &'a Device,
     carrier: &'a C,
-    valve: ValvePosition,
-    course: OutletCourse,
+    pub(super) valve: ValvePosition,
+    pub(super) course: OutletCourse,
     /// Start of the course in the step [s].
-    course_start: f64,
+    pub(super) course_start: f64,
     /// Deflection of the seals at the start of the sub-step [m].
     deflection: f64,
 }
@@ -86,7 +87,7 @@ impl Device {
         let regulator = &self.parameters.regulator;
         state.regulator.command(regulator, set_pressure);
         let longest = (dt / substeps as f64)
-            .min(self.longest_substep(carrier, *motion, dt))
+            .min(self.longest_substep(carrier, state, *motion, dt))
             .max(dt / MOST_SUBSTEPS);
         let mut flow = Flow {
             air: state.air,
@@ -124,19 +125,29 @@ impl Device {
         flow.impulse
     }
 
-    fn longest_substep<C: Carrier>(&self, carrier: &C, motion: PistonMotion, dt: f64) -> f64 {
-        let air = AIR_LIMIT / self.air_rate(motion, dt);
+    fn longest_substep<C: Carrier>(
+        &self,
+        carrier: &C,
+        state: &DeviceState,
+        motion: PistonMotion,
+        dt: f64,
+    ) -> f64 {
+        let volumes = self.smallest_volumes(motion, dt);
+        let air = (AIR_LIMIT / self.air_rate(volumes)).min(self.line_substep);
         if !C::MOVES {
             return air;
         }
         let mass = self.parameters.moving_mass;
         let stop = &self.parameters.end_stop;
         let seals = self.parameters.seal_friction.stiffness();
+        // What the valve may let in during the step.
+        let outlet = self.parameters.gas.atmosphere + state.regulator.outlet;
         let mechanical = (stop.stiffness / mass)
             .sqrt()
             .max(stop.damping / mass)
             .max((seals / mass).sqrt())
             .max(self.parameters.seal_friction.viscous / mass)
+            .max(self.spring_rate(&state.air, volumes, outlet))
             .max(carrier.rate());
         air.min(MECHANICAL_LIMIT / mechanical)
     }
@@ -206,6 +217,9 @@ impl<C: Carrier> Leg<'_, C> {
 
     /// One Runge-Kutta step.
     fn step<const LEDGER: bool>(&self, start: &Flow, time: f64, h: f64, mode: Mode) -> Flow {
+        if let Some(hose) = &self.device.parameters.hose {
+            return self.line_step::<LEDGER>(hose, start, time, h, mode);
+        }
         let outlet = |t: f64| self.course.at(t - self.course_start);
         let (first, middle, last) = (outlet(time), outlet(time + 0.5 * h), outlet(time + h));
         let rates = |flow: &Flow, t: f64, outlet: f64| {
@@ -223,7 +237,7 @@ impl<C: Carrier> Leg<'_, C> {
     }
 
     /// Rates of everything; `substep_stroke` [m] is where the sub-step began, with the seals at `self.deflection`.
-    fn rates<const LEDGER: bool>(
+    pub(super) fn rates<const LEDGER: bool>(
         &self,
         flow: &Flow,
         substep_stroke: f64,
@@ -255,13 +269,15 @@ impl<C: Carrier> Leg<'_, C> {
             let carrier = self.carrier.force(time, motion, mode.touching);
             rates.motion.speed = (gas_force - seal + stop + carrier) / parameters.moving_mass;
             if LEDGER {
-                let rod = atmosphere * device.areas.rod() * motion.speed;
-                rates.ledger.atmosphere_work = rod;
-                rates.ledger.chamber_work = gas_force * motion.speed + rod;
                 rates.ledger.seal_work = seal * motion.speed;
                 rates.ledger.stop_work = -stop * motion.speed;
                 rates.ledger.carrier_work = carrier * motion.speed;
             }
+        }
+        if LEDGER {
+            let rod = atmosphere * device.areas.rod() * motion.speed;
+            rates.ledger.atmosphere_work = rod;
+            rates.ledger.chamber_work = gas_force * motion.speed + rod;
         }
         rates
     }

@@ -6,6 +6,7 @@
 
 mod carrier;
 mod integrate;
+mod line_step;
 mod parameters;
 mod pneumatics;
 mod pressure_map;

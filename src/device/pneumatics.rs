@@ -2,7 +2,7 @@
 
 use super::carrier::{Foretold, PistonMotion};
 use super::state::{AirState, DeviceState, EnergyLedger};
-use super::{Carrier, DeviceParameters};
+use super::{Carrier, DeviceParameters, line_step};
 use crate::physics::chamber::Chamber;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::orifice::FlowFunction;
@@ -27,14 +27,14 @@ pub struct DeviceForce {
 #[derive(Debug, Clone)]
 pub struct Device {
     pub(super) parameters: DeviceParameters,
-    flow: FlowFunction,
+    pub(super) flow: FlowFunction,
     pub(super) chambers: [Chamber; 2],
     pub(super) areas: PistonAreas,
-    valve: ValveParameters,
+    pub(super) valve: ValveParameters,
     /// How fast a volume comes to the pressure beside it, times that volume [m3/s].
     chamber_rate_volume: f64,
-    /// How fast the line does [1/s].
-    line_rate: f64,
+    /// Longest sub-step that the line is taken in [s].
+    pub(super) line_substep: f64,
 }
 
 /// Rates of the air and, if asked for, of its energy, with the chamber pressures [Pa absolute] that they belong to.
@@ -52,18 +52,15 @@ impl Device {
         let valve = parameters.valve();
         let rt = gas.specific_gas_constant * gas.temperature;
         let rate_volume = |conductance: f64| conductance * rt.sqrt() * flow.laminar_slope();
-        let adiabatic = match parameters.gas_process {
-            GasProcess::Isothermal => 1.0,
-            GasProcess::WallHeat { .. } => gas.heat_capacity_ratio,
-        };
         Self {
             chambers: parameters.chambers(),
             areas: parameters.areas(),
-            chamber_rate_volume: adiabatic
+            chamber_rate_volume: parameters.stiffest_exponent()
                 * rate_volume(valve.supply_conductance.max(valve.exhaust_conductance)),
-            line_rate: parameters.hose.map_or(0.0, |hose| {
-                (rate_volume(valve.supply_conductance) + rt / hose.resistance) / hose.volume
-            }),
+            line_substep: match &parameters.hose {
+                None => f64::INFINITY,
+                Some(hose) => line_step::longest(hose, gas, rate_volume(valve.supply_conductance)),
+            },
             flow,
             valve,
             parameters,
@@ -156,7 +153,7 @@ impl Device {
         self.drag_seals(state, motion);
         let mut moved = motion;
         let impulse =
-            self.integrate::<_, false>(state, &mut moved, set_pressure, &Foretold, dt, substeps);
+            self.integrate::<_, true>(state, &mut moved, set_pressure, &Foretold, dt, substeps);
         let seals = &self.parameters.seal_friction;
         let deflection =
             seals.deflection_after(state.seal_deflection, motion.speed * dt, motion.speed);
@@ -164,8 +161,18 @@ impl Device {
             0 => 0.0,
             _ => self.parameters.end_stop.damping,
         };
+        let (stop, seal) = (
+            self.stop_force(motion),
+            seals.force(deflection, motion.speed),
+        );
+        let travel = motion.speed * dt;
+        let ledger = &mut state.ledger;
+        ledger.stop_work -= stop * travel;
+        ledger.seal_work += seal * travel;
+        // Who holds the piston at its speed takes all that the device does to it.
+        ledger.carrier_work -= impulse * motion.speed + (stop - seal) * travel;
         DeviceForce {
-            force: impulse / dt + self.stop_force(motion) - seals.force(deflection, motion.speed),
+            force: impulse / dt + stop - seal,
             damping: stop_damping + seals.viscous,
             stiffness: seals.tangent_stiffness(deflection, motion.speed),
         }
@@ -236,7 +243,7 @@ impl Device {
         }
     }
 
-    fn pressures_of(&self, air: &AirState, volumes: [f64; 2]) -> [f64; 2] {
+    pub(super) fn pressures_of(&self, air: &AirState, volumes: [f64; 2]) -> [f64; 2] {
         let gas = &self.parameters.gas;
         match self.parameters.gas_process {
             GasProcess::Isothermal => [0, 1].map(|i| gas.pressure(air.masses[i], volumes[i])),
@@ -247,7 +254,7 @@ impl Device {
         }
     }
 
-    fn temperature_of(&self, air: &AirState, chamber: usize) -> f64 {
+    pub(super) fn temperature_of(&self, air: &AirState, chamber: usize) -> f64 {
         let gas = &self.parameters.gas;
         match self.parameters.gas_process {
             GasProcess::Isothermal => gas.temperature,
@@ -257,7 +264,8 @@ impl Device {
         }
     }
 
-    /// Rates of the air at an outlet pressure of the regulator [Pa absolute].
+    /// Rates of the air at an outlet pressure of the regulator [Pa absolute]. Into its one caller: a tenth of a step.
+    #[inline(always)]
     pub(super) fn air_rates<const LEDGER: bool>(
         &self,
         air: &AirState,
@@ -325,14 +333,27 @@ impl Device {
         }
     }
 
+    /// The smaller volume of each chamber at both ends of a step [m3], if the piston keeps its speed.
+    pub(super) fn smallest_volumes(&self, motion: PistonMotion, dt: f64) -> [f64; 2] {
+        let end = motion.stroke + motion.speed * dt;
+        self.chambers
+            .map(|chamber| chamber.volume(motion.stroke).min(chamber.volume(end)))
+    }
+
+    /// Natural frequency of the piston on its two air springs [rad/s], the chambers at no less than a pressure [Pa absolute]:
+    /// sqrt(sum of n p A^2/V over M), n the exponent of the gas's process.
+    pub(super) fn spring_rate(&self, air: &AirState, volumes: [f64; 2], least: f64) -> f64 {
+        let exponent = self.parameters.stiffest_exponent();
+        let pressures = self.pressures_of(air, volumes);
+        let stiffness = |i: usize| {
+            exponent * pressures[i].max(least) * self.chambers[i].area.powi(2) / volumes[i]
+        };
+        ((stiffness(0) + stiffness(1)) / self.parameters.moving_mass).sqrt()
+    }
+
     /// How fast the smallest volume of a step comes to the pressure beside it [1/s].
-    pub(super) fn air_rate(&self, motion: PistonMotion, dt: f64) -> f64 {
-        let ends = [motion.stroke, motion.stroke + motion.speed * dt];
-        let volumes = self
-            .chambers
-            .iter()
-            .flat_map(|chamber| ends.map(|stroke| chamber.volume(stroke)));
-        let smallest = volumes.fold(f64::INFINITY, f64::min);
+    pub(super) fn air_rate(&self, volumes: [f64; 2]) -> f64 {
+        let smallest = volumes[0].min(volumes[1]);
         let gas = &self.parameters.gas;
         let wall = match self.parameters.gas_process {
             GasProcess::Isothermal => 0.0,
@@ -340,7 +361,7 @@ impl Device {
                 conductance / (gas.mass(gas.atmosphere, smallest) * gas.specific_heat_volume())
             }
         };
-        self.chamber_rate_volume / smallest + self.line_rate + wall
+        self.chamber_rate_volume / smallest + wall
     }
 }
 

@@ -3,6 +3,7 @@
 //! Pressures are absolute [Pa], mass flows positive into the chamber, forces positive in extension.
 
 pub mod chamber;
+pub mod flow_slope;
 pub mod gas;
 pub mod gas_process;
 pub mod hose;

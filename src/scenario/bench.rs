@@ -160,7 +160,7 @@ pub(super) fn from_document(
         &sensing.command,
         check_force,
     )?;
-    let load = load(&section("load"), &file.load)?;
+    let load = load(&section("load"), &file.load, device.parameters.full_stroke)?;
     let controller = controller(document, &file.controller, parameters, &sensing, step)?;
     check_controller(&section("controller"), &controller, &command, &load)?;
     let base = EstimatorBase {
@@ -212,7 +212,11 @@ fn simulation(
     ))
 }
 
-fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, ScenarioError> {
+fn load(
+    section: &Section<'_>,
+    keys: &LoadKeys,
+    full_stroke: f64,
+) -> Result<LoadScenario, ScenarioError> {
     let given = [
         ("position_mm", keys.position_mm.is_some()),
         ("stiffness_n_per_m", keys.stiffness_n_per_m.is_some()),
@@ -239,7 +243,12 @@ fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, Scenario
     let required = |key: &str, value: Option<f64>| {
         value.ok_or_else(|| section.missing(key, "it to be given for this kind of load"))
     };
-    let position = required("position_mm", keys.position_mm)?;
+    let given = required("position_mm", keys.position_mm)?;
+    let position = section.number("position_mm", given, 0.0..=500.0)?;
+    if position > full_stroke {
+        let expected = format!("at most the device's stroke_mm, {} mm", full_stroke * 1e3);
+        return Err(section.refuse_number("position_mm", given, expected));
+    }
     let law = PushOnly {
         stiffness: section.number(
             "stiffness_n_per_m",
@@ -264,7 +273,7 @@ fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, Scenario
         None
     };
     Ok(LoadScenario::Contact {
-        position: section.number("position_mm", position, -100.0..=600.0)?,
+        position,
         law,
         motion,
     })
@@ -324,11 +333,15 @@ fn commands(
                 check_force(&section, wanted)?;
                 wanted
             }
-            (false, _, Some(_)) => {
+            (_, Some(_), Some(_)) => {
+                let reason = "a command gives a set pressure or a force".to_owned();
+                return Err(section.misplaced("force_n", reason));
+            }
+            (false, None, Some(_)) => {
                 let reason = "the first command gives a set pressure, so all of them do".to_owned();
                 return Err(section.misplaced("force_n", reason));
             }
-            (true, Some(_), _) => {
+            (true, Some(_), None) => {
                 let reason = "the first command gives a force, so all of them do".to_owned();
                 return Err(section.misplaced("set_pressure_bar_gauge", reason));
             }

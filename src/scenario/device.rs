@@ -158,17 +158,11 @@ impl<'a> Layers<'a> {
         })
     }
 
-    /// The line, its resistance at the density of half the supply pressure; none of no length.
+    /// The line; none of no length.
     fn hose(&self, gas: &Gas) -> Result<Option<Hose>, ScenarioError> {
         let length = self.number("hose_length_m", |keys| keys.hose_length_m, 0.0..=50.0)?;
         let diameter = self.number("hose_diameter_mm", |keys| keys.hose_diameter_mm, 1.0..=25.0)?;
-        let supply = self.number(
-            "supply_pressure_bar_gauge",
-            |keys| keys.supply_pressure_bar_gauge,
-            0.1..=16.0,
-        )?;
-        let density = gas.mass(gas.atmosphere + 0.5 * supply, 1.0);
-        Ok((length > 0.0).then(|| Hose::of_geometry(length, diameter, density)))
+        Ok((length > 0.0).then(|| Hose::tube(length, diameter, gas)))
     }
 
     /// What the values must be to each other.

@@ -1,6 +1,7 @@
 //! Conserved quantities over the bench rig's courses: the mass of the air, and energy by both balances of `EnergyLedger`.
 
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
+use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::hose::Hose;
 use idc_cell::physics::regulator::RegulatorParameters;
@@ -91,7 +92,7 @@ fn run(
 // Catches: a flow that one account has and another has not: chamber, line, regulator, exhaust.
 #[test]
 fn air_is_neither_made_nor_lost() {
-    let hose = Some(Hose::of_geometry(2.0, 0.004, 4.8));
+    let hose = Some(Hose::tube(2.0, 0.004, &Gas::default()));
     let mut largest = 0.0f64;
     for course in &COURSES {
         for hose in [None, hose] {
@@ -271,4 +272,48 @@ fn isothermal_air_brings_c_p_t_and_takes_the_heat_of_its_work() {
         largest = largest.max((state.ledger.heat_in - heat).abs());
     });
     reached("enthalpy and heat of isothermal air [J]", largest, 1e-9);
+}
+
+// Catches: a ledger that stands still while somebody else moves the piston, or that leaves out stops, seals or the atmosphere.
+#[test]
+fn a_foretold_piston_keeps_the_same_books() {
+    let heated = GasProcess::WallHeat { conductance: 0.5 };
+    for gas_process in [GasProcess::Isothermal, heated] {
+        let device = Device::new(DeviceParameters {
+            seal_friction: SEALS,
+            gas_process,
+            ..usual()
+        });
+        let mut state = device.at_rest(0.03, 1e5);
+        let first = device.internal_energy(&state);
+        let (mut stroke, mut given, mut turned_over) = (0.03, 0.0, 0.0);
+        for ms in 0..2000 {
+            // Out to 0.5 mm beyond the end, and back.
+            let speed = 0.0205 * 6.0 * (6e-3 * f64::from(ms)).cos();
+            let motion = PistonMotion { stroke, speed };
+            let set = if ms < 1000 { 1e5 } else { 2.5e5 };
+            let before = accounts(&state);
+            let force = device.advance(&mut state, set, motion, 1e-3, 2).force;
+            given -= force * speed * 1e-3;
+            stroke += speed * 1e-3;
+            let passed = accounts(&state);
+            let passed = passed
+                .iter()
+                .zip(before)
+                .map(|(now, before)| (now - before).abs());
+            turned_over += passed.sum::<f64>();
+        }
+        let [enthalpy, heat, chamber, atmosphere, seal, stop, carrier] = accounts(&state);
+        assert!(seal > 1.0 && stop.abs() > 1e-3 && chamber.abs() > 1.0 && atmosphere.abs() > 1e-3);
+        let of_air = device.internal_energy(&state) - first - (enthalpy + heat - chamber);
+        let of_piston = chamber + carrier - atmosphere - seal - stop;
+        println!("{gas_process:?}: {turned_over:.0} J turned over");
+        reached("air of a foretold piston", of_air.abs() / turned_over, 1e-9);
+        reached("a foretold piston", of_piston.abs() / turned_over, 1e-12);
+        reached(
+            "work of the foreteller against force times way",
+            (carrier - given).abs() / turned_over,
+            1e-12,
+        );
+    }
 }

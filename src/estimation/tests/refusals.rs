@@ -40,7 +40,7 @@ fn a_device_with_parts_beyond_the_equations_is_refused() {
     let mut warm = device();
     warm.gas_process = GasProcess::WallHeat { conductance: 1.0 };
     let mut piped = device();
-    piped.hose = Some(Hose::of_geometry(1.0, 0.004, 2.0));
+    piped.hose = Some(Hose::lumped(1.3e-5, 1e8));
     for (data, part) in [(warm, "warms up"), (piped, "a line")] {
         let message = ContactForceEstimator::new(&data, &told, 0.03, PERIOD)
             .unwrap_err()
