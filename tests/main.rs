@@ -13,5 +13,6 @@ mod equations;
 mod layers;
 mod program;
 mod real_robots;
+mod stiff_reference;
 mod stops;
 mod uniformity;
