@@ -17,5 +17,6 @@ mod paper_deviation;
 mod paper_page;
 mod program;
 mod real_robots;
+mod stiff_reference;
 mod stops;
 mod uniformity;

@@ -16,7 +16,9 @@ use crate::physics::valve::ValvePosition;
 /// Largest sub-step times the fastest rate of the pneumatics [1]; the method is stable to 2.78 and damps to a third here.
 const AIR_LIMIT: f64 = 1.2;
 /// Largest sub-step times the fastest rate of stops and load [rad].
-const MECHANICAL_LIMIT: f64 = 0.2;
+const MECHANICAL_LIMIT: f64 = 0.15;
+/// What the piston may come nearer to a stop in a step, beside twice its way at the speed that it has [m].
+const REACH: f64 = 1e-3;
 /// Sub-steps of a step beyond which a device is out of all proportion: its run then ends with the state that cannot be.
 const MOST_SUBSTEPS: f64 = 2e4;
 /// Halvings when a change of mode is sought: to 1e-7 of a sub-step.
@@ -138,18 +140,30 @@ impl Device {
             return air;
         }
         let mass = self.parameters.moving_mass;
-        let stop = &self.parameters.end_stop;
         let seals = self.parameters.seal_friction.stiffness();
         // What the valve may let in during the step.
         let outlet = self.parameters.gas.atmosphere + state.regulator.outlet;
-        let mechanical = (stop.stiffness / mass)
-            .sqrt()
-            .max(stop.damping / mass)
+        let mechanical = self
+            .stop_rate(motion, dt)
             .max((seals / mass).sqrt())
             .max(self.parameters.seal_friction.viscous / mass)
             .max(self.spring_rate(&state.air, volumes, outlet))
             .max(carrier.rate());
         air.min(MECHANICAL_LIMIT / mechanical)
+    }
+
+    /// The fastest rate of the end stops [1/s]; none as long as they are out of reach, for they are far stiffer than a load.
+    fn stop_rate(&self, motion: PistonMotion, dt: f64) -> f64 {
+        let reach = REACH + 2.0 * motion.speed.abs() * dt;
+        if motion
+            .stroke
+            .min(self.parameters.full_stroke - motion.stroke)
+            > reach
+        {
+            return 0.0;
+        }
+        let (stop, mass) = (&self.parameters.end_stop, self.parameters.moving_mass);
+        (stop.stiffness / mass).sqrt().max(stop.damping / mass)
     }
 }
 
