@@ -56,7 +56,7 @@ fn bench_and_prediction_agree_with_every_effect_that_both_have() {
     let path = |name: &str| folder.path().join(name);
     std::fs::write(path("rig.toml"), RIG.to_owned() + EFFECTS).unwrap();
     std::fs::write(path("bench.toml"), BENCH).unwrap();
-    let rig = Rig::new(load_bench(&path("bench.toml")).unwrap());
+    let rig = Rig::new(load_bench(&path("bench.toml")).unwrap()).unwrap();
     let (recording, stop) = rig.run(&mut |_, _| ()).unwrap();
     assert_eq!(stop, None);
 

@@ -165,7 +165,7 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
             option: "hold-at-s",
         });
     }
-    let rig = Rig::new(scenario);
+    let rig = Rig::new(scenario)?;
     let folder = OutputFolder::prepare(&output_folder(arguments))?;
     let bar = progress(arguments.quiet || arguments.json);
     let finished = bench::run_rig(&rig, &mut |done, total| {

@@ -5,7 +5,6 @@ use crate::diagnosis::recorded::RecordedError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
-use crate::simulation::SimulationError;
 use crate::workpiece::WorkpieceError;
 
 /// Exit codes of the program.
@@ -60,9 +59,6 @@ pub enum AppError {
         /// Why.
         reason: String,
     },
-    /// The physics stopped the run before there was anything to record.
-    #[error("{0}; nothing was recorded, it is the first step")]
-    StoppedAtOnce(SimulationError),
     /// A number on the command line.
     #[error("--{option} is {value}, expected {expected}")]
     Option {
@@ -113,14 +109,4 @@ pub enum AppError {
     /// Summary as JSON.
     #[error("cannot write the summary as JSON: {0}")]
     Json(#[from] serde_json::Error),
-}
-
-impl AppError {
-    /// Exit code that goes with it.
-    pub fn exit_code(&self) -> ExitCode {
-        match self {
-            Self::StoppedAtOnce(_) => ExitCode::Stopped,
-            _ => ExitCode::BadInput,
-        }
-    }
 }

@@ -6,6 +6,7 @@ mod bench_picture;
 mod cli;
 mod edges;
 mod error;
+mod estimate_figure;
 mod files;
 mod output;
 mod picture;

@@ -104,6 +104,18 @@ impl Carrier for ReplayCarrier<'_> {
     fn rate(&self) -> f64 {
         self.rate
     }
+
+    fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
+        // What the cubic can move by in the step.
+        let [a, b, c, d] = self.surface;
+        let nearest =
+            a + self.contact.least_deviation() - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
+        if motion.stroke + reach < nearest {
+            0.0
+        } else {
+            self.rate
+        }
+    }
 }
 
 impl ReplayCarrier<'_> {

@@ -87,6 +87,11 @@ impl ContactParameters {
         (deviation, rate)
     }
 
+    /// The least that `deviation` can be at any time [m].
+    pub fn least_deviation(&self) -> f64 {
+        self.surface_offset - self.runout.amplitude() - self.waviness.amplitude()
+    }
+
     /// Force at a penetration [m] and its rate [m/s] as it holds while it pushes [N].
     pub fn pushing(&self, penetration: f64, rate: f64) -> f64 {
         let elastic = match self.law {
@@ -113,15 +118,21 @@ impl ContactParameters {
         }
     }
 
+    /// Stiffness [N/m] at a force [N].
+    pub fn stiffness_at(&self, force: f64) -> f64 {
+        match self.law {
+            ContactLaw::Linear { stiffness } => stiffness,
+            // dF/dd = 3/2 k^(2/3) F^(1/3)
+            ContactLaw::Hertz { stiffness } => 1.5 * (stiffness * stiffness * force).cbrt(),
+        }
+    }
+
     /// Fastest rate of a mass [kg] on it [1/s], under a force of the order of that of the device.
     pub fn rate(&self, mass: f64) -> f64 {
         /// A force that a deburring device does not exceed by much [N].
         const LARGE_FORCE: f64 = 600.0;
-        let stiffness = match self.law {
-            ContactLaw::Linear { stiffness } => stiffness,
-            // dF/dd = 3/2 k^(2/3) F^(1/3)
-            ContactLaw::Hertz { stiffness } => 1.5 * (stiffness * stiffness * LARGE_FORCE).cbrt(),
-        };
-        (stiffness / mass).sqrt().max(self.damping / mass)
+        (self.stiffness_at(LARGE_FORCE) / mass)
+            .sqrt()
+            .max(self.damping / mass)
     }
 }

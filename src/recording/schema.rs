@@ -206,7 +206,7 @@ pub const BENCH_SIGNALS: [SignalDefinition; 13] = [
     signal(ESTIMATED_FORCE, Unit::Newton, Some(PlotGroup::Force), "estimated",
         "Contact force estimated without a load cell, from regulator pressure, stroke and acceleration."),
     signal(ESTIMATED_FORCE_DEVIATION, Unit::Newton, None, "estimated, deviation",
-        "Standard deviation of the estimated contact force."),
+        "Half the 95 % band of the estimated contact force over 1.96: its standard deviation, less where one tolerance prevails."),
 ];
 
 /// A signal that every joint has.

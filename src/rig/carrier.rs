@@ -129,4 +129,18 @@ impl Carrier for BenchCarrier {
     fn rate(&self) -> f64 {
         self.contact.map_or(0.0, |contact| contact.rate(self.mass))
     }
+
+    fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
+        let Some(contact) = &self.contact else {
+            return 0.0;
+        };
+        let [surface, speed, acceleration] = self.surface;
+        let nearest = surface + contact.least_deviation()
+            - dt * (speed.abs() + 0.5 * dt * acceleration.abs());
+        if motion.stroke + reach < nearest {
+            0.0
+        } else {
+            contact.rate(self.mass)
+        }
+    }
 }

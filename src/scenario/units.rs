@@ -23,7 +23,7 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 40] = [
+const UNITS: [Unit; 41] = [
     unit("_mv_per_v", "mV/V", Divide(1e3)),
     unit("_pa_s_per_kg", "Pa s/kg", Divide(1.0)),
     unit("_rad_per_s", "rad/s", Divide(1.0)),
@@ -41,6 +41,7 @@ const UNITS: [Unit; 40] = [
     unit("_m_per_s2", "m/s2", Divide(1.0)),
     unit("_m_per_s", "m/s", Divide(1.0)),
     unit("_deg_per_s", "deg/s", Multiply(PI / 180.0)),
+    unit("_per_s", "1/s", Divide(1.0)),
     unit("_j_per_kg_k", "J/(kg K)", Divide(1.0)),
     unit("_bar_gauge", "bar gauge", Multiply(1e5)),
     unit("_pa_absolute", "Pa absolute", Divide(1.0)),
@@ -189,6 +190,8 @@ mod tests {
             ("stiffness_n_per_m15", 1e8, "N/m^1.5", 1e8),
             ("drift_n_per_s", 0.1, "N/s", 0.1),
             ("noise_steps", 2.0, "", 2.0),
+            ("integral_gain_per_s", 5.0, "1/s", 5.0),
+            ("tracking_frequency_rad_per_s", 40.0, "rad/s", 40.0),
             ("damping_ratio", 0.7, "", 0.7),
             ("device_substeps", 2.0, "", 2.0),
         ] {

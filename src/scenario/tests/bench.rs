@@ -150,6 +150,12 @@ fn a_load_has_the_keys_of_its_kind_and_no_others() {
         ),
         (
             FREE,
+            "kind = \"load_cell\"\nposition_mm = 50.5\n",
+            "10:1",
+            "`load.position_mm` is 50.5 mm, expected at most the device's stroke_mm, 50 mm",
+        ),
+        (
+            FREE,
             "kind = \"surface\"\nposition_mm = 1\npeak_to_peak_mm = 1\n",
             "8:2",
             "`load.frequency_hz` is missing, expected it to be given for this kind of load",
