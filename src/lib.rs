@@ -6,6 +6,7 @@
 //! - [`device`]: the device made of them
 //! - [`arm`]: the robot arm from URDF: kinematics, dynamics
 //! - [`workpiece`]: mesh, edges, burrs, where a ball touches
+//! - [`estimation`]: contact force without a load cell, with its uncertainty
 //! - [`scenario`]: the file that says what to simulate, checked
 //! - [`path`]: the tool's path along an edge and the joint motion that follows it
 //! - [`cell`]: all of it assembled and checked
@@ -29,6 +30,7 @@ pub mod design;
 pub mod device;
 pub mod diagnosis;
 pub mod effects;
+pub mod estimation;
 pub mod figure;
 pub mod metrics;
 pub mod path;

@@ -9,14 +9,8 @@ fn main() -> ExitCode {
     match execute(&Cli::parse()) {
         Ok(code) => code.into(),
         Err(error) => {
-            let code = error.exit_code();
-            let word = if code == Code::Stopped {
-                "stopped"
-            } else {
-                "error"
-            };
-            eprintln!("{word}: {error}");
-            code.into()
+            eprintln!("error: {error}");
+            Code::BadInput.into()
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Bad input is refused with one line that a user can act on: exit code 2, and nothing is written.
 
+mod bench;
+
 use crate::program::{Bench, FILES};
 
 /// A way to spoil the nominal job, and what the program must say about it.
@@ -18,8 +20,12 @@ fn edit(bench: &Bench, from: &str, to: &str) {
 }
 
 fn check(refusals: &[Refusal]) {
+    check_of("plate_edge", refusals);
+}
+
+fn check_of(scenario: &str, refusals: &[Refusal]) {
     for refusal in refusals {
-        let bench = Bench::new("plate_edge");
+        let bench = Bench::new(scenario);
         (refusal.spoil)(&bench);
         let before = bench.contents();
         let outcome = bench.run();
@@ -362,6 +368,151 @@ fn paths_and_forces_beyond_the_cell() {
             ],
         ),
     ]);
+}
+
+#[test]
+fn controllers_of_a_cell() {
+    fn controller(b: &Bench, lines: &str) {
+        edit(b, "[expect]", &format!("[controller]\n{lines}\n[expect]"));
+    }
+    check(&[
+        refusal(
+            |b| controller(b, "kind = \"bang_bang\""),
+            &[
+                "scenario.toml:32:8: `controller.kind` is \"bang_bang\", expected one of `open_loop`",
+            ],
+        ),
+        refusal(
+            |b| {
+                controller(
+                    b,
+                    "kind = \"proportional_integral\"\nproportional_gain = 60",
+                )
+            },
+            &[
+                "scenario.toml:33:1: `controller.proportional_gain` is 60, with which the loop is unstable",
+                "it turns by 180 degrees with a gain of ",
+                "expected at most ",
+                " with integral_gain_per_s at most ",
+            ],
+        ),
+        refusal(
+            |b| {
+                controller(
+                    b,
+                    "kind = \"proportional_integral\"\nproportional_gain = -1",
+                )
+            },
+            &["scenario.toml:33:1: `controller.proportional_gain` is -1, expected 0 to 1000"],
+        ),
+        refusal(
+            |b| controller(b, "rate_per_s = 100"),
+            &[
+                "scenario.toml:32:1: `controller.rate_per_s` cannot stand here: kind = \"open_loop\" has period_ms",
+            ],
+        ),
+        refusal(
+            |b| {
+                controller(
+                    b,
+                    "kind = \"disturbance_prediction\"\ntracking_frequency_rad_per_s = 4000",
+                )
+            },
+            &[
+                "scenario.toml:33:1: `controller.tracking_frequency_rad_per_s` is 4000 rad/s, expected less than 3141.6 rad/s",
+            ],
+        ),
+        refusal(
+            // 1 of 8 V.
+            |b| {
+                edit(
+                    b,
+                    "[expect]",
+                    "[sensing.command]\nkind = \"real\"\npwm_high_v = 0.625\n[expect]",
+                )
+            },
+            &[
+                "scenario.toml: `process.force_n` is 150 N, which needs 0.76 bar gauge",
+                "[sensing.command] can set 0 to 0.75 bar, expected 27.7 to 148.",
+            ],
+        ),
+    ]);
+}
+
+#[test]
+fn controllers_of_a_bench() {
+    const KIND: &str = "kind = \"disturbance_prediction\"";
+    check_of(
+        "moving_surface",
+        &[
+            refusal(
+                |b| edit(b, KIND, "kind = \"fuzzy\""),
+                &[
+                    "scenario.toml:33:8: `controller.kind` is \"fuzzy\", expected one of `open_loop`",
+                ],
+            ),
+            refusal(
+                |b| edit(b, KIND, &format!("{KIND}\nresponse_time_s = 0.0001")),
+                &[
+                    "scenario.toml:34:1: `controller.response_time_s` is 0.0001 s, with which the loop is unstable",
+                    "if the regulator's time constant is 20 % off",
+                    "expected at least 0.00",
+                ],
+            ),
+            refusal(
+                |b| {
+                    edit(
+                        b,
+                        KIND,
+                        "kind = \"feedback_linearisation\"\nintegral_gain_per_s = 900",
+                    )
+                },
+                &[
+                    "scenario.toml:34:1: `controller.integral_gain_per_s` is 900 1/s, with which the loop is unstable",
+                    "expected at most ",
+                ],
+            ),
+            refusal(
+                |b| edit(b, KIND, &format!("{KIND}\nobserver_time_s = -1")),
+                &[
+                    "scenario.toml:34:1: `controller.observer_time_s` is -1 s, expected 0.00001 to 100 s",
+                ],
+            ),
+            refusal(
+                |b| edit(b, KIND, &format!("{KIND}\nproportional_gain = 1")),
+                &[
+                    "scenario.toml:34:1: `controller.proportional_gain` cannot stand here: kind = \"disturbance_prediction\" has",
+                ],
+            ),
+            refusal(
+                |b| edit(b, "force_n = 150", "force_n = 1000"),
+                &[
+                    "scenario.toml:27:1: `command[0].force_n` is 1000 N, which needs 6.22 bar gauge at the regulator; the supply gives 0 to 6.00 bar",
+                    "expected 0.0 to 965.1 N",
+                ],
+            ),
+            refusal(
+                |b| {
+                    edit(b, "force_n = 150", "set_pressure_bar_gauge = 6.5");
+                    edit(
+                        b,
+                        "preset = \"white\"",
+                        "preset = \"white\"\n[sensing.command]\nkind = \"real\"",
+                    );
+                },
+                &[
+                    "scenario.toml:27:1: `command[0].set_pressure_bar_gauge` is 6.5 bar gauge, 8.667 V at the regulator",
+                    "the 0 to 8 V that [sensing.command] can give",
+                ],
+            ),
+            refusal(
+                |b| edit(b, "force_n = 150", "set_pressure_bar_gauge = 1"),
+                &[
+                    "scenario.toml:33:1: `controller.kind` cannot stand here: no [[command]] gives a force",
+                ],
+            ),
+        ],
+    );
 }
 
 #[test]

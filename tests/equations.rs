@@ -8,6 +8,7 @@ mod equation_7;
 mod equilibrium;
 mod extremes;
 mod gas_springs;
+mod lines;
 mod orifices;
 mod piston;
 mod regulator_and_line;

@@ -158,6 +158,33 @@ fn a_chamber_that_empties_in_microseconds_is_no_reason_to_stop() {
     assert!(bench.path("out/samples.parquet").exists());
 }
 
+#[test]
+fn a_device_out_of_all_proportion() {
+    // Hydrogen through 100 mm2 into a tenth of a cubic centimetre: more sub-steps than there are for a step of 5 ms.
+    let bench = leaky(0.1, 100.0);
+    bench.replace(
+        "scenario.toml",
+        "dead_volume_cm3",
+        "gas_constant_j_per_kg_k = 4124\ndead_volume_cm3",
+    );
+    bench.replace(
+        "scenario.toml",
+        "[expect]",
+        "[simulation]\nstep_ms = 5\n[expect]",
+    );
+    let outcome = bench.run();
+    let reason = stopped(&outcome);
+    for words in [
+        "chamber_2_mass became -",
+        " in phase engage",
+        "step_ms = 5 is too long",
+    ] {
+        assert!(reason.contains(words), "{reason}");
+    }
+    assert_eq!(bench.names_in("out"), FILES);
+    assert_eq!(bench.summary()["stopped"], reason);
+}
+
 /// The time that a reason names, `at 1.234 s`.
 fn milliseconds(reason: &str) -> usize {
     let mut words = reason.split(' ').skip_while(|word| *word != "at").skip(1);

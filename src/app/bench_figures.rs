@@ -1,5 +1,6 @@
 //! figures.svg of a bench run: the source paper's pictures - pressure, force and stroke against time.
 
+use super::estimate_figure;
 use crate::figure::{Figure, FigureError, Marker, Panel, Role, Series, Stroke, svg};
 use crate::physics::valve::ValvePosition;
 use crate::recording::{Recording, schema};
@@ -95,7 +96,7 @@ pub(super) fn figures(
         |title: &str, label: &str, lines: &[Line], convert: &dyn Fn(f64) -> f64, markers| Panel {
             title: title.to_owned(),
             vertical_label: label.to_owned(),
-            series: series(recording, lines, convert),
+            series: series(scenario, recording, lines, convert),
             markers,
             ..Panel::default()
         };
@@ -123,6 +124,11 @@ pub(super) fn figures(
             bare,
         ),
     ];
+    panels[1].series.extend(estimate_figure::band(recording));
+    if let Some(mut error) = estimate_figure::error_panel(recording) {
+        error.markers.clone_from(&panels[1].markers);
+        panels.insert(2, error);
+    }
     panels.retain(|panel| !panel.series.is_empty());
     svg(&Figure {
         title: scenario.title.clone(),
@@ -131,15 +137,24 @@ pub(super) fn figures(
 }
 
 fn series<'a>(
+    scenario: &BenchScenario,
     recording: &'a Recording,
     lines: &[Line],
     convert: &dyn Fn(f64) -> f64,
 ) -> Vec<Series<'a>> {
     lines
         .iter()
-        .filter_map(|&(quantity, label, role, stroke)| {
+        .enumerate()
+        .filter(|(index, _)| !repeats(recording, lines, *index))
+        .filter_map(|(_, &(quantity, label, role, stroke))| {
             let channel = recording.channel(quantity)?;
             let values: Vec<f64> = channel.values.iter().map(|&value| convert(value)).collect();
+            let label = match scenario.sensing.force_delay() {
+                delay if quantity == schema::MEASURED_FORCE && delay > 0.0 => {
+                    format!("{label} (delay {:.0} ms)", delay * 1e3)
+                }
+                _ => label.to_owned(),
+            };
             let line = Series::new(label, recording.time(), values, role, stroke);
             Some(match stroke {
                 Stroke::Dashed if quantity != schema::SURFACE_POSITION => line.stepwise(),
@@ -149,10 +164,27 @@ fn series<'a>(
         .collect()
 }
 
+/// Is a line a reading that is the truth, or a reading before it, sample by sample? An ideal sensor's would only hide the truth.
+fn repeats(recording: &Recording, lines: &[Line], index: usize) -> bool {
+    let is_reading = |line: &Line| matches!(line.2, Role::Measured | Role::Filtered);
+    let Some(own) = recording.channel(lines[index].0) else {
+        return false;
+    };
+    is_reading(&lines[index])
+        && lines.iter().enumerate().any(|(other, line)| {
+            (other < index || !is_reading(line))
+                && other != index
+                && recording
+                    .channel(line.0)
+                    .is_some_and(|channel| channel.values == own.values)
+        })
+}
+
 fn events(scenario: &BenchScenario) -> Vec<Marker> {
     let commands = scenario.command.steps().iter().map(|&(at, value)| Marker {
         label: match scenario.command {
-            CommandScenario::SetPressure(_) => format!("set {:.3} bar", value / 1e5),
+            // To a millibar, with as few digits as that takes, but one.
+            CommandScenario::SetPressure(_) => format!("set {:?} bar", (value / 1e2).round() / 1e3),
             CommandScenario::Force(_) => format!("desired {value:.0} N"),
         },
         at,
@@ -167,4 +199,44 @@ fn events(scenario: &BenchScenario) -> Vec<Marker> {
     let mut events: Vec<Marker> = commands.chain(valve).collect();
     events.sort_by(|a, b| a.at.total_cmp(&b.at));
     events
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::rig::Rig;
+    use crate::scenario::load_bench;
+    use crate::sensing::{FilterParameters, SensingParameters};
+
+    fn drawn(sensing: SensingParameters) -> String {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper_step.toml");
+        let mut scenario = load_bench(&path).unwrap();
+        scenario.sensing = sensing;
+        scenario.duration = 1.5;
+        let (recording, stop) = Rig::new(scenario.clone())
+            .unwrap()
+            .run(&mut |_, _| ())
+            .unwrap();
+        assert_eq!(stop, None);
+        figures(&scenario, &recording).unwrap()
+    }
+
+    #[test]
+    fn readings_are_drawn_where_they_are_not_the_truth() {
+        let has = |svg: &str, texts: [&str; 4]| texts.map(|text| svg.contains(text));
+        let texts = [", read", "filtered", "(delay ", "set 1.8 bar"];
+        let ideal = drawn(SensingParameters::ideal());
+        assert_eq!(has(&ideal, texts), [false, false, false, true]);
+        let paper = SensingParameters::paper();
+        assert_eq!(has(&drawn(paper), texts), [true, false, false, true]);
+        let treated = SensingParameters {
+            force_filter: FilterParameters::FirstOrder {
+                time_constant: 0.05,
+            },
+            ..paper
+        };
+        assert_eq!(has(&drawn(treated), texts), [true, true, true, true]);
+    }
 }

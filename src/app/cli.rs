@@ -41,6 +41,9 @@ enum Command {
     /// List the sharp edges of a part and the outlines of its faces.
     #[command(after_help = "Example: idc edges assets/bracket.stl")]
     Edges(EdgesArguments),
+    /// Say what a rig file, believed or improved, predicts for the inputs of a recording.
+    #[command(after_help = "Example: idc predict improved.toml predict.csv --out prediction.csv")]
+    Predict(PredictArguments),
 }
 
 #[derive(Debug, Args)]
@@ -73,6 +76,20 @@ pub(super) struct EdgesArguments {
     pub(super) sharp_angle_deg: f64,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct PredictArguments {
+    /// Rig file.
+    pub(super) rig: PathBuf,
+    /// Recording whose inputs drive the rig; what it holds of measured columns is compared.
+    pub(super) inputs: PathBuf,
+    /// File for the predicted columns.
+    #[arg(long, default_value = "prediction.csv")]
+    pub(super) out: PathBuf,
+    /// Print nothing but errors.
+    #[arg(long)]
+    pub(super) quiet: bool,
+}
+
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 pub(super) enum MeshUnit {
     Mm,
@@ -88,6 +105,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
         Command::Run(arguments) => run(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
+        Command::Predict(arguments) => super::predict::predict(arguments),
     }
 }
 
@@ -147,7 +165,7 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
             option: "hold-at-s",
         });
     }
-    let rig = Rig::new(scenario);
+    let rig = Rig::new(scenario)?;
     let folder = OutputFolder::prepare(&output_folder(arguments))?;
     let bar = progress(arguments.quiet || arguments.json);
     let finished = bench::run_rig(&rig, &mut |done, total| {

@@ -1,10 +1,10 @@
 //! What ends a command early, and the exit code that goes with it.
 
 use crate::cell::CellError;
+use crate::diagnosis::recorded::RecordedError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
-use crate::simulation::SimulationError;
 use crate::workpiece::WorkpieceError;
 
 /// Exit codes of the program.
@@ -59,9 +59,6 @@ pub enum AppError {
         /// Why.
         reason: String,
     },
-    /// The physics stopped the run before there was anything to record.
-    #[error("{0}; nothing was recorded, it is the first step")]
-    StoppedAtOnce(SimulationError),
     /// A number on the command line.
     #[error("--{option} is {value}, expected {expected}")]
     Option {
@@ -78,6 +75,31 @@ pub enum AppError {
         /// The option.
         option: &'static str,
     },
+    /// A recording of a rig.
+    #[error(transparent)]
+    Recorded(#[from] RecordedError),
+    /// The output would take the place of an input.
+    #[error("--out is {file}, which is read here; expected another file")]
+    Overwrites {
+        /// The file.
+        file: String,
+    },
+    /// A rig whose motion cannot be followed.
+    #[error(
+        "{rig}: the rig goes astray at {time} s of {inputs}: its {column} is {value}; expected a rig that stays finite"
+    )]
+    Astray {
+        /// Rig file.
+        rig: String,
+        /// Recording.
+        inputs: String,
+        /// When [s].
+        time: f64,
+        /// What.
+        column: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// A picture.
     #[error(transparent)]
     Figure(#[from] crate::figure::FigureError),
@@ -87,14 +109,4 @@ pub enum AppError {
     /// Summary as JSON.
     #[error("cannot write the summary as JSON: {0}")]
     Json(#[from] serde_json::Error),
-}
-
-impl AppError {
-    /// Exit code that goes with it.
-    pub fn exit_code(&self) -> ExitCode {
-        match self {
-            Self::StoppedAtOnce(_) => ExitCode::Stopped,
-            _ => ExitCode::BadInput,
-        }
-    }
 }

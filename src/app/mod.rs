@@ -6,9 +6,11 @@ mod bench_picture;
 mod cli;
 mod edges;
 mod error;
+mod estimate_figure;
 mod files;
 mod output;
 mod picture;
+mod predict;
 mod run;
 
 pub use bench::{FinishedBench, run_rig};

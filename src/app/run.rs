@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::error::AppError;
 use crate::cell::Cell;
 use crate::metrics::{Summary, SummaryLimits, Timing, summarise};
-use crate::recording::{Recording, RecordingError};
+use crate::recording::Recording;
 use crate::simulation::{FrameLog, Simulation, SimulationError};
 
 /// Steps between two looks at the progress bar.
@@ -39,12 +39,7 @@ pub fn run_cell(cell: &Cell, progress: &mut dyn FnMut(usize, usize)) -> Result<F
     }
     let wall = start.elapsed().as_secs_f64();
     let (samples, frames) = simulation.into_logs();
-    let recording = samples
-        .into_recording()
-        .map_err(|error| match (error, &stop) {
-            (RecordingError::Empty, Some(stop)) => AppError::StoppedAtOnce(stop.clone()),
-            (error, _) => error.into(),
-        })?;
+    let recording = samples.into_recording()?;
     let mut summary = summarise(&recording, &limits(cell)).map_err(|source| AppError::Metrics {
         file: cell.scenario.path.display().to_string(),
         source,

@@ -4,12 +4,15 @@ use std::path::PathBuf;
 
 use crate::arm::urdf::ArmError;
 use crate::path::PlanError;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, ScenarioError};
 use crate::workpiece::WorkpieceError;
 
 /// A cell that is refused before anything moves.
 #[derive(Debug, thiserror::Error)]
 pub enum CellError {
+    /// A value of the scenario that only the cell as a whole can judge.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
     /// The arm's file.
     #[error(transparent)]
     Arm(#[from] ArmError),
@@ -82,8 +85,8 @@ pub enum CellError {
         /// What stands in the way.
         source: Box<PlanError>,
     },
-    /// The supply cannot give the force.
-    #[error("{}: `process.force_n` is {force} N, which needs {:.2} bar gauge at the regulator at {:.1} mm along the edge; the supply gives 0 to {:.2} bar, expected {:.1} to {:.1} N there",
+    /// The supply cannot give the force, or the command's way not the set pressure.
+    #[error("{}: `process.force_n` is {force} N, which needs {:.2} bar gauge at the regulator at {:.1} mm along the edge; {giver} 0 to {:.2} bar, expected {:.1} to {:.1} N there",
         file.display(), needed / 1e5, 1e3 * edge_length, supply / 1e5, attainable[0].max(0.0), attainable[1])]
     Supply {
         /// Scenario file.
@@ -94,8 +97,10 @@ pub enum CellError {
         edge_length: f64,
         /// Pressure needed, gauge [Pa].
         needed: f64,
-        /// Pressure of the supply, gauge [Pa].
+        /// Largest set pressure, gauge [Pa].
         supply: f64,
+        /// What limits it.
+        giver: &'static str,
         /// Contact forces at no and at full pressure [N].
         attainable: [f64; 2],
     },

@@ -11,11 +11,13 @@ pub use part::Part;
 
 use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
+use crate::control::force::ForceController;
 use crate::device::{Device, PressureMap};
 use crate::path::plan::PlanRequest;
 use crate::path::profile::MotionLimits;
 use crate::path::{Plan, ToolPath};
-use crate::scenario::Scenario;
+use crate::physics::push_only::PushOnly;
+use crate::scenario::{Scenario, ScenarioError, attainable_set_pressure};
 
 /// A cell, ready to run.
 pub struct Cell {
@@ -27,6 +29,8 @@ pub struct Cell {
     pub arm_with_slide: Chain,
     /// The device.
     pub device: Device,
+    /// What sets the regulator's pressure, as it is at the start.
+    pub controller: ForceController,
     /// Part, edge and burr.
     pub part: Part,
     /// The job.
@@ -53,6 +57,7 @@ impl Cell {
         )
         .map_err(|error| CellError::plan(&scenario, error))?;
         check_supply(&scenario, &tool_path)?;
+        let controller = controller(&scenario)?;
         let plan = Plan::new(&plan_request(
             &scenario,
             &arm.chain,
@@ -66,6 +71,7 @@ impl Cell {
             arm,
             arm_with_slide,
             device,
+            controller,
             part,
             plan,
             notes,
@@ -185,17 +191,33 @@ fn plan_request<'a>(
     }
 }
 
+/// The controller against the contact as the slide feels it: of the normal's stiffness the share along the axis, twice.
+fn controller(scenario: &Scenario) -> Result<ForceController, ScenarioError> {
+    let share = scenario.process.lean.cos().powi(2);
+    ForceController::of_scenario(
+        &scenario.controller,
+        &scenario.device.parameters,
+        &scenario.sensing,
+        Some(PushOnly {
+            stiffness: share * scenario.contact.stiffness,
+            damping: share * scenario.contact.damping,
+        }),
+        scenario.simulation.step,
+    )
+}
+
 /// The supply must give the force wherever the wrist turns, and gravity alone must not press harder than asked for.
 fn check_supply(scenario: &Scenario, tool_path: &ToolPath) -> Result<(), CellError> {
     let map = PressureMap::new(&scenario.device.parameters);
     let axial = scenario.process.force * scenario.process.lean.cos();
+    let device = &scenario.device.parameters;
+    let (supply, giver) = attainable_set_pressure(device, &scenario.sensing.command);
     let length = tool_path.length();
     let count = (length / 5e-3).ceil().max(1.0) as usize;
     for i in 0..=count {
         let station = tool_path.at(length * i as f64 / count as f64);
         let gravity = scenario.simulation.gravity.dot(station.axis);
         let needed = map.unlimited(axial, gravity);
-        let supply = scenario.device.parameters.regulator.supply;
         if needed > supply || needed < 0.0 {
             return Err(CellError::Supply {
                 file: scenario.path.clone(),
@@ -203,6 +225,7 @@ fn check_supply(scenario: &Scenario, tool_path: &ToolPath) -> Result<(), CellErr
                 edge_length: station.edge_length,
                 needed,
                 supply,
+                giver,
                 attainable: [map.force(0.0, gravity), map.force(supply, gravity)]
                     .map(|force| force / scenario.process.lean.cos()),
             });

@@ -1,4 +1,5 @@
-//! Time integration: classical Runge-Kutta of order four on the air and the piston, in sub-steps that the stiffest part allows.
+//! Time integration: classical Runge-Kutta of order four on the air and the piston, in sub-steps that the stiffest part allows; a line between
+//! regulator and valve is taken implicitly (`line_step`).
 //!
 //! The state is the air's mass (and energy), so that no air is lost however coarse the step. The regulator is solved exactly and known at every
 //! stage. Whatever makes the law not smooth - a contact or a stop made or left, the seals' reversal, a set pressure that arrives - is met where it
@@ -25,17 +26,17 @@ const MOST_EVENTS: usize = 6;
 
 /// What is integrated.
 #[derive(Debug, Clone, Copy)]
-struct Flow {
-    air: AirState,
+pub(super) struct Flow {
+    pub(super) air: AirState,
     ledger: EnergyLedger,
-    motion: PistonMotion,
+    pub(super) motion: PistonMotion,
     /// Impulse of the gas on the piston since the start of the step [N s].
     impulse: f64,
 }
 
 impl Flow {
     #[inline(always)]
-    fn after(&self, rates: &Self, time: f64, ledger: bool) -> Self {
+    pub(super) fn after(&self, rates: &Self, time: f64, ledger: bool) -> Self {
         Self {
             air: self.air.after(&rates.air, time),
             ledger: if ledger {
@@ -54,7 +55,7 @@ impl Flow {
 
 /// What holds over a sub-step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Mode {
+pub(super) struct Mode {
     touching: bool,
     stop: i8,
     /// The end cushion that is being pressed.
@@ -64,13 +65,13 @@ struct Mode {
 }
 
 /// A sub-step's surroundings.
-struct Leg<'a, C> {
-    device: &'a Device,
+pub(super) struct Leg<'a, C> {
+    pub(super) device: &'a Device,
     carrier: &'a C,
-    valve: ValvePosition,
-    course: OutletCourse,
+    pub(super) valve: ValvePosition,
+    pub(super) course: OutletCourse,
     /// Start of the course in the step [s].
-    course_start: f64,
+    pub(super) course_start: f64,
     /// Deflection of the seals at the start of the sub-step [m].
     deflection: f64,
 }
@@ -91,7 +92,7 @@ impl Device {
         let delay = self.parameters.switching_delay;
         state.spool.command(state.valve, delay);
         let longest = (dt / substeps as f64)
-            .min(self.longest_substep(carrier, *motion, dt))
+            .min(self.longest_substep(carrier, state, *motion, dt))
             .max(dt / MOST_SUBSTEPS);
         let mut flow = Flow {
             air: state.air,
@@ -138,12 +139,22 @@ impl Device {
         flow.impulse
     }
 
-    fn longest_substep<C: Carrier>(&self, carrier: &C, motion: PistonMotion, dt: f64) -> f64 {
-        let air = AIR_LIMIT / self.air_rate(motion, dt);
+    fn longest_substep<C: Carrier>(
+        &self,
+        carrier: &C,
+        state: &DeviceState,
+        motion: PistonMotion,
+        dt: f64,
+    ) -> f64 {
+        let volumes = self.smallest_volumes(motion, dt);
+        let air = (AIR_LIMIT / self.air_rate(volumes)).min(self.line_substep);
         if !C::MOVES {
             return air;
         }
-        let mechanical = self.piston_rates.within(carrier, motion, dt);
+        // What the valve may let in during the step.
+        let outlet = self.parameters.gas.atmosphere + state.regulator.outlet;
+        let spring = self.spring_rate(&state.air, volumes, outlet);
+        let mechanical = spring.max(self.piston_rates.within(carrier, motion, dt));
         air.min(MECHANICAL_LIMIT / mechanical)
     }
 }
@@ -216,6 +227,9 @@ impl<C: Carrier> Leg<'_, C> {
 
     /// One Runge-Kutta step.
     fn step<const LEDGER: bool>(&self, start: &Flow, time: f64, h: f64, mode: Mode) -> Flow {
+        if let Some(hose) = &self.device.parameters.hose {
+            return self.line_step::<LEDGER>(hose, start, time, h, mode);
+        }
         let outlet = |t: f64| self.course.at(t - self.course_start);
         let (first, middle, last) = (outlet(time), outlet(time + 0.5 * h), outlet(time + h));
         let rates = |flow: &Flow, t: f64, outlet: f64| {
@@ -233,7 +247,7 @@ impl<C: Carrier> Leg<'_, C> {
     }
 
     /// Rates of everything; `substep_stroke` [m] is where the sub-step began, with the seals at `self.deflection`.
-    fn rates<const LEDGER: bool>(
+    pub(super) fn rates<const LEDGER: bool>(
         &self,
         flow: &Flow,
         substep_stroke: f64,
@@ -270,15 +284,17 @@ impl<C: Carrier> Leg<'_, C> {
             let force = gas_force - seal + stop + cushion + axial + carrier;
             rates.motion.speed = force / parameters.moving_mass;
             if LEDGER {
-                let rod = atmosphere * device.areas.rod() * motion.speed;
-                rates.ledger.atmosphere_work = rod;
-                rates.ledger.chamber_work = gas_force * motion.speed + rod;
                 rates.ledger.seal_work = seal * motion.speed;
                 rates.ledger.stop_work = -stop * motion.speed;
                 rates.ledger.cushion_work = -cushion * motion.speed;
                 rates.ledger.axial_work = axial * motion.speed;
                 rates.ledger.carrier_work = carrier * motion.speed;
             }
+        }
+        if LEDGER {
+            let rod = atmosphere * device.areas.rod() * motion.speed;
+            rates.ledger.atmosphere_work = rod;
+            rates.ledger.chamber_work = gas_force * motion.speed + rod;
         }
         rates
     }

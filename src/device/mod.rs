@@ -7,6 +7,7 @@
 mod carrier;
 mod integrate;
 mod leaks;
+mod line_step;
 mod parameters;
 mod piston;
 mod pneumatics;

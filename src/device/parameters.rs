@@ -114,6 +114,14 @@ impl DeviceParameters {
         ]
     }
 
+    /// Largest exponent n with which the air in the chambers follows p V^n [1].
+    pub(super) fn stiffest_exponent(&self) -> f64 {
+        match self.gas_process {
+            GasProcess::Isothermal => 1.0,
+            GasProcess::WallHeat { .. } => self.gas.heat_capacity_ratio,
+        }
+    }
+
     /// Orifices of the valve with their discharge coefficient.
     pub fn valve(&self) -> ValveParameters {
         ValveParameters {

@@ -4,7 +4,7 @@ use super::carrier::{Foretold, PistonMotion};
 use super::leaks::LeakFlows;
 use super::rates::PistonRates;
 use super::state::{AirState, DeviceState, EnergyLedger};
-use super::{Carrier, DeviceParameters};
+use super::{Carrier, DeviceParameters, line_step};
 use crate::physics::chamber::Chamber;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::orifice::FlowFunction;
@@ -33,13 +33,15 @@ pub struct Device {
     pub(super) flow: FlowFunction,
     pub(super) chambers: [Chamber; 2],
     pub(super) areas: PistonAreas,
-    valve: ValveParameters,
+    pub(super) valve: ValveParameters,
     /// How fast its piston swings.
     pub(super) piston_rates: PistonRates,
     /// How fast a volume comes to the pressure beside it, times that volume [m3/s].
     chamber_rate_volume: f64,
-    /// How fast line and reservoir do [1/s].
-    line_rate: f64,
+    /// Longest sub-step that a line, with the reservoir before it, is taken in [s].
+    pub(super) line_substep: f64,
+    /// How fast a reservoir without a line is drawn from or filled [1/s].
+    reservoir_rate: f64,
 }
 
 /// Rates of the air and, if asked for, of its energy, with the chamber pressures [Pa absolute] that they belong to.
@@ -57,30 +59,24 @@ impl Device {
         let valve = parameters.valve();
         let rt = gas.specific_gas_constant * gas.temperature;
         let rate_volume = |conductance: f64| conductance * rt.sqrt() * flow.laminar_slope();
-        let adiabatic = match parameters.gas_process {
-            GasProcess::Isothermal => 1.0,
-            GasProcess::WallHeat { .. } => gas.heat_capacity_ratio,
-        };
         let leakage = &parameters.leakage;
         // A leak between the chambers works on both.
         let leaks =
             parameters.discharge_coefficient * (2.0 * leakage.cross_piston + leakage.external);
         let port = valve.supply_conductance.max(valve.exhaust_conductance);
-        let before_valve = match &parameters.hose {
-            None => rate_volume(valve.supply_conductance),
-            Some(hose) => rt / hose.resistance,
-        };
-        let reservoir_rate = parameters.supply_reservoir.map_or(0.0, |reservoir| {
-            reservoir.rate(gas) + before_valve / reservoir.volume
-        });
         Self {
             chambers: parameters.chambers(),
             areas: parameters.areas(),
             piston_rates: PistonRates::new(&parameters),
-            chamber_rate_volume: adiabatic * rate_volume(port + leaks),
-            line_rate: parameters.hose.map_or(0.0, |hose| {
-                (rate_volume(valve.supply_conductance) + rt / hose.resistance) / hose.volume
-            }) + reservoir_rate,
+            chamber_rate_volume: parameters.stiffest_exponent() * rate_volume(port + leaks),
+            reservoir_rate: match (&parameters.supply_reservoir, &parameters.hose) {
+                (Some(reservoir), None) => {
+                    reservoir.rate(gas) + rate_volume(valve.supply_conductance) / reservoir.volume
+                }
+                // With a line it is implicit.
+                _ => 0.0,
+            },
+            line_substep: line_step::longest(&parameters, rate_volume(valve.supply_conductance)),
             flow,
             valve,
             parameters,
@@ -181,7 +177,7 @@ impl Device {
         self.drag_seals(state, motion);
         let mut moved = motion;
         let impulse =
-            self.integrate::<_, false>(state, &mut moved, set_pressure, &Foretold, dt, substeps);
+            self.integrate::<_, true>(state, &mut moved, set_pressure, &Foretold, dt, substeps);
         let seals = self.seals_over([(&state.air, motion.stroke + motion.speed * dt)]);
         let deflection =
             seals.deflection_after(state.seal_deflection, motion.speed * dt, motion.speed);
@@ -190,13 +186,23 @@ impl Device {
             _ => self.parameters.end_stop.damping,
         };
         let cushion_damping = self.cushion_damping(self.cushion_at(motion), motion.stroke);
-        let seal_stiffness = seals.tangent_stiffness(deflection, motion.speed);
+        let travel = motion.speed * dt;
+        let (stop, cushion) = (self.stop_force(motion), self.cushion_force(motion));
+        let axial = self.axial_force(motion.stroke + travel);
+        let seal = seals.force(deflection, motion.speed);
+        let besides_gas = stop + cushion + axial - seal;
+        let ledger = &mut state.ledger;
+        ledger.stop_work -= stop * travel;
+        ledger.cushion_work -= cushion * travel;
+        ledger.axial_work += axial * travel;
+        ledger.seal_work += seal * travel;
+        // Who holds the piston at its speed takes all that the device does to it.
+        ledger.carrier_work -= impulse * motion.speed + besides_gas * travel;
         DeviceForce {
-            force: impulse / dt + self.stop_force(motion) - seals.force(deflection, motion.speed)
-                + self.cushion_force(motion)
-                + self.axial_force(motion.stroke + motion.speed * dt),
+            force: impulse / dt + besides_gas,
             damping: stop_damping + cushion_damping + seals.viscous,
-            stiffness: seal_stiffness + self.parameters.axial_load.return_stiffness,
+            stiffness: seals.tangent_stiffness(deflection, motion.speed)
+                + self.parameters.axial_load.return_stiffness,
         }
     }
 
@@ -379,14 +385,27 @@ impl Device {
         }
     }
 
+    /// The smaller volume of each chamber at both ends of a step [m3], if the piston keeps its speed.
+    pub(super) fn smallest_volumes(&self, motion: PistonMotion, dt: f64) -> [f64; 2] {
+        let end = motion.stroke + motion.speed * dt;
+        self.chambers
+            .map(|chamber| chamber.volume(motion.stroke).min(chamber.volume(end)))
+    }
+
+    /// Natural frequency of the piston on its two air springs [rad/s], the chambers at no less than a pressure [Pa absolute]:
+    /// sqrt(sum of n p A^2/V over M), n the exponent of the gas's process.
+    pub(super) fn spring_rate(&self, air: &AirState, volumes: [f64; 2], least: f64) -> f64 {
+        let exponent = self.parameters.stiffest_exponent();
+        let pressures = self.pressures_of(air, volumes);
+        let stiffness = |i: usize| {
+            exponent * pressures[i].max(least) * self.chambers[i].area.powi(2) / volumes[i]
+        };
+        ((stiffness(0) + stiffness(1)) / self.parameters.moving_mass).sqrt()
+    }
+
     /// How fast the smallest volume of a step comes to the pressure beside it [1/s].
-    pub(super) fn air_rate(&self, motion: PistonMotion, dt: f64) -> f64 {
-        let ends = [motion.stroke, motion.stroke + motion.speed * dt];
-        let volumes = self
-            .chambers
-            .iter()
-            .flat_map(|chamber| ends.map(|stroke| chamber.volume(stroke)));
-        let smallest = volumes.fold(f64::INFINITY, f64::min);
+    pub(super) fn air_rate(&self, volumes: [f64; 2]) -> f64 {
+        let smallest = volumes[0].min(volumes[1]);
         let gas = &self.parameters.gas;
         let wall = match self.parameters.gas_process {
             GasProcess::Isothermal => 0.0,
@@ -394,7 +413,7 @@ impl Device {
                 conductance / (gas.mass(gas.atmosphere, smallest) * gas.specific_heat_volume())
             }
         };
-        self.chamber_rate_volume / smallest + self.line_rate + wall
+        self.chamber_rate_volume / smallest + self.reservoir_rate + wall
     }
 }
 

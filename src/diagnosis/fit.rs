@@ -252,7 +252,6 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
                 }
                 damping *= 10.0;
             }
-            if std::env::var("T").is_ok() { eprintln!("    it {forgiven} {guided} {bounded} limit {:.1} before {before:.0} gain {gain:.2} damping {damping:.0e} {values:?}", weighing.limit); }
             if gain < LEAST_GAIN.max(least * before) {
                 break;
             }

@@ -12,10 +12,10 @@ pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<f64> {
         let n = measured.inputs.time.len();
         let force = &prediction.residuals[at + 2 * n..at + 3 * n];
         at += 4 * n;
-        for i in 0..n {
-            if course.truth.contact_force[i] > 0.0 && force[i].is_finite() && measured.inputs.surface[i].is_finite() {
+        for (i, &force) in force.iter().enumerate() {
+            if course.truth.contact_force[i] > 0.0 && force.is_finite() && measured.inputs.surface[i].is_finite() {
                 times.push(measured.inputs.time[i]);
-                left.push(force[i].clamp(-20.0, 20.0));
+                left.push(force.clamp(-20.0, 20.0));
             }
         }
     }

@@ -26,6 +26,8 @@ fn wall(p: &PlantParameters) -> f64 { match p.device.gas_process { GasProcess::W
 const RISE: Quantity = quantity!("rise_pa_per_s", p => p.device.regulator.rate_limit.rise);
 const FALL: Quantity = quantity!("fall_pa_per_s", p => p.device.regulator.rate_limit.fall);
 fn oscillator(p: &PlantParameters) -> SecondOrder { p.device.regulator.second_order.unwrap_or(SecondOrder { natural_frequency: 1.0 / p.device.regulator.time_constant, damping_ratio: 1.0 }) }
+/// Volume [m3] and resistance [Pa s/kg] of the line, at its smallest flows; where there is none, of one to begin with.
+fn line(p: &PlantParameters) -> (f64, f64) { p.device.hose.map_or((1e-5, 1e8), |h| (h.volume, h.resistance_at_rest(p.device.gas.atmosphere))) }
 fn reservoir(p: &PlantParameters) -> SupplyReservoir { p.device.supply_reservoir.unwrap_or_else(|| SupplyReservoir::new(1e-3, 1e-3)) }
 const FREQUENCY: Quantity = Quantity { name: "natural_frequency_rad_per_s", get: |p| oscillator(p).natural_frequency, set: |p, v| p.device.regulator.second_order = Some(SecondOrder { natural_frequency: v, ..oscillator(p) }) };
 const DAMPING_RATIO: Quantity = Quantity { name: "damping_ratio", get: |p| oscillator(p).damping_ratio, set: |p, v| p.device.regulator.second_order = Some(SecondOrder { damping_ratio: v, ..oscillator(p) }) };
@@ -97,8 +99,8 @@ pub static CATALOGUE: &[Effect] = &[
         starts: |c| { let a = c.plant.device.dead_volume; [0.35, 0.55, 0.8, 1.25, 1.8, 3.0].iter().map(|f| vec![f * a]).collect() } },
     Effect { name: "hose_volume", subsystem: Subsystem::Chambers, group: None,
         parameters: |_| vec![
-            reported(Quantity { name: "volume_m3", get: |p| p.device.hose.map_or(0.0, |h| h.volume), set: |p, v| p.device.hose = Some(Hose { volume: v, ..p.device.hose.unwrap_or(Hose { volume: v, resistance: 1e8 }) }) }, Logarithmic, [1e-6, 2e-3]),
-            reported(Quantity { name: "resistance_pa_s_per_kg", get: |p| p.device.hose.map_or(0.0, |h| h.resistance), set: |p, v| p.device.hose = Some(Hose { resistance: v, ..p.device.hose.unwrap_or(Hose { volume: 1e-5, resistance: v }) }) }, Logarithmic, [1e6, 5e9])],
+            reported(Quantity { name: "volume_m3", get: |p| p.device.hose.map_or(0.0, |h| h.volume), set: |p, v| p.device.hose = Some(Hose::lumped(v, line(p).1)) }, Logarithmic, [1e-6, 2e-3]),
+            reported(Quantity { name: "resistance_pa_s_per_kg", get: |p| p.device.hose.map_or(0.0, |_| line(p).1), set: |p, v| p.device.hose = Some(Hose::lumped(line(p).0, v)) }, Logarithmic, [1e6, 5e9])],
         starts: |_| vec![vec![2e-5, 3e7], vec![5e-5, 5e7], vec![5e-5, 3e8], vec![1.5e-4, 5e7], vec![1.5e-4, 3e8], vec![4e-4, 1e8]] },
     Effect { name: "transport_delay", subsystem: Subsystem::Regulator, group: None,
         parameters: |_| vec![reported(quantity!("delay_s", p => p.device.regulator.dead_time), Logarithmic, [5e-4, 2.0])],

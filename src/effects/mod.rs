@@ -2,8 +2,10 @@
 
 mod catalogue;
 mod effect;
+mod meaning;
 mod quantity;
 
 pub use catalogue::CATALOGUE;
 pub use effect::{Clues, Effect, Parameter, Subsystem};
+pub use meaning::meaning;
 pub use quantity::{Coordinate, Quantity};

@@ -5,6 +5,7 @@
 pub mod axial_load;
 pub mod chamber;
 pub mod end_cushioning;
+pub mod flow_slope;
 pub mod gas;
 pub mod gas_process;
 pub mod hose;

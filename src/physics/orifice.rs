@@ -13,6 +13,7 @@
 //! Near u = 1 eq. (10) has infinite slope. Above `LAMINAR_RATIO` the flow is laminar and taken linear in the pressure difference, as Simscape
 //! and MapleSim do (their ratio is 0.995 to 0.999); it is closer to 1 here, so that the paper's equation holds nearly everywhere.
 
+use super::flow_slope::FlowSlope;
 use super::gas::Gas;
 use super::subsonic::Subsonic;
 
@@ -84,6 +85,35 @@ impl FlowFunction {
             * self.inverse_sqrt_rt
             * self.value(downstream / upstream)
     }
+
+    /// That mass flow with its slope over `from`.
+    pub fn flow_slope(&self, conductance_area: f64, from: f64, to: f64) -> FlowSlope {
+        let per_pressure = conductance_area * self.inverse_sqrt_rt;
+        let outward = from >= to;
+        let (upstream, ratio) = if outward {
+            (from, to / from)
+        } else {
+            (to, from / to)
+        };
+        let (value, slope) = if ratio < self.critical_ratio {
+            (self.choked, 0.0)
+        } else if ratio > LAMINAR_RATIO {
+            (self.laminar_slope * (1.0 - ratio), -self.laminar_slope)
+        } else {
+            self.subsonic.value_slope(ratio)
+        };
+        if outward {
+            FlowSlope {
+                flow: per_pressure * upstream * value,
+                slope: per_pressure * (value - ratio * slope),
+            }
+        } else {
+            FlowSlope {
+                flow: -per_pressure * upstream * value,
+                slope: -per_pressure * slope,
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -121,5 +151,28 @@ mod tests {
         let forth = function.mass_flow(2e-6, 4e5, 3e5);
         assert!(forth > 0.0);
         assert_eq!(function.mass_flow(2e-6, 3e5, 4e5), -forth);
+    }
+
+    #[test]
+    fn the_slope_is_the_difference_quotient_of_the_flow() {
+        let function = FlowFunction::new(&Gas::default());
+        for (from, to) in [
+            (7e5, 1e5),
+            (3e5, 2e5),
+            (2e5, 1.9999e5),
+            (2e5, 3e5),
+            (2e5, 2.0001e5),
+            (1e5, 7e5),
+        ] {
+            let found = function.flow_slope(2e-6, from, to);
+            let flow = function.mass_flow(2e-6, from, to);
+            assert!((found.flow / flow - 1.0).abs() < 1e-14, "{from} {to}");
+            let at = |from: f64| function.mass_flow(2e-6, from, to);
+            let quotient = (at(from + 0.1) - at(from - 0.1)) / 0.2;
+            assert!(
+                (found.slope - quotient).abs() <= 1e-5 * found.slope,
+                "{from} {to}"
+            );
+        }
     }
 }

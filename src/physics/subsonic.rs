@@ -68,6 +68,19 @@ impl Subsonic {
         let eight = |i: usize| four(i) + four(i + 4) * t4;
         ((1.0 - ratio) * (eight(0) + eight(8) * t8)).sqrt()
     }
+
+    /// f [1] and df/du [1], at a pressure ratio above the critical one and below 1.
+    pub(super) fn value_slope(&self, ratio: f64) -> (f64, f64) {
+        let t = (ratio - self.middle) * self.inverse_half;
+        let (mut q, mut slope) = (0.0, 0.0);
+        for coefficient in self.coefficients.iter().rev() {
+            slope = slope * t + q;
+            q = q * t + coefficient;
+        }
+        let value = ((1.0 - ratio) * q).sqrt();
+        let bend = (1.0 - ratio) * slope * self.inverse_half - q;
+        (value, 0.5 * bend / value)
+    }
 }
 
 #[cfg(test)]

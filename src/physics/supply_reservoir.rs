@@ -9,10 +9,13 @@
 //! The compressor switches off over the last thousandth of the pressure instead of at once, so that the law is continuous; no drop that a
 //! device would notice depends on it. Leaves out: the drop along the pipe, and a compressor's hysteresis between loading and unloading.
 
+use super::flow_slope::FlowSlope;
 use super::gas::Gas;
 
 /// Share of the full pressure over which the compressor unloads [1].
 const UNLOADING: f64 = 1e-3;
+/// Evaluations at most when its pressure is sought.
+const MOST_TRIALS: usize = 60;
 
 /// Reservoir and compressor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +52,55 @@ impl SupplyReservoir {
     pub fn compressed(&self, pressure: f64) -> f64 {
         let below = 1.0 - pressure / self.full_pressure;
         self.compressor_flow * (below / UNLOADING).clamp(0.0, 1.0)
+    }
+
+    /// Pressure in it [Pa absolute] at the end of an implicit step: mass = held + time (compressed - drawn), with what comes back as relief left out.
+    /// `drawn` gives, for a pressure before what is fed, something of the feeder's own and the flow there with its slope, never falling; the
+    /// regulator lets through at most the pressure `regulated` [Pa absolute]. Returns the feeder's own with the pressure.
+    pub fn balance<T>(
+        &self,
+        gas: &Gas,
+        regulated: f64,
+        (held, time): (f64, f64),
+        drawn: impl Fn(f64) -> (T, FlowSlope),
+    ) -> (T, f64) {
+        let capacity = gas.mass(1.0, self.volume);
+        // Pressure after a flow was drawn, and that the compressor worked meanwhile.
+        let left = |flow: f64| {
+            let base = (held - time * flow.max(0.0)) / capacity;
+            let lift = time * self.compressor_flow / capacity;
+            let slope = lift / (UNLOADING * self.full_pressure);
+            let unloading = (base + lift / UNLOADING) / (1.0 + slope);
+            base.max(unloading.min(base + lift))
+        };
+        let (own, flow) = drawn(regulated);
+        let pressure = left(flow.flow);
+        if pressure >= regulated {
+            return (own, pressure);
+        }
+        let (mut low, mut high) = (pressure.max(0.0), regulated);
+        let mut trial = low.max(held / capacity).min(high);
+        for _ in 0..MOST_TRIALS {
+            let (_, flow) = drawn(trial);
+            let excess = trial - left(flow.flow);
+            if excess > 0.0 {
+                high = trial;
+            } else {
+                low = trial;
+            }
+            let slope = 1.0 + time / capacity * if flow.flow > 0.0 { flow.slope } else { 0.0 };
+            let newton = trial - excess / slope;
+            if (newton - trial).abs() <= 1e-12 * trial {
+                trial = newton;
+                break;
+            }
+            trial = if newton >= low && newton <= high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+        }
+        (drawn(trial).0, trial)
     }
 
     /// The fastest rate of its pressure [1/s]: that of the compressor as it unloads.

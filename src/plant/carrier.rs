@@ -2,7 +2,7 @@
 //!
 //!     M dv/dt = F_device + M g_a - F_contact
 
-use super::contact::{ContactParameters, Periodic};
+use super::contact::ContactParameters;
 use crate::device::{Carrier, PistonMotion};
 
 /// Weight and contact over one step, in which the robot's surface follows a cubic.
@@ -57,15 +57,9 @@ pub(super) fn hermite(h: f64, values: [f64; 2], slopes: [f64; 2]) -> [f64; 4] {
 impl ReplayCarrier<'_> {
     fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
         let [a, b, c, d] = self.surface;
-        let mut surface = a + time * (b + time * (c + time * d)) + self.contact.surface_offset;
-        let mut speed = b + time * (2.0 * c + 3.0 * time * d);
-        for periodic in [&self.contact.runout, &self.contact.waviness] {
-            if *periodic != Periodic::NONE {
-                let (deviation, rate) = periodic.at(self.start + time);
-                surface += deviation;
-                speed += rate;
-            }
-        }
+        let (deviation, rate) = self.contact.deviation(self.start + time);
+        let surface = a + time * (b + time * (c + time * d)) + deviation;
+        let speed = b + time * (2.0 * c + 3.0 * time * d) + rate;
         (motion.stroke - surface, motion.speed - speed)
     }
 
@@ -109,6 +103,18 @@ impl Carrier for ReplayCarrier<'_> {
 
     fn rate(&self) -> f64 {
         self.rate
+    }
+
+    fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
+        // What the cubic can move by in the step.
+        let [a, b, c, d] = self.surface;
+        let nearest =
+            a + self.contact.least_deviation() - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
+        if motion.stroke + reach < nearest {
+            0.0
+        } else {
+            self.rate
+        }
     }
 }
 

@@ -74,6 +74,24 @@ pub struct ContactParameters {
 }
 
 impl ContactParameters {
+    /// How far the surface stands beyond where the robot says [m] at a time [s], and the rate of that [m/s].
+    pub fn deviation(&self, time: f64) -> (f64, f64) {
+        let (mut deviation, mut rate) = (self.surface_offset, 0.0);
+        for periodic in [&self.runout, &self.waviness] {
+            if *periodic != Periodic::NONE {
+                let (more, its_rate) = periodic.at(time);
+                deviation += more;
+                rate += its_rate;
+            }
+        }
+        (deviation, rate)
+    }
+
+    /// The least that `deviation` can be at any time [m].
+    pub fn least_deviation(&self) -> f64 {
+        self.surface_offset - self.runout.amplitude() - self.waviness.amplitude()
+    }
+
     /// Force at a penetration [m] and its rate [m/s] as it holds while it pushes [N].
     pub fn pushing(&self, penetration: f64, rate: f64) -> f64 {
         let elastic = match self.law {
@@ -100,15 +118,21 @@ impl ContactParameters {
         }
     }
 
+    /// Stiffness [N/m] at a force [N].
+    pub fn stiffness_at(&self, force: f64) -> f64 {
+        match self.law {
+            ContactLaw::Linear { stiffness } => stiffness,
+            // dF/dd = 3/2 k^(2/3) F^(1/3)
+            ContactLaw::Hertz { stiffness } => 1.5 * (stiffness * stiffness * force).cbrt(),
+        }
+    }
+
     /// Fastest rate of a mass [kg] on it [1/s], under a force of the order of that of the device.
     pub fn rate(&self, mass: f64) -> f64 {
         /// A force that a deburring device does not exceed by much [N].
         const LARGE_FORCE: f64 = 600.0;
-        let stiffness = match self.law {
-            ContactLaw::Linear { stiffness } => stiffness,
-            // dF/dd = 3/2 k^(2/3) F^(1/3)
-            ContactLaw::Hertz { stiffness } => 1.5 * (stiffness * stiffness * LARGE_FORCE).cbrt(),
-        };
-        (stiffness / mass).sqrt().max(self.damping / mass)
+        (self.stiffness_at(LARGE_FORCE) / mass)
+            .sqrt()
+            .max(self.damping / mass)
     }
 }

@@ -99,7 +99,7 @@ impl Guide {
             let (x, p) = filtered[i];
             let (xp, pp) = predicted[i + 1];
             let determinant = pp[0] * pp[2] - pp[1] * pp[1];
-            if !(determinant > 0.0) {
+            if determinant <= 0.0 || determinant.is_nan() {
                 smooth[i] = x;
                 continue;
             }
@@ -141,17 +141,22 @@ impl Guide {
 
 #[cfg(test)]
 mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
     use super::*;
 
     #[test]
     fn a_smooth_motion_comes_back_from_noisy_readings() {
+        // From rest, as recordings begin.
         let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 4e-3).collect();
         let w = 6.0f64;
-        let noise = |i: usize| ((i * 7919 % 1000) as f64 / 500.0 - 1.0) * 1.7;
-        let stroke: Vec<f64> = time.iter().enumerate().map(|(i, t)| 0.02 * (w * t).sin() + 2e-5 * noise(i)).collect();
-        let acceleration: Vec<f64> = time.iter().enumerate().map(|(i, t)| -0.02 * w * w * (w * t).sin() + 0.15 * noise(i + 3)).collect();
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let noise: Vec<f64> = (0..1003).map(|_| random.random_range(-1.732..1.732)).collect();
+        let stroke: Vec<f64> = time.iter().enumerate().map(|(i, t)| 0.02 * (1.0 - (w * t).cos()) + 2e-5 * noise[i]).collect();
+        let acceleration: Vec<f64> = time.iter().enumerate().map(|(i, t)| 0.02 * w * w * (w * t).cos() + 0.15 * noise[i + 3]).collect();
         let guide = Guide::new(&time, &stroke, &acceleration, 2e-5, 0.15, |_| false);
-        let worst = (5..995).map(|i| (guide.speed[i] - 0.02 * w * (w * time[i]).cos()).abs()).fold(0.0, f64::max);
+        let worst = (5..995).map(|i| (guide.speed[i] - 0.02 * w * (w * time[i]).sin()).abs()).fold(0.0, f64::max);
         assert!(worst < 4e-3, "{worst}");
     }
 }

@@ -1,5 +1,7 @@
 //! What drives a rig in a recording: set pressure, valve, surface.
 
+use std::cmp::Ordering;
+
 /// Inputs, one of each per sample time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlantInputs {
@@ -66,7 +68,7 @@ impl PlantInputs {
         if expected < 2 {
             return Err(InputError::TooShort { found: expected });
         }
-        match (1..expected).find(|&i| !(self.time[i] > self.time[i - 1])) {
+        match (1..expected).find(|&i| self.time[i].partial_cmp(&self.time[i - 1]) != Some(Ordering::Greater)) {
             None => Ok(()),
             Some(index) => Err(InputError::Time {
                 index,

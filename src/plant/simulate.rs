@@ -179,14 +179,8 @@ impl Trajectory {
         let pressures = device.pressures(state, motion.stroke);
         let contact_force = carrier.contact_force(0.0, motion);
         let hold_force = carrier.hold_force(0.0, motion);
-        let force = device.gas_force(state, motion.stroke)
-            + device.seal_force(state, motion.speed)
-            + device.stop_force(motion)
-            + device.axial_force(motion.stroke)
-            + device.cushion_force(motion)
-            + carrier.weight
-            + hold_force
-            - contact_force;
+        let outside = carrier.weight + hold_force - contact_force;
+        let force = device.piston_force(state, motion) + outside;
         self.outlet.push(state.regulator.outlet);
         self.stroke.push(motion.stroke);
         self.speed.push(motion.speed);

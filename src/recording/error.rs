@@ -91,6 +91,32 @@ pub enum RecordingError {
         /// Why it could not be.
         cause: String,
     },
+    /// A line of a text file is not what a recording holds.
+    #[error("{}:{line}: column `{column}` is {found}, expected {expected}", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The column's name.
+        column: String,
+        /// What was found there.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+    /// A line of a text file has not as many fields as there are columns.
+    #[error("{}:{line}: {found} fields, expected {expected}, as many as the header names", path.display())]
+    Fields {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// Number of fields.
+        found: u64,
+        /// Number of columns.
+        expected: u64,
+    },
     /// A column of a file is not what a recording holds.
     #[error("cannot read {}: column `{column}` is {found}, expected {expected}", path.display())]
     Column {

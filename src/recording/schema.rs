@@ -72,6 +72,10 @@ pub const MEASURED_STROKE: &str = "measured_stroke";
 pub const MEASURED_ACCELERATION: &str = "measured_acceleration";
 /// Regulator outlet as its sensor reads it.
 pub const MEASURED_REGULATOR_PRESSURE: &str = "measured_regulator_pressure";
+/// Pressure that the regulator is told to hold, against the atmosphere.
+pub const SET_PRESSURE_GAUGE: &str = "set_pressure_gauge";
+/// Regulator outlet as its sensor reads it, against the atmosphere.
+pub const MEASURED_REGULATOR_PRESSURE_GAUGE: &str = "measured_regulator_pressure_gauge";
 /// Contact force estimated without a load cell.
 pub const ESTIMATED_FORCE: &str = "estimated_force";
 /// Standard deviation that the estimator gives it.
@@ -176,7 +180,7 @@ pub const SIGNALS: [SignalDefinition; 22] = [
 
 /// Signals that only a bench rig records, or sensors.
 #[rustfmt::skip]
-pub const BENCH_SIGNALS: [SignalDefinition; 11] = [
+pub const BENCH_SIGNALS: [SignalDefinition; 13] = [
     signal(SEAL_FORCE, Unit::Newton, Some(PlotGroup::ForceBalance), "seal force",
         "Force of the device's seals on its moving part, positive along extension."),
     signal(ACCELERATION, Unit::MetrePerSecondSquared, None, "acceleration",
@@ -195,10 +199,14 @@ pub const BENCH_SIGNALS: [SignalDefinition; 11] = [
         "Acceleration of the slide as the accelerometer reads it."),
     signal(MEASURED_REGULATOR_PRESSURE, Unit::Pascal, Some(PlotGroup::Pressure), "regulator, measured",
         "Absolute pressure at the regulator's outlet as its sensor reads it."),
+    signal(SET_PRESSURE_GAUGE, Unit::Pascal, None, "set, gauge",
+        "Gauge pressure that the regulator is told to hold, as a recording of a real rig has it."),
+    signal(MEASURED_REGULATOR_PRESSURE_GAUGE, Unit::Pascal, None, "regulator, measured, gauge",
+        "Gauge pressure at the regulator's outlet as its sensor reads it, as a recording of a real rig has it."),
     signal(ESTIMATED_FORCE, Unit::Newton, Some(PlotGroup::Force), "estimated",
         "Contact force estimated without a load cell, from regulator pressure, stroke and acceleration."),
     signal(ESTIMATED_FORCE_DEVIATION, Unit::Newton, None, "estimated, deviation",
-        "Standard deviation of the estimated contact force."),
+        "Half the 95 % band of the estimated contact force over 1.96: its standard deviation, less where one tolerance prevails."),
 ];
 
 /// A signal that every joint has.

@@ -19,7 +19,7 @@ pub enum Unit {
     Newton,
     /// Torque [N m].
     NewtonMetre,
-    /// Absolute pressure [Pa].
+    /// Pressure [Pa], absolute unless the quantity says that it is gauge.
     Pascal,
     /// Mass [kg].
     Kilogram,

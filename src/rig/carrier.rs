@@ -2,11 +2,11 @@
 //!
 //!     M dv/dt = F_device + M g_a - F_load - F_hand
 //!
-//! M moving mass [kg], g_a component of gravity along extension [m/s2], F_load push-only spring and damper on the load's surface [N].
+//! M moving mass [kg], g_a component of gravity along extension [m/s2], F_load push-only contact on the load's surface [N].
 //! Source paper, eq. (1), whose sign of g is that of a device that extends upwards.
 
 use crate::device::{Carrier, PistonMotion};
-use crate::physics::push_only::PushOnly;
+use crate::plant::ContactParameters;
 use crate::scenario::bench::{BenchScenario, LoadScenario};
 
 /// Load and other forces over one step, during which the surface's and the hand's courses are taken as parabolas.
@@ -14,7 +14,9 @@ use crate::scenario::bench::{BenchScenario, LoadScenario};
 pub struct BenchCarrier {
     mass: f64,
     weight: f64,
-    law: Option<PushOnly>,
+    contact: Option<ContactParameters>,
+    /// Start of the step [s].
+    start: f64,
     /// The surface: position [m], speed [m/s], acceleration [m/s2] at the start of the step.
     surface: [f64; 3],
     /// The hand's force [N] and its rate [N/s] and curvature [N/s2].
@@ -43,17 +45,17 @@ impl BenchCarrier {
     /// What acts on the piston from `time` [s] on.
     pub fn at(scenario: &BenchScenario, time: f64) -> Self {
         let mass = scenario.device.parameters.moving_mass;
-        let (law, surface) = match scenario.load {
+        let (contact, surface) = match scenario.load {
             LoadScenario::Free => (None, [f64::INFINITY, 0.0, 0.0]),
             LoadScenario::Contact {
                 position,
-                law,
+                contact,
                 motion,
             } => {
                 let moved = motion.map_or([0.0; 3], |m| {
                     swing(m.peak_to_peak, m.frequency, m.start, time)
                 });
-                (Some(law), [position - moved[0], -moved[1], -moved[2]])
+                (Some(contact), [position - moved[0], -moved[1], -moved[2]])
             }
         };
         let hand = scenario.hand.map_or([0.0; 3], |hand| {
@@ -62,7 +64,8 @@ impl BenchCarrier {
         Self {
             mass,
             weight: mass * scenario.gravity_along_extension,
-            law,
+            contact,
+            start: time,
             surface,
             hand,
         }
@@ -70,7 +73,8 @@ impl BenchCarrier {
 
     /// Where the surface stands along the stroke [m].
     pub fn surface(&self) -> f64 {
-        self.surface[0]
+        let deviation = self.contact.map_or(0.0, |c| c.deviation(self.start).0);
+        self.surface[0] + deviation
     }
 
     /// Force of the hand against extension [N].
@@ -78,18 +82,26 @@ impl BenchCarrier {
         self.hand[0]
     }
 
-    fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
+    fn penetration(
+        &self,
+        contact: &ContactParameters,
+        time: f64,
+        motion: PistonMotion,
+    ) -> (f64, f64) {
+        let (deviation, rate) = contact.deviation(self.start + time);
         let surface_speed = self.surface[1] + time * self.surface[2];
         (
-            motion.stroke - parabola(self.surface, time),
-            motion.speed - surface_speed,
+            motion.stroke - (parabola(self.surface, time) + deviation),
+            motion.speed - (surface_speed + rate),
         )
     }
 
     /// Force of the tool on the load [N].
     pub fn contact_force(&self, time: f64, motion: PistonMotion) -> f64 {
-        let (penetration, rate) = self.penetration(time, motion);
-        self.law.map_or(0.0, |law| law.force(penetration, rate))
+        self.contact.map_or(0.0, |contact| {
+            let (penetration, rate) = self.penetration(&contact, time, motion);
+            contact.force(penetration, rate)
+        })
     }
 }
 
@@ -97,10 +109,10 @@ impl Carrier for BenchCarrier {
     const MOVES: bool = true;
 
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
-        let load = match self.law {
-            Some(law) if touching => {
-                let (penetration, rate) = self.penetration(time, motion);
-                law.linear(penetration, rate)
+        let load = match &self.contact {
+            Some(contact) if touching => {
+                let (penetration, rate) = self.penetration(contact, time, motion);
+                contact.pushing(penetration, rate)
             }
             _ => 0.0,
         };
@@ -108,25 +120,27 @@ impl Carrier for BenchCarrier {
     }
 
     fn touches(&self, time: f64, motion: PistonMotion) -> bool {
-        let (penetration, rate) = self.penetration(time, motion);
-        self.law.is_some_and(|law| law.pushes(penetration, rate))
-    }
-
-    fn rate(&self) -> f64 {
-        self.law.map_or(0.0, |law| {
-            (law.stiffness / self.mass)
-                .sqrt()
-                .max(law.damping / self.mass)
+        self.contact.is_some_and(|contact| {
+            let (penetration, rate) = self.penetration(&contact, time, motion);
+            contact.pushes(penetration, rate)
         })
     }
 
+    fn rate(&self) -> f64 {
+        self.contact.map_or(0.0, |contact| contact.rate(self.mass))
+    }
+
     fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
+        let Some(contact) = &self.contact else {
+            return 0.0;
+        };
         let [surface, speed, acceleration] = self.surface;
-        let moved = dt * (speed.abs() + 0.5 * dt * acceleration.abs());
-        if motion.stroke + reach + moved < surface {
+        let nearest = surface + contact.least_deviation()
+            - dt * (speed.abs() + 0.5 * dt * acceleration.abs());
+        if motion.stroke + reach < nearest {
             0.0
         } else {
-            self.rate()
+            contact.rate(self.mass)
         }
     }
 }

@@ -4,6 +4,7 @@
 
 mod carrier;
 mod error;
+mod estimator;
 mod sample;
 mod simulation;
 

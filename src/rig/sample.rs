@@ -3,13 +3,14 @@
 use super::carrier::BenchCarrier;
 use super::simulation::{Rig, RigTruth};
 use crate::device::DeviceState;
+use crate::estimation::Estimate;
 use crate::physics::valve::ValvePosition;
 use crate::recording::schema;
 use crate::recording::{Channel, Recording, RecordingError};
 use crate::sensing::Readings;
 
 /// Channels of a bench recording, in the order of `RigLog::push`.
-const CHANNELS: [&str; 23] = [
+const CHANNELS: [&str; 25] = [
     schema::SET_PRESSURE,
     schema::REGULATOR_PRESSURE,
     schema::CHAMBER_1_PRESSURE,
@@ -33,6 +34,8 @@ const CHANNELS: [&str; 23] = [
     schema::MEASURED_STROKE,
     schema::MEASURED_ACCELERATION,
     schema::MEASURED_REGULATOR_PRESSURE,
+    schema::ESTIMATED_FORCE,
+    schema::ESTIMATED_FORCE_DEVIATION,
 ];
 
 /// What there is to record at a moment.
@@ -46,6 +49,8 @@ pub(super) struct RigSample<'a> {
     pub set_pressure: f64,
     /// Contact force asked for [N]; NaN where pressures are.
     pub desired_force: f64,
+    /// Contact force as the estimator has it, if there is one.
+    pub estimate: Option<Estimate>,
 }
 
 /// Samples by rows, until the run has ended.
@@ -103,6 +108,8 @@ impl RigLog {
             readings.stroke,
             readings.acceleration,
             atmosphere + readings.regulator_pressure,
+            sample.estimate.map_or(f64::NAN, |e| e.force),
+            sample.estimate.map_or(f64::NAN, |e| e.normal_deviation()),
         ]);
     }
 

@@ -2,12 +2,15 @@
 
 use super::carrier::BenchCarrier;
 use super::error::RigError;
+use super::estimator::RigEstimator;
 use super::sample::{RigLog, RigSample};
 use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
+use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
 use crate::recording::{Recording, RecordingError};
-use crate::scenario::bench::{BenchScenario, CommandScenario};
+use crate::scenario::ScenarioError;
+use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
 use crate::sensing::{Readings, SensorChain, Truth};
 
 /// A bench rig with its job: all that does not change during a run.
@@ -17,13 +20,41 @@ pub struct Rig {
     pub scenario: BenchScenario,
     /// The device.
     pub device: Device,
+    /// What answers forces with set pressures, as it is at the start.
+    pub controller: ForceController,
 }
 
 impl Rig {
     /// Sets up a rig.
-    pub fn new(scenario: BenchScenario) -> Self {
+    ///
+    /// # Errors
+    /// A controller whose loop would be unstable.
+    pub fn new(scenario: BenchScenario) -> Result<Self, ScenarioError> {
         let device = Device::new(scenario.device.parameters.clone());
-        Self { scenario, device }
+        // A controller sees the contact as it is at the largest force, where it is stiffest.
+        let largest = match &scenario.command {
+            CommandScenario::Force(steps) => steps.iter().map(|step| step.1).fold(0.0, f64::max),
+            CommandScenario::SetPressure(_) => 0.0,
+        };
+        let contact = match scenario.load {
+            LoadScenario::Free => None,
+            LoadScenario::Contact { contact, .. } => Some(PushOnly {
+                stiffness: contact.stiffness_at(largest),
+                damping: contact.damping,
+            }),
+        };
+        let controller = ForceController::of_scenario(
+            &scenario.controller,
+            &scenario.device.parameters,
+            &scenario.sensing,
+            contact,
+            scenario.step,
+        )?;
+        Ok(Self {
+            scenario,
+            device,
+            controller,
+        })
     }
 
     /// Runs the whole job. `progress` is told steps done and in all.
@@ -65,8 +96,11 @@ pub struct RigSimulation<'a> {
     device: DeviceState,
     motion: PistonMotion,
     controller: ForceController,
+    /// Set pressure that the controller gave last, held until its next period [Pa gauge].
+    answer: f64,
     sensors: SensorChain,
     readings: Readings,
+    estimator: Option<RigEstimator>,
     steps: usize,
     total_steps: usize,
     log: RigLog,
@@ -96,9 +130,11 @@ impl<'a> RigSimulation<'a> {
             rig,
             device: rig.device.at_rest(stroke, 0.0),
             motion,
-            controller: ForceController::pressure_map(parameters),
+            controller: rig.controller.clone(),
+            answer: 0.0,
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
+            estimator: scenario.estimator.as_ref().map(RigEstimator::new),
             steps: 0,
             total_steps,
             log: RigLog::new(total_steps + 1),
@@ -179,7 +215,13 @@ impl<'a> RigSimulation<'a> {
                 let Some(desired) = held(steps, time) else {
                     return 0.0;
                 };
-                self.controller.set_pressure(&ForceObservation {
+                if !self
+                    .steps
+                    .is_multiple_of(scenario.controller.steps(scenario.step))
+                {
+                    return self.answer;
+                }
+                self.answer = self.controller.set_pressure(&ForceObservation {
                     time,
                     desired_axial_force: desired,
                     gravity_along_axis: scenario.gravity_along_extension,
@@ -187,7 +229,8 @@ impl<'a> RigSimulation<'a> {
                     stroke: self.readings.stroke,
                     acceleration: self.readings.acceleration,
                     regulator_pressure: self.readings.regulator_pressure,
-                })
+                });
+                self.answer
             }
         }
     }
@@ -212,11 +255,16 @@ impl<'a> RigSimulation<'a> {
 
     fn sample(&mut self, set_pressure: f64) {
         let truth = self.truth();
+        let errors = &self.rig.scenario.sensor_errors;
         self.readings = self.sensors.measure(
             truth.time,
             &Truth {
-                force: truth.contact_force,
-                stroke: truth.motion.stroke,
+                force: errors.immediate_force_reading(
+                    truth.time,
+                    truth.contact_force,
+                    truth.acceleration,
+                ),
+                stroke: errors.stroke_gain * truth.motion.stroke,
                 acceleration: truth.acceleration,
                 regulator_pressure: truth.regulator_pressure,
             },
@@ -225,6 +273,10 @@ impl<'a> RigSimulation<'a> {
             CommandScenario::Force(steps) => held(steps, truth.time).unwrap_or(0.0),
             CommandScenario::SetPressure(_) => f64::NAN,
         };
+        let estimate = self
+            .estimator
+            .as_mut()
+            .and_then(|estimator| estimator.update(truth.time, &self.readings, self.device.valve));
         let carrier = BenchCarrier::at(&self.rig.scenario, truth.time);
         self.log.push(&RigSample {
             rig: self.rig,
@@ -234,6 +286,7 @@ impl<'a> RigSimulation<'a> {
             carrier: &carrier,
             set_pressure,
             desired_force: desired,
+            estimate,
         });
     }
 

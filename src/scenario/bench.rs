@@ -6,14 +6,18 @@ use super::bench_file::{
     BenchFile, BenchSimulationKeys, CommandKeys, HandKeys, LoadKeys, LoadKind, ValveKeys,
 };
 use super::check::Section;
+use super::controller::{ControllerScenario, ForceLaw, check_force, controller};
 use super::document::Document;
 use super::error::ScenarioError;
-use super::load::{device, expectations};
+use super::estimator::{EstimatorBase, estimator as set_up_estimator};
+use super::load::expectations;
+use super::rig_device::{BenchDevice, bench_device};
 use super::sections::bench_sections;
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
-use crate::physics::push_only::PushOnly;
+use crate::estimation::ContactForceEstimator;
 use crate::physics::valve::ValvePosition;
+use crate::plant::{ContactLaw, ContactParameters, SensorErrors};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
@@ -47,6 +51,12 @@ pub struct BenchScenario {
     pub seed: u64,
     /// What lies between controller and device.
     pub sensing: SensingParameters,
+    /// What the sensors of a rig file do to what they measure, ahead of that chain.
+    pub sensor_errors: SensorErrors,
+    /// What sets the regulator's pressure where forces are commanded.
+    pub controller: ControllerScenario,
+    /// Estimator of the contact force, set up as it believes noise and device to be.
+    pub estimator: Option<ContactForceEstimator>,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
 }
@@ -60,8 +70,8 @@ pub enum LoadScenario {
     Contact {
         /// Where it stands along the stroke, from the retracted end [m].
         position: f64,
-        /// Contact law.
-        law: PushOnly,
+        /// Contact, and where the surface really stands.
+        contact: ContactParameters,
         /// How it moves; not at all on a load cell.
         motion: Option<SurfaceMotion>,
     },
@@ -115,7 +125,12 @@ pub(super) fn from_document(
     let file: BenchFile = document.parse(&bench_sections())?;
     debug_assert_eq!(file.schema, super::file::SCHEMA);
     let section = |table: &str| Section::new(document, table);
-    let device = device(&section("device"), &file.device)?;
+    let BenchDevice {
+        device,
+        gravity_along_extension,
+        contact,
+        sensor_errors,
+    } = bench_device(&section("device"), &file.device)?;
     let bench = section("bench");
     let duration = bench.number("duration_s", file.bench.duration_s, 0.01..=3600.0)?;
     let start_stroke = bench.number(
@@ -136,28 +151,63 @@ pub(super) fn from_document(
     }
     let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
     let sensing = sensing(document, &file.sensing, step)?;
+    let gravity_along_extension = bench.number(
+        "gravity_along_extension_m_per_s2",
+        file.bench
+            .gravity_along_extension_m_per_s2
+            .unwrap_or(gravity_along_extension),
+        -30.0..=30.0,
+    )?;
+    let parameters = &device.parameters;
+    let check_force = |section: &Section<'_>, force: f64| {
+        let gravity = gravity_along_extension;
+        check_force(section, force, gravity, parameters, &sensing.command)
+    };
+    let command = commands(
+        document,
+        &file.command,
+        duration,
+        &sensing.command,
+        check_force,
+    )?;
+    let load = load(
+        &section("load"),
+        &file.load,
+        contact,
+        device.parameters.full_stroke,
+    )?;
+    let controller = controller(document, &file.controller, parameters, &sensing, step)?;
+    check_controller(&section("controller"), &controller, &command, &load)?;
+    let base = EstimatorBase {
+        device: &device.parameters,
+        sensing: &sensing,
+        gravity_along_extension,
+        start_stroke,
+        step,
+    };
+    let estimator = file.estimator.as_ref();
+    let estimator = estimator.map(|keys| set_up_estimator(document, keys, &base));
     Ok(BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
         duration,
-        gravity_along_extension: bench.number(
-            "gravity_along_extension_m_per_s2",
-            file.bench.gravity_along_extension_m_per_s2.unwrap_or(0.0),
-            -30.0..=30.0,
-        )?,
+        gravity_along_extension,
         start_stroke,
-        load: load(&section("load"), &file.load)?,
+        load,
         hand: file
             .hand
             .as_ref()
             .map(|keys| hand(&section("hand"), keys))
             .transpose()?,
-        command: commands(document, &file.command, duration, &sensing.command)?,
+        command,
         valve: valve(document, &file.valve, duration)?,
         step,
         substeps,
         seed,
+        estimator: estimator.transpose()?,
         sensing,
+        sensor_errors,
+        controller,
         expect: expectations(&section("expect"), &file.expect)?,
         device,
     })
@@ -178,7 +228,13 @@ fn simulation(
     ))
 }
 
-fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, ScenarioError> {
+/// What the tool meets; `contact` is that of the rig, of which the keys given change a part.
+fn load(
+    section: &Section<'_>,
+    keys: &LoadKeys,
+    mut contact: ContactParameters,
+    full_stroke: f64,
+) -> Result<LoadScenario, ScenarioError> {
     let given = [
         ("position_mm", keys.position_mm.is_some()),
         ("stiffness_n_per_m", keys.stiffness_n_per_m.is_some()),
@@ -205,19 +261,19 @@ fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, Scenario
     let required = |key: &str, value: Option<f64>| {
         value.ok_or_else(|| section.missing(key, "it to be given for this kind of load"))
     };
-    let position = required("position_mm", keys.position_mm)?;
-    let law = PushOnly {
-        stiffness: section.number(
-            "stiffness_n_per_m",
-            keys.stiffness_n_per_m.unwrap_or(1.5e5),
-            100.0..=1e9,
-        )?,
-        damping: section.number(
-            "damping_n_s_per_m",
-            keys.damping_n_s_per_m.unwrap_or(4e2),
-            0.0..=1e6,
-        )?,
-    };
+    let given = required("position_mm", keys.position_mm)?;
+    let position = section.number("position_mm", given, 0.0..=500.0)?;
+    if position > full_stroke {
+        let expected = format!("at most the device's stroke_mm, {} mm", full_stroke * 1e3);
+        return Err(section.refuse_number("position_mm", given, expected));
+    }
+    if let Some(stiffness) = keys.stiffness_n_per_m {
+        let stiffness = section.number("stiffness_n_per_m", stiffness, 100.0..=1e9)?;
+        contact.law = ContactLaw::Linear { stiffness };
+    }
+    if let Some(damping) = keys.damping_n_s_per_m {
+        contact.damping = section.number("damping_n_s_per_m", damping, 0.0..=1e6)?;
+    }
     let motion = if keys.kind == LoadKind::Surface {
         let peak_to_peak = required("peak_to_peak_mm", keys.peak_to_peak_mm)?;
         let frequency = required("frequency_hz", keys.frequency_hz)?;
@@ -230,8 +286,8 @@ fn load(section: &Section<'_>, keys: &LoadKeys) -> Result<LoadScenario, Scenario
         None
     };
     Ok(LoadScenario::Contact {
-        position: section.number("position_mm", position, -100.0..=600.0)?,
-        law,
+        position,
+        contact,
         motion,
     })
 }
@@ -271,6 +327,7 @@ fn commands(
     keys: &[CommandKeys],
     duration: f64,
     chain: &CommandChain,
+    check_force: impl Fn(&Section<'_>, f64) -> Result<(), ScenarioError>,
 ) -> Result<CommandScenario, ScenarioError> {
     let times = in_order(document, "command", keys.iter().map(|k| k.at_s), duration)?;
     let by_force = keys.first().is_some_and(|first| first.force_n.is_some());
@@ -284,12 +341,20 @@ fn commands(
                 check_set_pressure(&section, key, wanted, chain)?;
                 wanted
             }
-            (true, None, Some(force)) => section.number("force_n", force, 0.0..=5000.0)?,
-            (false, _, Some(_)) => {
+            (true, None, Some(force)) => {
+                let wanted = section.number("force_n", force, 0.0..=5000.0)?;
+                check_force(&section, wanted)?;
+                wanted
+            }
+            (_, Some(_), Some(_)) => {
+                let reason = "a command gives a set pressure or a force".to_owned();
+                return Err(section.misplaced("force_n", reason));
+            }
+            (false, None, Some(_)) => {
                 let reason = "the first command gives a set pressure, so all of them do".to_owned();
                 return Err(section.misplaced("force_n", reason));
             }
-            (true, Some(_), _) => {
+            (true, Some(_), None) => {
                 let reason = "the first command gives a force, so all of them do".to_owned();
                 return Err(section.misplaced("set_pressure_bar_gauge", reason));
             }
@@ -307,6 +372,24 @@ fn commands(
     } else {
         CommandScenario::SetPressure(steps)
     })
+}
+
+/// A controller that has nothing to do, or nothing to press on, is refused.
+fn check_controller(
+    section: &Section<'_>,
+    controller: &ControllerScenario,
+    command: &CommandScenario,
+    load: &LoadScenario,
+) -> Result<(), ScenarioError> {
+    if let (CommandScenario::SetPressure(_), Some(key)) = (command, section.given().next()) {
+        let reason = "no [[command]] gives a force, so there is nothing to control".to_owned();
+        return Err(section.misplaced(key, reason));
+    }
+    if *load == LoadScenario::Free && controller.law != ForceLaw::OpenLoop {
+        let reason = "nothing is met when load.kind = \"free\", so there is no force to feed back";
+        return Err(section.misplaced("kind", reason.to_owned()));
+    }
+    Ok(())
 }
 
 fn valve(

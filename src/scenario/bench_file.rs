@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use super::controller::ControllerKeys;
+use super::estimator::EstimatorKeys;
 use super::file::{BoundKeys, DeviceKeys};
 use super::sensing::keys::SensingKeys;
 
@@ -45,6 +47,9 @@ pub(super) struct BenchFile {
     pub simulation: BenchSimulationKeys,
     #[serde(default)]
     pub sensing: SensingKeys,
+    pub estimator: Option<EstimatorKeys>,
+    #[serde(default)]
+    pub controller: ControllerKeys,
     #[serde(default)]
     pub expect: BTreeMap<String, BoundKeys>,
 }

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Place, ScenarioError};
+use super::rig_file::NUMBER_OR_TABLE;
 use super::suggestion::{Sections, advice};
 use super::units::Unit;
 
@@ -221,6 +222,7 @@ fn expected_value(expected: &str, key: &str) -> String {
     };
     match expected {
         "f64" => number("a number"),
+        NUMBER_OR_TABLE => number(expected),
         "u32" | "u64" | "usize" => number("a whole number, 0 or more"),
         "a boolean" => "true or false".to_owned(),
         "a string" | "path string" => "a text in quotes".to_owned(),

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
+use super::controller::ControllerKeys;
 use super::sensing::keys::SensingKeys;
 
 /// Version of both formats.
@@ -30,6 +31,8 @@ pub(super) struct ScenarioFile {
     pub simulation: SimulationKeys,
     #[serde(default)]
     pub sensing: SensingKeys,
+    #[serde(default)]
+    pub controller: ControllerKeys,
     #[serde(default)]
     pub expect: BTreeMap<String, BoundKeys>,
 }

@@ -8,10 +8,12 @@ use glam::DVec3;
 use super::bench::{self, BenchScenario};
 use super::bench_file::{Kind, KindOnly};
 use super::check::Section;
+use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
+use super::rig_device::is_rig;
 use super::sections::{bench_sections, scenario_sections};
 use super::sensing::sensing;
 use super::suggestion::Sections;
@@ -93,13 +95,26 @@ fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, Scena
     let contact = contact(&section("contact"), &file.contact)?;
     check_lock(&section("contact"), &file.contact, &device, &contact)?;
     let simulation = simulation(&section("simulation"), &file.simulation)?;
+    let sensing = sensing(document, &file.sensing, simulation.step)?;
+    let controller = controller(
+        document,
+        &file.controller,
+        &device.parameters,
+        &sensing,
+        simulation.step,
+    )?;
+    if device.locked && controller.law != ForceLaw::OpenLoop {
+        let reason = "the slide is clamped (device.locked), so that no pressure changes the force";
+        return Err(section("controller").misplaced("kind", reason.to_owned()));
+    }
     Ok(Scenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
         arm: arm(&section("arm"), &file.arm)?,
         workpiece: workpiece(&section("workpiece"), &file.workpiece)?,
         process: process(&section("process"), &file.process, &device)?,
-        sensing: sensing(document, &file.sensing, simulation.step)?,
+        sensing,
+        controller,
         simulation,
         expect: expectations(&section("expect"), &file.expect)?,
         device,
@@ -181,6 +196,11 @@ pub(super) fn device(
 ) -> Result<DeviceScenario, ScenarioError> {
     let overrides = Section::new(section.document(), "device.override");
     let model = section.file("model", &keys.model)?;
+    if is_rig(&model)? {
+        let found = format!("\"{}\", a rig file", keys.model.display());
+        let expected = "a device model file; a scenario of kind = \"bench\" takes a rig file";
+        return Err(section.refuse("model", found, expected.to_owned()));
+    }
     let mut device = load_with_overrides(&model, Some((overrides, &keys.overrides)))?;
     device.locked = keys.locked.unwrap_or(false);
     Ok(device)

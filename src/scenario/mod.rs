@@ -11,11 +11,15 @@ use crate::sensing::SensingParameters;
 pub mod bench;
 mod bench_file;
 pub(crate) mod check;
+pub mod controller;
 mod device;
 pub(crate) mod document;
 pub mod error;
+mod estimator;
 mod file;
 mod load;
+mod rig_device;
+pub mod rig_file;
 pub(crate) mod sections;
 mod sensing;
 pub(crate) mod suggestion;
@@ -25,6 +29,7 @@ pub(crate) mod units;
 mod workpiece;
 
 pub use bench::BenchScenario;
+pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};
 pub use device::load_device;
 pub use error::ScenarioError;
 pub use load::{load, load_any, load_bench};
@@ -60,6 +65,8 @@ pub struct Scenario {
     pub simulation: SimulationScenario,
     /// What lies between controller and device.
     pub sensing: SensingParameters,
+    /// What sets the regulator's pressure.
+    pub controller: ControllerScenario,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
 }

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
 use super::sensing::keys as sensing;
-use super::{bench_file, file};
+use super::{bench_file, controller, estimator, file};
 
 /// A table and its keys.
 type Table = (&'static str, &'static [&'static str]);
@@ -25,6 +25,7 @@ pub(crate) fn scenario_sections() -> Vec<Table> {
         ("contact", keys::<file::ContactKeys>()),
         ("process", keys::<file::ProcessKeys>()),
         ("simulation", keys::<file::SimulationKeys>()),
+        ("controller", keys::<controller::ControllerKeys>()),
         ("expect.*", keys::<file::BoundKeys>()),
     ];
     sections.extend(sensing_sections());
@@ -43,6 +44,8 @@ pub(crate) fn bench_sections() -> Vec<Table> {
         ("command", keys::<bench_file::CommandKeys>()),
         ("valve", keys::<bench_file::ValveKeys>()),
         ("simulation", keys::<bench_file::BenchSimulationKeys>()),
+        ("controller", keys::<controller::ControllerKeys>()),
+        ("estimator", keys::<estimator::EstimatorKeys>()),
         ("expect.*", keys::<file::BoundKeys>()),
     ];
     sections.extend(sensing_sections());

@@ -11,7 +11,9 @@ use keys::{Preset, SensingKeys, SensorKind};
 use stages::Sensor;
 
 pub(super) mod keys;
-mod stages;
+pub(super) mod stages;
+
+pub(super) use stages::white;
 
 /// `[sensing]` and the tables in it; `step` is the scenario's time step [s].
 pub(super) fn sensing(

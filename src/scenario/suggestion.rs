@@ -38,6 +38,11 @@ pub(crate) fn advice(key: &str, sections: &Sections) -> String {
             section => format!("`{name}` belongs to [{section}]"),
         };
     }
+    nearest(name, known)
+}
+
+/// Advice on a name that is none of the known ones.
+pub(crate) fn nearest(name: &str, known: &[&str]) -> String {
     let similarity = |right: &str| strsim::jaro_winkler(name, right);
     let nearest = known
         .iter()

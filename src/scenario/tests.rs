@@ -1,10 +1,13 @@
 //! Tests of reading a scenario: values, messages, the files shipped, and scenarios/README.md.
 
 mod bench;
+mod controller;
 mod device;
+mod estimator;
 mod messages;
 mod readme;
 mod refusals;
+mod rig_device;
 mod sensing;
 mod shipped;
 mod values;

@@ -23,7 +23,7 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 35] = [
+const UNITS: [Unit; 41] = [
     unit("_mv_per_v", "mV/V", Divide(1e3)),
     unit("_pa_s_per_kg", "Pa s/kg", Divide(1.0)),
     unit("_rad_per_s", "rad/s", Divide(1.0)),
@@ -32,17 +32,23 @@ const UNITS: [Unit; 35] = [
     unit("_n_per_pa", "N/Pa", Divide(1.0)),
     unit("_n_s_per_m", "N s/m", Divide(1.0)),
     unit("_n_per_m", "N/m", Divide(1.0)),
+    unit("_n_per_m15", "N/m^1.5", Divide(1.0)),
+    unit("_n_per_s", "N/s", Divide(1.0)),
     unit("_n_m", "N m", Divide(1.0)),
     unit("_mm_per_s3", "mm/s3", Divide(1e3)),
     unit("_mm_per_s2", "mm/s2", Divide(1e3)),
     unit("_mm_per_s", "mm/s", Divide(1e3)),
     unit("_m_per_s2", "m/s2", Divide(1.0)),
+    unit("_m_per_s", "m/s", Divide(1.0)),
     unit("_deg_per_s", "deg/s", Multiply(PI / 180.0)),
+    unit("_per_s", "1/s", Divide(1.0)),
     unit("_j_per_kg_k", "J/(kg K)", Divide(1.0)),
     unit("_bar_gauge", "bar gauge", Multiply(1e5)),
     unit("_pa_absolute", "Pa absolute", Divide(1.0)),
     unit("_cm3", "cm3", Divide(1e6)),
     unit("_mm2", "mm2", Divide(1e6)),
+    unit("_m3", "m3", Divide(1.0)),
+    unit("_m2", "m2", Divide(1.0)),
     unit("_w_per_k", "W/K", Divide(1.0)),
     unit("_ohm", "ohm", Divide(1.0)),
     unit("_um", "um", Divide(1e6)),
@@ -102,6 +108,32 @@ impl Unit {
     }
 }
 
+/// Units that people give in place of an SI unit, by its symbol, each with its size in it.
+const LOOK_ALIKES: [(&str, &[(&str, f64)]); 8] = [
+    (
+        "Pa",
+        &[("bar", 1e5), ("kPa", 1e3), ("MPa", 1e6), ("psi", 6894.76)],
+    ),
+    ("m", &[("mm", 1e-3), ("cm", 1e-2), ("um", 1e-6)]),
+    ("m2", &[("mm2", 1e-6), ("cm2", 1e-4)]),
+    ("m3", &[("cm3", 1e-6), ("l", 1e-3), ("mm3", 1e-9)]),
+    ("kg", &[("g", 1e-3)]),
+    ("s", &[("ms", 1e-3)]),
+    ("N", &[("kN", 1e3), ("mN", 1e-3)]),
+    ("N/m", &[("N/mm", 1e3)]),
+];
+
+/// The unit in which a value was probably given, when it is implausible [its key's SI unit] and would lie in a range [SI] in that one.
+pub(crate) fn look_alike(symbol: &str, value: f64, range: [f64; 2]) -> Option<&'static str> {
+    let plausible = |si: f64| range[0] <= si && si <= range[1];
+    if symbol == "K" && plausible(value + 273.15) {
+        return Some("degrees Celsius");
+    }
+    let (_, others) = LOOK_ALIKES.iter().find(|(si, _)| *si == symbol)?;
+    let (other, _) = others.iter().find(|(_, size)| plausible(value * size))?;
+    Some(other)
+}
+
 /// A key without its unit: `feed` for `feed_mm_per_s`.
 pub(crate) fn stem(key: &str) -> &str {
     &key[..key.len() - Unit::of_key(key).suffix.len()]
@@ -152,7 +184,14 @@ mod tests {
             ("compressor_flow_kg_per_s", 1e-4, "kg/s", 1e-4),
             ("seal_pressure_coefficient_n_per_pa", 2e-5, "N/Pa", 2e-5),
             ("excitation_v", 5.0, "V", 5.0),
+            ("orifice_area_m2", 1e-6, "m2", 1e-6),
+            ("volume_m3", 1e-5, "m3", 1e-5),
+            ("stribeck_velocity_m_per_s", 0.01, "m/s", 0.01),
+            ("stiffness_n_per_m15", 1e8, "N/m^1.5", 1e8),
+            ("drift_n_per_s", 0.1, "N/s", 0.1),
             ("noise_steps", 2.0, "", 2.0),
+            ("integral_gain_per_s", 5.0, "1/s", 5.0),
+            ("tracking_frequency_rad_per_s", 40.0, "rad/s", 40.0),
             ("damping_ratio", 0.7, "", 0.7),
             ("device_substeps", 2.0, "", 2.0),
         ] {
@@ -160,6 +199,20 @@ mod tests {
             assert_eq!(unit.symbol, symbol, "{key}");
             assert_eq!(unit.to_si(value), si, "{key}");
         }
+    }
+
+    #[test]
+    fn a_value_in_a_common_unit_is_recognised_by_what_it_would_be_in_it() {
+        assert_eq!(look_alike("Pa", 1.01325, [5e4, 1.1e5]), Some("bar"));
+        assert_eq!(look_alike("Pa", 101.3, [5e4, 1.1e5]), Some("kPa"));
+        assert_eq!(look_alike("m", 25.0, [0.002, 0.3]), Some("mm"));
+        assert_eq!(look_alike("m3", 14.5, [1e-8, 5e-3]), Some("cm3"));
+        assert_eq!(
+            look_alike("K", 20.0, [200.0, 500.0]),
+            Some("degrees Celsius")
+        );
+        assert_eq!(look_alike("m", -25.0, [0.002, 0.3]), None);
+        assert_eq!(look_alike("", 25.0, [0.1, 1.0]), None);
     }
 
     #[test]

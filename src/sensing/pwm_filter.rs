@@ -56,14 +56,20 @@ impl PwmFilterParameters {
 
     /// Settled ripple at a duty [1], peak to peak [V].
     pub fn ripple(&self, duty: f64) -> f64 {
-        self.trough(duty) * ((1.0 - duty) * self.period() / self.time_constant()).exp_m1()
+        self.high_voltage * self.charged(duty) * (self.charged(1.0 - duty) / self.charged(1.0))
+    }
+
+    /// Share of the way to its source that the capacitor goes in a share of the period, 1 - e^(-share T/tau) [1].
+    fn charged(&self, share: f64) -> f64 {
+        // Within what is a number: beyond, 0 times infinity and 0 over 0 would not be.
+        let periods = (self.period() / self.time_constant()).clamp(f64::MIN_POSITIVE, f64::MAX);
+        -(-share * periods).exp_m1()
     }
 
     /// Settled voltage at the start of a pulse [V], the lowest of a period.
     fn trough(&self, duty: f64) -> f64 {
-        let charged = |share: f64| -(-share * self.period() / self.time_constant()).exp_m1();
-        let off = (-(1.0 - duty) * self.period() / self.time_constant()).exp();
-        self.high_voltage * charged(duty) * off / charged(1.0)
+        let off = 1.0 - self.charged(1.0 - duty);
+        self.high_voltage * self.charged(duty) * off / self.charged(1.0)
     }
 }
 
@@ -165,6 +171,35 @@ mod tests {
             assert!((state.advance(&PWM, duty, 0.0313) - voltage).abs() < 1e-13);
             assert!((state.voltage - voltage).abs() < 1e-13);
             assert_eq!(PWM.ripple(duty), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_ratio_far_from_1_has_its_limit() {
+        // From periods of 1e-300 time constants to 1e300, and beyond what a number can be.
+        for (frequency, capacitance, ripple) in [
+            (1e-290, 1e-10, 5.0),
+            (1e-4, 1e-10, 5.0),
+            (1e-300, 1e-320, 5.0),
+            // d (1 - d) T/tau.
+            (1e6, 1.0, 5.0 * 0.24 * 1e-10),
+            (1e290, 1e10, 5.0 * 0.24 * 1e-304),
+            (1e300, 1e300, 0.0),
+        ] {
+            let pwm = PwmFilterParameters {
+                frequency,
+                capacitance,
+                ..PWM
+            };
+            let off = (pwm.ripple(0.4) - ripple).abs();
+            assert!(
+                off <= 1e-9 * ripple + 1e-306,
+                "{frequency} {capacitance}: {off}"
+            );
+            let low = PwmFilterState::settled(&pwm, 0.4).voltage;
+            let expected = if ripple > 1.0 { 0.0 } else { 2.0 };
+            assert!((low - expected).abs() < 1e-9, "{frequency}: {low}");
+            assert_eq!((pwm.ripple(0.0), pwm.ripple(1.0)), (0.0, 0.0));
         }
     }
 

@@ -47,6 +47,8 @@ pub struct Simulation<'a> {
     device: DeviceState,
     servo: Servo,
     controller: ForceController,
+    /// Set pressure that the controller gave last, held until its next period [Pa gauge].
+    answer: f64,
     sensors: SensorChain,
     readings: Readings,
     slide_speed: f64,
@@ -65,7 +67,6 @@ impl<'a> Simulation<'a> {
         let scenario = &cell.scenario;
         let mut world = World::new(&WorldDescription::of(cell));
         let reference = cell.plan.reference(0.0);
-        let controller = ForceController::pressure_map(&scenario.device.parameters);
         let gravity = cell.gravity_along(reference.axis);
         let desired = scenario.process.force * cell.axial_share();
         let set_pressure =
@@ -101,7 +102,8 @@ impl<'a> Simulation<'a> {
             cell,
             world,
             servo,
-            controller,
+            controller: cell.controller.clone(),
+            answer: set_pressure,
             sensors,
             readings: Readings {
                 stroke,
@@ -183,8 +185,15 @@ impl<'a> Simulation<'a> {
     }
 
     fn set_pressure(&mut self, reference: &Reference) -> f64 {
+        let step = self.cell.scenario.simulation.step;
+        if !self
+            .steps
+            .is_multiple_of(self.cell.scenario.controller.steps(step))
+        {
+            return self.sensors.command(self.answer, step);
+        }
         let observation = ForceObservation {
-            time: self.steps as f64 * self.cell.scenario.simulation.step,
+            time: self.steps as f64 * step,
             desired_axial_force: self.cell.scenario.process.force * self.cell.axial_share(),
             gravity_along_axis: self.cell.gravity_along(reference.axis),
             measured_axial_force: self.readings.force,
@@ -192,9 +201,8 @@ impl<'a> Simulation<'a> {
             acceleration: self.readings.acceleration,
             regulator_pressure: self.readings.regulator_pressure,
         };
-        let wanted = self.controller.set_pressure(&observation);
-        self.sensors
-            .command(wanted, self.cell.scenario.simulation.step)
+        self.answer = self.controller.set_pressure(&observation);
+        self.sensors.command(self.answer, step)
     }
 
     fn advance_device(&mut self, set_pressure: f64, dt: f64) -> DeviceForce {

@@ -3,6 +3,7 @@
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::axial_load::AxialLoad;
 use idc_cell::physics::end_cushioning::EndCushioning;
+use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::hose::Hose;
 use idc_cell::physics::leakage::Leakage;
@@ -96,7 +97,7 @@ fn run(
 // Catches: a flow that one account has and another has not: chamber, line, regulator, exhaust.
 #[test]
 fn air_is_neither_made_nor_lost() {
-    let hose = Some(Hose::of_geometry(2.0, 0.004, 4.8));
+    let hose = Some(Hose::tube(2.0, 0.004, &Gas::default()));
     let mut largest = 0.0f64;
     for course in &COURSES {
         for hose in [None, hose] {
@@ -333,7 +334,7 @@ fn burdened(gas_process: GasProcess, hose: Option<Hose>) -> DeviceParameters {
 // Catches: an effect whose flow or work is not booked, or is booked for another; one that makes air or energy.
 #[test]
 fn every_effect_keeps_both_accounts() {
-    let hose = Some(Hose::of_geometry(1.0, 0.004, 4.8));
+    let hose = Some(Hose::tube(1.0, 0.004, &Gas::default()));
     let heated = GasProcess::WallHeat { conductance: 0.5 };
     let mut worst = [0.0f64; 3];
     for course in &COURSES {
@@ -377,4 +378,68 @@ fn every_effect_keeps_both_accounts() {
         worst[2],
         1e-6,
     );
+}
+
+// Catches: a ledger that stands still while somebody else moves the piston, or that leaves out stops, seals, cushions, the axial load or the
+// atmosphere.
+#[test]
+fn a_foretold_piston_keeps_the_same_books() {
+    let heated = GasProcess::WallHeat { conductance: 0.5 };
+    for gas_process in [GasProcess::Isothermal, heated] {
+        let device = Device::new(DeviceParameters {
+            seal_friction: SEALS,
+            axial_load: AxialLoad {
+                force: -15.0,
+                return_stiffness: 400.0,
+            },
+            end_cushioning: EndCushioning {
+                damping: 700.0,
+                length: 6e-3,
+            },
+            gas_process,
+            ..usual()
+        });
+        let mut state = device.at_rest(0.03, 1e5);
+        let first = device.internal_energy(&state);
+        let (mut stroke, mut given, mut turned_over) = (0.03, 0.0, 0.0);
+        for ms in 0..2000 {
+            // Out to 0.5 mm beyond the end, and back.
+            let speed = 0.0205 * 6.0 * (6e-3 * f64::from(ms)).cos();
+            let motion = PistonMotion { stroke, speed };
+            let set = if ms < 1000 { 1e5 } else { 2.5e5 };
+            let before = accounts(&state);
+            let force = device.advance(&mut state, set, motion, 1e-3, 2).force;
+            given -= force * speed * 1e-3;
+            stroke += speed * 1e-3;
+            let passed = accounts(&state);
+            let passed = passed
+                .iter()
+                .zip(before)
+                .map(|(now, before)| (now - before).abs());
+            turned_over += passed.sum::<f64>();
+        }
+        let [
+            enthalpy,
+            heat,
+            chamber,
+            atmosphere,
+            seal,
+            stop,
+            cushion,
+            axial,
+            carrier,
+        ] = accounts(&state);
+        assert!(cushion > 1e-3 && axial.abs() > 1e-3);
+        assert!(seal > 1.0 && stop.abs() > 1e-3 && chamber.abs() > 1.0 && atmosphere.abs() > 1e-3);
+        let of_air = device.internal_energy(&state) - first - (enthalpy + heat - chamber);
+        let of_piston = chamber + axial + carrier - atmosphere - seal - stop - cushion;
+        println!("{gas_process:?}: {turned_over:.0} J turned over");
+        reached("air of a foretold piston", of_air.abs() / turned_over, 1e-9);
+        reached("a foretold piston", of_piston.abs() / turned_over, 1e-12);
+        reached(
+            "work of the foreteller against force times way",
+            (carrier - given).abs() / turned_over,
+            1e-12,
+        );
+    }
 }

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use idc_cell::device::{Carrier, Device, DeviceParameters, PistonMotion};
+use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::hose::Hose;
 
@@ -87,7 +88,7 @@ fn check_approach(
 // Catches: no linear part, one too short for the sub-step, sub-steps too long for the smallest volume.
 #[test]
 fn pressures_come_to_rest_without_a_change_of_sign_and_shorter_steps_agree() {
-    let hose = Some(Hose::of_geometry(1.0, 0.004, 4.8));
+    let hose = Some(Hose::tube(1.0, 0.004, &Gas::default()));
     let heated = GasProcess::WallHeat { conductance: 0.5 };
     for (name, step, most, device) in [
         ("usual", 5e-4, 1e-4, usual()),

@@ -1,11 +1,12 @@
 //! Values that a device file may hold, at the ends of their ranges: the sub-steps have to be short enough for them.
 
-use idc_cell::device::{Device, DeviceParameters};
+use idc_cell::device::{Device, DeviceParameters, PistonMotion};
 use idc_cell::physics::gas_process::GasProcess;
+use idc_cell::physics::push_only::PushOnly;
 use idc_cell::physics::seal_friction::SealFriction;
 use idc_cell::physics::valve::ValvePosition;
 
-use super::devices::{Outside, still, usual};
+use super::devices::{ADIABATIC, Outside, closed, filled, reached, still, usual, volumes};
 
 /// Runs out at 4 bar for half a second, is pulled back for another, and must keep its air and its pressures all the way.
 fn check(parameters: DeviceParameters) {
@@ -72,4 +73,46 @@ fn the_most_viscous_seals_are_integrated() {
         },
         ..usual()
     });
+}
+
+// Catches: the air springs left out of the rates that the sub-steps are chosen by, or the exponent left out of them.
+#[test]
+fn a_light_piston_on_small_volumes_swings_as_its_air_springs_say() {
+    for (name, process, exponent) in [
+        ("isothermal", GasProcess::Isothermal, 1.0),
+        ("adiabatic", ADIABATIC, 1.4),
+    ] {
+        // A kilohertz and more, between stops that are soft and do not damp.
+        let device = Device::new(DeviceParameters {
+            full_stroke: 1e-3,
+            dead_volume: 1e-7,
+            moving_mass: 0.1,
+            end_stop: PushOnly {
+                stiffness: 1e4,
+                damping: 0.0,
+            },
+            ..closed(process)
+        });
+        let (stroke, first, speed) = (5e-4, 7e5, 1e-3);
+        let areas = device.parameters().areas();
+        let second = (first * areas.extending - 101_325.0 * areas.rod()) / areas.retracting;
+        let [v1, v2] = volumes(device.parameters(), stroke);
+        let stiffness =
+            first * areas.extending.powi(2) / v1 + second * areas.retracting.powi(2) / v2;
+        let frequency = (exponent * stiffness / 0.1).sqrt();
+        let mut state = filled(&device, stroke, [first, second], 0.0);
+        let mut motion = PistonMotion { stroke, speed };
+        let mut largest = 0.0f64;
+        for ms in 1..=10 {
+            device.advance_carried(&mut state, &mut motion, 0.0, &Outside::NOTHING, 1e-3, 1);
+            let expected = speed / frequency * (frequency * f64::from(ms) * 1e-3).sin();
+            largest = largest.max((motion.stroke - stroke - expected).abs());
+        }
+        println!("{name}: {:.0} Hz", frequency / std::f64::consts::TAU);
+        reached(
+            "swing of a light piston, of its amplitude",
+            largest / (speed / frequency),
+            1e-2,
+        );
+    }
 }

@@ -89,18 +89,17 @@ fn eq_8_as_printed_is_never_a_second_late_and_does_not_stop_at_the_supply() {
 // Catches: resistance or volume of the line wrong, its flow counted once only, a line that is passed by.
 #[test]
 fn a_line_into_a_choked_chamber_drops_in_closed_form() {
-    let hose = Hose::of_geometry(2.0, 0.004, 3.0);
+    // R_h and the choked flow are both linear in the line's pressure: one exponential.
+    let resistance = 128.0 * 1.82e-5 * 2.0 / (std::f64::consts::PI * 0.004f64.powi(4) * 3.0);
+    let volume = std::f64::consts::FRAC_PI_4 * 0.004 * 0.004 * 2.0;
     let mut parameters = usual();
-    parameters.hose = Some(hose);
+    parameters.hose = Some(Hose::lumped(volume, resistance));
     let device = Device::new(parameters);
     let before = 6e5 + 101_325.0;
     let mut state = filled(&device, 0.05, [2e4, 101_325.0], 6e5);
     // The line starts half as full.
     state.air.hose_mass *= 0.5;
     let start = 0.5 * before;
-    // R_h and the choked flow are both linear in the line's pressure: one exponential.
-    let resistance = 128.0 * 1.82e-5 * 2.0 / (std::f64::consts::PI * 0.004f64.powi(4) * 3.0);
-    let volume = std::f64::consts::FRAC_PI_4 * 0.004 * 0.004 * 2.0;
     let choked = printed_flow(2.5e-6 * 0.95, 1.0, 0.0);
     let steady = before / (1.0 + resistance * choked);
     let rate = rt() / volume * (1.0 / resistance + choked);

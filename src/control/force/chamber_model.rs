@@ -10,6 +10,7 @@
 use crate::device::DeviceParameters;
 use crate::physics::chamber::Chamber;
 use crate::physics::gas::Gas;
+use crate::physics::hose::Hose;
 use crate::physics::orifice::FlowFunction;
 use crate::physics::piston::PistonAreas;
 use crate::physics::valve::ValveParameters;
@@ -27,8 +28,7 @@ pub(super) struct ChamberModel {
     chambers: [Chamber; 2],
     areas: PistonAreas,
     valve: ValveParameters,
-    /// Pressure drop over mass flow of the line before the valve [Pa s/kg].
-    line_resistance: f64,
+    line: Option<Hose>,
     supply: f64,
     /// Absolute pressures of chambers 1 and 2 [Pa].
     pub pressures: [f64; 2],
@@ -42,7 +42,7 @@ impl ChamberModel {
             chambers: device.chambers(),
             areas: device.areas(),
             valve: device.valve(),
-            line_resistance: device.hose.map_or(0.0, |hose| hose.resistance),
+            line: device.hose,
             supply: device.regulator.supply,
             pressures: [device.gas.atmosphere; 2],
             gas: device.gas,
@@ -100,13 +100,13 @@ impl ChamberModel {
     /// Absolute pressure before the valve [Pa]: the outlet's less what the line takes at the present flow.
     fn before_valve(&self, outlet: f64) -> f64 {
         let outlet = self.gas.atmosphere + outlet;
-        if self.line_resistance == 0.0 {
+        let Some(line) = &self.line else {
             return outlet;
-        }
-        // In series: the drop shares as the resistances do.
-        let g = self.conductance(self.valve.supply_conductance, outlet, self.pressures[0]);
-        let share = 1.0 / (1.0 + g * self.line_resistance);
-        self.pressures[0] + share * (outlet - self.pressures[0])
+        };
+        let (area, chamber) = (self.valve.supply_conductance, self.pressures[0]);
+        line.balance(outlet, chamber, (0.0, outlet), |before| {
+            self.flow.flow_slope(area, before, chamber)
+        })
     }
 
     #[expect(
@@ -210,7 +210,10 @@ impl ChamberModel {
             }
         }
         let before = 0.5 * (low + high);
-        (before + self.line_resistance * needed - self.gas.atmosphere).clamp(0.0, self.supply)
+        let outlet = self
+            .line
+            .map_or(before, |line| line.pressure_before(needed, before));
+        (outlet - self.gas.atmosphere).clamp(0.0, self.supply)
     }
 
     /// How far the outlet may stand off [Pa], below and above, the pressure that will hold chamber 1 at `goal` [Pa absolute], and still be back there by

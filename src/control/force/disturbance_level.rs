@@ -60,6 +60,15 @@ impl DisturbanceLevel {
         p[1][0] = p[0][1];
     }
 
+    /// As `update`, the share of the friction taken for certain.
+    pub(super) fn follow(&mut self, unexplained: f64, friction: f64) {
+        let variance = self.covariance[0][0] + self.walk[0];
+        let gain = variance / (variance + NOISE * NOISE);
+        self.offset += gain * (unexplained - (self.offset - self.share * friction));
+        self.covariance[0] = [(1.0 - gain) * variance, 0.0];
+        self.covariance[1][0] = 0.0;
+    }
+
     /// Scales the second state's uncertainty down to what it may be at most.
     fn bound_share(&mut self) {
         let p = &mut self.covariance;
@@ -93,6 +102,20 @@ mod tests {
         }
         // One time constant, in steps that are not small against it.
         assert!((level.offset / 5.0 - (1.0 - (-1.0f64).exp())).abs() < 0.02);
+    }
+
+    #[test]
+    fn an_impact_that_is_only_followed_tells_nothing_of_friction() {
+        let mut level = DisturbanceLevel::new([0.02, 1.0], 0.5, 10.0, 1e-3);
+        for i in 0..500 {
+            let ringing = 100.0 * (f64::from(i) * 0.2).sin() * (f64::from(-i) * 0.01).exp();
+            level.follow(ringing - 10.0 * (f64::from(i) * 0.2).cos(), 10.0);
+        }
+        assert_eq!(level.share, 1.0);
+        for _ in 0..500 {
+            level.follow(-7.0, 10.0);
+        }
+        assert!((level.offset - 3.0).abs() < 1e-6, "{}", level.offset);
     }
 
     #[test]

@@ -30,6 +30,8 @@ use crate::physics::push_only::PushOnly;
 
 /// Time over which the friction's level may drift by the load cell's noise [s].
 const FRICTION_TIME: f64 = 1.0;
+/// Time after touch from which friction is learnt: an impact's ringing would be taken for it [s].
+const TOUCH_TIME: f64 = 0.5;
 
 /// The controller with its state.
 #[derive(Debug, Clone)]
@@ -41,6 +43,8 @@ pub struct DisturbancePrediction {
     /// The surface's motion, which the force does not change.
     surface: MotionTracker,
     pressed: bool,
+    /// Time since the tool touched [s].
+    pressed_for: f64,
     seals: SealModel,
     level: DisturbanceLevel,
     moving_mass: f64,
@@ -67,6 +71,7 @@ impl DisturbancePrediction {
             motion: MotionTracker::new(parameters.tracking_frequency, period),
             surface: MotionTracker::new(parameters.tracking_frequency, period),
             pressed: false,
+            pressed_for: 0.0,
             seals: SealModel::new(believed),
             level: DisturbanceLevel::new(
                 [parameters.observer_time, FRICTION_TIME],
@@ -167,14 +172,18 @@ impl DisturbancePrediction {
     fn estimate(&mut self, observation: &ForceObservation, presses: bool) {
         if !presses {
             self.level.forget_offset();
+            self.pressed_for = 0.0;
             return;
         }
+        self.pressed_for += self.period;
         let weight = self.moving_mass * (observation.gravity_along_axis - self.motion.acceleration);
         let explained = self.chambers.gas_force() + weight - self.seals.viscous(self.motion.speed);
-        self.level.update(
-            observation.measured_axial_force - explained,
-            self.seals.dry(),
-        );
+        let unexplained = observation.measured_axial_force - explained;
+        if self.pressed_for > TOUCH_TIME {
+            self.level.update(unexplained, self.seals.dry());
+        } else {
+            self.level.follow(unexplained, self.seals.dry());
+        }
     }
 
     /// Force of the gas [N] that gives the desired force after a time [s].

@@ -98,7 +98,9 @@ impl LinearPlant {
                 .chambers()
                 .map(|chamber| chamber.volume(device.full_stroke) / rt),
             areas: [areas.extending, areas.retracting],
-            line: device.hose.map(|hose| [hose.volume / rt, hose.resistance]),
+            line: device
+                .hose
+                .map(|hose| [hose.volume / rt, hose.resistance_at_rest(gas.atmosphere)]),
             mass: device.moving_mass,
             density: gas.atmosphere / rt,
             contact,

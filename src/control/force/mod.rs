@@ -8,6 +8,8 @@
 //! - `feedback_linearisation`: the chamber's equation inverted, with a bounded input gain
 //! - `disturbance_prediction`: what disturbs the force is estimated, predicted over the dead time and cancelled
 //!
+//! `from_scenario` builds the one that a scenario chooses; docs/CONTROL.md compares them.
+//!
 //! and what they share: models of the regulator (`regulator_model`) and of the chambers (`chamber_model`), the stability check made at construction
 //! (`loop_response`, `stability`), and the best that the dead time allows ([`limit`]).
 
@@ -17,6 +19,7 @@ mod disturbance_level;
 mod disturbance_prediction;
 mod error;
 mod feedback_linearisation;
+mod from_scenario;
 pub mod limit;
 mod loop_response;
 mod motion_tracker;

@@ -48,9 +48,10 @@ impl ProportionalIntegral {
         let desired = observation.desired_axial_force;
         let gravity = observation.gravity_along_axis;
         let open_loop = self.map.set_pressure(desired, gravity);
-        let expected = self
-            .expected
-            .get_or_insert_with(|| RegulatorState::at_rest(&self.regulator, open_loop));
+        let expected = self.expected.get_or_insert_with(|| {
+            let given = observation.regulator_pressure / self.regulator.gain;
+            RegulatorState::at_rest(&self.regulator, given)
+        });
         let expected_force = self
             .map
             .force(expected.outlet / self.regulator.gain, gravity);

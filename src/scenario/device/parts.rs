@@ -27,7 +27,7 @@ impl Layers<'_> {
         }
     }
 
-    /// The line, by its geometry, at the density of half the supply pressure, or by its volume and resistance; none of no length and no volume.
+    /// The line, by its geometry or by its volume and resistance; none of no length and no volume.
     pub(super) fn hose(&self, gas: &Gas) -> Result<Option<Hose>, ScenarioError> {
         let length = self.number("hose_length_m", |keys| keys.hose_length_m, 0.0..=50.0)?;
         let diameter = self.number("hose_diameter_mm", |keys| keys.hose_diameter_mm, 1.0..=25.0)?;
@@ -36,11 +36,6 @@ impl Layers<'_> {
             "hose_resistance_pa_s_per_kg",
             |keys| keys.hose_resistance_pa_s_per_kg,
             0.0..=1e12,
-        )?;
-        let supply = self.number(
-            "supply_pressure_bar_gauge",
-            |keys| keys.supply_pressure_bar_gauge,
-            0.1..=16.0,
         )?;
         if volume > 0.0 && length > 0.0 {
             let expected = "0 beside a hose_length_m, which says the volume";
@@ -52,10 +47,9 @@ impl Layers<'_> {
             return Err(self.refusal("hose_resistance_pa_s_per_kg", pick, expected));
         }
         if volume > 0.0 {
-            return Ok(Some(Hose { volume, resistance }));
+            return Ok(Some(Hose::lumped(volume, resistance)));
         }
-        let density = gas.mass(gas.atmosphere + 0.5 * supply, 1.0);
-        Ok((length > 0.0).then(|| Hose::of_geometry(length, diameter, density)))
+        Ok((length > 0.0).then(|| Hose::tube(length, diameter, gas)))
     }
 
     /// The reservoir in front of the regulator; none of no volume.

@@ -21,7 +21,7 @@ use crate::sensing::{
 const STANDARD_GRAVITY: f64 = 9.80665;
 
 /// Standard deviations of white noise: 1 N of force, and for pressure and acceleration about what makes 1 N on the default device.
-mod white {
+pub mod white {
     /// Of the force [N].
     pub const FORCE: f64 = 1.0;
     /// Of the stroke [m].
@@ -75,7 +75,7 @@ impl Sensor<'_> {
 }
 
 /// Refuses keys that a kind does not have.
-fn only(section: &Section<'_>, kind: &str, by_preset: bool, allowed: &[&str]) -> Result<()> {
+pub fn only(section: &Section<'_>, kind: &str, by_preset: bool, allowed: &[&str]) -> Result<()> {
     let is_other = |key: &&str| *key != "kind" && !allowed.contains(key);
     let Some(key) = section.given().find(is_other) else {
         return Ok(());

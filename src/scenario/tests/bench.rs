@@ -5,8 +5,8 @@ use super::super::bench::{
 };
 use super::{MINIMAL_BENCH, read_bench, replaced, text_refused};
 use crate::physics::gas_process::GasProcess;
-use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
+use crate::plant::{ContactLaw, ContactParameters, Periodic};
 
 fn bench(from: &str, to: &str) -> BenchScenario {
     read_bench(&replaced(MINIMAL_BENCH, from, to)).unwrap()
@@ -40,9 +40,12 @@ fn every_key_of_bench_and_simulation_reaches_its_field() {
 
 #[test]
 fn every_kind_of_load_is_read() {
-    let law = PushOnly {
-        stiffness: 2e4,
+    let contact = ContactParameters {
+        law: ContactLaw::Linear { stiffness: 2e4 },
         damping: 200.0,
+        surface_offset: 0.0,
+        runout: Periodic::NONE,
+        waviness: Periodic::NONE,
     };
     let given = "position_mm = 35\nstiffness_n_per_m = 2e4\ndamping_n_s_per_m = 200\n";
     let moved = "peak_to_peak_mm = 20\nfrequency_hz = 0.5\nstart_s = 4\n";
@@ -50,14 +53,14 @@ fn every_kind_of_load_is_read() {
     let load_cell = bench(FREE, &format!("kind = \"load_cell\"\n{given}"));
     let standing = LoadScenario::Contact {
         position: 0.035,
-        law,
+        contact,
         motion: None,
     };
     assert_eq!(load_cell.load, standing);
     let surface = bench(FREE, &format!("kind = \"surface\"\n{given}{moved}"));
     let moving = LoadScenario::Contact {
         position: 0.035,
-        law,
+        contact,
         motion: Some(SurfaceMotion {
             peak_to_peak: 0.02,
             frequency: 0.5,
@@ -144,6 +147,12 @@ fn a_load_has_the_keys_of_its_kind_and_no_others() {
             "kind = \"load_cell\"\n",
             "8:2",
             "`load.position_mm` is missing, expected it to be given for this kind of load",
+        ),
+        (
+            FREE,
+            "kind = \"load_cell\"\nposition_mm = 50.5\n",
+            "10:1",
+            "`load.position_mm` is 50.5 mm, expected at most the device's stroke_mm, 50 mm",
         ),
         (
             FREE,

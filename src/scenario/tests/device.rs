@@ -56,10 +56,7 @@ fn every_key_of_what_is_off_by_default_reaches_its_field() {
             pressure_coefficient: 2e-5,
             ..SealFriction::NONE
         },
-        hose: Some(Hose {
-            volume: 4e-5,
-            resistance: 2e7,
-        }),
+        hose: Some(Hose::lumped(4e-5, 2e7)),
         ..DeviceParameters::default()
     };
     let read = read_bench(&with(keys)).unwrap();

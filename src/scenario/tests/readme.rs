@@ -31,7 +31,7 @@ fn belongs(key: &str, chapter: &str, format: Format) -> bool {
     match chapter {
         "Keys of a cell" => format == Cell || of_both,
         "Keys of a bench" => format == Bench,
-        "Keys of the sensing chain" => true,
+        "Keys of the sensing chain" | "Keys of the controller" => true,
         other => panic!("{key} stands in the chapter {other:?}"),
     }
 }
@@ -84,10 +84,20 @@ fn beside(key: &str) -> String {
             "[[arm.limit_overrides]]\njoint = 'a'\nvelocity_deg_per_s = 90".into()
         }
         ("arm.limit_overrides", _) => "[[arm.limit_overrides]]\njoint = 'a'\neffort_n_m = 9".into(),
+        ("estimator", _) => "[estimator]\n".into(),
         ("hand", _) => "[hand]\npeak_force_n = 1\nfrequency_hz = 1".into(),
         ("command", "force_n") => "[[command]]\nat_s = 0\nforce_n = 1".into(),
         ("command", _) => "[[command]]\nat_s = 0\nset_pressure_bar_gauge = 1".into(),
         ("valve", _) => "[[valve]]\nat_s = 0\nposition = 'extend'".into(),
+        ("controller", "kind" | "period_ms") => "[controller]".into(),
+        ("controller", name) => {
+            let kind = match name {
+                "proportional_gain" | "integral_gain_per_s" => "proportional_integral",
+                "rate_per_s" => "feedback_linearisation",
+                _ => "disturbance_prediction",
+            };
+            format!("[controller]\nkind = '{kind}'")
+        }
         ("sensing.adc", _) => "[sensing.force]\nkind = 'real'".into(),
         ("sensing.filter", name) => {
             let (kind, setting) = match name {
@@ -116,6 +126,10 @@ fn base(format: Format, key: &str) -> Table {
         Cell => MINIMAL.to_owned(),
         Bench if key.starts_with("load.") && key != "load.kind" => {
             MINIMAL_BENCH.replace("kind = \"free\"", SURFACE)
+        }
+        Bench if key.starts_with("controller.") => {
+            let pressing = MINIMAL_BENCH.replace("kind = \"free\"", SURFACE);
+            pressing + "[[command]]\nat_s = 0\nforce_n = 1\n"
         }
         Bench => MINIMAL_BENCH.to_owned(),
     };
@@ -217,9 +231,16 @@ fn every_default_is_what_leaving_the_key_out_does() {
                 defaults += 1;
             } else {
                 let worded = row.default == "none"
-                    || ["half", "third", "10 bits"]
-                        .iter()
-                        .any(|word| row.default.contains(word));
+                    || [
+                        "half",
+                        "third",
+                        "10 bits",
+                        "tuned",
+                        "the device's",
+                        "sample",
+                    ]
+                    .iter()
+                    .any(|word| row.default.contains(word));
                 assert!(worded, "{key}: {}", row.default);
             }
         }

@@ -28,6 +28,7 @@ fn every_scenario_loads_says_what_it_shows_and_stands_in_the_readme() {
         "hand_push",
         "locked_tool",
         "misplaced_part",
+        "moving_surface",
         "paper_stairstep",
         "paper_step",
         "plate_edge",
@@ -135,6 +136,8 @@ fn locked_tool_is_misplaced_part_but_for_the_lock() {
     locked.path.clone_from(&free.path);
     locked.title.clone_from(&free.title);
     locked.expect.clone_from(&free.expect);
+    assert_eq!(locked.controller.law, free.controller.law);
+    locked.controller.clone_from(&free.controller);
     assert_eq!(format!("{locked:?}"), format!("{free:?}"));
 }
 

@@ -1,0 +1,257 @@
+//! A sub-step of a device with a line: explicit in everything but the air in the line, which a short wide line exchanges in less than a microsecond.
+//!
+//! The pair ARK4(3)6L[2]SA of order four (Kennedy and Carpenter, Appl. Numer. Math. 44, 2003): six stages, and at each of the last five the line's
+//! mass solves one equation, monotonic in the pressure; a reservoir that no longer holds the regulator's pressure drives the line, and is solved with it. Its implicit half is stable however fast the line is, damps what is faster than the
+//! sub-step, and ends on its last stage, so that a fast line comes out where inflow and outflow balance.
+
+use super::DeviceParameters;
+use super::carrier::{Carrier, PistonMotion};
+use super::integrate::{Flow, Leg, Mode};
+use super::pneumatics::Device;
+use super::state::AirState;
+use crate::physics::flow_slope::FlowSlope;
+use crate::physics::hose::Hose;
+use crate::physics::valve::ValvePosition;
+
+/// Longest sub-step that a line is taken in however fast it is [s], for accuracy alone: tests/equations/lines.rs.
+const LONGEST: f64 = 2.5e-4;
+/// Largest sub-step of a slow line times its rate [1].
+const RATE_LIMIT: f64 = 1.2;
+/// Share of the step that is implicit [1].
+const IMPLICIT_SHARE: f64 = 0.25;
+/// When in the step the stages are [1].
+const NODES: [f64; 6] = [0.0, 0.5, 83.0 / 250.0, 31.0 / 50.0, 17.0 / 20.0, 1.0];
+/// Weights of the earlier stages in each, of what is explicit.
+const EXPLICIT: [[f64; 5]; 6] = [
+    [0.0; 5],
+    [0.5, 0.0, 0.0, 0.0, 0.0],
+    [13_861.0 / 62_500.0, 6_889.0 / 62_500.0, 0.0, 0.0, 0.0],
+    [
+        -116_923_316_275.0 / 2_393_684_061_468.0,
+        -2_731_218_467_317.0 / 15_368_042_101_831.0,
+        9_408_046_702_089.0 / 11_113_171_139_209.0,
+        0.0,
+        0.0,
+    ],
+    [
+        -451_086_348_788.0 / 2_902_428_689_909.0,
+        -2_682_348_792_572.0 / 7_519_795_681_897.0,
+        12_662_868_775_082.0 / 11_960_479_115_383.0,
+        3_355_817_975_965.0 / 11_060_851_509_271.0,
+        0.0,
+    ],
+    [
+        647_845_179_188.0 / 3_216_320_057_751.0,
+        73_281_519_250.0 / 8_382_639_484_533.0,
+        552_539_513_391.0 / 3_454_668_386_233.0,
+        3_354_512_671_639.0 / 8_306_763_924_573.0,
+        4_040.0 / 17_871.0,
+    ],
+];
+/// The same of what is implicit, without its own share.
+const IMPLICIT: [[f64; 5]; 6] = [
+    [0.0; 5],
+    [0.25, 0.0, 0.0, 0.0, 0.0],
+    [8_611.0 / 62_500.0, -1_743.0 / 31_250.0, 0.0, 0.0, 0.0],
+    [
+        5_012_029.0 / 34_652_500.0,
+        -654_441.0 / 2_922_500.0,
+        174_375.0 / 388_108.0,
+        0.0,
+        0.0,
+    ],
+    [
+        15_267_082_809.0 / 155_376_265_600.0,
+        -71_443_401.0 / 120_774_400.0,
+        730_878_875.0 / 902_184_768.0,
+        2_285_395.0 / 8_070_912.0,
+        0.0,
+    ],
+    [
+        82_889.0 / 524_892.0,
+        0.0,
+        15_625.0 / 83_664.0,
+        69_875.0 / 102_672.0,
+        -2_260.0 / 8_211.0,
+    ],
+];
+
+/// Longest sub-step [s] for a line, if there is one, before a valve that lets `valve_rate` [m3/s] through at most, as a rate times a volume.
+pub(super) fn longest(parameters: &DeviceParameters, valve_rate: f64) -> f64 {
+    let Some(hose) = &parameters.hose else {
+        return f64::INFINITY;
+    };
+    let gas = &parameters.gas;
+    let rt = gas.specific_gas_constant * gas.temperature;
+    let through = rt / hose.resistance_at_rest(gas.atmosphere);
+    let mut rate = (valve_rate + through) / hose.volume;
+    if let Some(reservoir) = &parameters.supply_reservoir {
+        rate += reservoir.rate(gas) + through / reservoir.volume;
+    }
+    LONGEST.max(RATE_LIMIT / rate)
+}
+
+impl<C: Carrier> Leg<'_, C> {
+    /// One step of the pair.
+    pub(super) fn line_step<const LEDGER: bool>(
+        &self,
+        hose: &Hose,
+        start: &Flow,
+        time: f64,
+        h: f64,
+        mode: Mode,
+    ) -> Flow {
+        let mut rates = [*start; 6];
+        let mut feed = Feed::of(&start.air);
+        for stage in 0..6 {
+            let at = time + NODES[stage] * h;
+            let outlet = self.course.at(at - self.course_start);
+            let mut flow = *start;
+            let mut held = Feed::of(&start.air);
+            for earlier in 0..stage {
+                flow = flow.after(&rates[earlier], h * EXPLICIT[stage][earlier], false);
+                let weight = h * IMPLICIT[stage][earlier];
+                held.line += weight * rates[earlier].air.hose_mass;
+                held.reservoir += weight * rates[earlier].air.reservoir_mass;
+            }
+            if stage > 0 {
+                let share = h * IMPLICIT_SHARE;
+                feed = self.device.feed(
+                    hose,
+                    &flow.air,
+                    self.valve,
+                    outlet,
+                    flow.motion,
+                    (held, share),
+                );
+            }
+            flow.air.hose_mass = feed.line;
+            flow.air.reservoir_mass = feed.reservoir;
+            rates[stage] = self.rates::<LEDGER>(&flow, start.motion.stroke, at, outlet, mode);
+        }
+        let weights = IMPLICIT[5].iter().chain([&IMPLICIT_SHARE]);
+        let mut end = *start;
+        for (weight, rates) in weights.zip(&rates) {
+            end = end.after(rates, h * weight, LEDGER);
+        }
+        // The last stage is the end but for rounding, which a fast line would take for a flow.
+        end.air.entered += feed.line - end.air.hose_mass;
+        end.air.hose_mass = feed.line;
+        end.air.reservoir_mass = feed.reservoir;
+        end
+    }
+}
+
+/// What is implicit: air before the valve [kg].
+#[derive(Debug, Clone, Copy)]
+struct Feed {
+    line: f64,
+    /// 0 without one.
+    reservoir: f64,
+}
+
+impl Feed {
+    fn of(air: &AirState) -> Self {
+        Self {
+            line: air.hose_mass,
+            reservoir: air.reservoir_mass,
+        }
+    }
+}
+
+impl Device {
+    /// What solves `feed = held + share * rates(feed)` at an outlet pressure of the regulator [Pa gauge].
+    fn feed(
+        &self,
+        hose: &Hose,
+        air: &AirState,
+        valve: ValvePosition,
+        outlet: f64,
+        motion: PistonMotion,
+        (held, share): (Feed, f64),
+    ) -> Feed {
+        let gas = &self.parameters.gas;
+        let fed = match valve {
+            ValvePosition::Extend => 0,
+            ValvePosition::Retract => 1,
+        };
+        let volumes = [0, 1].map(|i| self.chambers[i].volume(motion.stroke));
+        let after = self.pressures_of(air, volumes)[fed];
+        let backward = (gas.temperature / self.temperature_of(air, fed)).sqrt();
+        let on = |pressure: f64| {
+            let FlowSlope { flow, slope } =
+                self.flow
+                    .flow_slope(self.valve.supply_conductance, pressure, after);
+            let factor = if pressure < after { backward } else { 1.0 };
+            FlowSlope {
+                flow: factor * flow,
+                slope: factor * slope,
+            }
+        };
+        let capacity = gas.mass(1.0, hose.volume);
+        let stored = (capacity / share, held.line / capacity);
+        let before = gas.atmosphere + outlet;
+        let within = |before: f64| hose.balance(before, after, stored, on);
+        let Some(reservoir) = &self.parameters.supply_reservoir else {
+            return Feed {
+                line: capacity * within(before),
+                reservoir: 0.0,
+            };
+        };
+        let drawn = |before: f64| {
+            let within = within(before);
+            let drawn = hose.drawn(before, within, stored.0 + on(within).slope);
+            (within, drawn)
+        };
+        let (within, pressure) = reservoir.balance(gas, before, (held.reservoir, share), drawn);
+        Feed {
+            line: capacity * within,
+            reservoir: gas.mass(pressure, reservoir.volume),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All weights with the last, implicit stage's share in its place: explicit, implicit.
+    fn tableaux() -> [[[f64; 6]; 6]; 2] {
+        let mut pair = [[[0.0; 6]; 6]; 2];
+        for stage in 0..6 {
+            pair[0][stage][..5].copy_from_slice(&EXPLICIT[stage]);
+            pair[1][stage][..5].copy_from_slice(&IMPLICIT[stage]);
+            pair[1][stage][stage] = if stage > 0 { IMPLICIT_SHARE } else { 0.0 };
+        }
+        pair
+    }
+
+    #[test]
+    fn the_weights_meet_every_condition_of_order_four() {
+        let pair = tableaux();
+        let weights = pair[1][5];
+        let times = |a: &[[f64; 6]; 6], v: [f64; 6]| {
+            a.map(|row| row.iter().zip(v).map(|(a, v)| a * v).sum::<f64>())
+        };
+        let sum = |v: [f64; 6]| weights.iter().zip(v).map(|(w, v)| w * v).sum::<f64>();
+        let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-15);
+        for power in 0..4 {
+            near(
+                sum(NODES.map(|c| c.powi(power))),
+                1.0 / f64::from(power + 1),
+            );
+        }
+        for a in &pair {
+            for (row, node) in times(a, [1.0; 6]).iter().zip(NODES) {
+                near(*row, node);
+            }
+            let once = times(a, NODES);
+            near(sum(once), 1.0 / 6.0);
+            near(sum(std::array::from_fn(|i| NODES[i] * once[i])), 1.0 / 8.0);
+            near(sum(times(a, NODES.map(|c| c * c))), 1.0 / 12.0);
+            for b in &pair {
+                near(sum(times(b, once)), 1.0 / 24.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! diagnosis.json: what was found, in the form of an answer that can be scored.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::recording::RecordingError;
+use crate::recording::atomic::write_text;
+
+/// Version of the format.
+pub const SCHEMA: u32 = 1;
+
+/// A diagnosis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// Version of the format.
+    pub schema: u32,
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// What the believed model lacks; nothing where nothing is missing.
+    pub effects: Vec<FoundEffect>,
+    /// Where the effects act.
+    pub mismatch: Vec<Mismatch>,
+    /// Wall time [s]; the one value that may differ between two runs.
+    pub seconds: f64,
+    /// What the recordings cannot tell apart.
+    pub alternatives: Vec<Alternative>,
+    /// What else an engineer should know, a sentence each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+}
+
+/// What a diagnosis comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Known physics explains the recordings.
+    Explained,
+    /// The believed model does.
+    NothingMissing,
+    /// Physics that has no name here is at work.
+    Unlisted,
+}
+
+/// An effect with what is known of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FoundEffect {
+    /// Name in the vocabulary, or `unlisted`.
+    pub name: String,
+    /// Where it enters.
+    pub subsystem: String,
+    /// Probability that it is at work [1].
+    pub confidence: f64,
+    /// Its numbers by name, in the order of the vocabulary.
+    #[serde(with = "in_order")]
+    pub parameters: Vec<(String, Estimate)>,
+    /// Variables on which it depends.
+    pub depends_on: Vec<String>,
+}
+
+/// A number with its 95 % interval, in the unit that its name ends with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Value.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Where a recording parts from the model without the effects.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mismatch {
+    /// File name.
+    pub recording: String,
+    /// Column.
+    pub channel: String,
+    /// From [s].
+    pub start_s: f64,
+    /// Until [s].
+    pub end_s: f64,
+}
+
+/// A set of effects that would do as well, or nearly.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Alternative {
+    /// Names.
+    pub effects: Vec<String>,
+    /// Odds against the answer given [1].
+    pub odds: f64,
+}
+
+/// An answer that cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum AnswerError {
+    /// JSON has no such number.
+    #[error("the diagnosis holds {value} as `{key}`, which is no number")]
+    NotFinite {
+        /// Which.
+        key: String,
+        /// Its value.
+        value: f64,
+    },
+    /// The verdict does not go with the effects.
+    #[error("the diagnosis says {verdict:?} with {count} effects named: {names}")]
+    Verdict {
+        /// What it says.
+        verdict: Verdict,
+        /// How many effects it names.
+        count: usize,
+        /// Their names.
+        names: String,
+    },
+    /// JSON.
+    #[error("cannot write the diagnosis as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The file.
+    #[error(transparent)]
+    Write(#[from] RecordingError),
+}
+
+impl Answer {
+    /// As JSON, numbers in their shortest form.
+    ///
+    /// # Errors
+    /// A number that is not finite, a verdict that does not go with the effects.
+    pub fn text(&self) -> Result<String, AnswerError> {
+        self.check_verdict()?;
+        if let Some((key, value)) = self.numbers().into_iter().find(|(_, v)| !v.is_finite()) {
+            return Err(AnswerError::NotFinite { key, value });
+        }
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+
+    /// Writes diagnosis.json, whole or not at all.
+    ///
+    /// # Errors
+    /// As [`Self::text`], or the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), AnswerError> {
+        Ok(write_text(path, &self.text()?)?)
+    }
+
+    fn check_verdict(&self) -> Result<(), AnswerError> {
+        let unlisted = self.effects.iter().any(|effect| effect.name == UNLISTED);
+        let fits = match self.verdict {
+            Verdict::NothingMissing => self.effects.is_empty(),
+            Verdict::Explained => !self.effects.is_empty() && !unlisted,
+            Verdict::Unlisted => unlisted,
+        };
+        if fits {
+            return Ok(());
+        }
+        let names: Vec<&str> = self.effects.iter().map(|e| e.name.as_str()).collect();
+        Err(AnswerError::Verdict {
+            verdict: self.verdict,
+            count: names.len(),
+            names: names.join(", "),
+        })
+    }
+
+    /// All numbers with their keys.
+    fn numbers(&self) -> Vec<(String, f64)> {
+        let mut numbers = vec![("seconds".to_owned(), self.seconds)];
+        for effect in &self.effects {
+            let name = &effect.name;
+            numbers.push((format!("{name}.confidence"), effect.confidence));
+            for (parameter, estimate) in &effect.parameters {
+                let of = |key: &str| format!("{name}.{parameter}.{key}");
+                numbers.push((of("value"), estimate.value));
+                numbers.push((of("low"), estimate.low));
+                numbers.push((of("high"), estimate.high));
+            }
+        }
+        for mismatch in &self.mismatch {
+            let of = |key: &str| format!("mismatch.{}.{key}", mismatch.recording);
+            numbers.push((of("start_s"), mismatch.start_s));
+            numbers.push((of("end_s"), mismatch.end_s));
+        }
+        let odds = self.alternatives.iter();
+        numbers
+            .extend(odds.map(|a| (format!("alternatives.{}.odds", a.effects.join("+")), a.odds)));
+        numbers
+    }
+}
+
+/// Name of an effect that the vocabulary does not have.
+pub const UNLISTED: &str = "unlisted";
+
+/// A list of names and values as a table that keeps their order.
+mod in_order {
+    use std::fmt;
+
+    use serde::de::{Deserializer, MapAccess, Visitor};
+    use serde::ser::Serializer;
+
+    use super::Estimate;
+
+    type List = Vec<(String, Estimate)>;
+
+    pub fn serialize<S: Serializer>(list: &List, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(list.iter().map(|(name, estimate)| (name, estimate)))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<List, D::Error> {
+        struct InOrder;
+        impl<'de> Visitor<'de> for InOrder {
+            type Value = List;
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a table of numbers with their intervals")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<List, A::Error> {
+                let mut list = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    list.push(entry);
+                }
+                Ok(list)
+            }
+        }
+        deserializer.deserialize_map(InOrder)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer() -> Answer {
+        let estimate = |value: f64, low: f64, high: f64| Estimate { value, low, high };
+        Answer {
+            schema: SCHEMA,
+            verdict: Verdict::Explained,
+            effects: vec![FoundEffect {
+                name: "coulomb_viscous_friction".to_owned(),
+                subsystem: "force_balance".to_owned(),
+                confidence: 0.98,
+                parameters: vec![
+                    (
+                        "viscous_coefficient_n_s_per_m".to_owned(),
+                        estimate(90.0, 70.0, 112.0),
+                    ),
+                    ("coulomb_force_n".to_owned(), estimate(12.1, 11.6, 12.7)),
+                ],
+                depends_on: vec!["velocity_sign".to_owned()],
+            }],
+            mismatch: vec![Mismatch {
+                recording: "ride.csv".to_owned(),
+                channel: "force_n".to_owned(),
+                start_s: 1.2,
+                end_s: 1.48,
+            }],
+            seconds: 8.4,
+            alternatives: vec![Alternative {
+                effects: vec!["stribeck_friction".to_owned()],
+                odds: 0.02,
+            }],
+            notes: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_file_has_the_keys_that_are_scored() {
+        let json: serde_json::Value = serde_json::from_str(&answer().text().unwrap()).unwrap();
+        assert_eq!(json["schema"], 1);
+        assert_eq!(json["verdict"], "explained");
+        let effect = &json["effects"][0];
+        assert_eq!(effect["name"], "coulomb_viscous_friction");
+        assert_eq!(effect["subsystem"], "force_balance");
+        assert_eq!(effect["confidence"], 0.98);
+        assert_eq!(effect["parameters"]["coulomb_force_n"]["low"], 11.6);
+        assert_eq!(effect["depends_on"][0], "velocity_sign");
+        let mismatch = &json["mismatch"][0];
+        assert_eq!(mismatch["recording"], "ride.csv");
+        assert_eq!(mismatch["channel"], "force_n");
+        assert_eq!(
+            (&mismatch["start_s"], &mismatch["end_s"]),
+            (&1.2.into(), &1.48.into())
+        );
+        assert_eq!(json["seconds"], 8.4);
+        assert_eq!(json["alternatives"][0]["odds"], 0.02);
+        assert!(json.get("notes").is_none());
+    }
+
+    #[test]
+    fn numbers_are_short_and_parameters_keep_their_order() {
+        let text = answer().text().unwrap();
+        assert!(text.contains("\"value\": 12.1,"), "{text}");
+        let place = |name: &str| text.find(name).unwrap();
+        assert!(place("viscous_coefficient") < place("coulomb_force_n"));
+        let back: Answer = serde_json::from_str(&text).unwrap();
+        assert_eq!(back, answer());
+    }
+
+    #[test]
+    fn what_is_no_number_is_refused_by_its_key() {
+        let mut bad = answer();
+        bad.effects[0].parameters[1].1.high = f64::NAN;
+        let message = bad.text().unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "the diagnosis holds NaN as `coulomb_viscous_friction.coulomb_force_n.high`, which is no number"
+        );
+        let mut bad = answer();
+        bad.alternatives[0].odds = f64::INFINITY;
+        assert!(
+            bad.text()
+                .unwrap_err()
+                .to_string()
+                .contains("alternatives.stribeck_friction.odds")
+        );
+        let null = answer().text().unwrap().replace("12.7", "null");
+        assert!(serde_json::from_str::<Answer>(&null).is_err());
+    }
+
+    #[test]
+    fn a_verdict_that_does_not_go_with_the_effects_is_refused() {
+        let mut bad = answer();
+        bad.verdict = Verdict::NothingMissing;
+        assert!(
+            bad.text()
+                .unwrap_err()
+                .to_string()
+                .contains("NothingMissing with 1 effects named")
+        );
+        bad.verdict = Verdict::Unlisted;
+        assert!(bad.text().is_err());
+        bad.effects[0].name = UNLISTED.to_owned();
+        assert!(bad.text().is_ok());
+        bad.effects.clear();
+        bad.verdict = Verdict::NothingMissing;
+        assert!(bad.text().is_ok());
+    }
+
+    #[test]
+    fn it_is_written_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("diagnosis.json");
+        answer().write(&path).unwrap();
+        assert_eq!(
+            std::fs::read_to_string(&path).unwrap(),
+            answer().text().unwrap()
+        );
+        assert!(
+            answer()
+                .write(&folder.path().join("nowhere/x.json"))
+                .is_err()
+        );
+    }
+}

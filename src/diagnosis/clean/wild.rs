@@ -1,0 +1,171 @@
+//! Wild readings: they stand alone, far from both neighbours, and another sensor denies what they say of the rig.
+//!
+//!     force e    ->  acceleration e / m                    stroke e  ->  acceleration e / T^2
+//!     acceleration e  ->  speed after less speed before e T, as the stroke has it
+//!
+//! e departure, m moving mass [kg], T step [s]. An impact of one sample passes, for what it says is true; so does what no other sensor can deny.
+//! The regulator's outlet is left by a lag, which no single sample can come out of.
+
+use super::departure::{departure, departures};
+use crate::plant::CHANNELS;
+
+/// Departure from which a reading may be wild, in standard deviations of noise and of what happens around it [1].
+const FAR: f64 = 12.0;
+/// Share of its departure that is left to its neighbours once it is gone [1].
+const ALONE: f64 = 0.2;
+/// Readings on either side that say what happens around it.
+const AROUND: usize = 12;
+/// Share of what it says that a sensor must show at least if it were true [1].
+const SHOWN: f64 = 0.25;
+/// What it says, in standard deviations of the sensor that denies it, from which that one can [1].
+const POWER: f64 = 10.0;
+/// As `POWER`, for a change of speed, which a sensor of positions denies less surely.
+const SPEED_POWER: f64 = 25.0;
+/// Departure of that change from none that is noise [1].
+const SPEED_NOISE: f64 = 4.0;
+
+/// Channels in the order of [`CHANNELS`].
+const PRESSURE: usize = 0;
+const STROKE: usize = 1;
+const FORCE: usize = 2;
+const ACCELERATION: usize = 3;
+
+/// What is looked at.
+struct Sight<'a> {
+    time: &'a [f64],
+    readings: &'a [Vec<f64>; CHANNELS.len()],
+    noise: &'a [f64; CHANNELS.len()],
+    departures: [Vec<f64>; CHANNELS.len()],
+    step: f64,
+    mass: f64,
+}
+
+/// Wild readings by channel.
+pub(super) fn wild(
+    time: &[f64],
+    readings: &[Vec<f64>; CHANNELS.len()],
+    noise: &[f64; CHANNELS.len()],
+    mass: f64,
+    step: f64,
+) -> [Vec<usize>; CHANNELS.len()] {
+    let departures: [Vec<f64>; CHANNELS.len()] =
+        std::array::from_fn(|channel| departures(time, &readings[channel], step));
+    let sight = Sight {
+        time,
+        readings,
+        noise,
+        departures,
+        step,
+        mass,
+    };
+    std::array::from_fn(|channel| {
+        (0..time.len())
+            .filter(|index| sight.stands_alone(channel, *index) && sight.denied(channel, *index))
+            .collect()
+    })
+}
+
+impl Sight<'_> {
+    /// Is a reading far from its neighbours, which go on as if it were not there?
+    fn stands_alone(&self, channel: usize, index: usize) -> bool {
+        let departures = &self.departures[channel];
+        let size = departures[index].abs();
+        // Most readings end here.
+        if size.is_nan() || size <= FAR * self.noise[channel] {
+            return false;
+        }
+        let around = index.saturating_sub(AROUND)..(index + AROUND + 1).min(departures.len());
+        let mut others: Vec<f64> = around
+            .filter(|other| other.abs_diff(index) > 2)
+            .map(|other| departures[other].abs())
+            .filter(|other| other.is_finite())
+            .collect();
+        if others.is_empty() {
+            return false;
+        }
+        let middle = others.len() / 2;
+        // Median of |z| to standard deviation of a normal distribution.
+        let spread = 1.4826 * *others.select_nth_unstable_by(middle, f64::total_cmp).1;
+        if size <= FAR * spread {
+            return false;
+        }
+        let near = index.saturating_sub(2)..(index + 3).min(departures.len());
+        let values = &self.readings[channel];
+        near.filter(|other| *other != index).all(|other| {
+            let left = departure(self.time, values, self.step, other, Some(index));
+            left.is_none_or(|left| left.abs() < ALONE * size)
+        })
+    }
+
+    /// Does another sensor deny what a reading says?
+    fn denied(&self, channel: usize, index: usize) -> bool {
+        let said = self.departures[channel][index].abs();
+        match channel {
+            PRESSURE => true,
+            FORCE => self.acceleration_denies(index, said / self.mass),
+            STROKE => self.acceleration_denies(index, said / (self.step * self.step)),
+            _ => self.stroke_denies(index),
+        }
+    }
+
+    /// Does the accelerometer show nothing like an acceleration [m/s2]?
+    fn acceleration_denies(&self, index: usize, said: f64) -> bool {
+        let departures = &self.departures[ACCELERATION];
+        let near = index.saturating_sub(1)..(index + 2).min(departures.len());
+        let shown = departures[near]
+            .iter()
+            .fold(0.0f64, |most, z| most.max(z.abs()));
+        departures[index].is_finite()
+            && said > POWER * self.noise[ACCELERATION]
+            && shown < SHOWN * said
+    }
+
+    /// Does the stroke show no change of speed at a reading of the accelerometer beyond what the others say?
+    fn stroke_denies(&self, index: usize) -> bool {
+        const SIDE: usize = 4;
+        if index < SIDE || index + SIDE >= self.time.len() {
+            return false;
+        }
+        let span = index - SIDE..=index + SIDE;
+        let time = &self.time[span.clone()];
+        let stroke = &self.readings[STROKE][span.clone()];
+        let mut acceleration = self.readings[ACCELERATION][span].to_vec();
+        let whole = stroke
+            .iter()
+            .chain(&acceleration)
+            .all(|value| value.is_finite());
+        if !whole || time[2 * SIDE] - time[0] > 1.5 * 2.0 * SIDE as f64 * self.step {
+            return false;
+        }
+        let without = 0.5 * (acceleration[SIDE - 1] + acceleration[SIDE + 1]);
+        let said = (acceleration[SIDE] - without) * 0.5 * (time[SIDE + 1] - time[SIDE - 1]);
+        acceleration[SIDE] = without;
+        let course = twice_integrated(time, &acceleration);
+        let rest: Vec<f64> = stroke.iter().zip(course).map(|(x, c)| x - c).collect();
+        let (before, its_variance) = slope(&time[..SIDE], &rest[..SIDE]);
+        let (after, other_variance) = slope(&time[SIDE + 1..], &rest[SIDE + 1..]);
+        let deviation = self.noise[STROKE] * (its_variance + other_variance).sqrt();
+        said.abs() > SPEED_POWER * deviation && (after - before).abs() < SPEED_NOISE * deviation
+    }
+}
+
+/// Positions [m] from accelerations [m/s2] that are linear between samples, from rest.
+fn twice_integrated(time: &[f64], acceleration: &[f64]) -> Vec<f64> {
+    let (mut position, mut speed) = (0.0, 0.0);
+    let mut positions = vec![0.0];
+    for i in 1..time.len() {
+        let h = time[i] - time[i - 1];
+        position += h * (speed + h * (2.0 * acceleration[i - 1] + acceleration[i]) / 6.0);
+        speed += 0.5 * h * (acceleration[i - 1] + acceleration[i]);
+        positions.push(position);
+    }
+    positions
+}
+
+/// Slope of the line through values, and its variance over that of the values [1/s2].
+fn slope(time: &[f64], values: &[f64]) -> (f64, f64) {
+    let middle = time.iter().sum::<f64>() / time.len() as f64;
+    let spread: f64 = time.iter().map(|t| (t - middle) * (t - middle)).sum();
+    let rise: f64 = time.iter().zip(values).map(|(t, v)| (t - middle) * v).sum();
+    (rise / spread, 1.0 / spread)
+}

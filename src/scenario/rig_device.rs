@@ -1,0 +1,93 @@
+//! The device of a bench: a device model file, or a rig file with its contact and its sensors' errors.
+
+use std::path::Path;
+
+use super::DeviceScenario;
+use super::check::Section;
+use super::document::{Document, read_text};
+use super::error::ScenarioError;
+use super::file::{DeviceKeys, SCHEMA};
+use super::load::device;
+use super::rig_file::load_rig;
+use crate::plant::{ContactLaw, ContactParameters, Periodic, SensorErrors};
+
+/// What a device brings to a bench.
+pub(super) struct BenchDevice {
+    pub device: DeviceScenario,
+    /// Component of gravity along extension [m/s2], unless the bench gives another.
+    pub gravity_along_extension: f64,
+    /// Contact, unless the load gives another.
+    pub contact: ContactParameters,
+    pub sensor_errors: SensorErrors,
+}
+
+/// The contact of a load that says nothing of it.
+const USUAL_CONTACT: ContactParameters = ContactParameters {
+    law: ContactLaw::Linear { stiffness: 1.5e5 },
+    damping: 4e2,
+    surface_offset: 0.0,
+    runout: Periodic::NONE,
+    waviness: Periodic::NONE,
+};
+
+/// Is it a rig file? Whatever is wrong with it is said when it is read as what it is.
+pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {
+    let text = read_text(path)?;
+    let document = Document::new(path, &text, SCHEMA)?;
+    Ok(document.place("cylinder").position.is_some())
+}
+
+/// The device of a bench.
+pub(super) fn bench_device(
+    section: &Section<'_>,
+    keys: &DeviceKeys,
+) -> Result<BenchDevice, ScenarioError> {
+    let model = section.file("model", &keys.model)?;
+    if !is_rig(&model)? {
+        return Ok(BenchDevice {
+            device: device(section, keys)?,
+            gravity_along_extension: 0.0,
+            contact: USUAL_CONTACT,
+            sensor_errors: SensorErrors::NONE,
+        });
+    }
+    let overrides = Section::new(section.document(), "device.override");
+    if let Some(key) = overrides.given().next() {
+        let reason = "device.model is a rig file, whose own keys say what it is".to_owned();
+        return Err(overrides.misplaced(key, reason));
+    }
+    let rig = load_rig(&model)?;
+    refuse_memory(section, &rig.plant.sensors)?;
+    Ok(BenchDevice {
+        device: DeviceScenario {
+            parameters: rig.plant.device,
+            locked: keys.locked.unwrap_or(false),
+            // Of its tool a rig file says nothing; it is drawn as that of models/device.toml.
+            moving_centre_of_mass: 0.1,
+            moving_radius_of_gyration: 0.05,
+            tool_centre: 0.15,
+            tool_radius: 0.005,
+        },
+        gravity_along_extension: rig.plant.gravity_along_extension,
+        contact: rig.plant.contact,
+        sensor_errors: rig.plant.sensors,
+    })
+}
+
+/// Refuses what the sensing chain of a bench has no counterpart of.
+fn refuse_memory(section: &Section<'_>, sensors: &SensorErrors) -> Result<(), ScenarioError> {
+    let without_counterpart = [
+        ("force_sensor_lag", sensors.force_lag != 0.0),
+        ("channel_time_offset", sensors.force_delay != 0.0),
+    ];
+    match without_counterpart
+        .iter()
+        .find(|(_, is_at_work)| *is_at_work)
+    {
+        None => Ok(()),
+        Some((effect, _)) => {
+            let reason = format!("it has effect.{effect}, which a bench's sensing does not have");
+            Err(section.misplaced("model", reason))
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! The rig file: a device, its contact and its sensors as their owner believes them to be, or as a diagnosis has improved them. Strict SI.
+//!
+//!     key = 5.09                                   a number
+//!     key = { value = 5.09, tolerance = 0.01 }     believed to lie within 1 % of it
+//!     key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
+//!     [effect.coulomb_viscous_friction]            physics beyond the believed model, with all its numbers
+
+use std::path::{Path, PathBuf};
+
+use super::document::{Document, read_text};
+use super::error::ScenarioError;
+use crate::effects::{Effect, Quantity};
+use crate::plant::PlantParameters;
+use keys::{RigKeys, sections};
+use values::{check_together, recordings, sensors};
+
+mod effect;
+mod improved;
+mod keys;
+mod number;
+mod quantities;
+#[cfg(test)]
+pub(super) mod tests;
+mod values;
+
+pub use improved::{ImprovedEffect, as_written, improved_text};
+pub(super) use number::NUMBER_OR_TABLE;
+
+/// Version of the format.
+const SCHEMA: u32 = 1;
+
+/// A rig file, checked.
+#[derive(Debug, Clone)]
+pub struct RigFile {
+    /// File that it was read from.
+    pub path: PathBuf,
+    /// Its text.
+    text: String,
+    /// The rig, with the effects that the file names.
+    pub plant: PlantParameters,
+    /// Numbers that are not exactly known, in the order of the format.
+    pub tolerances: Vec<Tolerance>,
+    /// Samples per second [Hz].
+    pub rate: f64,
+    /// Standard deviation of each sensor's noise, in the order of [`crate::plant::CHANNELS`].
+    pub noise: [f64; 4],
+    /// Recordings to diagnose from, as the file names them.
+    pub fit: Vec<String>,
+    /// Recording whose inputs are to be predicted.
+    pub predict: Option<String>,
+    /// Effects that the file names, in the order of the catalogue, with all their numbers.
+    pub effects: Vec<(&'static Effect, Vec<f64>)>,
+}
+
+/// A number of the rig that is not exactly known.
+#[derive(Debug, Clone, Copy)]
+pub struct Tolerance {
+    /// Dotted key in the file.
+    pub key: &'static str,
+    /// The number in the rig's description.
+    pub quantity: Quantity,
+    /// Its value [SI].
+    pub value: f64,
+    /// Half the width of what is believed, relative to the value [1].
+    pub tolerance: f64,
+}
+
+/// Reads and checks a rig file.
+///
+/// # Errors
+/// File, line, column and key of what is wrong, what was found and what was expected.
+pub fn load_rig(path: &Path) -> Result<RigFile, ScenarioError> {
+    from_text(path, &read_text(path)?)
+}
+
+/// As [`load_rig`], of a text that stands, or could stand, in the file at `path`.
+fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
+    let document = Document::new(path, text, SCHEMA)?;
+    let keys: RigKeys = document.parse(&sections())?;
+    debug_assert_eq!(keys.schema, SCHEMA, "others are refused by Document::new");
+    let mut plant = quantities::blank();
+    let tolerances = values::base(&document, &keys, &mut plant)?;
+    check_together(&document, &plant)?;
+    let effects = effect::effects(&document, &keys.effect, &plant)?;
+    for (effect, values) in &effects {
+        effect::apply(effect, values, &mut plant);
+    }
+    let (rate, noise) = sensors(&document, &keys)?;
+    let (fit, predict) = recordings(&document, keys.recordings)?;
+    Ok(RigFile {
+        path: path.to_owned(),
+        text: text.to_owned(),
+        plant,
+        tolerances,
+        rate,
+        noise,
+        fit,
+        predict,
+        effects,
+    })
+}

@@ -1,0 +1,231 @@
+//! From the numbers of a rig file to the rig's description, each checked to be plausible as SI.
+
+use super::super::check::Section;
+use super::super::document::{Document, join};
+use super::super::error::ScenarioError;
+use super::super::suggestion::advice;
+use super::super::units::{Unit, look_alike};
+use super::Tolerance;
+use super::keys::{Numbers, RecordingsKeys, RigKeys, sections};
+use super::number::Number;
+use super::quantities::{COUNT, QUANTITIES, SENSOR_KEYS};
+use crate::plant::PlantParameters;
+
+/// Sets the rig's numbers and returns those that are not exactly known.
+pub(super) fn base(
+    document: &Document<'_>,
+    keys: &RigKeys,
+    plant: &mut PlantParameters,
+) -> Result<Vec<Tolerance>, ScenarioError> {
+    for (table, numbers) in keys.tables() {
+        refuse_unknown(document, table, numbers)?;
+    }
+    let (table, key, range) = COUNT;
+    let section = Section::new(document, table);
+    let count = exact(&section, key, find(&section, keys, table, key)?, range)?;
+    if count.fract() != 0.0 {
+        return Err(section.refuse(key, plain(count), "a whole number".to_owned()));
+    }
+    plant.device.cylinder_count = count as u32;
+    let mut tolerances = Vec::new();
+    for row in &QUANTITIES {
+        let (table, key) = split(row.quantity.name);
+        let section = Section::new(document, table);
+        let number = find(&section, keys, table, key)?;
+        let value = checked(&section, key, number.value, row.range)?;
+        (row.quantity.set)(plant, value);
+        let tolerance = tolerance(&Section::new(document, row.quantity.name), number)?;
+        if tolerance > 0.0 {
+            tolerances.push(Tolerance {
+                key: row.quantity.name,
+                quantity: row.quantity,
+                value,
+                tolerance,
+            });
+        }
+    }
+    Ok(tolerances)
+}
+
+/// Table and key of a dotted key.
+fn split(dotted: &'static str) -> (&'static str, &'static str) {
+    dotted
+        .split_once('.')
+        .expect("every number of the rig stands in a table")
+}
+
+fn refuse_unknown(
+    document: &Document<'_>,
+    table: &str,
+    numbers: &Numbers,
+) -> Result<(), ScenarioError> {
+    let sections = sections();
+    let known = sections.iter().find(|(name, _)| *name == table);
+    let known = known.map_or(&[][..], |(_, keys)| keys);
+    match numbers.keys().find(|key| !known.contains(&key.as_str())) {
+        None => Ok(()),
+        Some(key) => {
+            let key = join(table, key);
+            Err(ScenarioError::UnknownKey {
+                place: document.place(&key),
+                advice: advice(&key, &sections),
+                key,
+            })
+        }
+    }
+}
+
+fn find<'a>(
+    section: &Section<'_>,
+    keys: &'a RigKeys,
+    table: &str,
+    key: &str,
+) -> Result<&'a Number, ScenarioError> {
+    let tables = keys.tables();
+    let numbers = tables.iter().find(|(name, _)| *name == table);
+    let number = numbers.and_then(|(_, numbers)| numbers.get(key));
+    number.ok_or_else(|| {
+        let unit = Unit::of_key(key);
+        let expected = if unit.is_one() {
+            "it to be given".to_owned()
+        } else {
+            format!("it to be given in {}", unit.symbol)
+        };
+        section.missing(key, &expected)
+    })
+}
+
+/// A value that is plausible in the unit of its key.
+pub(super) fn checked(
+    section: &Section<'_>,
+    key: &str,
+    value: f64,
+    range: [f64; 2],
+) -> Result<f64, ScenarioError> {
+    if range[0] <= value && value <= range[1] {
+        return Ok(value);
+    }
+    let unit = Unit::of_key(key);
+    let with_unit = |value: f64| {
+        format!("{} {}", plain(value), unit.symbol)
+            .trim_end()
+            .to_owned()
+    };
+    let mut expected = format!("{} to {}", plain(range[0]), with_unit(range[1]));
+    if let Some(other) = look_alike(unit.symbol, value, range) {
+        expected += &format!(" (it looks like {other}; a rig file is in SI)");
+    }
+    Err(section.refuse(key, with_unit(value), expected))
+}
+
+/// A number in the shorter of its usual forms.
+pub(super) fn plain(value: f64) -> String {
+    let usual = value == 0.0 || (1e-3..1e6).contains(&value.abs());
+    if usual || !value.is_finite() {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// A number that is taken to be exact.
+fn exact(
+    section: &Section<'_>,
+    key: &str,
+    number: &Number,
+    range: [f64; 2],
+) -> Result<f64, ScenarioError> {
+    if *number != Number::from(number.value) {
+        let reason = "this number is taken to be exact".to_owned();
+        return Err(section.misplaced(key, reason));
+    }
+    checked(section, key, number.value, range)
+}
+
+/// Relative half-width of what is believed of a number, whose table is `section`; 0 for an exact one.
+pub(super) fn tolerance(section: &Section<'_>, number: &Number) -> Result<f64, ScenarioError> {
+    let value = number.value;
+    if let Some(tolerance) = number.tolerance
+        && !(0.0..1.0).contains(&tolerance)
+    {
+        let expected = "0 to less than 1, a share of the value".to_owned();
+        return Err(section.refuse("tolerance", tolerance.to_string(), expected));
+    }
+    let interval = match (number.low, number.high) {
+        (None, None) => None,
+        (Some(_), None) => return Err(section.missing("high", "it to be given beside low")),
+        (None, Some(_)) => return Err(section.missing("low", "it to be given beside high")),
+        (Some(low), Some(high)) => Some((low, high)),
+    };
+    if let Some((low, high)) = interval {
+        if !(low.is_finite() && low <= value) {
+            let expected = format!("at most the value, {}", plain(value));
+            return Err(section.refuse("low", plain(low), expected));
+        }
+        if !(high.is_finite() && high >= value) {
+            let expected = format!("at least the value, {}", plain(value));
+            return Err(section.refuse("high", plain(high), expected));
+        }
+    }
+    let of_interval = |(low, high): (f64, f64)| {
+        let half_width = (high - value).max(value - low);
+        if value == 0.0 {
+            0.0
+        } else {
+            half_width / value.abs()
+        }
+    };
+    Ok(number
+        .tolerance
+        .or(interval.map(of_interval))
+        .unwrap_or(0.0))
+}
+
+/// What the values must be to each other.
+pub(super) fn check_together(
+    document: &Document<'_>,
+    plant: &PlantParameters,
+) -> Result<(), ScenarioError> {
+    let device = &plant.device;
+    if device.rod >= device.bore {
+        let expected = format!("less than bore_m, {} m", plain(device.bore));
+        let section = Section::new(document, "cylinder");
+        return Err(section.refuse_number("rod_m", device.rod, expected));
+    }
+    Ok(())
+}
+
+/// Rate [Hz] and noise in the order of the channels.
+pub(super) fn sensors(
+    document: &Document<'_>,
+    keys: &RigKeys,
+) -> Result<(f64, [f64; 4]), ScenarioError> {
+    let mut values = [0.0; SENSOR_KEYS.len()];
+    for (value, (dotted, range)) in values.iter_mut().zip(SENSOR_KEYS) {
+        let (table, key) = split(dotted);
+        let section = Section::new(document, table);
+        *value = exact(&section, key, find(&section, keys, table, key)?, range)?;
+    }
+    let [rate, noise @ ..] = values;
+    Ok((rate, noise))
+}
+
+/// Names of the recordings to diagnose from, and of the one to predict.
+pub(super) fn recordings(
+    document: &Document<'_>,
+    keys: RecordingsKeys,
+) -> Result<(Vec<String>, Option<String>), ScenarioError> {
+    let section = Section::new(document, "recordings");
+    for (index, name) in keys.fit.iter().enumerate() {
+        let key = format!("fit[{index}]");
+        section.text(&key, name)?;
+        if keys.fit[..index].contains(name) {
+            let expected = "each recording once".to_owned();
+            return Err(section.refuse(&key, format!("{name:?} again"), expected));
+        }
+    }
+    if let Some(name) = &keys.predict {
+        section.text("predict", name)?;
+    }
+    Ok((keys.fit, keys.predict))
+}

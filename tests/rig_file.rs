@@ -1,0 +1,90 @@
+//! A rig file as the device of `idc run`'s bench moves and reads as the same rig does in a prediction.
+
+use idc_cell::plant::{PlantInputs, simulate};
+use idc_cell::recording::schema;
+use idc_cell::rig::Rig;
+use idc_cell::scenario::load_bench;
+use idc_cell::scenario::rig_file::load_rig;
+
+use crate::predict::RIG;
+
+const EFFECTS: &str = "
+[effect.coulomb_viscous_friction]
+coulomb_force_n = 12
+viscous_coefficient_n_s_per_m = 90
+presliding_displacement_m = 4e-5
+[effect.heat_transfer]
+wall_conductance_w_per_k = 0.1
+[effect.hertzian_contact]
+stiffness_n_per_m15 = 2e7
+[effect.surface_offset]
+offset_m = 0.001
+[effect.surface_waviness]
+frequency_hz = 2
+sine_m = 2e-4
+cosine_m = 1e-4
+[effect.force_sensor_gain_error]
+gain = 1.05
+[effect.force_sensor_bias_drift]
+bias_n = 3
+drift_n_per_s = 0.5
+[effect.inertial_crosstalk]
+mass_kg = 0.3
+[effect.stroke_sensor_gain_error]
+gain = 1.02
+";
+
+const BENCH: &str = r#"
+schema = 1
+kind = "bench"
+title = "a rig"
+[device]
+model = "rig.toml"
+[bench]
+duration_s = 2
+[load]
+kind = "load_cell"
+position_mm = 20
+[[command]]
+at_s = 0
+set_pressure_bar_gauge = 2
+"#;
+
+#[test]
+fn bench_and_prediction_agree_with_every_effect_that_both_have() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("rig.toml"), RIG.to_owned() + EFFECTS).unwrap();
+    std::fs::write(path("bench.toml"), BENCH).unwrap();
+    let rig = Rig::new(load_bench(&path("bench.toml")).unwrap()).unwrap();
+    let (recording, stop) = rig.run(&mut |_, _| ()).unwrap();
+    assert_eq!(stop, None);
+
+    let time = recording.time().to_vec();
+    let inputs = PlantInputs {
+        set_pressure: vec![2e5; time.len()],
+        extends: vec![true; time.len()],
+        surface: vec![0.02; time.len()],
+        time,
+    };
+    let plant = load_rig(&path("rig.toml")).unwrap().plant;
+    let readings = simulate(&plant, &inputs).readings;
+    let atmosphere = plant.device.gas.atmosphere;
+    for (channel, quantity, offset, tolerance) in [
+        (0, schema::MEASURED_REGULATOR_PRESSURE, atmosphere, 1.0),
+        (1, schema::MEASURED_STROKE, 0.0, 2e-6),
+        (2, schema::MEASURED_FORCE, 0.0, 0.5),
+    ] {
+        let measured = recording.values(quantity).unwrap();
+        let worst = measured
+            .iter()
+            .zip(&readings[channel])
+            .map(|(measured, predicted)| (measured - offset - predicted).abs())
+            .fold(0.0, f64::max);
+        assert!(worst < tolerance, "{quantity}: {worst}");
+    }
+    // The waviness shows, so it was there to be missed.
+    let last = &recording.values(schema::MEASURED_FORCE).unwrap()[1500..];
+    let span = |f: fn(f64, f64) -> f64| last.iter().copied().reduce(f).unwrap();
+    assert!(span(f64::max) - span(f64::min) > 10.0);
+}
