@@ -8,6 +8,7 @@ mod command_line;
 mod common;
 mod contact;
 mod convergence;
+mod design;
 mod determinism;
 mod equations;
 mod layers;

@@ -35,6 +35,8 @@ const WITHOUT_FRONT: [f64; 5] = [0.6, 0.3, 0.0, 0.0, 0.0];
 const STARTS: usize = 3;
 /// First steps of the refinement, as shares of a variable's range: after evolution, and from one level to the next.
 const RADII: [f64; 2] = [0.1, 0.05];
+/// Times that every level is looked at.
+const LEVEL_PASSES: usize = 2;
 /// The lowest level, as a share of the front's width: at the least value itself there is no room to move.
 const LOWEST_LEVEL: f64 = 0.002;
 
@@ -82,6 +84,14 @@ pub fn run(
         &start,
         study.evaluations - budgets.iter().sum::<usize>(),
     )
+}
+
+/// Simulates the starting design alone, to find what is wrong with a study before anything else is done.
+///
+/// # Errors
+/// The starting design cannot be simulated, or a metric is unknown.
+pub fn check_start(study: &Study, evaluator: &dyn Evaluate) -> Result<(), DesignError> {
+    start(&Archive::new(study, evaluator, &|_, _| ())).map(drop)
 }
 
 /// A design that could be simulated.
@@ -205,22 +215,26 @@ fn levels(
     let study = archive.study();
     let lowest = best(archive, other)?.1.trade_off;
     let ceilings = ceilings(study, lowest, highest);
-    let all = archive.all();
-    let each = budget / ceilings.len().max(1);
-    let tasks: Vec<(Goal, Vec<Vec<f64>>)> = ceilings
-        .into_iter()
-        .map(|ceiling| {
-            let goal = Goal {
-                ceiling: Some(ceiling),
-                ..goal.clone()
-            };
-            let starts = distinct_best(study, &goal, &all, 1);
-            (goal, starts)
-        })
-        .collect();
-    tasks
-        .par_iter()
-        .try_for_each(|(goal, starts)| refine(archive, goal, starts, RADII[1], each).map(drop))
+    let each = budget / LEVEL_PASSES / ceilings.len().max(1);
+    for _ in 0..LEVEL_PASSES {
+        // What the pass before found at one level is a start for the levels above it.
+        let all = archive.all();
+        let tasks: Vec<(Goal, Vec<Vec<f64>>)> = ceilings
+            .iter()
+            .map(|ceiling| {
+                let goal = Goal {
+                    ceiling: Some(*ceiling),
+                    ..goal.clone()
+                };
+                let starts = distinct_best(study, &goal, &all, 1);
+                (goal, starts)
+            })
+            .collect();
+        tasks.par_iter().try_for_each(|(goal, starts)| {
+            refine(archive, goal, starts, RADII[1], each).map(drop)
+        })?;
+    }
+    Ok(())
 }
 
 /// Levels of the second objective: just above its least value, where the objective has not been looked at yet, and evenly on to that of the best
