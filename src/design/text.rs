@@ -163,6 +163,9 @@ fn limits(out: &mut String, result: &StudyResult) {
 }
 
 fn direction(change: f64) -> String {
+    if percent(change) == percent(0.0) {
+        return "no difference".to_owned();
+    }
     let size = percent(change.abs()).replace('+', "");
     if change < 0.0 {
         format!("lower by {size}")
