@@ -104,7 +104,7 @@ fn the_mass_that_swings_with_the_air_is_found() {
         .as_f64()
         .unwrap();
     assert!(
-        (found / expected - 1.0).abs() < 0.05,
+        (found / expected - 1.0).abs() < 0.02,
         "{found} kg, expected {expected} kg"
     );
     assert_eq!(result["active_bounds"].as_array().unwrap().len(), 0);

@@ -28,11 +28,6 @@ impl ScenarioTemplate {
         })
     }
 
-    /// The file's path.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// The scenario with these values for these dotted keys, each in its key's unit, whatever the file says of them.
     ///
     /// # Errors
