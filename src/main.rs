@@ -9,8 +9,14 @@ fn main() -> ExitCode {
     match execute(&Cli::parse()) {
         Ok(code) => code.into(),
         Err(error) => {
-            eprintln!("error: {error}");
-            Code::BadInput.into()
+            let code = error.exit_code();
+            let word = if code == Code::Stopped {
+                "stopped"
+            } else {
+                "error"
+            };
+            eprintln!("{word}: {error}");
+            code.into()
         }
     }
 }

@@ -9,6 +9,7 @@ mod common;
 mod contact;
 mod controllers;
 mod convergence;
+mod design;
 mod determinism;
 mod equations;
 mod estimator;

@@ -84,7 +84,8 @@ pub(super) fn figures(
     recording: &Recording,
 ) -> Result<String, FigureError> {
     let atmosphere = scenario.device.parameters.gas.atmosphere;
-    let events = events(scenario);
+    let last = recording.time().last().copied().unwrap_or(0.0);
+    let events = events(scenario, last);
     let bare: Vec<Marker> = events
         .iter()
         .map(|event| Marker {
@@ -180,7 +181,8 @@ fn repeats(recording: &Recording, lines: &[Line], index: usize) -> bool {
         })
 }
 
-fn events(scenario: &BenchScenario) -> Vec<Marker> {
+/// Commands and switchings up to the last sample's time [s], which a run that was stopped has before its end.
+fn events(scenario: &BenchScenario, last: f64) -> Vec<Marker> {
     let commands = scenario.command.steps().iter().map(|&(at, value)| Marker {
         label: match scenario.command {
             // To a millibar, with as few digits as that takes, but one.
@@ -196,7 +198,10 @@ fn events(scenario: &BenchScenario) -> Vec<Marker> {
         },
         at,
     });
-    let mut events: Vec<Marker> = commands.chain(valve).collect();
+    let mut events: Vec<Marker> = commands
+        .chain(valve)
+        .filter(|event| event.at <= last)
+        .collect();
     events.sort_by(|a, b| a.at.total_cmp(&b.at));
     events
 }
@@ -209,6 +214,16 @@ mod tests {
     use crate::rig::Rig;
     use crate::scenario::load_bench;
     use crate::sensing::{FilterParameters, SensingParameters};
+
+    #[test]
+    fn a_run_that_stopped_early_is_drawn_without_the_commands_that_never_came() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper_step.toml");
+        let mut scenario = load_bench(&path).unwrap();
+        let all = scenario.clone();
+        scenario.duration = 0.01;
+        let (recording, _) = Rig::new(scenario).unwrap().run(&mut |_, _| ()).unwrap();
+        assert!(!figures(&all, &recording).unwrap().contains("set 1.8 bar"));
+    }
 
     fn drawn(sensing: SensingParameters) -> String {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper_step.toml");

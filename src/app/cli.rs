@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
-use super::files::{OutputFolder, RunOutput, SummaryDocument};
+use super::files::{OutputFolder, RUN_NAMES, RunOutput, SummaryDocument};
 use super::output::say;
 use super::picture::scene_of;
 use super::run::run_cell;
@@ -25,7 +26,8 @@ use crate::scenario::{self, AnyScenario, BenchScenario};
     name = "idc",
     version,
     about,
-    after_help = "Exit codes: 0 done, 1 a result lies outside the scenario's [expect] bounds, \
+    after_help = "Exit codes: 0 done, 1 a result lies outside the scenario's [expect] bounds \
+or no design keeps the study's [limits], \
 2 bad input, 3 the physics stopped the run (the recording up to there is kept)."
 )]
 pub struct Cli {
@@ -38,6 +40,9 @@ enum Command {
     /// Run a scenario: simulate, record, print how uniform the contact force was.
     #[command(after_help = "Example: idc run scenarios/plate_edge.toml --out runs/first")]
     Run(RunArguments),
+    /// Do a design study: find the device that keeps the contact force most uniform under limits.
+    #[command(after_help = "Example: idc design scenarios/studies/device_design.toml")]
+    Design(DesignArguments),
     /// List the sharp edges of a part and the outlines of its faces.
     #[command(after_help = "Example: idc edges assets/bracket.stl")]
     Edges(EdgesArguments),
@@ -62,6 +67,21 @@ struct RunArguments {
     /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
     #[arg(long, hide = true)]
     hold_at_s: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+struct DesignArguments {
+    /// Study file.
+    study: PathBuf,
+    /// Folder for design.json, override.toml and front.svg [default: runs/<study name>].
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(long)]
+    quiet: bool,
+    /// Print what design.json holds instead of the table.
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -104,6 +124,7 @@ pub(super) enum MeshUnit {
 pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
         Command::Run(arguments) => run(arguments),
+        Command::Design(arguments) => design(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
     }
@@ -121,14 +142,17 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     };
     metrics::validate(metrics::METRICS, &scenario.expect).map_err(metrics_error)?;
     let cell = Cell::new(scenario)?;
-    let folder = OutputFolder::prepare(&output_folder(arguments))?;
+    let folder = OutputFolder::prepare(
+        &output_folder(arguments.out.as_ref(), &arguments.scenario),
+        &RUN_NAMES,
+    )?;
     let quiet = arguments.quiet || arguments.json;
     if !quiet {
         for note in &cell.notes {
             eprintln!("note: {note}");
         }
     }
-    let bar = progress(quiet);
+    let bar = progress("simulating", quiet);
     let finished = run_cell(&cell, &mut |done, total| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
@@ -149,7 +173,8 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
         figures: None,
     })?;
     let table = text(title, &finished.summary, &verdicts, style());
-    show(arguments, &document, &table, &folder, &names)?;
+    let output = [arguments.quiet, arguments.json];
+    show(output, &document, &table, &folder, &names)?;
     Ok(end(finished.stop.as_ref(), &verdicts))
 }
 
@@ -166,8 +191,11 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
         });
     }
     let rig = Rig::new(scenario)?;
-    let folder = OutputFolder::prepare(&output_folder(arguments))?;
-    let bar = progress(arguments.quiet || arguments.json);
+    let folder = OutputFolder::prepare(
+        &output_folder(arguments.out.as_ref(), &arguments.scenario),
+        &RUN_NAMES,
+    )?;
+    let bar = progress("simulating", arguments.quiet || arguments.json);
     let finished = bench::run_rig(&rig, &mut |done, total| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
@@ -188,21 +216,42 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
     })?;
     let table = bench_text(&scenario.title, &finished.summary, &verdicts, style());
-    show(arguments, &document, &table, &folder, &names)?;
+    let output = [arguments.quiet, arguments.json];
+    show(output, &document, &table, &folder, &names)?;
     Ok(end(finished.stop.as_ref(), &verdicts))
+}
+
+fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {
+    let out = output_folder(arguments.out.as_ref(), &arguments.study);
+    let study = PreparedStudy::new(&arguments.study, &out)?;
+    let bar = progress("searching", arguments.quiet || arguments.json);
+    let finished = study.run(&|done, most| {
+        bar.set_length(most as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let finished = finished?;
+    show(
+        [arguments.quiet, arguments.json],
+        &finished.document,
+        &finished.table,
+        study.folder(),
+        &finished.names,
+    )?;
+    Ok(ExitCode::Done)
 }
 
 /// Prints what the user asked to see.
 fn show(
-    arguments: &RunArguments,
+    [quiet, json]: [bool; 2],
     document: &str,
     table: &str,
     folder: &OutputFolder,
     names: &[&str],
 ) -> Result<(), AppError> {
-    if arguments.json {
+    if json {
         say(&format!("{document}\n"))?;
-    } else if !arguments.quiet {
+    } else if !quiet {
         say(table)?;
         say(&format!(
             "written to {}: {}\n",
@@ -265,17 +314,18 @@ fn opening(arguments: &RunArguments) -> Opening {
         })
 }
 
-fn output_folder(arguments: &RunArguments) -> PathBuf {
-    let default = || Path::new("runs").join(arguments.scenario.file_stem().unwrap_or_default());
-    arguments.out.clone().unwrap_or_else(default)
+fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
+    let default = || Path::new("runs").join(input.file_stem().unwrap_or_default());
+    out.cloned().unwrap_or_else(default)
 }
 
-fn progress(quiet: bool) -> ProgressBar {
+fn progress(verb: &str, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(0);
-    let style = ProgressStyle::with_template("simulating {wide_bar} {percent:>3} %, {eta} left");
+    let template = format!("{verb} {{wide_bar}} {{percent:>3}} %, {{eta}} left");
+    let style = ProgressStyle::with_template(&template);
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar
 }

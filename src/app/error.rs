@@ -1,6 +1,7 @@
 //! What ends a command early, and the exit code that goes with it.
 
 use crate::cell::CellError;
+use crate::design::DesignError;
 use crate::diagnosis::recorded::RecordedError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
@@ -12,7 +13,7 @@ use crate::workpiece::WorkpieceError;
 pub enum ExitCode {
     /// All is well.
     Done = 0,
-    /// A result lies outside the bounds that the scenario states.
+    /// A result lies outside the bounds that the scenario states, or no design keeps the limits of the study.
     OutsideBounds = 1,
     /// Bad input: nothing was simulated, nothing was written.
     BadInput = 2,
@@ -49,6 +50,9 @@ pub enum AppError {
     /// A recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// A design study.
+    #[error(transparent)]
+    Design(Box<DesignError>),
     /// The output folder.
     #[error(
         "cannot write into the output folder {folder}: {reason}; expected a folder, there or to be made, that can be written (--out names another)"
@@ -109,4 +113,20 @@ pub enum AppError {
     /// Summary as JSON.
     #[error("cannot write the summary as JSON: {0}")]
     Json(#[from] serde_json::Error),
+}
+
+impl From<DesignError> for AppError {
+    fn from(error: DesignError) -> Self {
+        Self::Design(Box::new(error))
+    }
+}
+
+impl AppError {
+    /// Exit code that goes with it.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Design(error) if error.is_verdict() => ExitCode::OutsideBounds,
+            _ => ExitCode::BadInput,
+        }
+    }
 }

@@ -1,4 +1,5 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, and figures.svg of a bench; all appear, or none.
+//! The files of a run: recording.rrd, samples.parquet, summary.json, and figures.svg of a bench; those of a study: design.json, override.toml,
+//! front.svg. All appear, or none.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,10 @@ const SAMPLES: &str = "samples.parquet";
 const SUMMARY: &str = "summary.json";
 const FIGURES: &str = "figures.svg";
 /// All that a run may write.
-const NAMES: [&str; 4] = [RECORDING, SAMPLES, SUMMARY, FIGURES];
+pub(super) const RUN_NAMES: [&str; 4] = [RECORDING, SAMPLES, SUMMARY, FIGURES];
+pub(super) const DESIGN: &str = "design.json";
+pub(super) const OVERRIDE: &str = "override.toml";
+pub(super) const FRONT: &str = "front.svg";
 
 /// A folder that was found to be writable before the run.
 pub(super) struct OutputFolder {
@@ -26,8 +30,8 @@ pub(super) struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Makes the folder and tries it, so that a long run does not end with nothing.
-    pub(super) fn prepare(path: &Path) -> Result<Self, AppError> {
+    /// Makes the folder and tries it for files of these names, so that a long run does not end with nothing.
+    pub(super) fn prepare(path: &Path, names: &[&str]) -> Result<Self, AppError> {
         let refuse = |reason: String| AppError::OutputFolder {
             folder: path.display().to_string(),
             reason,
@@ -36,7 +40,7 @@ impl OutputFolder {
             return Err(refuse("there is a file of that name".to_owned()));
         }
         std::fs::create_dir_all(path).map_err(|error| refuse(error.to_string()))?;
-        if let Some(name) = NAMES.iter().find(|name| path.join(name).is_dir()) {
+        if let Some(name) = names.iter().find(|name| path.join(name).is_dir()) {
             return Err(refuse(format!("{name} in it is a folder")));
         }
         drop(UnfinishedFolder::within(path)?);
@@ -82,6 +86,33 @@ impl OutputFolder {
             write_text(&unfinished.path().join(FIGURES), figures)?;
             names.push(FIGURES);
         }
+        unfinished.finish(&names)?;
+        Ok(names)
+    }
+
+    /// Removes a file that is not of this time, if it is there.
+    pub(super) fn discard(&self, name: &str) -> Result<(), AppError> {
+        match std::fs::remove_file(self.path.join(name)) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                Err(AppError::OutputFolder {
+                    folder: self.path.display().to_string(),
+                    reason: format!("the old {name} cannot be removed: {error}"),
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes texts by name and returns their names.
+    pub(super) fn write_texts(
+        &self,
+        files: &[(&'static str, &str)],
+    ) -> Result<Vec<&'static str>, AppError> {
+        let unfinished = UnfinishedFolder::within(&self.path)?;
+        for (name, text) in files {
+            write_text(&unfinished.path().join(name), text)?;
+        }
+        let names: Vec<&'static str> = files.iter().map(|(name, _)| *name).collect();
         unfinished.finish(&names)?;
         Ok(names)
     }

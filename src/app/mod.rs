@@ -4,6 +4,7 @@ mod bench;
 mod bench_figures;
 mod bench_picture;
 mod cli;
+mod design;
 mod edges;
 mod error;
 mod estimate_figure;
@@ -15,6 +16,7 @@ mod run;
 
 pub use bench::{FinishedBench, run_rig};
 pub use cli::{Cli, execute};
+pub use design::ScenarioEvaluator;
 pub use error::{AppError, ExitCode};
 pub use picture::scene_of;
 pub use run::{Finished, run_cell};

@@ -35,6 +35,8 @@ pub struct Cell {
     pub part: Part,
     /// The job.
     pub plan: Plan,
+    /// Least and greatest component of gravity along the tool's axis on the edge [m/s2].
+    pub gravity_on_edge: [f64; 2],
     /// What a user may not expect, one sentence each.
     pub notes: Vec<String>,
 }
@@ -56,7 +58,7 @@ impl Cell {
             scenario.process.lean,
         )
         .map_err(|error| CellError::plan(&scenario, error))?;
-        check_supply(&scenario, &tool_path)?;
+        let gravity_on_edge = check_supply(&scenario, &tool_path)?;
         let controller = controller(&scenario)?;
         let plan = Plan::new(&plan_request(
             &scenario,
@@ -74,6 +76,7 @@ impl Cell {
             controller,
             part,
             plan,
+            gravity_on_edge,
             notes,
         })
     }
@@ -206,8 +209,10 @@ fn controller(scenario: &Scenario) -> Result<ForceController, ScenarioError> {
     )
 }
 
-/// The supply must give the force wherever the wrist turns, and gravity alone must not press harder than asked for.
-fn check_supply(scenario: &Scenario, tool_path: &ToolPath) -> Result<(), CellError> {
+/// The supply must give the force wherever the wrist turns, and gravity alone must not press harder than asked for. Returns the least and greatest
+/// component of gravity along the tool's axis [m/s2].
+fn check_supply(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2], CellError> {
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     let map = PressureMap::new(&scenario.device.parameters);
     let axial = scenario.process.force * scenario.process.lean.cos();
     let device = &scenario.device.parameters;
@@ -217,6 +222,7 @@ fn check_supply(scenario: &Scenario, tool_path: &ToolPath) -> Result<(), CellErr
     for i in 0..=count {
         let station = tool_path.at(length * i as f64 / count as f64);
         let gravity = scenario.simulation.gravity.dot(station.axis);
+        range = [range[0].min(gravity), range[1].max(gravity)];
         let needed = map.unlimited(axial, gravity);
         if needed > supply || needed < 0.0 {
             return Err(CellError::Supply {
@@ -231,5 +237,5 @@ fn check_supply(scenario: &Scenario, tool_path: &ToolPath) -> Result<(), CellErr
             });
         }
     }
-    Ok(())
+    Ok(range)
 }

@@ -13,6 +13,15 @@ pub struct Design {
     entries: Vec<(String, f64)>,
 }
 
+/// Key of a scenario file for a key of a design.
+pub(super) fn scenario_key(key: &str) -> String {
+    if key.contains('.') {
+        key.to_owned()
+    } else {
+        format!("device.override.{key}")
+    }
+}
+
 impl Design {
     /// A design from its keys, in this order.
     pub fn new(entries: Vec<(String, f64)>) -> Self {
@@ -33,11 +42,19 @@ impl Design {
             .map(|(_, value)| value)
     }
 
+    /// Its values by the dotted keys that a scenario file has for them.
+    pub fn scenario_values(&self) -> Vec<(String, f64)> {
+        self.iter()
+            .map(|(key, value)| (scenario_key(key), value))
+            .collect()
+    }
+
     /// The design as TOML that a scenario file takes as it stands.
     pub fn override_text(&self) -> String {
         let mut tables: BTreeMap<String, String> = BTreeMap::new();
         for (key, value) in self.iter() {
-            let (table, name) = key.rsplit_once('.').unwrap_or(("device.override", key));
+            let key = scenario_key(key);
+            let (table, name) = key.rsplit_once('.').unwrap_or_default();
             let lines = tables.entry(table.to_owned()).or_default();
             // Writing to a String cannot fail.
             let _ = writeln!(lines, "{name} = {value}");
@@ -75,7 +92,7 @@ pub struct ScenarioOutcome {
 /// What a design does in all scenarios of a study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Outcome {
-    /// Least and greatest force that the device can give at rest, from the static map at supply pressure [N].
+    /// Least and greatest force that the device can be relied upon to give at rest [N].
     #[serde(rename = "force_range_n")]
     pub force_range: [f64; 2],
     /// One a scenario, in the order of the study.

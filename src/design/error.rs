@@ -12,6 +12,16 @@ pub enum DesignError {
     /// The study file.
     #[error(transparent)]
     File(#[from] ScenarioError),
+    /// A variable that a scenario cannot take.
+    #[error("{place}: `variables.{key}` does not fit a scenario of the study: {reason}")]
+    Variable {
+        /// Where.
+        place: Place,
+        /// The variable's key.
+        key: String,
+        /// What the scenario says.
+        reason: Box<ScenarioError>,
+    },
     /// The starting design, to which everything is compared.
     #[error("{}: the starting design cannot be simulated: {detail}", file.display())]
     Start {
@@ -66,4 +76,11 @@ pub enum DesignError {
     /// The drawing library refused.
     #[error("the trade-off front cannot be drawn: {0}")]
     Picture(String),
+}
+
+impl DesignError {
+    /// Is it what the study found out, and not something wrong with its input?
+    pub fn is_verdict(&self) -> bool {
+        matches!(self, Self::NoDesign { .. } | Self::OnlyFailures { .. })
+    }
 }

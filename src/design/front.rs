@@ -38,6 +38,25 @@ pub(super) fn thinned(points: &[[f64; 2]], front: &[usize], share: f64) -> Vec<u
     kept
 }
 
+/// The widest gaps between neighbours of a sorted front, at most `count`, by the first coordinates of their ends; both axes count by their extent.
+pub(super) fn widest_gaps(points: &[[f64; 2]], front: &[usize], count: usize) -> Vec<[f64; 2]> {
+    let (Some(&first), Some(&last)) = (front.first(), front.last()) else {
+        return Vec::new();
+    };
+    let extent = [0, 1].map(|axis| (points[last][axis] - points[first][axis]).abs());
+    let mut gaps: Vec<(f64, [f64; 2])> = front
+        .windows(2)
+        .map(|pair| {
+            let [a, b] = [points[pair[0]], points[pair[1]]];
+            let share = |axis: usize| (b[axis] - a[axis]).abs() / extent[axis];
+            (share(0).hypot(share(1)), [a[0], b[0]])
+        })
+        .collect();
+    // Stable: of equals the first stays first.
+    gaps.sort_by(|a, b| b.0.total_cmp(&a.0));
+    gaps.into_iter().take(count).map(|(_, ends)| ends).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -66,5 +85,23 @@ mod tests {
         let kept = thinned(&points, &front, 0.05);
         assert!((15..=21).contains(&kept.len()), "{}", kept.len());
         assert_eq!((kept[0], kept[kept.len() - 1]), (0, 1000));
+    }
+
+    #[test]
+    fn the_widest_gaps_count_both_axes() {
+        let points = [
+            [0.0, 10.0],
+            [10.0, 9.0],
+            [20.0, 2.0],
+            [90.0, 1.0],
+            [100.0, 0.0],
+        ];
+        let front = non_dominated(&points);
+        assert_eq!(
+            widest_gaps(&points, &front, 2),
+            [[10.0, 20.0], [20.0, 90.0]]
+        );
+        assert_eq!(widest_gaps(&points, &front, 9).len(), 4);
+        assert!(widest_gaps(&points, &front[..1], 9).is_empty());
     }
 }

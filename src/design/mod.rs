@@ -41,7 +41,7 @@ pub use result::{
     ActiveBound, ActiveLimit, Candidate, FrontPoint, LimitState, ObjectiveNames, Sensitivity,
     StudyResult,
 };
-pub use search::run;
+pub use search::{check_start, run};
 pub use study::{Objective, Over, Study, TradeOff, load};
 pub use text::text;
 pub use variable::{CatalogueEntry, Domain, Variable};

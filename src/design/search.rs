@@ -3,7 +3,7 @@
 //! 1. Differential evolution over all variables, feasibility first; the starting design is among the first.
 //! 2. COBYLA from the best few designs that differ, then on neighbouring catalogue choices.
 //! 3. The same for the second objective alone: the other end of the front.
-//! 4. Between the ends, level by level: the objective under a ceiling on the second one (epsilon-constraint; Y. Y. Haimes et al., IEEE Trans. Syst.
+//! 4. Between the ends, level by level, then in the widest gaps: the objective under a ceiling on the second one (epsilon-constraint; Y. Y. Haimes et al., IEEE Trans. Syst.
 //!    Man Cybern. 1, 1971), from the best known design below it. It finds the parts of a front that are not convex as well.
 //! 5. What binds the chosen design.
 //!
@@ -20,6 +20,7 @@ use super::archive::{Archive, Judged, Scored};
 use super::candidate::Evaluate;
 use super::error::DesignError;
 use super::evolve::evolve;
+use super::front::{non_dominated, widest_gaps};
 use super::goal::{Aim, Goal};
 use super::label::with_unit;
 use super::limits::Limit;
@@ -29,12 +30,14 @@ use super::study::{Study, TradeOff};
 use super::variable::Domain;
 
 /// Shares of the budget: evolution and refinement of the objective, of the second one, all levels, what binds.
-const WITH_FRONT: [f64; 5] = [0.35, 0.15, 0.1, 0.08, 0.24];
+const WITH_FRONT: [f64; 5] = [0.25, 0.14, 0.08, 0.06, 0.4];
 const WITHOUT_FRONT: [f64; 5] = [0.6, 0.3, 0.0, 0.0, 0.0];
 /// Designs from which the refinement starts.
 const STARTS: usize = 3;
 /// First steps of the refinement, as shares of a variable's range: after evolution, and from one level to the next.
 const RADII: [f64; 2] = [0.1, 0.05];
+/// Share of the levels' budget for the even ones; the rest is for the gaps.
+const FIRST_LOOK: f64 = 0.6;
 /// The lowest level, as a share of the front's width: at the least value itself there is no room to move.
 const LOWEST_LEVEL: f64 = 0.002;
 
@@ -82,6 +85,14 @@ pub fn run(
         &start,
         study.evaluations - budgets.iter().sum::<usize>(),
     )
+}
+
+/// Simulates the starting design alone, to find what is wrong with a study before anything else is done.
+///
+/// # Errors
+/// The starting design cannot be simulated, or a metric is unknown.
+pub fn check_start(study: &Study, evaluator: &dyn Evaluate) -> Result<(), DesignError> {
+    start(&Archive::new(study, evaluator, &|_, _| ())).map(drop)
 }
 
 /// A design that could be simulated.
@@ -194,7 +205,7 @@ fn only_failures(all: &[Arc<Judged>]) -> DesignError {
     }
 }
 
-/// The front between its ends: the least objective under each of some ceilings.
+/// The front between its ends: the least objective under each of some ceilings; then under one in each of the widest gaps that are left.
 fn levels(
     archive: &Archive<'_>,
     goal: &Goal,
@@ -202,22 +213,49 @@ fn levels(
     highest: f64,
     budget: usize,
 ) -> Result<(), DesignError> {
-    let study = archive.study();
     let lowest = best(archive, other)?.1.trade_off;
-    let ceilings = ceilings(study, lowest, highest);
+    let even = ceilings(archive.study(), lowest, highest);
+    let levels: Vec<[f64; 2]> = even.iter().map(|ceiling| [*ceiling; 2]).collect();
+    let first = (FIRST_LOOK * budget as f64) as usize;
+    look(archive, goal, &levels, first)?;
+    let points: Vec<[f64; 2]> = archive
+        .all()
+        .iter()
+        .filter_map(good)
+        .filter(|(_, scored)| scored.feasible())
+        .map(|(_, scored)| [scored.trade_off, scored.objective])
+        .collect();
+    let gaps = widest_gaps(&points, &non_dominated(&points), levels.len());
+    let middles: Vec<[f64; 2]> = gaps.iter().map(|[a, b]| [0.5 * (a + b), *b]).collect();
+    look(archive, goal, &middles, budget - first)
+}
+
+/// Seeks the least objective under ceilings of the second one. Each comes with a ceiling at or above it: the best design below that one may break the
+/// ceiling, and still be nearer to what is sought, or of another catalogue choice, than the best that keeps it.
+fn look(
+    archive: &Archive<'_>,
+    goal: &Goal,
+    levels: &[[f64; 2]],
+    budget: usize,
+) -> Result<(), DesignError> {
+    let study = archive.study();
     let all = archive.all();
-    let each = budget / ceilings.len().max(1);
-    let tasks: Vec<(Goal, Vec<Vec<f64>>)> = ceilings
-        .into_iter()
-        .map(|ceiling| {
-            let goal = Goal {
-                ceiling: Some(ceiling),
-                ..goal.clone()
-            };
-            let starts = distinct_best(study, &goal, &all, 1);
-            (goal, starts)
+    let below = |ceiling: f64| Goal {
+        ceiling: Some(ceiling),
+        ..goal.clone()
+    };
+    let tasks: Vec<(Goal, Vec<Vec<f64>>)> = levels
+        .iter()
+        .map(|[ceiling, next]| {
+            let mut starts = distinct_best(study, &below(*ceiling), &all, 1);
+            let beyond = distinct_best(study, &below(*next), &all, 1);
+            if !beyond.is_empty() && beyond != starts {
+                starts.extend(beyond);
+            }
+            (below(*ceiling), starts)
         })
         .collect();
+    let each = budget / tasks.len().max(1);
     tasks
         .par_iter()
         .try_for_each(|(goal, starts)| refine(archive, goal, starts, RADII[1], each).map(drop))

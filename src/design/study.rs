@@ -8,7 +8,7 @@ use crate::scenario::check::Section;
 use crate::scenario::document::{Document, read_text};
 use crate::scenario::error::Place;
 
-use super::candidate::{Design, Outcome};
+use super::candidate::{Design, Outcome, scenario_key};
 use super::file::{
     BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys, study_sections,
 };
@@ -108,6 +108,26 @@ impl Study {
                 .flat_map(|(variable, value)| variable.entries(*value))
                 .collect(),
         )
+    }
+
+    /// The starting design.
+    pub fn starting_design(&self) -> Design {
+        let values: Vec<f64> = self.variables.iter().map(|v| v.start).collect();
+        self.design(&values)
+    }
+
+    /// The variable to blame when a scenario that is sound refuses this key with the variables' values: the key's own or the one it follows, else one
+    /// of the same table.
+    pub fn variable_to_blame(&self, refused: &str) -> Option<&Variable> {
+        let (table, _) = refused.rsplit_once('.').unwrap_or((refused, ""));
+        let gives = |fits: &dyn Fn(&str) -> bool| {
+            self.variables.iter().find(|variable| {
+                let entries = variable.entries(variable.start);
+                entries.iter().any(|(key, _)| fits(&scenario_key(key)))
+            })
+        };
+        gives(&|key| key == refused)
+            .or_else(|| gives(&|key| key.rsplit_once('.').is_some_and(|(own, _)| own == table)))
     }
 
     /// Values at places from 0 to 1, one a variable.

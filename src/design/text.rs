@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::label::{number, percent, symbol, with_unit};
-use super::result::{Candidate, Sensitivity, StudyResult};
+use super::result::{ActiveBound, Candidate, Sensitivity, StudyResult};
 use super::study::Study;
 use super::variable::{Domain, Variable};
 
@@ -163,11 +163,26 @@ fn limits(out: &mut String, result: &StudyResult) {
 }
 
 fn direction(change: f64) -> String {
+    if percent(change) == percent(0.0) {
+        return "no difference".to_owned();
+    }
     let size = percent(change.abs()).replace('+', "");
     if change < 0.0 {
         format!("lower by {size}")
     } else {
         format!("higher by {size}")
+    }
+}
+
+/// What lies past a bound.
+fn past(bound: &ActiveBound, result: &StudyResult) -> String {
+    let beyond = |step: &&Sensitivity| step.variable == bound.variable && step.beyond_bound;
+    match bound.objective_change_percent {
+        Some(change) => format!("beyond it: {}", direction(change)),
+        None if result.sensitivities.iter().any(|step| beyond(&step)) => {
+            "beyond it: cannot be simulated".to_owned()
+        }
+        None => "its catalogue ends there".to_owned(),
     }
 }
 
@@ -181,16 +196,13 @@ fn binding(out: &mut String, result: &StudyResult) {
     );
     let mut any = false;
     for bound in &result.active_bounds {
-        let effect = bound
-            .objective_change_percent
-            .map_or_else(|| "cannot be simulated".to_owned(), direction);
         let beyond = format!(
             "bound {} {} {}",
             bound.variable,
             bound.side,
             number(bound.bound)
         );
-        line(out, &format!("  {beyond:<46} beyond it: {effect}"));
+        line(out, &format!("  {beyond:<46} {}", past(bound, result)));
         any = true;
     }
     for limit in &result.active_limits {

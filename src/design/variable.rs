@@ -3,6 +3,7 @@
 mod check;
 
 use super::catalogue::{STANDARD_CYLINDERS, standard_rod};
+use crate::scenario::error::Place;
 
 pub(super) use check::variable;
 
@@ -20,6 +21,8 @@ pub struct Variable {
     pub domain: Domain,
     /// Value of the starting design, in the key's unit.
     pub start: f64,
+    /// Where it stands in the study file.
+    pub place: Place,
 }
 
 /// Values of a variable, in its key's unit.

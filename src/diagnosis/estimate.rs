@@ -68,7 +68,10 @@ pub fn estimates(believed: &PlantParameters, hypothesis: &Hypothesis, samples: u
             .collect();
         let place = |name: &str| parameters.iter().position(|p| p.quantity.name == name);
         if let (Some(sine), Some(cosine)) = (place("sine_m"), place("cosine_m")) {
-            list.insert(0, amplitude(&fit.free, &fit.values, &covariance, at + sine, at + cosine));
+            list.insert(
+                0,
+                amplitude(&fit.free, &fit.values, &covariance, at + sine, at + cosine),
+            );
         }
         effects.push((*effect, list));
         at += own;
@@ -77,7 +80,13 @@ pub fn estimates(believed: &PlantParameters, hypothesis: &Hypothesis, samples: u
 }
 
 /// Zero to peak of a sine and a cosine.
-fn amplitude(free: &[super::free::Free], values: &[f64], covariance: &DMatrix<f64>, sine: usize, cosine: usize) -> Number {
+fn amplitude(
+    free: &[super::free::Free],
+    values: &[f64],
+    covariance: &DMatrix<f64>,
+    sine: usize,
+    cosine: usize,
+) -> Number {
     let (s, c) = (values[sine], values[cosine]);
     let value = s.hypot(c);
     let slope = |index: usize, part: f64| match free[index].coordinate {
@@ -100,11 +109,17 @@ fn amplitude(free: &[super::free::Free], values: &[f64], covariance: &DMatrix<f6
 /// Inverse of an information matrix, scaled first; what is not determined at all gets a large variance.
 fn covariance(information: &DMatrix<f64>) -> DMatrix<f64> {
     let count = information.nrows();
-    let scale: Vec<f64> = (0..count).map(|i| 1.0 / information[(i, i)].max(1e-12).sqrt()).collect();
-    let mut scaled = DMatrix::from_fn(count, count, |i, j| information[(i, j)] * scale[i] * scale[j]);
+    let scale: Vec<f64> = (0..count)
+        .map(|i| 1.0 / information[(i, i)].max(1e-12).sqrt())
+        .collect();
+    let mut scaled = DMatrix::from_fn(count, count, |i, j| {
+        information[(i, j)] * scale[i] * scale[j]
+    });
     for i in 0..count {
         scaled[(i, i)] += 1e-10;
     }
-    let inverse = scaled.cholesky().map_or_else(|| DMatrix::identity(count, count), |c| c.inverse());
+    let inverse = scaled
+        .cholesky()
+        .map_or_else(|| DMatrix::identity(count, count), |c| c.inverse());
     DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] * scale[i] * scale[j])
 }

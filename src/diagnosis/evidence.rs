@@ -1,6 +1,8 @@
 //! Recordings as a fit sees them: inputs, readings, their noise, and which samples count.
 
-use crate::plant::{CHANNELS, Guide, PlantCourse, PlantInputs, PlantParameters, Trajectory, readings, trajectory};
+use crate::plant::{
+    CHANNELS, Guide, PlantCourse, PlantInputs, PlantParameters, Trajectory, readings, trajectory,
+};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -17,6 +19,13 @@ pub struct Measured {
     pub free: bool,
 }
 
+/// What each residual counts, of an error in time that is forgiven [s] and a piston that is held or not.
+#[derive(Debug)]
+struct Shares {
+    of: (f64, bool),
+    values: Arc<Vec<f64>>,
+}
+
 /// Recordings and the noise of their channels.
 #[derive(Debug)]
 pub struct Evidence {
@@ -27,7 +36,7 @@ pub struct Evidence {
     /// Motions measured, one per recording.
     guides: Vec<Guide>,
     /// What was found before.
-    shares: Mutex<Vec<((f64, bool), Arc<Vec<f64>>)>>,
+    shares: Mutex<Vec<Shares>>,
 }
 
 impl Evidence {
@@ -36,7 +45,14 @@ impl Evidence {
         let guide = |measured: &Measured| {
             let force = &measured.readings[2];
             let touching = |i: usize| force[i].abs() > 6.0 * noise[2];
-            Guide::new(&measured.inputs.time, &measured.readings[1], &measured.readings[3], noise[1], noise[3], touching)
+            Guide::new(
+                &measured.inputs.time,
+                &measured.readings[1],
+                &measured.readings[3],
+                noise[1],
+                noise[3],
+                touching,
+            )
         };
         Self {
             guides: recordings.iter().map(guide).collect(),
@@ -62,10 +78,17 @@ pub struct Prediction {
 
 impl Evidence {
     /// What a description gives; trajectories are taken from `known` where only sensors differ.
-    pub fn predict(&self, plant: &PlantParameters, guided: bool, known: Option<&Prediction>) -> Prediction {
+    pub fn predict(
+        &self,
+        plant: &PlantParameters,
+        guided: bool,
+        known: Option<&Prediction>,
+    ) -> Prediction {
         let reusable = |measured: &Measured| {
             known.filter(|known| {
-                if known.guided != guided || (guided && plant.sensors.stroke_gain != known.plant.sensors.stroke_gain) {
+                if known.guided != guided
+                    || (guided && plant.sensors.stroke_gain != known.plant.sensors.stroke_gain)
+                {
                     return false;
                 }
                 plant.moves_as(&known.plant)
@@ -119,19 +142,27 @@ impl Evidence {
 
     /// What each residual counts when errors in time [s] are forgiven: noise over noise and slope times that error together.
     pub fn shares(&self, forgiven: f64, guided: bool) -> Arc<Vec<f64>> {
-        let mut known = self.shares.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some((_, shares)) = known.iter().find(|(of, _)| *of == (forgiven, guided)) {
-            return shares.clone();
+        let of = (forgiven, guided);
+        let mut known = self
+            .shares
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(shares) = known.iter().find(|shares| shares.of == of) {
+            return shares.values.clone();
         }
-        let shares = Arc::new(self.compute_shares(forgiven, guided));
-        known.push(((forgiven, guided), shares.clone()));
-        shares
+        let values = Arc::new(self.compute_shares(forgiven, guided));
+        known.push(Shares {
+            of,
+            values: values.clone(),
+        });
+        values
     }
 
     fn compute_shares(&self, forgiven: f64, guided: bool) -> Vec<f64> {
         let mut all = Vec::new();
         for measured in &self.recordings {
-            for (channel, (readings, noise)) in measured.readings.iter().zip(self.noise).enumerate() {
+            for (channel, (readings, noise)) in measured.readings.iter().zip(self.noise).enumerate()
+            {
                 let count = readings.len();
                 // The acceleration went into the motion that the piston is held to.
                 if guided && channel == 3 {
@@ -146,8 +177,12 @@ impl Evidence {
                 for i in 0..count {
                     let from = time.partition_point(|t| *t < time[i] - forgiven);
                     let to = time.partition_point(|t| *t <= time[i] + forgiven);
-                    let near = readings[from.min(i.saturating_sub(1))..to.max((i + 2).min(count))].iter().filter(|v| v.is_finite());
-                    let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+                    let near = readings[from.min(i.saturating_sub(1))..to.max((i + 2).min(count))]
+                        .iter()
+                        .filter(|v| v.is_finite());
+                    let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                        (l.min(*v), h.max(*v))
+                    });
                     // The range of noise alone is not a slope.
                     let swing = (0.5 * (high - low) / noise - 2.0).max(0.0);
                     all.push(1.0 / (1.0 + swing * swing).sqrt());

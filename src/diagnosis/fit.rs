@@ -47,12 +47,20 @@ impl Fit {
 
 /// Robust sum of squares.
 pub fn robust_sum(residuals: &[f64]) -> f64 {
-    residuals.iter().filter(|r| !r.is_nan()).map(|r| loss(*r, HUBER)).sum()
+    residuals
+        .iter()
+        .filter(|r| !r.is_nan())
+        .map(|r| loss(*r, HUBER))
+        .sum()
 }
 
 fn loss(residual: f64, limit: f64) -> f64 {
     let size = residual.abs().min(1e6);
-    if size <= limit { size * size } else { limit * (2.0 * size - limit) }
+    if size <= limit {
+        size * size
+    } else {
+        limit * (2.0 * size - limit)
+    }
 }
 
 /// How much each sample counts.
@@ -67,10 +75,15 @@ struct Weighing<'a> {
 
 impl Weighing<'_> {
     fn sum(&self, residuals: &[f64]) -> f64 {
-        let pairs = residuals.iter().zip(self.shares).filter(|(r, _)| !r.is_nan());
+        let pairs = residuals
+            .iter()
+            .zip(self.shares)
+            .filter(|(r, _)| !r.is_nan());
         if self.bounded {
             let square = self.limit * self.limit;
-            pairs.map(|(r, share)| square * ((r * share).powi(2).min(1e12) / square).ln_1p()).sum()
+            pairs
+                .map(|(r, share)| square * ((r * share).powi(2).min(1e12) / square).ln_1p())
+                .sum()
         } else {
             pairs.map(|(r, share)| loss(r * share, self.limit)).sum()
         }
@@ -78,27 +91,36 @@ impl Weighing<'_> {
 
     /// Weights of the squares; none where there is no value.
     fn weights(&self, residuals: &[f64]) -> Vec<f64> {
-        residuals.iter().zip(self.shares).map(|(r, share)| {
-            if !r.is_finite() {
-                return 0.0;
-            }
-            let size = (r * share).abs();
-            let weight = if self.bounded {
-                1.0 / (1.0 + (size / self.limit).powi(2))
-            } else if size <= self.limit {
-                1.0
-            } else {
-                self.limit / size
-            };
-            share * share * weight
-        }).collect()
+        residuals
+            .iter()
+            .zip(self.shares)
+            .map(|(r, share)| {
+                if !r.is_finite() {
+                    return 0.0;
+                }
+                let size = (r * share).abs();
+                let weight = if self.bounded {
+                    1.0 / (1.0 + (size / self.limit).powi(2))
+                } else if size <= self.limit {
+                    1.0
+                } else {
+                    self.limit / size
+                };
+                share * share * weight
+            })
+            .collect()
     }
 }
 
 /// Where the loss turns from square to proportional for now: far out while much is unexplained, because a proportional loss has no curvature and
 /// converges slowly; at `HUBER` in the end.
 fn limit_for(residuals: &[f64], shares: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = residuals.iter().zip(shares).filter(|(r, _)| r.is_finite()).map(|(r, share)| (r * share).abs()).collect();
+    let mut sizes: Vec<f64> = residuals
+        .iter()
+        .zip(shares)
+        .filter(|(r, _)| r.is_finite())
+        .map(|(r, share)| (r * share).abs())
+        .collect();
     if sizes.is_empty() {
         return HUBER;
     }
@@ -109,7 +131,10 @@ fn limit_for(residuals: &[f64], shares: &[f64]) -> f64 {
 }
 
 fn prior_sum(free: &[Free], values: &[f64]) -> f64 {
-    free.iter().zip(values).map(|(f, v)| f.departure(*v).powi(2)).sum()
+    free.iter()
+        .zip(values)
+        .map(|(f, v)| f.departure(*v).powi(2))
+        .sum()
 }
 
 /// A description with quantities set.
@@ -122,20 +147,28 @@ pub fn with_values(plant: &PlantParameters, free: &[Free], values: &[f64]) -> Pl
 }
 
 /// Derivatives of the residuals by the coordinates of `free[from..]`.
-pub fn jacobian(evidence: &Evidence, here: &Prediction, free: &[Free], values: &[f64], from: usize) -> Vec<Vec<f64>> {
+pub fn jacobian(
+    evidence: &Evidence,
+    here: &Prediction,
+    free: &[Free],
+    values: &[f64],
+    from: usize,
+) -> Vec<Vec<f64>> {
     let mut steps = Vec::with_capacity(free.len());
-    let plants: Vec<PlantParameters> = (from..free.len()).map(|i| {
-        let f = &free[i];
-        let at = f.coordinate.of(values[i]);
-        let mut step = STEP;
-        if f.coordinate.value(at + step) > f.bounds[1] {
-            step = -step;
-        }
-        steps.push(step);
-        let mut plant = here.plant.clone();
-        (f.quantity.set)(&mut plant, f.coordinate.value(at + step));
-        plant
-    }).collect();
+    let plants: Vec<PlantParameters> = (from..free.len())
+        .map(|i| {
+            let f = &free[i];
+            let at = f.coordinate.of(values[i]);
+            let mut step = STEP;
+            if f.coordinate.value(at + step) > f.bounds[1] {
+                step = -step;
+            }
+            steps.push(step);
+            let mut plant = here.plant.clone();
+            (f.quantity.set)(&mut plant, f.coordinate.value(at + step));
+            plant
+        })
+        .collect();
     let mut columns = evidence.residuals_of(&plants, here);
     for (column, step) in columns.iter_mut().zip(steps) {
         for (moved, here) in column.iter_mut().zip(&here.residuals) {
@@ -146,20 +179,44 @@ pub fn jacobian(evidence: &Evidence, here: &Prediction, free: &[Free], values: &
 }
 
 /// Information and gradient with the samples' weights, priors included.
-fn normal_equations(columns: &[Vec<f64>], residuals: &[f64], weighing: &Weighing<'_>, free: &[Free], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+fn normal_equations(
+    columns: &[Vec<f64>],
+    residuals: &[f64],
+    weighing: &Weighing<'_>,
+    free: &[Free],
+    values: &[f64],
+) -> (DMatrix<f64>, DVector<f64>) {
     let n = columns.len();
     let weights = weighing.weights(residuals);
-    let zeroed = |value: f64, w: f64| if w == 0.0 || !value.is_finite() { 0.0 } else { value };
+    let zeroed = |value: f64, w: f64| {
+        if w == 0.0 || !value.is_finite() {
+            0.0
+        } else {
+            value
+        }
+    };
     let mut information = DMatrix::zeros(n, n);
     let mut gradient = DVector::zeros(n);
     for i in 0..n {
-        let weighted: Vec<f64> = columns[i].iter().zip(&weights).map(|(c, w)| w * zeroed(*c, *w)).collect();
+        let weighted: Vec<f64> = columns[i]
+            .iter()
+            .zip(&weights)
+            .map(|(c, w)| w * zeroed(*c, *w))
+            .collect();
         for j in 0..=i {
-            let sum: f64 = weighted.iter().zip(&columns[j]).map(|(a, b)| if *a == 0.0 { 0.0 } else { a * b }).sum();
+            let sum: f64 = weighted
+                .iter()
+                .zip(&columns[j])
+                .map(|(a, b)| if *a == 0.0 { 0.0 } else { a * b })
+                .sum();
             information[(i, j)] = sum;
             information[(j, i)] = sum;
         }
-        gradient[i] = weighted.iter().zip(residuals).map(|(a, b)| if *a == 0.0 { 0.0 } else { a * b }).sum();
+        gradient[i] = weighted
+            .iter()
+            .zip(residuals)
+            .map(|(a, b)| if *a == 0.0 { 0.0 } else { a * b })
+            .sum();
     }
     for (i, f) in free.iter().enumerate() {
         let slope = f.departure_slope(values[i]);
@@ -184,14 +241,44 @@ pub struct Stage {
 }
 
 /// A rough fit: what it gains says whether a full one is worth its while.
-pub const ROUGH: &[Stage] = &[Stage { forgiven: ROUGH_TIME, guided: true, bounded: false, gain: 1e-3 }];
+pub const ROUGH: &[Stage] = &[Stage {
+    forgiven: ROUGH_TIME,
+    guided: true,
+    bounded: false,
+    gain: 1e-3,
+}];
 /// A full fit, one stage after the other.
 pub const FULL: &[Stage] = &[
-    Stage { forgiven: ROUGH_TIME, guided: true, bounded: false, gain: 1e-3 },
-    Stage { forgiven: 0.001, guided: false, bounded: true, gain: 1e-3 },
-    Stage { forgiven: 1e-4, guided: false, bounded: true, gain: 1e-3 },
-    Stage { forgiven: 0.0, guided: false, bounded: true, gain: 3e-4 },
-    Stage { forgiven: 0.0, guided: false, bounded: false, gain: 0.0 },
+    Stage {
+        forgiven: ROUGH_TIME,
+        guided: true,
+        bounded: false,
+        gain: 1e-3,
+    },
+    Stage {
+        forgiven: 0.001,
+        guided: false,
+        bounded: true,
+        gain: 1e-3,
+    },
+    Stage {
+        forgiven: 1e-4,
+        guided: false,
+        bounded: true,
+        gain: 1e-3,
+    },
+    Stage {
+        forgiven: 0.0,
+        guided: false,
+        bounded: true,
+        gain: 3e-4,
+    },
+    Stage {
+        forgiven: 0.0,
+        guided: false,
+        bounded: false,
+        gain: 0.0,
+    },
 ];
 /// Error in time that a rough fit forgives [s].
 const ROUGH_TIME: f64 = 0.006;
@@ -210,15 +297,31 @@ pub struct Effort<'a> {
 }
 
 /// Fits the free quantities from where they start; `known` may spare simulations.
-pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: Effort<'_>, known: Option<&Prediction>) -> Fit {
+pub fn fit(
+    evidence: &Evidence,
+    plant: &PlantParameters,
+    free: &[Free],
+    effort: Effort<'_>,
+    known: Option<&Prediction>,
+) -> Fit {
     let mut values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
-    let mut here = evidence.predict(&with_values(plant, free, &values), effort.stages[0].guided, known);
+    let mut here = evidence.predict(
+        &with_values(plant, free, &values),
+        effort.stages[0].guided,
+        known,
+    );
     let mut prior = prior_sum(free, &values);
     let mut information = DMatrix::zeros(free.len(), free.len());
     let mut columns: Vec<Vec<f64>> = effort.frozen.to_vec();
     let mut damping = 1e-4;
     let mut left = effort.iterations;
-    for &Stage { forgiven, guided, bounded, gain: least } in effort.stages {
+    for &Stage {
+        forgiven,
+        guided,
+        bounded,
+        gain: least,
+    } in effort.stages
+    {
         if here.guided != guided {
             here = evidence.predict(&here.plant, guided, None);
         }
@@ -226,14 +329,32 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
         while left > 0 {
             left -= 1;
             columns.truncate(effort.frozen.len());
-            columns.extend(jacobian(evidence, &here, free, &values, effort.frozen.len()));
-            let weighing = Weighing { shares: &shares, limit: limit_for(&here.residuals, &shares), bounded };
+            columns.extend(jacobian(
+                evidence,
+                &here,
+                free,
+                &values,
+                effort.frozen.len(),
+            ));
+            let weighing = Weighing {
+                shares: &shares,
+                limit: limit_for(&here.residuals, &shares),
+                bounded,
+            };
             let before = weighing.sum(&here.residuals) + prior;
-            let (normal, gradient) = normal_equations(&columns, &here.residuals, &weighing, free, &values);
+            let (normal, gradient) =
+                normal_equations(&columns, &here.residuals, &weighing, free, &values);
             information.copy_from(&normal);
             let mut gain = 0.0;
             for _ in 0..MOST_TRIES {
-                let tried = step(free, &values, &normal, &gradient, damping, effort.longest_step);
+                let tried = step(
+                    free,
+                    &values,
+                    &normal,
+                    &gradient,
+                    damping,
+                    effort.longest_step,
+                );
                 let Some((tried, promised)) = tried else {
                     damping *= 10.0;
                     continue;
@@ -241,7 +362,8 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
                 if promised < LEAST_GAIN {
                     break;
                 }
-                let there = evidence.predict(&with_values(&here.plant, free, &tried), guided, Some(&here));
+                let there =
+                    evidence.predict(&with_values(&here.plant, free, &tried), guided, Some(&here));
                 let prior_there = prior_sum(free, &tried);
                 let after = weighing.sum(&there.residuals) + prior_there;
                 if after < before {
@@ -260,17 +382,42 @@ pub fn fit(evidence: &Evidence, plant: &PlantParameters, free: &[Free], effort: 
     let misfit = robust_sum(&here.residuals);
     let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
     let rough = if here.guided {
-        Weighing { shares: &shares, limit: HUBER, bounded: ROUGH[0].bounded }.sum(&here.residuals) + prior
+        Weighing {
+            shares: &shares,
+            limit: HUBER,
+            bounded: ROUGH[0].bounded,
+        }
+        .sum(&here.residuals)
+            + prior
     } else {
         f64::NAN
     };
-    Fit { free: free.to_vec(), values, prediction: here, misfit, rough, prior, columns, information }
+    Fit {
+        free: free.to_vec(),
+        values,
+        prediction: here,
+        misfit,
+        rough,
+        prior,
+        columns,
+        information,
+    }
 }
 
 /// Rough cost that a description could come to if what was free before were adjusted, by the derivatives known, without a simulation more.
-pub fn foretold_rough(evidence: &Evidence, there: &Prediction, free: &[Free], values: &[f64], columns: &[Vec<f64>]) -> f64 {
+pub fn foretold_rough(
+    evidence: &Evidence,
+    there: &Prediction,
+    free: &[Free],
+    values: &[f64],
+    columns: &[Vec<f64>],
+) -> f64 {
     let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
-    let wide = Weighing { shares: &shares, limit: limit_for(&there.residuals, &shares), bounded: ROUGH[0].bounded };
+    let wide = Weighing {
+        shares: &shares,
+        limit: limit_for(&there.residuals, &shares),
+        bounded: ROUGH[0].bounded,
+    };
     let (normal, gradient) = normal_equations(columns, &there.residuals, &wide, free, values);
     let mut adjusted = there.residuals.clone();
     if let Some((tried, _)) = step(free, values, &normal, &gradient, 1e-4, 3.0) {
@@ -281,21 +428,37 @@ pub fn foretold_rough(evidence: &Evidence, there: &Prediction, free: &[Free], va
             }
         }
     }
-    Weighing { shares: &shares, limit: HUBER, bounded: ROUGH[0].bounded }.sum(&adjusted)
+    Weighing {
+        shares: &shares,
+        limit: HUBER,
+        bounded: ROUGH[0].bounded,
+    }
+    .sum(&adjusted)
 }
 
 /// Damped step to where the quadratic model is least within the bounds, by an active set: values tried and the gain promised.
-fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64, longest: f64) -> Option<(Vec<f64>, f64)> {
+fn step(
+    free: &[Free],
+    values: &[f64],
+    normal: &DMatrix<f64>,
+    gradient: &DVector<f64>,
+    damping: f64,
+    longest: f64,
+) -> Option<(Vec<f64>, f64)> {
     let count = free.len();
     let mut damped = normal.clone();
     for i in 0..count {
         damped[(i, i)] += damping * normal[(i, i)].max(1e-9);
     }
     // Ways to the bounds in the coordinates.
-    let room: Vec<[f64; 2]> = free.iter().zip(values).map(|(f, v)| {
-        let at = f.coordinate.of(*v);
-        f.bounds.map(|bound| f.coordinate.of(bound) - at)
-    }).collect();
+    let room: Vec<[f64; 2]> = free
+        .iter()
+        .zip(values)
+        .map(|(f, v)| {
+            let at = f.coordinate.of(*v);
+            f.bounds.map(|bound| f.coordinate.of(bound) - at)
+        })
+        .collect();
     // Where a coordinate is held at a bound, its way there.
     let mut held: Vec<Option<f64>> = vec![None; count];
     let mut way = DVector::zeros(count);
@@ -307,14 +470,20 @@ fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector
             for (b, &j) in open.iter().enumerate() {
                 reduced[(a, b)] = damped[(i, j)];
             }
-            let known: f64 = (0..count).filter_map(|j| held[j].map(|way| damped[(i, j)] * way)).sum();
+            let known: f64 = (0..count)
+                .filter_map(|j| held[j].map(|way| damped[(i, j)] * way))
+                .sum();
             right[a] = -gradient[i] - known;
         }
         let solved = reduced.cholesky()?.solve(&right);
         let mut furthest: Option<(f64, usize, f64)> = None;
         for (a, &i) in open.iter().enumerate() {
             way[i] = solved[a];
-            let bound = if solved[a] < 0.0 { room[i][0] } else { room[i][1] };
+            let bound = if solved[a] < 0.0 {
+                room[i][0]
+            } else {
+                room[i][1]
+            };
             let beyond = solved[a].abs() - bound.abs();
             if beyond > 1e-12 && furthest.is_none_or(|(most, _, _)| beyond > most) {
                 furthest = Some((beyond, i, bound));
@@ -335,13 +504,26 @@ fn step(free: &[Free], values: &[f64], normal: &DMatrix<f64>, gradient: &DVector
         way *= longest / largest;
     }
     let promised = -2.0 * gradient.dot(&way) - way.dot(&(normal * &way));
-    let tried = free.iter().zip(values).zip(way.iter()).map(|((f, v), w)| f.clamp(f.coordinate.value(f.coordinate.of(*v) + w))).collect();
+    let tried = free
+        .iter()
+        .zip(values)
+        .zip(way.iter())
+        .map(|((f, v), w)| f.clamp(f.coordinate.value(f.coordinate.of(*v) + w)))
+        .collect();
     Some((tried, promised))
 }
 
 /// The rough cost that noise alone has [1].
 pub fn rough_noise(evidence: &Evidence) -> f64 {
     let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
-    let readings = evidence.recordings.iter().flat_map(|m| &m.readings).flatten();
-    readings.zip(shares.iter()).filter(|(value, _)| value.is_finite()).map(|(_, share)| share * share).sum()
+    let readings = evidence
+        .recordings
+        .iter()
+        .flat_map(|m| &m.readings)
+        .flatten();
+    readings
+        .zip(shares.iter())
+        .filter(|(value, _)| value.is_finite())
+        .map(|(_, share)| share * share)
+        .sum()
 }

@@ -39,7 +39,11 @@ pub fn without_effects(believed: &PlantParameters, hypothesis: &Hypothesis) -> P
 }
 
 /// The intervals, recording by recording, channel by channel.
-pub fn intervals(evidence: &Evidence, believed: &PlantParameters, hypothesis: &Hypothesis) -> Vec<Interval> {
+pub fn intervals(
+    evidence: &Evidence,
+    believed: &PlantParameters,
+    hypothesis: &Hypothesis,
+) -> Vec<Interval> {
     if hypothesis.effects.is_empty() {
         return Vec::new();
     }

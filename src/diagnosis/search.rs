@@ -1,7 +1,9 @@
 //! Which effects explain what the believed model leaves.
 
 use super::evidence::{Evidence, Prediction};
-use super::fit::{Effort, FULL, Fit, ROUGH, Stage, fit, foretold_rough, jacobian, rough_noise, with_values};
+use super::fit::{
+    Effort, FULL, Fit, ROUGH, Stage, fit, foretold_rough, jacobian, rough_noise, with_values,
+};
 use super::free::{Free, Prior, free_of};
 use crate::effects::{CATALOGUE, Clues, Effect};
 use crate::plant::PlantParameters;
@@ -49,16 +51,33 @@ impl Search<'_> {
         self.fitted(vec![], &self.believed, &self.tolerated, ROUGH, 15, None)
     }
 
-    fn fitted(&self, effects: Vec<&'static Effect>, plant: &PlantParameters, free: &[Free], stages: &[Stage], iterations: usize, known: Option<&Prediction>) -> Hypothesis {
-        let effort = Effort { iterations, stages, frozen: &[], longest_step: 3.0 };
-        Hypothesis { effects, fit: fit(self.evidence, plant, free, effort, known) }
+    fn fitted(
+        &self,
+        effects: Vec<&'static Effect>,
+        plant: &PlantParameters,
+        free: &[Free],
+        stages: &[Stage],
+        iterations: usize,
+        known: Option<&Prediction>,
+    ) -> Hypothesis {
+        let effort = Effort {
+            iterations,
+            stages,
+            frozen: &[],
+            longest_step: 3.0,
+        };
+        Hypothesis {
+            effects,
+            fit: fit(self.evidence, plant, free, effort, known),
+        }
     }
 
     /// Penalty for the numbers of an effect: Schwarz's.
     pub fn penalty(&self, hypothesis: &Hypothesis) -> f64 {
         let count = |effect: &&'static Effect| (effect.parameters)(&self.believed).len();
         let numbers: usize = hypothesis.effects.iter().map(count).sum();
-        numbers as f64 * (self.evidence.count() as f64).ln() + LOOK_ELSEWHERE * hypothesis.effects.len() as f64
+        numbers as f64 * (self.evidence.count() as f64).ln()
+            + LOOK_ELSEWHERE * hypothesis.effects.len() as f64
     }
 
     /// Cost of a rough fit with its penalty.
@@ -74,16 +93,26 @@ impl Search<'_> {
     /// What more each effect could explain, roughly: columns of what is free already are taken as they are. Best first.
     pub fn screen(&self, from: &Hypothesis, stages: &[Stage]) -> Vec<Hypothesis> {
         let periodic = super::spectrum::strongest(self.evidence, &from.fit.prediction);
-        let readings = self.evidence.recordings.iter().flat_map(|m| m.readings[2].iter());
+        let readings = self
+            .evidence
+            .recordings
+            .iter()
+            .flat_map(|m| m.readings[2].iter());
         let clues = Clues {
             plant: &from.fit.prediction.plant,
-            largest_force: readings.filter(|f| f.is_finite()).fold(0.0, |a, b| b.max(a)),
+            largest_force: readings
+                .filter(|f| f.is_finite())
+                .fold(0.0, |a, b| b.max(a)),
             periodic: &periodic,
         };
         let starts: Vec<(&'static Effect, Vec<f64>)> = CATALOGUE
             .iter()
             .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
-            .flat_map(|effect| (effect.starts)(&clues).into_iter().map(move |start| (effect, start)))
+            .flat_map(|effect| {
+                (effect.starts)(&clues)
+                    .into_iter()
+                    .map(move |start| (effect, start))
+            })
             .collect();
         let glances: Vec<f64> = starts
             .par_iter()
@@ -92,7 +121,10 @@ impl Search<'_> {
         // The best start of each effect, then the effects that promise most.
         let mut best: Vec<usize> = Vec::new();
         for index in 0..starts.len() {
-            match best.iter_mut().find(|known| starts[**known].0.name == starts[index].0.name) {
+            match best
+                .iter_mut()
+                .find(|known| starts[**known].0.name == starts[index].0.name)
+            {
                 Some(known) if glances[*known] <= glances[index] => {}
                 Some(known) => *known = index,
                 None => best.push(index),
@@ -110,11 +142,24 @@ impl Search<'_> {
 
     /// What was free and still is beside an effect, with its columns.
     fn beside(&self, from: &Hypothesis, new: &[Free]) -> (Vec<Free>, Vec<Vec<f64>>) {
-        let fitted = from.fit.free.iter().zip(&from.fit.values).zip(&from.fit.columns);
+        let fitted = from
+            .fit
+            .free
+            .iter()
+            .zip(&from.fit.values)
+            .zip(&from.fit.columns);
         fitted
             // What an effect frees is no longer held to its tolerance.
             .filter(|((f, _), _)| !new.iter().any(|n| same(n, f, &self.believed)))
-            .map(|((f, value), column)| (Free { start: *value, ..*f }, column.clone()))
+            .map(|((f, value), column)| {
+                (
+                    Free {
+                        start: *value,
+                        ..*f
+                    },
+                    column.clone(),
+                )
+            })
             .unzip()
     }
 
@@ -126,13 +171,22 @@ impl Search<'_> {
         free.extend(new);
         let values: Vec<f64> = free.iter().map(|f| f.start).collect();
         let plant = with_values(&from.fit.prediction.plant, &free, &values);
-        let there = self.evidence.predict(&plant, true, Some(&from.fit.prediction));
+        let there = self
+            .evidence
+            .predict(&plant, true, Some(&from.fit.prediction));
         columns.extend(jacobian(self.evidence, &there, &free, &values, own));
         foretold_rough(self.evidence, &there, &free, &values, &columns)
     }
 
     /// A hypothesis with one more effect from a start, fitted roughly.
-    fn add(&self, from: &Hypothesis, effect: &'static Effect, start: &[f64], stages: &[Stage], iterations: usize) -> Hypothesis {
+    fn add(
+        &self,
+        from: &Hypothesis,
+        effect: &'static Effect,
+        start: &[f64],
+        stages: &[Stage],
+        iterations: usize,
+    ) -> Hypothesis {
         let new = free_of(effect, &self.believed, start);
         let (mut free, frozen) = self.beside(from, &new);
         free.extend(new);
@@ -140,24 +194,46 @@ impl Search<'_> {
         for f in &free {
             (f.quantity.set)(&mut plant, f.start);
         }
-        let effort = Effort { iterations, stages, frozen: &frozen, longest_step: 3.0 };
+        let effort = Effort {
+            iterations,
+            stages,
+            frozen: &frozen,
+            longest_step: 3.0,
+        };
         let mut effects = from.effects.clone();
         effects.push(effect);
-        Hypothesis { effects, fit: fit(self.evidence, &plant, &free, effort, Some(&from.fit.prediction)) }
+        Hypothesis {
+            effects,
+            fit: fit(
+                self.evidence,
+                &plant,
+                &free,
+                effort,
+                Some(&from.fit.prediction),
+            ),
+        }
     }
 
     /// The explanation that costs least, and those that come near: first roughly, then in full.
     pub fn run(&self, say: &mut dyn FnMut(&str)) -> Vec<Hypothesis> {
         let noise = rough_noise(self.evidence);
         let mut rough = vec![self.baseline()];
-        say(&format!("baseline {:.0}, noise {noise:.0}", rough[0].fit.rough));
+        say(&format!(
+            "baseline {:.0}, noise {noise:.0}",
+            rough[0].fit.rough
+        ));
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
         for depth in 0..MOST_EFFECTS {
             let best = self.rough_score(&rough[0]);
             // Beside one that leaves noise alone, no other need be carried on.
             let spread = 6.0 * (2.0 * noise).sqrt();
             let settled = rough[0].fit.rough < noise + spread;
-            let parents: Vec<Hypothesis> = rough.iter().filter(|h| h.effects.len() == depth).take(if settled { 1 } else { PARENTS }).cloned().collect();
+            let parents: Vec<Hypothesis> = rough
+                .iter()
+                .filter(|h| h.effects.len() == depth)
+                .take(if settled { 1 } else { PARENTS })
+                .cloned()
+                .collect();
             for parent in &parents {
                 let score = self.rough_score(parent);
                 for candidate in self.screen(parent, ROUGH) {
@@ -173,7 +249,11 @@ impl Search<'_> {
             rough.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
             // The few that lead are fitted roughly with everything free.
             let near = self.rough_score(&rough[0]).max(noise);
-            for leading in rough.iter_mut().filter(|h| h.effects.len() == depth + 1).take(REFINED) {
+            for leading in rough
+                .iter_mut()
+                .filter(|h| h.effects.len() == depth + 1)
+                .take(REFINED)
+            {
                 if depth > 0 && self.rough_score(leading) > 3.0 * near {
                     break;
                 }
@@ -181,7 +261,11 @@ impl Search<'_> {
                 if refitted.fit.rough < leading.fit.rough {
                     *leading = refitted;
                 }
-                say(&format!("  {:?} rough {:.1}", leading.effects, self.rough_score(leading)));
+                say(&format!(
+                    "  {:?} rough {:.1}",
+                    leading.effects,
+                    self.rough_score(leading)
+                ));
             }
             rough.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
             if best - self.rough_score(&rough[0]) <= 0.0 {
@@ -195,7 +279,12 @@ impl Search<'_> {
                 break;
             }
             let refined = self.refine(candidate, FULL, FULL_ITERATIONS);
-            say(&format!("  {:?} full {:.1} left {:.0}", refined.effects, self.score(&refined), refined.fit.cost() - self.evidence.count() as f64));
+            say(&format!(
+                "  {:?} full {:.1} left {:.0}",
+                refined.effects,
+                self.score(&refined),
+                refined.fit.cost() - self.evidence.count() as f64
+            ));
             full.push(refined);
         }
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
@@ -204,13 +293,33 @@ impl Search<'_> {
 
     /// Fits everything that is free in a hypothesis: the effects from where they are, what is tolerated from what was believed, because a model that
     /// lacks something bends it out of shape.
-    pub fn refine(&self, hypothesis: &Hypothesis, stages: &[Stage], iterations: usize) -> Hypothesis {
+    pub fn refine(
+        &self,
+        hypothesis: &Hypothesis,
+        stages: &[Stage],
+        iterations: usize,
+    ) -> Hypothesis {
         let fitted = &hypothesis.fit;
-        let free: Vec<Free> = fitted.free.iter().zip(&fitted.values).map(|(f, value)| match f.prior {
-            Prior::Normal { mean, .. } => Free { start: mean, ..*f },
-            Prior::Flat => Free { start: *value, ..*f },
-        }).collect();
-        self.fitted(hypothesis.effects.clone(), &fitted.prediction.plant, &free, stages, iterations, Some(&fitted.prediction))
+        let free: Vec<Free> = fitted
+            .free
+            .iter()
+            .zip(&fitted.values)
+            .map(|(f, value)| match f.prior {
+                Prior::Normal { mean, .. } => Free { start: mean, ..*f },
+                Prior::Flat => Free {
+                    start: *value,
+                    ..*f
+                },
+            })
+            .collect();
+        self.fitted(
+            hypothesis.effects.clone(),
+            &fitted.prediction.plant,
+            &free,
+            stages,
+            iterations,
+            Some(&fitted.prediction),
+        )
     }
 }
 

@@ -61,7 +61,11 @@ impl Guide {
             let low = finite.iter().copied().fold(f64::INFINITY, f64::min);
             acceleration_noise + 0.5 * (high - low)
         };
-        let first = stroke.iter().copied().find(|x| x.is_finite()).unwrap_or(0.0);
+        let first = stroke
+            .iter()
+            .copied()
+            .find(|x| x.is_finite())
+            .unwrap_or(0.0);
         let r = stroke_noise * stroke_noise;
         let mut state = [first, 0.0];
         let mut cov = [r, 0.0, 1e-6];
@@ -72,7 +76,11 @@ impl Guide {
                 let h = time[i] - time[i - 1];
                 let pair = [acceleration[i - 1], acceleration[i]];
                 let known: Vec<f64> = pair.into_iter().filter(|a| a.is_finite()).collect();
-                let a = if known.is_empty() { 0.0 } else { known.iter().sum::<f64>() / known.len() as f64 };
+                let a = if known.is_empty() {
+                    0.0
+                } else {
+                    known.iter().sum::<f64>() / known.len() as f64
+                };
                 let q = surprise(i).powi(2);
                 state = [state[0] + h * state[1] + 0.5 * h * h * a, state[1] + h * a];
                 let [pxx, pxv, pvv] = cov;
@@ -87,9 +95,16 @@ impl Guide {
                 let s = cov[0] + r;
                 let gain = [cov[0] / s, cov[1] / s];
                 let innovation = stroke[i] - state[0];
-                state = [state[0] + gain[0] * innovation, state[1] + gain[1] * innovation];
+                state = [
+                    state[0] + gain[0] * innovation,
+                    state[1] + gain[1] * innovation,
+                ];
                 let [pxx, pxv, pvv] = cov;
-                cov = [(1.0 - gain[0]) * pxx, (1.0 - gain[0]) * pxv, pvv - gain[1] * pxv];
+                cov = [
+                    (1.0 - gain[0]) * pxx,
+                    (1.0 - gain[0]) * pxv,
+                    pvv - gain[1] * pxv,
+                ];
             }
             filtered.push((state, cov));
         }
@@ -105,7 +120,11 @@ impl Guide {
             }
             // C = P F' P_p^-1, F = [[1, h], [0, 1]]
             let pf = [p[0] + h * p[1], p[1], p[1] + h * p[2], p[2]];
-            let inverse = [pp[2] / determinant, -pp[1] / determinant, pp[0] / determinant];
+            let inverse = [
+                pp[2] / determinant,
+                -pp[1] / determinant,
+                pp[0] / determinant,
+            ];
             let c = [
                 pf[0] * inverse[0] + pf[1] * inverse[1],
                 pf[0] * inverse[1] + pf[1] * inverse[2],
@@ -113,12 +132,17 @@ impl Guide {
                 pf[2] * inverse[1] + pf[3] * inverse[2],
             ];
             let d = [smooth[i + 1][0] - xp[0], smooth[i + 1][1] - xp[1]];
-            smooth[i] = [x[0] + c[0] * d[0] + c[1] * d[1], x[1] + c[2] * d[0] + c[3] * d[1]];
+            smooth[i] = [
+                x[0] + c[0] * d[0] + c[1] * d[1],
+                x[1] + c[2] * d[0] + c[3] * d[1],
+            ];
         }
         let firmness = |i: usize| {
             let near = &acceleration[i.saturating_sub(NEAR)..(i + NEAR + 1).min(count)];
             let known = near.iter().filter(|a| a.is_finite());
-            let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+            let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| {
+                (l.min(*a), h.max(*a))
+            });
             // Seven samples of noise range over 2.7 standard deviations.
             let jump = ((high - low) / (6.0 * acceleration_noise)).max(0.0);
             1.0 / (1.0 + jump.powi(4))
@@ -131,7 +155,13 @@ impl Guide {
         };
         Self {
             firmness: (0..count)
-                .map(|i| if touching(i) { 0.0 } else { moving(i) * firmness(i) })
+                .map(|i| {
+                    if touching(i) {
+                        0.0
+                    } else {
+                        moving(i) * firmness(i)
+                    }
+                })
                 .collect(),
             stroke: smooth.iter().map(|s| s[0]).collect(),
             speed: smooth.iter().map(|s| s[1]).collect(),
@@ -152,11 +182,23 @@ mod tests {
         let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 4e-3).collect();
         let w = 6.0f64;
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        let noise: Vec<f64> = (0..1003).map(|_| random.random_range(-1.732..1.732)).collect();
-        let stroke: Vec<f64> = time.iter().enumerate().map(|(i, t)| 0.02 * (1.0 - (w * t).cos()) + 2e-5 * noise[i]).collect();
-        let acceleration: Vec<f64> = time.iter().enumerate().map(|(i, t)| 0.02 * w * w * (w * t).cos() + 0.15 * noise[i + 3]).collect();
+        let noise: Vec<f64> = (0..1003)
+            .map(|_| random.random_range(-1.732..1.732))
+            .collect();
+        let stroke: Vec<f64> = time
+            .iter()
+            .enumerate()
+            .map(|(i, t)| 0.02 * (1.0 - (w * t).cos()) + 2e-5 * noise[i])
+            .collect();
+        let acceleration: Vec<f64> = time
+            .iter()
+            .enumerate()
+            .map(|(i, t)| 0.02 * w * w * (w * t).cos() + 0.15 * noise[i + 3])
+            .collect();
         let guide = Guide::new(&time, &stroke, &acceleration, 2e-5, 0.15, |_| false);
-        let worst = (5..995).map(|i| (guide.speed[i] - 0.02 * w * (w * time[i]).sin()).abs()).fold(0.0, f64::max);
+        let worst = (5..995)
+            .map(|i| (guide.speed[i] - 0.02 * w * (w * time[i]).sin()).abs())
+            .fold(0.0, f64::max);
         assert!(worst < 4e-3, "{worst}");
     }
 }

@@ -68,7 +68,9 @@ impl PlantInputs {
         if expected < 2 {
             return Err(InputError::TooShort { found: expected });
         }
-        match (1..expected).find(|&i| self.time[i].partial_cmp(&self.time[i - 1]) != Some(Ordering::Greater)) {
+        match (1..expected)
+            .find(|&i| self.time[i].partial_cmp(&self.time[i - 1]) != Some(Ordering::Greater))
+        {
             None => Ok(()),
             Some(index) => Err(InputError::Time {
                 index,

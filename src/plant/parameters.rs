@@ -20,8 +20,7 @@ pub struct PlantParameters {
 impl PlantParameters {
     /// Does the rig move as another one does where there is no workpiece?
     pub fn moves_freely_as(&self, other: &Self) -> bool {
-        self.device == other.device
-            && self.gravity_along_extension == other.gravity_along_extension
+        self.device == other.device && self.gravity_along_extension == other.gravity_along_extension
     }
 
     /// Does the rig move as another one does, whatever its sensors say?

@@ -65,11 +65,7 @@ pub fn simulate(plant: &PlantParameters, inputs: &PlantInputs) -> PlantCourse {
 }
 
 /// What the sensors read, in the order of [`CHANNELS`].
-pub fn readings(
-    sensors: &SensorErrors,
-    inputs: &PlantInputs,
-    truth: &Trajectory,
-) -> [Vec<f64>; 4] {
+pub fn readings(sensors: &SensorErrors, inputs: &PlantInputs, truth: &Trajectory) -> [Vec<f64>; 4] {
     [
         truth.outlet.clone(),
         truth
@@ -107,7 +103,11 @@ pub fn trajectory(
             ValvePosition::Retract
         };
         let last = i + 1 == count;
-        let h = if last { usual } else { inputs.time[i + 1] - inputs.time[i] };
+        let h = if last {
+            usual
+        } else {
+            inputs.time[i + 1] - inputs.time[i]
+        };
         let next = if last { i } else { i + 1 };
         let present = inputs.surface[i].is_finite() && inputs.surface[next].is_finite();
         let mut carrier = ReplayCarrier {

@@ -111,3 +111,43 @@ pub enum ScenarioError {
         reason: String,
     },
 }
+
+impl ScenarioError {
+    /// The dotted key that it is about, if it is about one.
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::UnknownKey { key, .. }
+            | Self::MissingKey { key, .. }
+            | Self::Value { key, .. }
+            | Self::Misplaced { key, .. } => Some(key),
+            _ => None,
+        }
+    }
+
+    /// Where it is, if that is a place in a file.
+    pub fn place(&self) -> Option<&Place> {
+        match self {
+            Self::Syntax { place, .. }
+            | Self::Schema { place, .. }
+            | Self::UnknownKey { place, .. }
+            | Self::MissingKey { place, .. }
+            | Self::Value { place, .. }
+            | Self::Misplaced { place, .. } => Some(place),
+            Self::NoSuchFile { .. } | Self::Read { .. } | Self::OtherKind { .. } => None,
+        }
+    }
+
+    /// The same at another place, if it has one.
+    pub(super) fn at(mut self, other: Place) -> Self {
+        match &mut self {
+            Self::Syntax { place, .. }
+            | Self::Schema { place, .. }
+            | Self::UnknownKey { place, .. }
+            | Self::MissingKey { place, .. }
+            | Self::Value { place, .. }
+            | Self::Misplaced { place, .. } => *place = other,
+            Self::NoSuchFile { .. } | Self::Read { .. } | Self::OtherKind { .. } => {}
+        }
+        self
+    }
+}

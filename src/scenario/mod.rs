@@ -26,6 +26,7 @@ pub(crate) mod suggestion;
 #[cfg(test)]
 mod tests;
 pub(crate) mod units;
+mod variation;
 mod workpiece;
 
 pub use bench::BenchScenario;
@@ -34,6 +35,7 @@ pub use device::load_device;
 pub use error::ScenarioError;
 pub use load::{load, load_any, load_bench};
 pub use sensing::largest_set_pressure;
+pub use variation::ScenarioTemplate;
 
 /// A scenario of either kind.
 #[derive(Debug, Clone)]

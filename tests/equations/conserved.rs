@@ -270,7 +270,7 @@ fn energy_balances_over_extension_retraction_extension() {
     reached(
         "energy of the piston, of the net work of the air, 2 sub-steps",
         worst[2],
-        3e-6,
+        1e-6,
     );
 }
 

@@ -30,6 +30,7 @@ pub(in crate::design) fn variable(
         key: key.to_owned(),
         domain,
         start: keys.start,
+        place: document.place(&format!("variables.{key}")),
     })
 }
 

@@ -1,0 +1,143 @@
+//! A design, simulated in every scenario of its study.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::failure::Failure;
+use super::force_range::{force_range, intersection};
+use crate::app::bench::run_rig;
+use crate::app::run::run_cell;
+use crate::cell::Cell;
+use crate::design::{
+    Design, DesignError, Evaluate, EvaluateError, Outcome, ScenarioOutcome, Study,
+};
+use crate::metrics::{BENCH_METRICS, METRICS, Metric};
+use crate::rig::Rig;
+use crate::scenario::{AnyScenario, BenchScenario, Scenario, ScenarioTemplate};
+
+/// Simulates designs in the scenarios of a study: benches on the rig, cells in the cell. Noise and search for a posture keep the scenarios' seeds.
+#[derive(Debug)]
+pub struct ScenarioEvaluator {
+    /// Name for people and scenario.
+    scenarios: Vec<(String, ScenarioTemplate)>,
+}
+
+/// What a design does in one scenario.
+struct Run {
+    metrics: BTreeMap<String, f64>,
+    force_range: [f64; 2],
+}
+
+impl ScenarioEvaluator {
+    /// Reads the study's scenarios and sees whether they take the starting design.
+    ///
+    /// # Errors
+    /// A scenario that is none, or that does not take one of the study's variables.
+    pub fn new(study: &Study) -> Result<Self, DesignError> {
+        let values = study.starting_design().scenario_values();
+        let names = names(study);
+        let read = |(path, name): (&std::path::PathBuf, String)| {
+            let template = ScenarioTemplate::read(path)?;
+            match template.with(&values) {
+                Ok(_) => Ok((name, template)),
+                Err(reason) => {
+                    let variable = reason.key().and_then(|key| study.variable_to_blame(key));
+                    Err(match variable {
+                        Some(variable) => DesignError::Variable {
+                            place: variable.place.clone(),
+                            key: variable.key.clone(),
+                            reason: Box::new(reason),
+                        },
+                        None => reason.into(),
+                    })
+                }
+            }
+        };
+        let scenarios = study.scenarios.iter().zip(names).map(read);
+        Ok(Self {
+            scenarios: scenarios.collect::<Result<_, DesignError>>()?,
+        })
+    }
+}
+
+/// Names of the files, or their paths where two have the same name.
+fn names(study: &Study) -> Vec<String> {
+    let name = |path: &Path| path.file_stem().unwrap_or_default().display().to_string();
+    let short: Vec<String> = study.scenarios.iter().map(|path| name(path)).collect();
+    if short.iter().collect::<BTreeSet<_>>().len() == short.len() {
+        return short;
+    }
+    let paths = study.scenarios.iter();
+    paths.map(|path| path.display().to_string()).collect()
+}
+
+impl Evaluate for ScenarioEvaluator {
+    fn evaluate(&self, design: &Design) -> Result<Outcome, EvaluateError> {
+        let values = design.scenario_values();
+        let mut outcome = Outcome {
+            force_range: [f64::NEG_INFINITY, f64::INFINITY],
+            scenarios: Vec::with_capacity(self.scenarios.len()),
+        };
+        for (name, template) in &self.scenarios {
+            let run = run(template, &values).map_err(|failure| failure.in_scenario(name))?;
+            outcome.force_range = intersection(outcome.force_range, run.force_range);
+            outcome.scenarios.push(ScenarioOutcome {
+                name: name.clone(),
+                metrics: run.metrics,
+            });
+        }
+        Ok(outcome)
+    }
+}
+
+fn run(template: &ScenarioTemplate, values: &[(String, f64)]) -> Result<Run, Failure> {
+    match template.with(values)? {
+        AnyScenario::Bench(scenario) => bench(*scenario),
+        AnyScenario::Cell(scenario) => cell(*scenario),
+    }
+}
+
+fn bench(scenario: BenchScenario) -> Result<Run, Failure> {
+    let rig = Rig::new(scenario)?;
+    let mut finished = run_rig(&rig, &mut |_, _| ())?;
+    if let Some(stop) = finished.stop {
+        return Err(stop.into());
+    }
+    // How long it took says nothing about the design.
+    finished.summary.timing = None;
+    let scenario = &rig.scenario;
+    let gravity = scenario.gravity_along_extension;
+    Ok(Run {
+        metrics: values_of(BENCH_METRICS, &finished.summary),
+        force_range: force_range(
+            &scenario.device.parameters,
+            &scenario.sensing.command,
+            [gravity; 2],
+        ),
+    })
+}
+
+fn cell(scenario: Scenario) -> Result<Run, Failure> {
+    let cell = Cell::new(scenario)?;
+    let mut finished = run_cell(&cell, &mut |_, _| ())?;
+    if let Some(stop) = finished.stop {
+        return Err(stop.into());
+    }
+    finished.summary.timing = None;
+    let scenario = &cell.scenario;
+    let axial = force_range(
+        &scenario.device.parameters,
+        &scenario.sensing.command,
+        cell.gravity_on_edge,
+    );
+    Ok(Run {
+        metrics: values_of(METRICS, &finished.summary),
+        force_range: axial.map(|force| force / cell.axial_share()),
+    })
+}
+
+fn values_of<S>(metrics: &[Metric<S>], summary: &S) -> BTreeMap<String, f64> {
+    let determined =
+        |metric: &Metric<S>| (metric.value)(summary).map(|value| (metric.name.to_owned(), value));
+    metrics.iter().filter_map(determined).collect()
+}

@@ -1,0 +1,100 @@
+//! `idc design`: from a study file to design.json, override.toml and front.svg.
+
+mod evaluate;
+mod failure;
+mod force_range;
+
+use std::path::Path;
+
+use serde::Serialize;
+
+pub use evaluate::ScenarioEvaluator;
+
+use super::error::AppError;
+use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder};
+use crate::design::{self, Study, StudyResult};
+
+/// All that a study may write.
+const NAMES: [&str; 3] = [DESIGN, OVERRIDE, FRONT];
+
+/// A study that can be done, and a folder that its files can go to.
+pub(super) struct PreparedStudy {
+    study: Study,
+    evaluator: ScenarioEvaluator,
+    folder: OutputFolder,
+}
+
+/// A study that was done.
+pub(super) struct FinishedStudy {
+    /// What is printed.
+    pub table: String,
+    /// design.json.
+    pub document: String,
+    /// Names of the files written.
+    pub names: Vec<&'static str>,
+}
+
+impl PreparedStudy {
+    /// Reads study and scenarios and tries the starting design, then makes the folder: bad input leaves nothing behind.
+    pub(super) fn new(file: &Path, folder: &Path) -> Result<Self, AppError> {
+        let study = design::load(file)?;
+        let evaluator = ScenarioEvaluator::new(&study)?;
+        design::check_start(&study, &evaluator)?;
+        Ok(Self {
+            folder: OutputFolder::prepare(folder, &NAMES)?,
+            study,
+            evaluator,
+        })
+    }
+
+    /// Where its files go.
+    pub(super) fn folder(&self) -> &OutputFolder {
+        &self.folder
+    }
+
+    /// Does it and writes its files. `progress` is told designs evaluated and the most that will be, from any thread.
+    pub(super) fn run(
+        &self,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<FinishedStudy, AppError> {
+        let result = design::run(&self.study, &self.evaluator, progress)?;
+        let document = document(&self.study, &result)?;
+        let override_text = result.override_text();
+        let front = design::front_svg(&result)?;
+        let mut files = vec![
+            (DESIGN, document.as_str()),
+            (OVERRIDE, override_text.as_str()),
+        ];
+        files.extend(front.as_deref().map(|svg| (FRONT, svg)));
+        let names = self.folder.write_texts(&files)?;
+        if front.is_none() {
+            // The picture of another study would pass for one of this.
+            self.folder.discard(FRONT)?;
+        }
+        Ok(FinishedStudy {
+            table: design::text(&self.study, &result),
+            names,
+            document,
+        })
+    }
+}
+
+/// design.json.
+fn document(study: &Study, result: &StudyResult) -> Result<String, AppError> {
+    #[derive(Serialize)]
+    struct Document<'a> {
+        study: String,
+        scenarios: Vec<String>,
+        #[serde(flatten)]
+        result: &'a StudyResult,
+    }
+    Ok(serde_json::to_string_pretty(&Document {
+        study: study.path.display().to_string(),
+        scenarios: study
+            .scenarios
+            .iter()
+            .map(|path| path.display().to_string())
+            .collect(),
+        result,
+    })?)
+}
