@@ -119,6 +119,10 @@ fn every_number_of_a_device_is_named_when_it_is_not_one() {
             // A scenario that overrides nothing.
             let bench = Bench::new("retract");
             let value_there = rest.split_whitespace().next().unwrap();
+            if value_there == value {
+                // A limit that is none.
+                continue;
+            }
             let to = format!("{key} = {value} ");
             bench.replace("device.toml", &format!("{key} = {value_there}"), &to);
             let outcome = bench.run();
