@@ -111,8 +111,8 @@ impl Device {
                 .regulator
                 .course(regulator, (dt - time).min(until_switching));
             // A hair's breadth less than one more sub-step is rounding.
-            let count = (course.duration / longest - 1e-9).ceil().max(1.0);
-            let h = course.duration / count;
+            let count = (course.duration / longest - 1e-9).ceil().max(0.0);
+            let h = course.duration / count.max(1.0);
             let mut leg = Leg {
                 device: self,
                 carrier,

@@ -261,6 +261,7 @@ impl Search<'_> {
                 if refitted.fit.rough < leading.fit.rough {
                     *leading = refitted;
                 }
+                self.choose(leading);
                 say(&format!(
                     "  {:?} rough {:.1}",
                     leading.effects,
@@ -289,6 +290,35 @@ impl Search<'_> {
         }
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         full
+    }
+
+    /// Where an effect has a number without values between, takes the one that fits best roughly, from where the fit is.
+    fn choose(&self, hypothesis: &mut Hypothesis) {
+        let parameters = hypothesis
+            .effects
+            .iter()
+            .flat_map(|effect| (effect.parameters)(&self.believed));
+        let parameters: Vec<_> = parameters.collect();
+        let own = hypothesis.fit.free.len() - parameters.len();
+        for (index, parameter) in parameters.iter().enumerate() {
+            let present = hypothesis.fit.values[own + index];
+            let mut tried: Vec<Hypothesis> = parameter
+                .choices
+                .par_iter()
+                .filter(|choice| **choice != present)
+                .map(|choice| {
+                    let mut other = hypothesis.clone();
+                    other.fit.values[own + index] = *choice;
+                    self.refine(&other, ROUGH, 6)
+                })
+                .collect();
+            tried.sort_by(|a, b| a.fit.rough.total_cmp(&b.fit.rough));
+            if let Some(best) = tried.into_iter().next()
+                && best.fit.rough < hypothesis.fit.rough
+            {
+                *hypothesis = best;
+            }
+        }
     }
 
     /// Fits everything that is free in a hypothesis: the effects from where they are, what is tolerated from what was believed, because a model that
