@@ -8,5 +8,6 @@ pub mod fit;
 pub mod free;
 pub mod mismatch;
 pub mod recorded;
+mod scale;
 pub mod search;
 pub mod spectrum;
