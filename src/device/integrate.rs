@@ -9,7 +9,7 @@
 
 use super::carrier::{Carrier, PistonMotion};
 use super::pneumatics::Device;
-use super::state::{AirState, DeviceState, EnergyLedger};
+use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
 use crate::physics::regulator::OutletCourse;
 use crate::physics::valve::ValvePosition;
 
@@ -78,6 +78,7 @@ pub(super) struct Leg<'a, C> {
     pub(super) course_start: f64,
     /// Deflection of the seals at the start of the sub-step [m].
     deflection: f64,
+    pub(super) disturbance: Disturbance,
 }
 
 impl Device {
@@ -120,6 +121,7 @@ impl Device {
                 course,
                 course_start: time,
                 deflection: state.seal_deflection,
+                disturbance: state.disturbance,
             };
             for i in 0..count as usize {
                 leg.advance::<LEDGER>(&mut flow, time + h * i as f64, h);
@@ -239,12 +241,17 @@ impl<C: Carrier> Leg<'_, C> {
         }
     }
 
+    /// Pressure at the regulator's outlet at a time in the step [Pa gauge].
+    pub(super) fn outlet(&self, time: f64) -> f64 {
+        self.course.at(time - self.course_start) + self.disturbance.outlet
+    }
+
     /// One Runge-Kutta step.
     fn step<const LEDGER: bool>(&self, start: &Flow, time: f64, h: f64, mode: Mode) -> Flow {
         if let Some(hose) = &self.device.parameters.hose {
             return self.line_step::<LEDGER>(hose, start, time, h, mode);
         }
-        let outlet = |t: f64| self.course.at(t - self.course_start);
+        let outlet = |t: f64| self.outlet(t);
         let (first, middle, last) = (outlet(time), outlet(time + 0.5 * h), outlet(time + h));
         let rates = |flow: &Flow, t: f64, outlet: f64| {
             self.rates::<LEDGER>(flow, start.motion.stroke, t, outlet, mode)
@@ -273,7 +280,13 @@ impl<C: Carrier> Leg<'_, C> {
         let parameters = &device.parameters;
         let motion = flow.motion;
         let atmosphere = parameters.gas.atmosphere;
-        let air = device.air_rates::<LEDGER>(&flow.air, self.valve, atmosphere + outlet, motion);
+        let air = device.air_rates::<LEDGER>(
+            &flow.air,
+            self.valve,
+            atmosphere + outlet,
+            motion,
+            self.disturbance.mass_flows,
+        );
         let gas_force = device.gas_force_of(air.pressures);
         let mut rates = Flow {
             air: air.air,

@@ -108,7 +108,7 @@ impl<C: Carrier> Leg<'_, C> {
         let upstream = hose.segments() - 1;
         for stage in 0..6 {
             let at = time + NODES[stage] * h;
-            let outlet = self.course.at(at - self.course_start);
+            let outlet = self.outlet(at);
             let mut flow = *start;
             let mut held = Feed::of(&start.air);
             for earlier in 0..stage {

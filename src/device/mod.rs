@@ -19,7 +19,7 @@ pub use carrier::{Carrier, PistonMotion};
 pub use parameters::DeviceParameters;
 pub use pneumatics::{Device, DeviceForce};
 pub use pressure_map::PressureMap;
-pub use state::{AirState, DeviceState, EnergyLedger};
+pub use state::{AirState, DeviceState, Disturbance, EnergyLedger};
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use super::carrier::{Foretold, PistonMotion};
 use super::leaks::LeakFlows;
 use super::rates::PistonRates;
-use super::state::{AirState, DeviceState, EnergyLedger};
+use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
 use super::{Carrier, DeviceParameters, line_step};
 use crate::physics::chamber::Chamber;
 use crate::physics::gas_process::GasProcess;
@@ -120,6 +120,7 @@ impl Device {
             spool: Spool::default(),
             seal_deflection: 0.0,
             seal_stroke: stroke,
+            disturbance: Disturbance::default(),
             ledger: EnergyLedger::default(),
         }
     }
@@ -302,7 +303,7 @@ impl Device {
         }
     }
 
-    /// Rates of the air at an outlet pressure of the regulator [Pa absolute]. Into its one caller: a tenth of a step.
+    /// Rates of the air at an outlet pressure of the regulator [Pa absolute], with air that comes into each chamber from elsewhere [kg/s]. Into its one caller: a tenth of a step.
     #[inline(always)]
     pub(super) fn air_rates<const LEDGER: bool>(
         &self,
@@ -310,6 +311,7 @@ impl Device {
         valve: ValvePosition,
         outlet: f64,
         motion: PistonMotion,
+        strays: [f64; 2],
     ) -> AirRates {
         let parameters = &self.parameters;
         let gas = &parameters.gas;
@@ -349,8 +351,9 @@ impl Device {
                 let own = self.temperature_of(air, i);
                 let upstream = if flows[i] > 0.0 { gas.temperature } else { own };
                 flows[i] *= (gas.temperature / upstream).sqrt();
-                let enthalpy =
-                    gas.specific_heat_pressure() * upstream * flows[i] + leaks.enthalpies[i];
+                let enthalpy = gas.specific_heat_pressure() * upstream * flows[i]
+                    + leaks.enthalpies[i]
+                    + gas.specific_heat_pressure() * gas.temperature * strays[i];
                 let heat = conductance * (gas.temperature - own);
                 let work = pressures[i] * self.chambers[i].growth() * motion.speed;
                 rates.energies[i] = enthalpy + heat - work;
@@ -361,12 +364,15 @@ impl Device {
             let rt = gas.specific_gas_constant * gas.temperature;
             for i in 0..2 {
                 let work = pressures[i] * self.chambers[i].growth() * motion.speed;
-                let flow = flows[i] + leaks.masses[i];
+                let flow = flows[i] + leaks.masses[i] + strays[i];
                 ledger.enthalpy_in += gas.specific_heat_pressure() * gas.temperature * flow;
                 ledger.heat_in += work - rt * flow;
             }
         }
-        rates.masses = [flows[0] + leaks.masses[0], flows[1] + leaks.masses[1]];
+        rates.masses = [
+            flows[0] + leaks.masses[0] + strays[0],
+            flows[1] + leaks.masses[1] + strays[1],
+        ];
         let from_regulator = match &self.parameters.hose {
             None => flows[supplied],
             Some(hose) => {
@@ -398,9 +404,12 @@ impl Device {
         if let Some(reservoir) = reservoir {
             rates.reservoir_mass = reservoir.compressed(stored) - from_regulator.max(0.0);
         }
-        let from_air = [flows[vented], leaks.external];
-        rates.entered = from_regulator.max(0.0) + from_air[0].max(0.0) + from_air[1].max(0.0);
-        rates.left = -(from_regulator.min(0.0) + from_air[0].min(0.0) + from_air[1].min(0.0));
+        let [first, second] = strays;
+        let all = [from_regulator, flows[vented], leaks.external, first, second];
+        for flow in all {
+            rates.entered += flow.max(0.0);
+            rates.left -= flow.min(0.0);
+        }
         AirRates {
             air: rates,
             ledger,

@@ -20,8 +20,19 @@ pub struct DeviceState {
     pub seal_deflection: f64,
     /// Stroke at which that was [m].
     pub seal_stroke: f64,
+    /// What acts on it that its parameters do not describe.
+    pub disturbance: Disturbance,
     /// Energy since the start.
     pub ledger: EnergyLedger,
+}
+
+/// What acts on a device that its parameters do not describe, set by whoever knows it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Disturbance {
+    /// Pressure added to the regulator's outlet [Pa].
+    pub outlet: f64,
+    /// Air into chambers 1 and 2, at the gas's temperature [kg/s].
+    pub mass_flows: [f64; 2],
 }
 
 /// Air, in amounts that are conserved.

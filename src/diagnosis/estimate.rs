@@ -36,7 +36,6 @@ pub struct Estimates {
 /// Numbers and intervals of an explanation of `samples` samples.
 pub fn estimates(believed: &PlantParameters, hypothesis: &Hypothesis, samples: usize) -> Estimates {
     let fit = &hypothesis.fit;
-    let count = fit.free.len();
     let widened = (fit.misfit / samples as f64).max(1.0);
     let covariance = covariance(&fit.information) * widened;
     let number = |index: usize, reported: bool| {
@@ -56,7 +55,7 @@ pub fn estimates(believed: &PlantParameters, hypothesis: &Hypothesis, samples: u
         .iter()
         .map(|effect| (effect.parameters)(believed).len())
         .collect();
-    let mut at = count - numbers.iter().sum::<usize>();
+    let mut at = hypothesis.tolerated(believed);
     let tolerated = (0..at).map(|index| number(index, false)).collect();
     let mut effects = Vec::new();
     for (effect, own) in hypothesis.effects.iter().zip(numbers) {

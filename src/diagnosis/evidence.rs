@@ -100,7 +100,7 @@ impl Evidence {
                 Some(known) => known.courses[index].truth.clone(),
                 None => trajectory(plant, &measured.inputs, guided.then(|| &self.guides[index])),
             };
-            let readings = readings(&plant.sensors, &measured.inputs, &truth);
+            let readings = readings(plant, &measured.inputs, &truth);
             PlantCourse { truth, readings }
         };
         let courses: Vec<PlantCourse> = self.recordings.iter().enumerate().map(course).collect();

@@ -29,12 +29,7 @@ pub struct Interval {
 /// The improved model without its effects, its other parameters kept.
 pub fn without_effects(believed: &PlantParameters, hypothesis: &Hypothesis) -> PlantParameters {
     let fit = &hypothesis.fit;
-    let own: usize = hypothesis
-        .effects
-        .iter()
-        .map(|effect| (effect.parameters)(believed).len())
-        .sum();
-    let kept = fit.free.len() - own;
+    let kept = hypothesis.tolerated(believed);
     with_values(believed, &fit.free[..kept], &fit.values[..kept])
 }
 
@@ -44,7 +39,7 @@ pub fn intervals(
     believed: &PlantParameters,
     hypothesis: &Hypothesis,
 ) -> Vec<Interval> {
-    if hypothesis.effects.is_empty() {
+    if hypothesis.effects.is_empty() && hypothesis.depends_on.is_empty() {
         return Vec::new();
     }
     let bare = without_effects(believed, hypothesis);

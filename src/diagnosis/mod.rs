@@ -6,6 +6,7 @@ pub mod estimate;
 pub mod evidence;
 pub mod fit;
 pub mod free;
+pub mod latent;
 pub mod mismatch;
 pub mod recorded;
 mod scale;

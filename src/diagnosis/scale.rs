@@ -10,9 +10,12 @@ use super::search::Hypothesis;
 /// Standard deviations of the sum of squares that noise alone may come to [1].
 const SPREAD: f64 = 6.0;
 /// Share of the mismatch that the idealisation of a law may leave [1].
-const IDEALISATION: f64 = 0.02;
+const IDEALISATION: f64 = 0.002;
 /// Share of what is explained already below which one more effect is not told from the idealisation of the others [1].
 const IMMATERIAL: f64 = 1e-3;
+
+/// Share of the mismatch beyond which what is left is physics of its own [1].
+const UNEXPLAINED: f64 = 0.05;
 
 /// The scale of a search.
 #[derive(Debug, Clone, Copy)]
@@ -40,8 +43,7 @@ impl Scale {
 
     /// What chance may add to the rough cost of noise [1].
     pub fn rough_spread(&self) -> f64 {
-        let chance = SPREAD * (2.0 * self.noise).sqrt();
-        chance.max(IDEALISATION * IDEALISATION * (self.rough - self.noise))
+        SPREAD * (2.0 * self.noise).sqrt()
     }
 
     /// Does a hypothesis that was fitted in full leave noise, or no more than the idealisation of its laws?
@@ -55,12 +57,21 @@ impl Scale {
         left < chance.max(idealised)
     }
 
-    /// What one more effect must gain roughly beside a hypothesis of a rough cost [1].
-    pub fn material(&self, rough: f64) -> f64 {
-        IMMATERIAL * (self.rough - rough).max(0.0)
+    /// Does a hypothesis explain the mismatch but for a small share, whatever that is? Where the piston is held counts too: impacts that are met at
+    /// slightly other times make a good explanation look bad.
+    pub fn is_explained(&self, hypothesis: &Hypothesis) -> bool {
+        let fit = &hypothesis.fit;
+        let full = (fit.cost() - self.count) / (self.full - self.count);
+        let rough = (fit.rough - self.noise) / (self.rough - self.noise);
+        self.is_adequate(hypothesis) || full.min(rough) < UNEXPLAINED
     }
 
-    /// The same in full.
+    /// Does it explain at least half?
+    pub fn is_half_explained(&self, hypothesis: &Hypothesis) -> bool {
+        (hypothesis.fit.rough - self.noise) < 0.5 * (self.rough - self.noise)
+    }
+
+    /// What one more effect must gain beside a hypothesis of a cost [1].
     pub fn material_in_full(&self, cost: f64) -> f64 {
         IMMATERIAL * (self.full - cost).max(0.0)
     }

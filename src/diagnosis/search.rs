@@ -5,6 +5,7 @@ use super::fit::{
     Effort, FULL, Fit, ROUGH, Stage, fit, foretold, jacobian, rough_noise, with_values,
 };
 use super::free::{Free, Prior, free_of};
+use super::latent;
 use super::scale::Scale;
 use crate::effects::{CATALOGUE, Clues, Effect};
 use crate::plant::PlantParameters;
@@ -36,6 +37,21 @@ pub struct Hypothesis {
     pub effects: Vec<&'static Effect>,
     /// The fit: tolerated quantities first, then the effects' in order.
     pub fit: Fit,
+    /// Variables on which a term without a name depends, the surest first; empty where there is none. The term is in the description, its
+    /// coefficients come last among what is free.
+    pub depends_on: Vec<&'static str>,
+}
+
+impl Hypothesis {
+    /// How many of the free quantities are tolerated ones; the effects' and those of a term without a name follow.
+    pub fn tolerated(&self, believed: &PlantParameters) -> usize {
+        let own: usize = self
+            .effects
+            .iter()
+            .map(|effect| (effect.parameters)(believed).len())
+            .sum();
+        self.fit.free.len() - own - latent::count(&self.fit.prediction.plant)
+    }
 }
 
 /// Everything a search needs.
@@ -72,13 +88,13 @@ impl Search<'_> {
         Hypothesis {
             effects,
             fit: fit(self.evidence, plant, free, effort, known),
+            depends_on: Vec::new(),
         }
     }
 
     /// Penalty for the numbers of an effect: Schwarz's.
     pub fn penalty(&self, hypothesis: &Hypothesis) -> f64 {
-        let count = |effect: &&'static Effect| (effect.parameters)(&self.believed).len();
-        let numbers: usize = hypothesis.effects.iter().map(count).sum();
+        let numbers = hypothesis.fit.free.len() - hypothesis.tolerated(&self.believed);
         numbers as f64 * (self.evidence.count() as f64).ln()
             + LOOK_ELSEWHERE * hypothesis.effects.len() as f64
     }
@@ -213,6 +229,7 @@ impl Search<'_> {
                 effort,
                 Some(&from.fit.prediction),
             ),
+            depends_on: Vec::new(),
         }
     }
 
@@ -227,14 +244,21 @@ impl Search<'_> {
             "baseline {:.0}, noise {noise:.0}",
             baseline.fit.rough
         ));
+        let unexplained = baseline.clone();
         let scale = Scale::of(self.evidence, &baseline, noise);
         let mut levels = vec![vec![baseline]];
         let mut full: Vec<Hypothesis> = Vec::new();
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
         while levels.len() <= MOST_EFFECTS && full.is_empty() {
             let parents = &levels[levels.len() - 1];
-            let children = self.children(parents, &scale, &mut tried, say);
             let before = parents[0].fit.rough - noise;
+            // Beside one that leaves noise alone, no other need be carried on.
+            let carried = if before < scale.rough_spread() {
+                1
+            } else {
+                PARENTS
+            };
+            let children = self.children(&parents[..carried.min(parents.len())], &mut tried, say);
             let Some(best) = children.first() else { break };
             if self.rough_score(best) >= self.rough_score(&parents[0]) {
                 break;
@@ -243,6 +267,7 @@ impl Search<'_> {
             let stuck = levels.len() > 1 && after > STAGNATION * before;
             if after < scale.rough_spread() {
                 full = self.in_full(&children, say);
+                full.retain(|h| scale.is_adequate(h));
             } else if stuck {
                 // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
                 full = self.in_full(parents, say);
@@ -261,26 +286,53 @@ impl Search<'_> {
         self.eliminate(&mut full, say);
         self.add_small(&mut full, &scale, say);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        self.add_unlisted(&mut full, &unexplained, &scale, say);
         full
+    }
+
+    /// Where no known effect explains the mismatch, puts a term without a name first if it explains more.
+    fn add_unlisted(
+        &self,
+        full: &mut Vec<Hypothesis>,
+        baseline: &Hypothesis,
+        scale: &Scale,
+        say: &mut dyn FnMut(&str),
+    ) {
+        let Some(best) = full.first() else { return };
+        if scale.is_explained(best) {
+            return;
+        }
+        let mut bases = vec![baseline.clone()];
+        if scale.is_half_explained(best) {
+            bases.push(best.clone());
+        }
+        let mut found: Vec<Hypothesis> = bases
+            .iter()
+            .filter_map(|base| self.latent(base, say))
+            .collect();
+        found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        if let Some(first) = found.into_iter().next()
+            && self.score(&first) < self.score(&full[0])
+        {
+            full.insert(0, first);
+        }
     }
 
     /// Hypotheses of one effect more, those that lead fitted roughly with everything free; best first.
     fn children(
         &self,
         parents: &[Hypothesis],
-        scale: &Scale,
         tried: &mut Vec<Vec<&'static str>>,
         say: &mut dyn FnMut(&str),
     ) -> Vec<Hypothesis> {
         let mut children = Vec::new();
-        for parent in parents.iter().take(PARENTS) {
+        for parent in parents {
             let score = self.rough_score(parent);
-            let least = scale.material(parent.fit.rough);
             for candidate in self.screen(parent, ROUGH) {
                 let gain = score - self.rough_score(&candidate);
                 say(&format!("  {:?} rough gain {gain:.1}", candidate.effects));
                 let names = names(&candidate);
-                if gain > least && !tried.contains(&names) {
+                if gain > 0.0 && !tried.contains(&names) {
                     tried.push(names);
                     children.push(candidate);
                 }
@@ -433,14 +485,7 @@ impl Search<'_> {
         free.extend(others);
         let mut effects = hypothesis.effects.clone();
         effects.remove(index);
-        self.fitted(
-            effects,
-            &self.believed,
-            &free,
-            FULL,
-            FULL_ITERATIONS,
-            None,
-        )
+        self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None)
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.

@@ -3,22 +3,32 @@
 use super::evidence::{Evidence, Prediction};
 use std::f64::consts::TAU;
 
-/// Frequencies [Hz] of the strongest periodic parts, strongest first, at most four, by least squares of a sine over all recordings with the same phase.
+/// Frequencies [Hz] of the strongest periodic parts of the force while touching, the strongest first, at most two slower and two faster than a tool
+/// turns, by least squares of a sine over all recordings with the same phase.
 pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<f64> {
+    let peaks = strongest_in(evidence, prediction, 2);
+    let (low, high): (Vec<f64>, Vec<f64>) = peaks.iter().partition(|f| **f < 11.0);
+    low.into_iter()
+        .take(2)
+        .chain(high.into_iter().take(2))
+        .collect()
+}
+
+/// Frequencies [Hz] of the periodic parts of what is left in a channel, strongest first; of the force while touching alone.
+pub fn strongest_in(evidence: &Evidence, prediction: &Prediction, channel: usize) -> Vec<f64> {
     let mut times = Vec::new();
     let mut left = Vec::new();
     let mut at = 0;
     for (measured, course) in evidence.recordings.iter().zip(&prediction.courses) {
         let n = measured.inputs.time.len();
-        let force = &prediction.residuals[at + 2 * n..at + 3 * n];
+        let left_over = &prediction.residuals[at + channel * n..at + (channel + 1) * n];
         at += 4 * n;
-        for (i, &force) in force.iter().enumerate() {
-            if course.truth.contact_force[i] > 0.0
-                && force.is_finite()
-                && measured.inputs.surface[i].is_finite()
-            {
+        for (i, &value) in left_over.iter().enumerate() {
+            let touching =
+                course.truth.contact_force[i] > 0.0 && measured.inputs.surface[i].is_finite();
+            if value.is_finite() && (touching || channel != 2) {
                 times.push(measured.inputs.time[i]);
-                left.push(force.clamp(-20.0, 20.0));
+                left.push(value.clamp(-20.0, 20.0));
             }
         }
     }
@@ -44,12 +54,5 @@ pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<f64> {
         .map(|i| (powers[i], frequencies[i]))
         .collect();
     peaks.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut low: Vec<f64> = peaks
-        .iter()
-        .filter(|p| p.1 < 11.0)
-        .take(2)
-        .map(|p| p.1)
-        .collect();
-    low.extend(peaks.iter().filter(|p| p.1 >= 11.0).take(2).map(|p| p.1));
-    low
+    peaks.into_iter().map(|(_, frequency)| frequency).collect()
 }

@@ -3,6 +3,7 @@
 //!     M dv/dt = F_device + M g_a - F_contact
 
 use super::contact::ContactParameters;
+use super::latent::{Latent, Variable};
 use crate::device::{Carrier, PistonMotion};
 
 /// Weight and contact over one step, in which the robot's surface follows a cubic.
@@ -21,6 +22,8 @@ pub(super) struct ReplayCarrier<'a> {
     pub rate: f64,
     /// What the piston is held to, if it is.
     pub hold: Option<Hold>,
+    /// A force without a name, with the value of its variable at the start of the sample.
+    pub latent: Option<(&'a Latent, f64)>,
 }
 
 /// A motion over one step that the piston is held to.
@@ -63,6 +66,19 @@ impl ReplayCarrier<'_> {
         (motion.stroke - surface, motion.speed - speed)
     }
 
+    /// The force without a name [N].
+    pub fn latent_force(&self, time: f64, motion: PistonMotion) -> f64 {
+        self.latent.map_or(0.0, |(latent, held)| {
+            let at = match latent.variable {
+                Variable::Time => self.start + time,
+                Variable::Stroke => motion.stroke,
+                Variable::Velocity => motion.speed,
+                _ => held,
+            };
+            latent.value(at, motion.speed)
+        })
+    }
+
     /// Force that holds the piston to a measured motion [N].
     pub fn hold_force(&self, time: f64, motion: PistonMotion) -> f64 {
         self.hold.map_or(0.0, |hold| hold.force(time, motion))
@@ -86,6 +102,7 @@ impl Carrier for ReplayCarrier<'_> {
         if let Some(hold) = &self.hold {
             force += hold.force(time, motion);
         }
+        force += self.latent_force(time, motion);
         if touching {
             let (penetration, rate) = self.penetration(time, motion);
             force -= self.contact.pushing(penetration, rate);

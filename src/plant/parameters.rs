@@ -1,6 +1,7 @@
 //! What does not change in a rig while it is recorded.
 
 use super::contact::ContactParameters;
+use super::latent::{Latent, Port};
 use super::sensors::SensorErrors;
 use crate::device::DeviceParameters;
 
@@ -15,12 +16,27 @@ pub struct PlantParameters {
     pub contact: ContactParameters,
     /// What the sensors do to what they measure.
     pub sensors: SensorErrors,
+    /// A term without a name.
+    pub latent: Option<Latent>,
 }
 
 impl PlantParameters {
     /// Does the rig move as another one does where there is no workpiece?
     pub fn moves_freely_as(&self, other: &Self) -> bool {
-        self.device == other.device && self.gravity_along_extension == other.gravity_along_extension
+        self.device == other.device
+            && self.gravity_along_extension == other.gravity_along_extension
+            && self.moving_latent() == other.moving_latent()
+    }
+
+    /// The term without a name, if it is not of a reading alone.
+    fn moving_latent(&self) -> Option<&Latent> {
+        let moves = |latent: &&Latent| {
+            !matches!(
+                latent.port,
+                Port::ForceReading | Port::StrokeReading | Port::PressureReading
+            )
+        };
+        self.latent.as_ref().filter(moves)
     }
 
     /// Does the rig move as another one does, whatever its sensors say?

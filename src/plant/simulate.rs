@@ -3,8 +3,8 @@
 use super::carrier::{Hold, ReplayCarrier, hermite};
 use super::guide::Guide;
 use super::inputs::PlantInputs;
+use super::latent::{Moment, Port};
 use super::parameters::PlantParameters;
-use super::sensors::SensorErrors;
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::valve::ValvePosition;
 
@@ -44,6 +44,8 @@ pub struct Trajectory {
     pub contact_force: Vec<f64>,
     /// Pressures of chambers 1 and 2 [Pa absolute].
     pub pressures: [Vec<f64>; 2],
+    /// Air that came in since the sample before [kg/s].
+    pub mass_flow: Vec<f64>,
     /// Force that held the piston to a measured motion [N]; none where nothing did.
     pub hold_force: Vec<f64>,
 }
@@ -60,13 +62,18 @@ pub struct PlantCourse {
 /// Runs a rig and reads its sensors.
 pub fn simulate(plant: &PlantParameters, inputs: &PlantInputs) -> PlantCourse {
     let truth = trajectory(plant, inputs, None);
-    let readings = readings(&plant.sensors, inputs, &truth);
+    let readings = readings(plant, inputs, &truth);
     PlantCourse { truth, readings }
 }
 
 /// What the sensors read, in the order of [`CHANNELS`].
-pub fn readings(sensors: &SensorErrors, inputs: &PlantInputs, truth: &Trajectory) -> [Vec<f64>; 4] {
-    [
+pub fn readings(
+    plant: &PlantParameters,
+    inputs: &PlantInputs,
+    truth: &Trajectory,
+) -> [Vec<f64>; 4] {
+    let sensors = &plant.sensors;
+    let mut readings = [
         truth.outlet.clone(),
         truth
             .stroke
@@ -75,7 +82,19 @@ pub fn readings(sensors: &SensorErrors, inputs: &PlantInputs, truth: &Trajectory
             .collect(),
         sensors.force_readings(&inputs.time, &truth.contact_force, &truth.acceleration),
         truth.acceleration.clone(),
-    ]
+    ];
+    if let Some(latent) = &plant.latent {
+        let channel = match latent.port {
+            Port::PressureReading => 0,
+            Port::StrokeReading => 1,
+            Port::ForceReading => 2,
+            _ => return readings,
+        };
+        for (i, reading) in readings[channel].iter_mut().enumerate() {
+            *reading += latent.at(&truth.moment(inputs, i));
+        }
+    }
+    readings
 }
 
 /// Runs a rig from rest on the retracted stop, both chambers and the regulator's outlet at the atmosphere. A rig that is out of all proportion
@@ -94,6 +113,7 @@ pub fn trajectory(
     let mut state = device.at_rest(motion.stroke, 0.0);
     let count = inputs.time.len();
     let mut truth = Trajectory::default();
+    let mut entered = 0.0;
     let rate = plant.contact.rate(plant.device.moving_mass);
     let usual = usual_step(&inputs.time);
     for i in 0..count {
@@ -118,6 +138,7 @@ pub fn trajectory(
             surface: [0.0; 4],
             rate: if present { rate } else { 0.0 },
             hold: None,
+            latent: None,
         };
         if let Some(guide) = guide {
             let (stiffness, damping) = Guide::hold(plant.device.moving_mass);
@@ -136,7 +157,37 @@ pub fn trajectory(
                 [inputs.surface_slope(i), inputs.surface_slope(next)],
             );
         }
+        if let Some(latent) = &plant.latent {
+            let pressures = device.pressures(&state, motion.stroke);
+            let mut moment = Moment {
+                time: inputs.time[i],
+                stroke: motion.stroke,
+                speed: motion.speed,
+                pressures,
+                mass_flow: (state.air.entered - entered) / usual,
+                set_pressure: inputs.set_pressure[i],
+                surface: inputs.surface[i],
+                contact_force: carrier.contact_force(0.0, motion),
+            };
+            if latent.port == Port::PistonForce {
+                carrier.latent = Some((latent, moment.of(latent.variable)));
+            } else {
+                // Held over the sample at its value in the middle.
+                moment.time += 0.5 * h;
+                moment.stroke += 0.5 * h * motion.speed;
+                let value = latent.at(&moment);
+                match latent.port {
+                    Port::OutletPressure => state.disturbance.outlet = value,
+                    Port::FirstChamberFlow => state.disturbance.mass_flows[0] = value,
+                    Port::SecondChamberFlow => state.disturbance.mass_flows[1] = value,
+                    Port::Surface => carrier.surface[0] += value,
+                    _ => {}
+                }
+            }
+        }
         truth.note(&device, &state, motion, &carrier);
+        truth.mass_flow.push((state.air.entered - entered) / usual);
+        entered = state.air.entered;
         if last {
             break;
         }
@@ -168,6 +219,20 @@ fn usual_step(time: &[f64]) -> f64 {
 }
 
 impl Trajectory {
+    /// The variables at a sample.
+    pub fn moment(&self, inputs: &PlantInputs, i: usize) -> Moment {
+        Moment {
+            time: inputs.time[i],
+            stroke: self.stroke[i],
+            speed: self.speed[i],
+            pressures: [self.pressures[0][i], self.pressures[1][i]],
+            mass_flow: self.mass_flow[i],
+            set_pressure: inputs.set_pressure[i],
+            surface: inputs.surface[i],
+            contact_force: self.contact_force[i],
+        }
+    }
+
     fn note(
         &mut self,
         device: &Device,
@@ -179,9 +244,11 @@ impl Trajectory {
         let pressures = device.pressures(state, motion.stroke);
         let contact_force = carrier.contact_force(0.0, motion);
         let hold_force = carrier.hold_force(0.0, motion);
-        let outside = carrier.weight + hold_force - contact_force;
+        let latent_force = carrier.latent_force(0.0, motion);
+        let outside = carrier.weight + hold_force + latent_force - contact_force;
         let force = device.piston_force(state, motion) + outside;
-        self.outlet.push(state.regulator.outlet);
+        self.outlet
+            .push(state.regulator.outlet + state.disturbance.outlet);
         self.stroke.push(motion.stroke);
         self.speed.push(motion.speed);
         self.acceleration.push(force / mass);

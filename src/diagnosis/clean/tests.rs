@@ -36,6 +36,7 @@ fn plant() -> PlantParameters {
             waviness: Periodic::NONE,
         },
         sensors: SensorErrors::NONE,
+        latent: None,
     }
 }
 

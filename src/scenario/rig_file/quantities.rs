@@ -94,5 +94,6 @@ pub(super) fn blank() -> PlantParameters {
             waviness: Periodic::NONE,
         },
         sensors: SensorErrors::NONE,
+        latent: None,
     }
 }

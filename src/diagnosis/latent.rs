@@ -1,0 +1,412 @@
+//! Physics without a name: where no known effect explains the recordings, a latent term inside the simulator, at each port and over each variable in
+//! turn; the evidence says which.
+
+use super::evidence::{Evidence, Prediction};
+use super::fit::{Effort, FULL, ROUGH, fit, foretold, jacobian};
+use super::free::{Free, Prior};
+use super::search::{Hypothesis, Search};
+use super::spectrum;
+use crate::effects::{Coordinate, Quantity};
+use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, PlantParameters, Port, Variable};
+use rayon::prelude::*;
+
+/// Terms that are fitted roughly.
+const FITTED: usize = 5;
+/// Iterations of a rough fit.
+const ROUGH_ITERATIONS: usize = 8;
+/// Terms that are fitted in full.
+const IN_FULL: usize = 3;
+/// Iterations of the full fit.
+const FULL_ITERATIONS: usize = 25;
+/// Widths of the port's scale that a coefficient is believed to lie within [1].
+const BELIEVED: f64 = 20.0;
+/// Share of its largest value below which a term does not act [1].
+const NARROW: f64 = 0.1;
+/// Share of the gain of the best term within which another variable is not told apart [1].
+const ALIKE: f64 = 0.05;
+
+/// Ports, with the size of what is looked for, and variables on which something there may depend, with whether it may act with the motion.
+#[rustfmt::skip]
+const TERMS: &[(Port, f64, &[(Variable, bool)])] = &[
+    (Port::PistonForce, 10.0, &[
+        (Variable::Time, false), (Variable::Time, true), (Variable::Stroke, false), (Variable::Stroke, true), (Variable::Velocity, false),
+        (Variable::ChamberPressure, false), (Variable::ChamberPressure, true), (Variable::PressureDifference, false),
+        (Variable::PressureDifference, true), (Variable::ContactForce, false), (Variable::ContactForce, true), (Variable::Surface, false),
+    ]),
+    (Port::OutletPressure, 1e4, &[
+        (Variable::Time, false), (Variable::SetPressure, false), (Variable::MassFlow, false), (Variable::ChamberPressure, false),
+    ]),
+    (Port::FirstChamberFlow, 1e-5, &[
+        (Variable::Time, false), (Variable::Stroke, false), (Variable::ChamberPressure, false), (Variable::PressureDifference, false),
+        (Variable::Velocity, false),
+    ]),
+    (Port::SecondChamberFlow, 1e-5, &[
+        (Variable::Time, false), (Variable::Stroke, false), (Variable::ChamberPressure, false), (Variable::PressureDifference, false),
+        (Variable::Velocity, false),
+    ]),
+    (Port::Surface, 1e-4, &[
+        (Variable::Time, false), (Variable::Surface, false), (Variable::Stroke, false), (Variable::ContactForce, false),
+        (Variable::Velocity, false),
+    ]),
+    (Port::ForceReading, 10.0, &[
+        (Variable::Time, false), (Variable::ContactForce, false), (Variable::Stroke, false), (Variable::Velocity, false),
+        (Variable::Velocity, true), (Variable::ChamberPressure, false),
+    ]),
+    (Port::StrokeReading, 1e-4, &[(Variable::Time, false), (Variable::Stroke, false), (Variable::Velocity, false)]),
+    (Port::PressureReading, 1e4, &[
+        (Variable::Time, false), (Variable::SetPressure, false), (Variable::ChamberPressure, false), (Variable::MassFlow, false),
+    ]),
+];
+
+/// Size of what is looked for at a port, in its unit.
+pub fn scale(port: Port) -> f64 {
+    TERMS
+        .iter()
+        .find(|(known, _, _)| *known == port)
+        .map_or(1.0, |(_, scale, _)| *scale)
+}
+
+macro_rules! coefficients {
+    ($($index:literal)*) => {
+        /// Coefficients of the latent term as quantities.
+        static COEFFICIENTS: [Quantity; MOST_COEFFICIENTS] = [$(Quantity {
+            name: concat!("coefficient_", $index),
+            get: |p| p.latent.as_ref().and_then(|l| l.coefficients.get($index)).copied().unwrap_or(0.0),
+            set: |p, value| {
+                if let Some(c) = p.latent.as_mut().and_then(|l| l.coefficients.get_mut($index)) {
+                    *c = value;
+                }
+            },
+        }),*];
+    };
+}
+coefficients!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
+
+/// The frequency of a periodic term.
+const FREQUENCY: Quantity = Quantity {
+    name: "latent_frequency",
+    get: |p| match p.latent.as_ref().map(|l| l.basis) {
+        Some(Basis::Waves { frequency }) => frequency,
+        _ => 0.0,
+    },
+    set: |p, value| {
+        if let Some(Basis::Waves { frequency }) = p.latent.as_mut().map(|l| &mut l.basis) {
+            *frequency = value;
+        }
+    },
+};
+
+/// What is free of a latent term.
+fn free_of_latent(latent: &Latent) -> Vec<Free> {
+    let scale = scale(latent.port);
+    let mut free: Vec<Free> = COEFFICIENTS[..latent.coefficients.len()]
+        .iter()
+        .zip(&latent.coefficients)
+        .map(|(quantity, value)| Free {
+            quantity: *quantity,
+            start: *value,
+            coordinate: Coordinate::Linear(scale),
+            bounds: [-1e3 * scale, 1e3 * scale],
+            prior: Prior::Normal {
+                mean: 0.0,
+                deviation: BELIEVED * scale,
+            },
+        })
+        .collect();
+    if let Basis::Waves { frequency } = latent.basis {
+        // One turn of phase over the longest recording is a step of about a tenth of a hertz.
+        free.push(Free {
+            quantity: FREQUENCY,
+            start: frequency,
+            coordinate: Coordinate::Linear(0.02),
+            bounds: [0.5 * frequency, 2.0 * frequency],
+            prior: Prior::Flat,
+        });
+    }
+    free
+}
+
+/// How many free quantities the latent term of a description has.
+pub fn count(plant: &PlantParameters) -> usize {
+    plant
+        .latent
+        .as_ref()
+        .map_or(0, |latent| free_of_latent(latent).len())
+}
+
+/// Terms that make sense for what a description moves through.
+fn terms(evidence: &Evidence, base: &Prediction) -> Vec<Latent> {
+    let mut all = Vec::new();
+    for (port, _, variables) in TERMS {
+        for (variable, directed) in *variables {
+            if let Some(ends) = range(evidence, base, *variable) {
+                all.push(Latent {
+                    port: *port,
+                    variable: *variable,
+                    directed: *directed,
+                    basis: Basis::Hats { ends },
+                    coefficients: vec![0.0; MOST_COEFFICIENTS],
+                });
+            }
+        }
+        let channel = match port {
+            Port::OutletPressure | Port::PressureReading => 0,
+            Port::StrokeReading => 1,
+            Port::FirstChamberFlow | Port::SecondChamberFlow => continue,
+            _ => 2,
+        };
+        for frequency in spectrum::strongest_in(evidence, base, channel)
+            .into_iter()
+            .take(2)
+        {
+            all.push(Latent {
+                port: *port,
+                variable: Variable::Time,
+                directed: false,
+                basis: Basis::Waves { frequency },
+                coefficients: vec![0.0; 4],
+            });
+        }
+    }
+    all
+}
+
+/// What a variable moves through in all recordings, but for a hundredth at either end; nothing if it stands still.
+fn range(evidence: &Evidence, base: &Prediction, variable: Variable) -> Option<[f64; 2]> {
+    let mut values = Vec::new();
+    for (measured, course) in evidence.recordings.iter().zip(&base.courses) {
+        for i in 0..measured.inputs.time.len() {
+            let value = course.truth.moment(&measured.inputs, i).of(variable);
+            if value.is_finite() {
+                values.push(value);
+            }
+        }
+    }
+    if values.len() < 100 {
+        return None;
+    }
+    values.sort_by(f64::total_cmp);
+    let (low, high) = match variable {
+        Variable::Time | Variable::Stroke | Variable::Surface => {
+            (values[0], values[values.len() - 1])
+        }
+        _ => (
+            values[values.len() / 100],
+            values[values.len() - 1 - values.len() / 100],
+        ),
+    };
+    (high > low).then_some([low, high])
+}
+
+impl Search<'_> {
+    /// The latent term that explains most beside a hypothesis.
+    pub fn latent(&self, base: &Hypothesis, say: &mut dyn FnMut(&str)) -> Option<Hypothesis> {
+        // Of a full fit the held prediction is wanted.
+        let base = &self.refine_from_here(base, ROUGH, 2);
+        let terms = terms(self.evidence, &base.fit.prediction);
+        let mut ranked: Vec<(f64, &Latent)> = terms
+            .par_iter()
+            .map(|latent| (self.promise(base, latent), latent))
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (cost, latent) in ranked.iter().take(12) {
+            say(&format!(
+                "  latent {:?}({:?}{}) {} promises {cost:.0}",
+                latent.port,
+                latent.variable,
+                if latent.directed { ", directed" } else { "" },
+                latent.coefficients.len(),
+            ));
+        }
+        let mut fitted: Vec<(Hypothesis, &Latent)> = ranked
+            .iter()
+            .take(FITTED)
+            .map(|(_, latent)| {
+                let fitted = self.with_latent(base, latent, ROUGH, ROUGH_ITERATIONS);
+                (self.narrowed(base, fitted), *latent)
+            })
+            .collect();
+        fitted.sort_by(|a, b| self.latent_score(&a.0).total_cmp(&self.latent_score(&b.0)));
+        for (hypothesis, latent) in &fitted {
+            say(&format!(
+                "  latent {:?}({:?}{}) rough {:.0}",
+                latent.port,
+                latent.variable,
+                if latent.directed { ", directed" } else { "" },
+                self.latent_score(hypothesis)
+            ));
+        }
+        let (best, latent) = fitted.first()?;
+        let gain = base.fit.rough - best.fit.rough;
+        let alike = |h: &Hypothesis| h.fit.rough - best.fit.rough < ALIKE * gain;
+        let mut depends_on = Vec::new();
+        for (hypothesis, other) in &fitted {
+            if other.port == latent.port && alike(hypothesis) {
+                depends_on.push(other.variable.name());
+                if other.directed {
+                    depends_on.push("velocity_sign");
+                }
+            }
+        }
+        let mut seen = Vec::new();
+        depends_on.retain(|name| {
+            let new = !seen.contains(name);
+            seen.push(*name);
+            new
+        });
+        depends_on.truncate(3);
+        let mut full: Vec<Hypothesis> = fitted
+            .iter()
+            .filter(|(h, _)| alike(h))
+            .take(IN_FULL)
+            .map(|(h, _)| self.refine_from_here(h, FULL, FULL_ITERATIONS))
+            .collect();
+        full.sort_by(|a, b| a.fit.cost().total_cmp(&b.fit.cost()));
+        let mut hypothesis = full.into_iter().next()?;
+        let first = hypothesis
+            .fit
+            .prediction
+            .plant
+            .latent
+            .as_ref()?
+            .variable
+            .name();
+        // The surest first: what the full fit prefers.
+        depends_on.sort_by_key(|name| *name != first);
+        hypothesis.depends_on = depends_on;
+        Some(hypothesis)
+    }
+
+    fn latent_score(&self, hypothesis: &Hypothesis) -> f64 {
+        let numbers = count(&hypothesis.fit.prediction.plant) as f64;
+        hypothesis.fit.rough + numbers * (self.evidence.count() as f64).ln()
+    }
+
+    /// Rough cost that a latent term could come to in one step.
+    fn promise(&self, base: &Hypothesis, latent: &Latent) -> f64 {
+        let fit = &base.fit;
+        let mut there = fit.prediction.clone();
+        there.plant.latent = Some(latent.clone());
+        let mut free = fit.free.clone();
+        let mut values = fit.values.clone();
+        let own = free_of_latent(latent);
+        // A frequency that starts from nothing has no derivative.
+        let own: Vec<Free> = own
+            .into_iter()
+            .filter(|f| f.quantity.name != FREQUENCY.name)
+            .collect();
+        values.extend(own.iter().map(|f| f.start));
+        free.extend(own);
+        let mut columns = fit.columns.clone();
+        columns.extend(jacobian(
+            self.evidence,
+            &there,
+            &free,
+            &values,
+            fit.free.len(),
+        ));
+        let numbers = (free.len() - fit.free.len()) as f64;
+        foretold(self.evidence, &there, &free, &values, &columns, &ROUGH[0])
+            + numbers * (self.evidence.count() as f64).ln()
+    }
+
+    fn with_latent(
+        &self,
+        base: &Hypothesis,
+        latent: &Latent,
+        stages: &[super::fit::Stage],
+        iterations: usize,
+    ) -> Hypothesis {
+        let mut plant = base.fit.prediction.plant.clone();
+        plant.latent = Some(latent.clone());
+        let mut free: Vec<Free> = base
+            .fit
+            .free
+            .iter()
+            .zip(&base.fit.values)
+            .map(|(f, value)| Free {
+                start: *value,
+                ..*f
+            })
+            .collect();
+        free.extend(free_of_latent(latent));
+        let effort = Effort {
+            iterations,
+            stages,
+            frozen: &[],
+            longest_step: 30.0,
+        };
+        Hypothesis {
+            effects: base.effects.clone(),
+            fit: fit(self.evidence, &plant, &free, effort, None),
+            depends_on: Vec::new(),
+        }
+    }
+
+    /// A term that acts in a part of its range alone, with its knots there, if that fits better.
+    fn narrowed(&self, base: &Hypothesis, fitted: Hypothesis) -> Hypothesis {
+        let Some(latent) = fitted.fit.prediction.plant.latent.clone() else {
+            return fitted;
+        };
+        let Basis::Hats { ends } = latent.basis else {
+            return fitted;
+        };
+        let c = &latent.coefficients;
+        let largest = c.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let acts = |k: &usize| c[*k].abs() > NARROW * largest;
+        let (Some(first), Some(last)) = ((0..c.len()).find(acts), (0..c.len()).rev().find(acts))
+        else {
+            return fitted;
+        };
+        let spacing = (ends[1] - ends[0]) / (c.len() - 1) as f64;
+        let from = ends[0] + spacing * (first as f64 - 1.5);
+        let to = ends[0] + spacing * (last as f64 + 1.5);
+        if to - from > 0.6 * (ends[1] - ends[0]) {
+            return fitted;
+        }
+        let mut narrow = Latent {
+            basis: Basis::Hats { ends: [from, to] },
+            ..latent.clone()
+        };
+        let step = (to - from) / (c.len() - 1) as f64;
+        narrow.coefficients = (0..c.len())
+            .map(|k| latent.shape(from + step * k as f64))
+            .collect();
+        let tried = self.with_latent(base, &narrow, ROUGH, ROUGH_ITERATIONS);
+        if tried.fit.rough < fitted.fit.rough {
+            tried
+        } else {
+            fitted
+        }
+    }
+
+    /// Goes on with a fit from where it is.
+    fn refine_from_here(
+        &self,
+        hypothesis: &Hypothesis,
+        stages: &[super::fit::Stage],
+        iterations: usize,
+    ) -> Hypothesis {
+        let from = &hypothesis.fit;
+        let free: Vec<Free> = from
+            .free
+            .iter()
+            .zip(&from.values)
+            .map(|(f, value)| Free {
+                start: *value,
+                ..*f
+            })
+            .collect();
+        let effort = Effort {
+            iterations,
+            stages,
+            frozen: &[],
+            longest_step: 30.0,
+        };
+        Hypothesis {
+            effects: hypothesis.effects.clone(),
+            fit: fit(self.evidence, &from.prediction.plant, &free, effort, None),
+            depends_on: Vec::new(),
+        }
+    }
+}
