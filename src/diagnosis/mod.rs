@@ -1,7 +1,9 @@
 //! Finds what physics recordings contain that the believed model leaves out.
 
 pub mod answer;
+pub mod case;
 pub mod clean;
+pub mod diagnose;
 pub mod estimate;
 pub mod evidence;
 pub mod fit;
