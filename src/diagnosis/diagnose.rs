@@ -1,14 +1,19 @@
 //! From a case to everything that is found in it.
 
-use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
-use super::case::{Case, Prepared, prepare};
-use super::clean::Cleaning;
+use super::case::{Case, NamedRecording, Prepared, prepare};
+use super::clean::{Cleaning, clean};
 use super::estimate::{Estimates, estimates};
-use super::evidence::Evidence;
+use super::evidence::{Evidence, Prediction};
+use super::fit::robust_sum;
+use super::free::Free;
+use super::left_out::left_out;
+use super::localise::{LinkResidual, Parting, links, partings, robust_rms};
 use super::mismatch::{Interval, intervals};
-use super::recorded::{COLUMNS, RecordedError};
+use super::next_experiment::{Separation, separations};
+use super::recorded::RecordedError;
+use super::regime::{Regime, regimes};
 use super::search::{Hypothesis, Search};
-use crate::plant::PlantParameters;
+use crate::plant::{CHANNELS, PlantParameters, simulate};
 
 /// Odds below which an explanation is no alternative [1].
 pub const LEAST_ODDS: f64 = 0.01;
@@ -24,6 +29,40 @@ pub struct Ranked {
     pub odds: f64,
     /// Its probability among those looked at in full [1].
     pub probability: f64,
+    /// What it leaves of each recording, fitted to the others, in standard deviations, by recording and channel; none where there are no others.
+    pub left_out: Option<Vec<[Vec<f64>; CHANNELS.len()]>>,
+}
+
+impl Ranked {
+    /// Robust sum of squares of what was left out in turn.
+    fn left_out_sum(&self) -> Option<f64> {
+        let channels = self.left_out.as_ref()?.iter().flatten();
+        Some(channels.map(|residuals| robust_sum(residuals)).sum())
+    }
+}
+
+/// The believed model, moved within its tolerances as far as recordings that it may not explain allow.
+#[derive(Debug)]
+pub struct Baseline {
+    /// The description.
+    pub plant: PlantParameters,
+    /// What it gives.
+    pub prediction: Prediction,
+    /// What each link of the chain leaves, and what says when.
+    pub links: Vec<(LinkResidual, Vec<Regime>)>,
+    /// Where recordings part from it.
+    pub partings: Vec<Parting>,
+}
+
+/// Error of prediction of a channel of a recording that was not fitted to, in standard deviations of the noise [1].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unseen {
+    /// Index of the channel.
+    pub channel: usize,
+    /// Of the baseline.
+    pub before: f64,
+    /// Of the best explanation.
+    pub after: f64,
 }
 
 /// What was found.
@@ -31,6 +70,8 @@ pub struct Ranked {
 pub struct Diagnosis {
     /// The rig as believed.
     pub believed: PlantParameters,
+    /// What is tolerated of it.
+    pub tolerated: Vec<Free>,
     /// The recordings, cleaned.
     pub evidence: Evidence,
     /// What was set aside in each of them.
@@ -43,6 +84,14 @@ pub struct Diagnosis {
     pub estimates: Estimates,
     /// Where its effects act.
     pub mismatch: Vec<Interval>,
+    /// What the believed model says, as it stands in the rig file.
+    pub as_believed: Prediction,
+    /// The believed model, moved within its tolerances.
+    pub baseline: Baseline,
+    /// Name of the recording to be predicted, and errors of its prediction where it has measured columns.
+    pub unseen: Option<(String, Vec<Unseen>)>,
+    /// Experiments that would tell the best from the next, best first; none where there is no next.
+    pub experiments: Vec<Separation>,
 }
 
 /// Diagnoses a case; `say` is told how far it is.
@@ -60,13 +109,27 @@ pub fn diagnose(case: &Case, say: &mut dyn FnMut(&str)) -> Result<Diagnosis, Rec
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
     };
-    let found = search.run(say);
-    let ranked = rank(&search, found);
+    let ranked = rank(&search, search.run(say));
     let best = &ranked[0].hypothesis;
+    say("locating the mismatch");
+    let baseline = baseline(&search, best);
+    let unseen = case.unseen.as_ref().and_then(|unseen| {
+        let errors = unseen_errors(case, &evidence, unseen, &baseline.plant, best)?;
+        Some((unseen.name.clone(), errors))
+    });
+    say("comparing experiments");
+    let experiments = ranked.get(1).map_or_else(Vec::new, |rival| {
+        separations(&evidence, &best.fit, &rival.hypothesis.fit)
+    });
     Ok(Diagnosis {
         believed: case.believed.clone(),
+        tolerated: case.tolerated.clone(),
         estimates: estimates(&case.believed, best, evidence.count()),
         mismatch: intervals(&evidence, &case.believed, best),
+        as_believed: evidence.predict(&case.believed, false, None),
+        baseline,
+        unseen,
+        experiments,
         ranked,
         cleanings,
         notes,
@@ -74,20 +137,112 @@ pub fn diagnose(case: &Case, say: &mut dyn FnMut(&str)) -> Result<Diagnosis, Rec
     })
 }
 
+/// Explanations by evidence, unless what was left out in turn speaks as clearly for another as evidence would have to.
 fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
-    let scores: Vec<f64> = found.iter().map(|h| search.score(h)).collect();
-    let odds = |score: f64| (-0.5 * (score - scores[0])).exp();
-    let sum: f64 = scores.iter().map(|score| odds(*score)).sum();
-    found
+    let mut ranked: Vec<Ranked> = found
         .into_iter()
-        .zip(&scores)
-        .map(|(hypothesis, score)| Ranked {
+        .map(|hypothesis| Ranked {
+            score: search.score(&hypothesis),
+            odds: 1.0,
+            probability: 1.0,
+            left_out: None,
             hypothesis,
-            score: *score,
-            odds: odds(*score),
-            probability: odds(*score) / sum,
         })
-        .collect()
+        .collect();
+    let limit = -2.0 * LEAST_ODDS.ln();
+    let close = ranked[0].score + limit;
+    let near = ranked.iter().take_while(|r| r.score <= close).count();
+    for leading in &mut ranked[..near] {
+        leading.left_out = left_out(search.evidence, &leading.hypothesis.fit);
+    }
+    let sums: Vec<Option<f64>> = ranked[..near].iter().map(Ranked::left_out_sum).collect();
+    if let Some(first) = sums[0] {
+        let others = sums.iter().enumerate().skip(1);
+        let predicts = others.filter_map(|(i, sum)| Some((i, (*sum)?)));
+        let better = predicts.min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((index, sum)) = better
+            && first - sum > limit
+        {
+            let chosen = ranked.remove(index);
+            ranked.insert(0, chosen);
+        }
+    }
+    let best = ranked[0].score;
+    // One that was put first for what it predicts is not held to be less likely than those behind it.
+    let odds = |score: f64| (-0.5 * (score - best)).exp().min(1.0);
+    let sum: f64 = ranked.iter().map(|r| odds(r.score)).sum();
+    for r in &mut ranked {
+        r.odds = odds(r.score);
+        r.probability = r.odds / sum;
+    }
+    ranked
+}
+
+/// The baseline with what it leaves; of a rig that misses nothing, the best explanation is it.
+fn baseline(search: &Search<'_>, best: &Hypothesis) -> Baseline {
+    let evidence = search.evidence;
+    let (plant, held) = if best.effects.is_empty() {
+        let plant = best.fit.prediction.plant.clone();
+        let held = evidence.predict(&plant, true, None);
+        (plant, held)
+    } else {
+        let prediction = search.baseline().fit.prediction;
+        let plant = prediction.plant.clone();
+        let held = if prediction.guided {
+            prediction
+        } else {
+            evidence.predict(&plant, true, None)
+        };
+        (plant, held)
+    };
+    let prediction = evidence.predict(&plant, false, None);
+    let links = links(evidence, &held).into_iter().map(|link| {
+        let regimes = regimes(evidence, &plant, &held.courses, &link.sigmas);
+        (link, regimes)
+    });
+    Baseline {
+        links: links.collect(),
+        partings: partings(evidence, &prediction.residuals),
+        plant,
+        prediction,
+    }
+}
+
+/// Errors of prediction of a recording that was not looked at; none where it holds no measured column.
+fn unseen_errors(
+    case: &Case,
+    evidence: &Evidence,
+    unseen: &NamedRecording,
+    baseline: &PlantParameters,
+    best: &Hypothesis,
+) -> Option<Vec<Unseen>> {
+    let inputs = &unseen.recorded.inputs;
+    let mut measured = unseen.recorded.readings.clone();
+    if measured.iter().flatten().all(|value| value.is_nan()) {
+        return None;
+    }
+    clean(
+        &inputs.time,
+        &mut measured,
+        &case.noise,
+        case.believed.device.moving_mass,
+    );
+    let before = simulate(baseline, inputs).readings;
+    let after = simulate(&best.fit.prediction.plant, inputs).readings;
+    let error = |channel: usize, predicted: &[f64]| {
+        let pairs = measured[channel].iter().zip(predicted);
+        let noise = evidence.noise[channel];
+        let sigmas: Vec<f64> = pairs.map(|(m, p)| (m - p) / noise).collect();
+        robust_rms(&sigmas).map(|(_, rms)| rms)
+    };
+    let channels = (0..CHANNELS.len()).filter_map(|channel| {
+        Some(Unseen {
+            channel,
+            before: error(channel, &before[channel])?,
+            after: error(channel, &after[channel])?,
+        })
+    });
+    Some(channels.collect())
 }
 
 impl Diagnosis {
@@ -99,73 +254,6 @@ impl Diagnosis {
     /// Rivals that the recordings do not rule out.
     pub fn rivals(&self) -> impl Iterator<Item = &Ranked> {
         self.ranked[1..].iter().filter(|r| r.odds >= LEAST_ODDS)
-    }
-
-    /// Probability that an effect is at work, by its name.
-    fn confidence(&self, name: &str) -> f64 {
-        let names = |r: &&Ranked| r.hypothesis.effects.iter().any(|e| e.name == name);
-        let with = self.ranked.iter().filter(names);
-        with.map(|r| r.probability).sum::<f64>().min(1.0)
-    }
-
-    /// What is missing, with its numbers: the one place where a diagnosis gets its effects from.
-    fn found(&self) -> Vec<FoundEffect> {
-        let effects = self.estimates.effects.iter();
-        effects
-            .map(|(effect, numbers)| FoundEffect {
-                name: effect.name.to_owned(),
-                subsystem: effect.subsystem.name().to_owned(),
-                confidence: self.confidence(effect.name),
-                parameters: numbers
-                    .iter()
-                    .filter(|number| number.reported)
-                    .map(|number| {
-                        let [low, high] = number.interval;
-                        let value = number.value;
-                        (number.name.to_owned(), Estimate { value, low, high })
-                    })
-                    .collect(),
-                depends_on: Vec::new(),
-            })
-            .collect()
-    }
-
-    /// What an engineer can act on.
-    pub fn account(&self) -> String {
-        self.notes.join("\n") + "\n"
-    }
-
-    /// diagnosis.json.
-    pub fn answer(&self, seconds: f64) -> Answer {
-        let effects = self.found();
-        Answer {
-            schema: SCHEMA,
-            verdict: if effects.is_empty() {
-                Verdict::NothingMissing
-            } else {
-                Verdict::Explained
-            },
-            effects,
-            mismatch: self
-                .mismatch
-                .iter()
-                .map(|interval| Mismatch {
-                    recording: self.evidence.recordings[interval.recording].name.clone(),
-                    channel: COLUMNS[interval.channel as usize].to_owned(),
-                    start_s: interval.start,
-                    end_s: interval.end,
-                })
-                .collect(),
-            seconds,
-            alternatives: self
-                .rivals()
-                .map(|ranked| Alternative {
-                    effects: names_of(&ranked.hypothesis),
-                    odds: ranked.odds,
-                })
-                .collect(),
-            notes: self.notes.clone(),
-        }
     }
 }
 

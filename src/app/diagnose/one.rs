@@ -35,6 +35,7 @@ pub(super) enum Standing {
 
 /// A case that can be diagnosed, and a folder that its files can go to.
 pub(super) struct Prepared {
+    name: String,
     rig: RigFile,
     case: Case,
     folder: OutputFolder,
@@ -91,7 +92,10 @@ impl Prepared {
                 folder: out.display().to_string(),
             });
         }
+        let own = folder.canonicalize();
+        let own = own.as_deref().unwrap_or(folder);
         Ok(Self {
+            name: own.file_name().unwrap_or_default().display().to_string(),
             folder: OutputFolder::prepare(out, &NAMES)?,
             rig,
             case,
@@ -108,7 +112,7 @@ impl Prepared {
         let prediction = self.prediction(&diagnosis)?;
         let answer = diagnosis.answer(start.elapsed().as_secs_f64());
         let document = answer.text()?;
-        let account = diagnosis.account();
+        let account = diagnosis.account(&self.name);
         let mut files = vec![(ACCOUNT, account.as_str()), (IMPROVED, improved.as_str())];
         match &prediction {
             Some(text) => files.push((PREDICTION, text.as_str())),
