@@ -13,6 +13,7 @@ pub(super) const EXAMPLES: &str = "Examples:
   idc diagnose rigs/cell_3 --out runs/cell_3 --force      the same again, in place of what is there
   idc diagnose rigs/cell_3 --json | jq .effects           what was found, for a program
   idc diagnose rigs --all --out runs/rigs                 every case below rigs/
+  idc diagnose rigs --all --out runs/rigs --quiet         the same, saying nothing but what failed
   idc diagnose rigs --all --out runs/rigs --resume        go on where it was stopped
   idc diagnose rigs --all --out runs/rigs --jobs 1        one case at a time, each on all processors
 

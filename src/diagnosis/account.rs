@@ -2,7 +2,8 @@
 
 use super::conclude::IN_TURN;
 use super::diagnose::{Diagnosis, Ranked};
-use super::localise::{Link, LinkResidual, Misfit, NOISE_ALONE, misfits};
+use super::links::{Link, LinkResidual};
+use super::localise::{Misfit, NOISE_ALONE, misfits};
 use super::regime::Regime;
 use super::words::{
     CHANNEL_UNITS, CHANNEL_WORDS, figures, listed, percent, spoken, with_interval, wrapped,
@@ -315,7 +316,7 @@ impl Diagnosis {
             .cloned()
             .collect();
         if best.iter().all(|n| names.contains(n)) {
-            format!("{} may be at work as well", capital(&listed(&more)))
+            format!("Beside what was found, {} may be at work", listed(&more))
         } else {
             format!("It may be {} instead", listed(&names))
         }

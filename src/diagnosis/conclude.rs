@@ -8,7 +8,8 @@ use super::details::{
 use super::diagnose::{Diagnosis, names_of};
 use super::estimate::Number;
 use super::fit::robust_sum;
-use super::localise::{Link, NOISE_ALONE, misfits, robust_rms};
+use super::links::Link;
+use super::localise::{NOISE_ALONE, misfits, robust_rms};
 use super::recorded::COLUMNS;
 use crate::plant::CHANNELS;
 

@@ -1,16 +1,16 @@
 //! From a case to everything that is found in it.
 
-use super::case::{Case, NamedRecording, Prepared, prepare};
+use super::case::{Case, NamedRecording, Prepared};
 use super::clean::{Cleaning, clean};
 use super::estimate::{Estimates, estimates};
 use super::evidence::{Evidence, Prediction};
 use super::fit::robust_sum;
 use super::free::Free;
 use super::left_out::left_out;
-use super::localise::{LinkResidual, Parting, links, partings, robust_rms};
+use super::links::{LinkResidual, links};
+use super::localise::{Parting, partings, robust_rms};
 use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
-use super::recorded::RecordedError;
 use super::regime::{Regime, regimes};
 use super::search::{Hypothesis, Search};
 use crate::plant::{CHANNELS, PlantParameters, simulate};
@@ -94,16 +94,14 @@ pub struct Diagnosis {
     pub experiments: Vec<Separation>,
 }
 
-/// Diagnoses a case; `say` is told how far it is.
-///
-/// # Errors
-/// Recordings that nothing can be told from.
-pub fn diagnose(case: &Case, say: &mut dyn FnMut(&str)) -> Result<Diagnosis, RecordedError> {
+/// Diagnoses a case from its recordings as prepared; `say` is told how far it is.
+#[must_use]
+pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> Diagnosis {
     let Prepared {
         evidence,
         cleanings,
         notes,
-    } = prepare(case)?;
+    } = prepared;
     let search = Search {
         evidence: &evidence,
         believed: case.believed.clone(),
@@ -121,7 +119,7 @@ pub fn diagnose(case: &Case, say: &mut dyn FnMut(&str)) -> Result<Diagnosis, Rec
     let experiments = ranked.get(1).map_or_else(Vec::new, |rival| {
         separations(&evidence, &best.fit, &rival.hypothesis.fit)
     });
-    Ok(Diagnosis {
+    Diagnosis {
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
         estimates: estimates(&case.believed, best, evidence.count()),
@@ -134,7 +132,7 @@ pub fn diagnose(case: &Case, say: &mut dyn FnMut(&str)) -> Result<Diagnosis, Rec
         cleanings,
         notes,
         evidence,
-    })
+    }
 }
 
 /// Explanations by evidence, unless what was left out in turn speaks as clearly for another as evidence would have to.
@@ -196,10 +194,12 @@ fn baseline(search: &Search<'_>, best: &Hypothesis) -> Baseline {
         (plant, held)
     };
     let prediction = evidence.predict(&plant, false, None);
-    let links = links(evidence, &held).into_iter().map(|link| {
-        let regimes = regimes(evidence, &plant, &held.courses, &link.sigmas);
-        (link, regimes)
-    });
+    let links = links(evidence, &held, &search.tolerated)
+        .into_iter()
+        .map(|link| {
+            let regimes = regimes(evidence, &plant, &held.courses, &link.sigmas);
+            (link, regimes)
+        });
     Baseline {
         links: links.collect(),
         partings: partings(evidence, &prediction.residuals),

@@ -75,6 +75,11 @@ fn triangle(phase: f64) -> f64 {
     }
 }
 
+/// Square wave that changes after each such time [s].
+fn first_half(time: f64, each: f64) -> bool {
+    ((time / each) as usize).is_multiple_of(2)
+}
+
 /// The experiments for a bench.
 #[must_use]
 pub fn experiments(evidence: &Evidence, plant: &PlantParameters) -> Vec<Experiment> {
@@ -113,7 +118,7 @@ pub fn experiments(evidence: &Evidence, plant: &PlantParameters) -> Vec<Experime
                 0.8 * high
             ),
             inputs: limits.inputs(8.0, |t| {
-                let up = (t / 0.5) as usize % 2 == 0;
+                let up = first_half(t, 0.5);
                 (
                     settled(t, if up { 0.8 * top } else { 0.3 * top }),
                     true,
@@ -138,7 +143,7 @@ pub fn experiments(evidence: &Evidence, plant: &PlantParameters) -> Vec<Experime
                 "without a workpiece, reverse the valve in mid-stroke, every 0.15 s, at {:.1} bar, for 6 s",
                 0.6 * high
             ),
-            inputs: limits.inputs(6.0, |t| (0.6 * top, (t / 0.15) as usize % 2 == 0, free)),
+            inputs: limits.inputs(6.0, |t| (0.6 * top, first_half(t, 0.15), free)),
         },
         Experiment {
             name: "slow_ride",

@@ -1,9 +1,6 @@
-//! Where recordings part from a model: by recording and channel, as intervals, and by link of the chain.
-//!
-//! The piston is held to its measured motion, so that each link is seen with its own measured input: the regulator from set pressure to outlet, the piston by
-//! the force that it lacks, the contact and the load cell by the force that they should show where the tool is.
+//! Where recordings part from a model: by recording and channel, and as intervals.
 
-use super::evidence::{Evidence, Prediction};
+use super::evidence::Evidence;
 use super::fit::robust_sum;
 use super::mismatch::merged;
 use crate::plant::{CHANNELS, Channel};
@@ -12,8 +9,6 @@ use crate::plant::{CHANNELS, Channel};
 const FALSE_ALARM: f64 = 0.01;
 /// Half the time over which residuals are taken together [s].
 const HALF_WINDOW: f64 = 0.01;
-/// Error in time that is forgiven where links are looked at [s].
-const ROUGH_TIME: f64 = 0.006;
 /// Root mean square, in standard deviations, up to which a channel shows its noise: that is known no better [1].
 pub const NOISE_ALONE: f64 = 1.15;
 
@@ -117,126 +112,4 @@ fn running(values: &[f64]) -> Vec<(f64, f64)> {
         sums.push(at);
     }
     sums
-}
-
-/// A link of the chain, seen with its own measured input.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Link {
-    /// Set pressure to outlet.
-    Regulator,
-    /// Outlet to the forces on the piston, along its measured motion: chambers and force balance.
-    Piston,
-    /// Motion to force reading: contact and load cell.
-    Contact,
-}
-
-/// What a link leaves unexplained, one value per sample, recording by recording; NaN where it does not show.
-#[derive(Debug, Clone)]
-pub struct LinkResidual {
-    /// The link.
-    pub link: Link,
-    /// Measured less predicted, in standard deviations; what may be an error in time counts less.
-    pub sigmas: Vec<f64>,
-    /// Robust root mean square of them [1].
-    pub size: f64,
-    /// One standard deviation, in the unit of the link: that of the outlet [Pa], that of forces [N].
-    pub unit: f64,
-}
-
-/// What each link leaves, of a prediction with the piston held to its measured motion.
-pub fn links(evidence: &Evidence, held: &Prediction) -> Vec<LinkResidual> {
-    let mass = held.plant.device.moving_mass;
-    let [outlet, _, force, acceleration] = evidence.noise;
-    let on_piston = force.hypot(mass * acceleration);
-    let all = [
-        (Link::Regulator, outlet, at_regulator(evidence, held)),
-        (
-            Link::Piston,
-            on_piston,
-            on_the_piston(evidence, held, on_piston),
-        ),
-        (Link::Contact, force, in_contact(evidence, held)),
-    ];
-    all.into_iter()
-        .filter_map(|(link, unit, sigmas)| {
-            let (_, size) = robust_rms(&sigmas)?;
-            Some(LinkResidual {
-                link,
-                sigmas,
-                size,
-                unit,
-            })
-        })
-        .collect()
-}
-
-fn at_regulator(evidence: &Evidence, held: &Prediction) -> Vec<f64> {
-    by_channel(evidence, &held.residuals)
-        .filter(|(_, channel, _)| *channel == Channel::RegulatorPressure)
-        .flat_map(|(_, _, residuals)| residuals.iter().copied())
-        .collect()
-}
-
-/// The force that the piston lacks: M (a_m - g) + F_m - P, P that of the chambers, seals and end stops along the measured motion.
-fn on_the_piston(evidence: &Evidence, held: &Prediction, deviation: f64) -> Vec<f64> {
-    let plant = &held.plant;
-    let mass = plant.device.moving_mass;
-    let weight = mass * plant.gravity_along_extension;
-    let shares = evidence.shares(ROUGH_TIME, false);
-    let mut all = Vec::new();
-    let mut first = 0;
-    for (measured, course) in evidence.recordings.iter().zip(&held.courses) {
-        let count = measured.inputs.time.len();
-        let truth = &course.truth;
-        for i in 0..count {
-            let outside = weight + truth.hold_force[i] - truth.contact_force[i];
-            let inside = mass * truth.acceleration[i] - outside;
-            let force = if measured.free {
-                0.0
-            } else {
-                measured.readings[2][i]
-            };
-            let lacking = mass * measured.readings[3][i] - weight + force - inside;
-            let share = shares[first + 2 * count + i].min(shares[first + 3 * count + i]);
-            all.push(share * lacking / deviation);
-        }
-        first += CHANNELS.len() * count;
-    }
-    all
-}
-
-/// Force reading less that of the contact at the measured stroke; the noise of the stroke goes through the contact's stiffness and damping.
-fn in_contact(evidence: &Evidence, held: &Prediction) -> Vec<f64> {
-    let plant = &held.plant;
-    let contact = &plant.contact;
-    let shares = evidence.shares(ROUGH_TIME, false);
-    let [_, stroke_noise, force_noise, _] = evidence.noise;
-    let mut all = Vec::new();
-    let mut first = 0;
-    for measured in &evidence.recordings {
-        let time = &measured.inputs.time;
-        let count = time.len();
-        let readings = &measured.readings;
-        for i in 0..count {
-            let (before, after) = (i.saturating_sub(1), (i + 1).min(count - 1));
-            let span = time[after] - time[before];
-            let (deviation, its_rate) = contact.deviation(time[i]);
-            let depth =
-                |i: usize| readings[1][i] / plant.sensors.stroke_gain - measured.inputs.surface[i];
-            let rate = (depth(after) - depth(before)) / span - its_rate;
-            let expected = contact.force(depth(i) - deviation, rate);
-            let slope = if expected > 0.0 {
-                contact
-                    .stiffness_at(expected)
-                    .hypot(contact.damping * 2f64.sqrt() / span)
-            } else {
-                0.0
-            };
-            let noise = force_noise.hypot(stroke_noise * slope);
-            let share = shares[first + 2 * count + i];
-            all.push(share * (readings[2][i] - expected) / noise);
-        }
-        first += CHANNELS.len() * count;
-    }
-    all
 }

@@ -13,6 +13,7 @@ pub mod experiment;
 pub mod fit;
 pub mod free;
 pub mod left_out;
+pub mod links;
 pub mod localise;
 pub mod mismatch;
 pub mod next_experiment;

@@ -99,3 +99,101 @@ fn square(evidence: &Evidence, best: &Fit, rival: &PlantParameters, inputs: &Pla
         .map_or(0.0, |c| slope.dot(&c.solve(&slope)));
     (whole - told).max(0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::evidence::Measured;
+    use super::super::fit::{Effort, ROUGH, fit};
+    use super::super::free::{Free, Prior};
+    use super::*;
+    use crate::effects::{Coordinate, Quantity};
+    use crate::plant::{ContactLaw, ContactParameters, Periodic, SensorErrors};
+
+    fn plant() -> PlantParameters {
+        PlantParameters {
+            device: crate::device::DeviceParameters::default(),
+            gravity_along_extension: -9.81,
+            contact: ContactParameters {
+                law: ContactLaw::Linear { stiffness: 2e5 },
+                damping: 400.0,
+                surface_offset: 0.0,
+                runout: Periodic::NONE,
+                waviness: Periodic::NONE,
+            },
+            sensors: SensorErrors::NONE,
+        }
+    }
+
+    /// Half a second on a surface, which says little.
+    fn evidence() -> Evidence {
+        let time: Vec<f64> = (0..126).map(|i| 0.004 * f64::from(i)).collect();
+        let count = time.len();
+        let inputs = PlantInputs {
+            set_pressure: vec![2e5; count],
+            extends: vec![true; count],
+            surface: vec![0.02; count],
+            time,
+        };
+        let readings = simulate(&plant(), &inputs).readings;
+        let measured = Measured {
+            name: "short.csv".to_owned(),
+            inputs,
+            readings,
+            free: false,
+        };
+        Evidence::new(vec![measured], [400.0, 2e-5, 0.8, 0.15])
+    }
+
+    fn fitted(evidence: &Evidence, plant: &PlantParameters, free: &[Free]) -> Fit {
+        let effort = Effort {
+            iterations: 1,
+            stages: ROUGH,
+            frozen: &[],
+            longest_step: 3.0,
+        };
+        fit(evidence, plant, free, effort, None)
+    }
+
+    fn best_for(rival: &PlantParameters) -> &'static str {
+        let evidence = evidence();
+        let best = fitted(&evidence, &plant(), &[]);
+        let rival = fitted(&evidence, rival, &[]);
+        separations(&evidence, &best, &rival)[0].experiment.name
+    }
+
+    #[test]
+    fn each_difference_is_sought_where_it_shows() {
+        let mut drifting = plant();
+        drifting.sensors.force_drift = 0.2;
+        assert_eq!(best_for(&drifting), "dwell");
+        let mut late = plant();
+        late.device.switching_delay = 0.005;
+        assert_eq!(best_for(&late), "valve_reversals");
+    }
+
+    #[test]
+    fn what_a_free_number_could_do_as_well_tells_nothing() {
+        const GAIN: Quantity = Quantity {
+            name: "gain",
+            get: |p| p.sensors.force_gain,
+            set: |p, v| p.sensors.force_gain = v,
+        };
+        let free = Free {
+            quantity: GAIN,
+            start: 1.0,
+            coordinate: Coordinate::Linear(0.01),
+            bounds: [0.5, 2.0],
+            prior: Prior::Flat,
+        };
+        let evidence = evidence();
+        let mut gained = plant();
+        gained.sensors.force_gain = 1.01;
+        let rival = fitted(&evidence, &gained, &[]);
+        let known = fitted(&evidence, &plant(), &[]);
+        let mut open = fitted(&evidence, &plant(), &[free]);
+        open.information.fill(0.0);
+        let most = |best: &Fit| separations(&evidence, best, &rival)[0].square;
+        assert!(most(&known) > 1000.0);
+        assert!(most(&open) < 1e-3 * most(&known));
+    }
+}

@@ -86,7 +86,7 @@ pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
         } else {
             3.0
         };
-        figures(number, digits.clamp(2.0, 6.0) as usize)
+        figures(number, digits.clamp(2.0, 5.0) as usize)
     };
     let (value, low, high) = (digits(value), digits(low), digits(high));
     if unit.is_empty() {
@@ -100,8 +100,8 @@ pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
 #[must_use]
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
-    if percent > 99.95 {
-        "all but 0.05 %".to_owned()
+    if percent >= 99.95 {
+        "more than 99.9 %".to_owned()
     } else {
         format!("{percent:.1} %")
     }
@@ -124,7 +124,9 @@ pub fn wrapped(first: &str, text: &str) -> String {
     let mut lines = String::from(first);
     let mut length = first.chars().count();
     let mut fresh = true;
-    for word in text.split_whitespace() {
+    // A number stays with its percent sign.
+    let text = text.replace(" %", "\u{a0}%");
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
         let size = word.chars().count();
         if !fresh && length + 1 + size > WIDTH {
             lines.push('\n');
@@ -141,7 +143,7 @@ pub fn wrapped(first: &str, text: &str) -> String {
         fresh = false;
     }
     lines.push('\n');
-    lines
+    lines.replace('\u{a0}', " ")
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Many cases, some at a time; one that fails does not stop the others.
 
 use std::collections::VecDeque;
-use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -45,9 +44,6 @@ pub(super) fn run(
         while let Some((index, name)) = next() {
             let case = arguments.case.join(&name);
             let result = caught(|| one(&case, &out.join(&name), standing));
-            if let (Err(message), false) = (&result, silent) {
-                bar.suspend(|| eprintln!("failed: {name}: {message}"));
-            }
             locked(&outcomes).push((index, Outcome { name, result }));
             bar.inc(1);
         }
@@ -188,20 +184,18 @@ fn table(outcomes: &[Outcome]) -> String {
     );
     for outcome in outcomes {
         let name = &outcome.name;
-        // Writing into a text cannot fail.
-        let _ = match &outcome.result {
+        let line = match &outcome.result {
             Ok(Done { answer, kept }) => {
                 let effects: Vec<&str> = answer.effects.iter().map(|e| e.name.as_str()).collect();
                 let note = if *kept { "  (stood already)" } else { "" };
                 let (verdict, seconds) = (word(answer.verdict), answer.seconds);
                 let effects = effects.join(" + ");
-                writeln!(
-                    text,
-                    "{name:<wide$}  {verdict:<15}  {seconds:>7.1}  {effects}{note}"
-                )
+                format!("{name:<wide$}  {verdict:<15}  {seconds:>7.1}  {effects}{note}")
             }
-            Err(_) => writeln!(text, "{name:<wide$}  {:<15}  {:>7}", "failed", ""),
+            Err(_) => format!("{name:<wide$}  failed"),
         };
+        text.push_str(line.trim_end());
+        text.push('\n');
     }
     text
 }

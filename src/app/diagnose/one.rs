@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::super::error::AppError;
 use super::super::files::OutputFolder;
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::case::{Case, NamedRecording, tolerated};
+use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
 use crate::diagnosis::diagnose::{Diagnosis, diagnose};
 use crate::diagnosis::estimate::Number;
 use crate::diagnosis::recorded::{COLUMNS, recorded};
@@ -38,6 +38,7 @@ pub(super) struct Prepared {
     name: String,
     rig: RigFile,
     case: Case,
+    recordings: case::Prepared,
     folder: OutputFolder,
 }
 
@@ -82,6 +83,7 @@ impl Prepared {
             });
         }
         let case = case_of(&rig, folder)?;
+        let recordings = case::prepare(&case)?;
         if standing == Standing::Refuse && out.join(DIAGNOSIS).exists() {
             return Err(AppError::Diagnosed {
                 folder: out.display().to_string(),
@@ -99,17 +101,18 @@ impl Prepared {
             folder: OutputFolder::prepare(out, &NAMES)?,
             rig,
             case,
+            recordings,
         })
     }
 
     /// Diagnoses it and writes its files; `say` is told how far it is.
-    pub(super) fn run(&self, say: &mut dyn FnMut(&str)) -> Result<Finished, AppError> {
+    pub(super) fn run(self, say: &mut dyn FnMut(&str)) -> Result<Finished, AppError> {
         let start = Instant::now();
         // An old diagnosis beside new files would pass for theirs.
         self.folder.discard(DIAGNOSIS)?;
-        let diagnosis = diagnose(&self.case, say)?;
+        let diagnosis = diagnose(&self.case, self.recordings, say);
         let improved = improved(&self.rig, &diagnosis);
-        let prediction = self.prediction(&diagnosis)?;
+        let prediction = prediction(&self.case, &diagnosis)?;
         let answer = diagnosis.answer(start.elapsed().as_secs_f64());
         let document = answer.text()?;
         let account = diagnosis.account(&self.name);
@@ -128,30 +131,30 @@ impl Prepared {
             names,
         })
     }
+}
 
-    /// prediction.csv: what the improved model says of the recording that is to be predicted.
-    fn prediction(&self, diagnosis: &Diagnosis) -> Result<Option<String>, AppError> {
-        let Some(unseen) = &self.case.unseen else {
-            return Ok(None);
-        };
-        let inputs = &unseen.recorded.inputs;
-        let plant = &diagnosis.best().fit.prediction.plant;
-        let predicted = simulate(plant, inputs).readings;
-        for (column, values) in COLUMNS.into_iter().zip(&predicted) {
-            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-                return Err(AppError::Astray {
-                    rig: IMPROVED.to_owned(),
-                    inputs: unseen.file.clone(),
-                    time: inputs.time[index],
-                    column,
-                    value: values[index],
-                });
-            }
+/// prediction.csv: what the improved model says of the recording that is to be predicted.
+fn prediction(case: &Case, diagnosis: &Diagnosis) -> Result<Option<String>, AppError> {
+    let Some(unseen) = &case.unseen else {
+        return Ok(None);
+    };
+    let inputs = &unseen.recorded.inputs;
+    let plant = &diagnosis.best().fit.prediction.plant;
+    let predicted = simulate(plant, inputs).readings;
+    for (column, values) in COLUMNS.into_iter().zip(&predicted) {
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            return Err(AppError::Astray {
+                rig: IMPROVED.to_owned(),
+                inputs: unseen.file.clone(),
+                time: inputs.time[index],
+                column,
+                value: values[index],
+            });
         }
-        let columns: [(&str, &[f64]); CHANNELS.len()] =
-            std::array::from_fn(|channel| (COLUMNS[channel], predicted[channel].as_slice()));
-        Ok(Some(columns_text(&inputs.time, &columns)?))
     }
+    let columns: [(&str, &[f64]); CHANNELS.len()] =
+        std::array::from_fn(|channel| (COLUMNS[channel], predicted[channel].as_slice()));
+    Ok(Some(columns_text(&inputs.time, &columns)?))
 }
 
 fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
