@@ -134,7 +134,11 @@ pub fn experiments(evidence: &Evidence, plant: &PlantParameters) -> Vec<Experime
                 0.67 * high
             ),
             inputs: limits.inputs(9.0, |t| {
-                (top * ((t / 3.0).floor() + 1.0) / 3.0, t % 3.0 < 1.5, free)
+                (
+                    top * ((t / 3.0).floor() + 1.0).min(3.0) / 3.0,
+                    t % 3.0 < 1.5,
+                    free,
+                )
             }),
         },
         Experiment {

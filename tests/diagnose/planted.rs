@@ -114,8 +114,7 @@ fn text(name: &str, inputs: &PlantInputs, readings: &[Vec<f64>; 4], dirt: Dirt) 
         write!(
             text,
             "{:.6},{},{extends},{surface}",
-            time + late,
-            inputs.set_pressure[i]
+            time, inputs.set_pressure[i]
         )
         .unwrap();
         for (channel, values) in readings[..channels].iter().enumerate() {
