@@ -11,6 +11,7 @@ mod controllers;
 mod convergence;
 mod design;
 mod determinism;
+mod diagnose;
 mod equations;
 mod estimator;
 mod layers;

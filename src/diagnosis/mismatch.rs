@@ -39,7 +39,7 @@ pub fn intervals(
     believed: &PlantParameters,
     hypothesis: &Hypothesis,
 ) -> Vec<Interval> {
-    if hypothesis.effects.is_empty() && hypothesis.depends_on.is_empty() {
+    if hypothesis.finds_nothing() {
         return Vec::new();
     }
     let bare = without_effects(believed, hypothesis);
@@ -64,7 +64,7 @@ pub fn intervals(
 }
 
 /// Runs of samples that moved, merged, widened, single samples dropped.
-fn merged(time: &[f64], moved: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
+pub(super) fn merged(time: &[f64], moved: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
     let mut runs: Vec<([f64; 2], usize)> = Vec::new();
     for (i, t) in time.iter().enumerate() {
         if !moved(i) {

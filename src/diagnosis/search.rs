@@ -8,7 +8,7 @@ use super::free::{Free, Prior, free_of};
 use super::latent;
 use super::scale::Scale;
 use crate::effects::{CATALOGUE, Clues, Effect};
-use crate::plant::PlantParameters;
+use crate::plant::{Latent, PlantParameters};
 use rayon::prelude::*;
 
 /// Iterations of the second look at those that promise most.
@@ -43,6 +43,16 @@ pub struct Hypothesis {
 }
 
 impl Hypothesis {
+    /// The term without a name, if there is one.
+    pub fn unlisted(&self) -> Option<&Latent> {
+        self.fit.prediction.plant.latent.as_ref()
+    }
+
+    /// Is the believed model all that it takes?
+    pub fn finds_nothing(&self) -> bool {
+        self.effects.is_empty() && self.unlisted().is_none()
+    }
+
     /// How many of the free quantities are tolerated ones; the effects' and those of a term without a name follow.
     pub fn tolerated(&self, believed: &PlantParameters) -> usize {
         let own: usize = self

@@ -34,6 +34,19 @@ pub enum Port {
     PressureReading,
 }
 
+impl Port {
+    /// Part of the chain that it belongs to, as in an answer.
+    pub fn subsystem(self) -> &'static str {
+        match self {
+            Self::PistonForce => "force_balance",
+            Self::OutletPressure => "regulator",
+            Self::FirstChamberFlow | Self::SecondChamberFlow => "chambers",
+            Self::Surface => "contact",
+            Self::ForceReading | Self::StrokeReading | Self::PressureReading => "sensors",
+        }
+    }
+}
+
 /// On what a latent term depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Variable {

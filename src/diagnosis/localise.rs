@@ -1,0 +1,115 @@
+//! Where recordings part from a model: by recording and channel, and as intervals.
+
+use super::evidence::Evidence;
+use super::fit::robust_sum;
+use super::mismatch::merged;
+use crate::plant::{CHANNELS, Channel};
+
+/// Chance that any interval is flagged where there is noise alone [1].
+const FALSE_ALARM: f64 = 0.01;
+/// Half the time over which residuals are taken together [s].
+const HALF_WINDOW: f64 = 0.01;
+/// Root mean square, in standard deviations, up to which a channel shows its noise: that is known no better [1].
+pub const NOISE_ALONE: f64 = 1.15;
+
+/// How far a channel of a recording is from what is predicted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Misfit {
+    /// Index of the recording.
+    pub recording: usize,
+    /// The channel.
+    pub channel: Channel,
+    /// Samples that count.
+    pub samples: usize,
+    /// Robust root mean square, in standard deviations of the noise [1].
+    pub sigmas: f64,
+}
+
+/// A time in which a channel parts from a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parting {
+    /// Index of the recording.
+    pub recording: usize,
+    /// The channel.
+    pub channel: Channel,
+    /// Its start and end [s].
+    pub span: [f64; 2],
+}
+
+/// Residuals of each recording and channel.
+pub fn by_channel<'a>(
+    evidence: &'a Evidence,
+    residuals: &'a [f64],
+) -> impl Iterator<Item = (usize, Channel, &'a [f64])> {
+    let mut start = 0;
+    let recordings = evidence.recordings.iter().enumerate();
+    recordings.flat_map(move |(recording, measured)| {
+        let count = measured.inputs.time.len();
+        let first = start;
+        start += CHANNELS.len() * count;
+        CHANNELS.into_iter().enumerate().map(move |(at, channel)| {
+            let from = first + at * count;
+            (recording, channel, &residuals[from..from + count])
+        })
+    })
+}
+
+/// Robust root mean square; none where nothing counts.
+pub fn robust_rms(residuals: &[f64]) -> Option<(usize, f64)> {
+    let samples = residuals.iter().filter(|r| r.is_finite()).count();
+    (samples > 0).then(|| (samples, (robust_sum(residuals) / samples as f64).sqrt()))
+}
+
+/// How far each channel is from a prediction; channels that were not measured are left out.
+pub fn misfits(evidence: &Evidence, residuals: &[f64]) -> Vec<Misfit> {
+    let channels = by_channel(evidence, residuals);
+    channels
+        .filter_map(|(recording, channel, residuals)| {
+            let (samples, sigmas) = robust_rms(residuals)?;
+            Some(Misfit {
+                recording,
+                channel,
+                samples,
+                sigmas,
+            })
+        })
+        .collect()
+}
+
+/// Where channels part from a prediction: where means over a short time are larger than noise ever gives, or but once in a hundred such cases.
+pub fn partings(evidence: &Evidence, residuals: &[f64]) -> Vec<Parting> {
+    // Of N normal numbers, the chance that one exceeds z is below N exp(-z^2/2).
+    let limit = (2.0 * (residuals.len() as f64 / FALSE_ALARM).ln()).sqrt();
+    let mut found = Vec::new();
+    for (recording, channel, residuals) in by_channel(evidence, residuals) {
+        let time = &evidence.recordings[recording].inputs.time;
+        let sums = running(residuals);
+        let parts = |i: usize| {
+            let from = time.partition_point(|t| *t < time[i] - HALF_WINDOW);
+            let to = time.partition_point(|t| *t <= time[i] + HALF_WINDOW);
+            let (sum, count) = (sums[to].0 - sums[from].0, sums[to].1 - sums[from].1);
+            count > 0.0 && sum.abs() > limit * count.sqrt()
+        };
+        let spans = merged(time, parts);
+        found.extend(spans.into_iter().map(|span| Parting {
+            recording,
+            channel,
+            span,
+        }));
+    }
+    found
+}
+
+/// Running sums and counts of what is finite.
+fn running(values: &[f64]) -> Vec<(f64, f64)> {
+    let mut sums = Vec::with_capacity(values.len() + 1);
+    let mut at = (0.0, 0.0);
+    sums.push(at);
+    for value in values {
+        if value.is_finite() {
+            at = (at.0 + value, at.1 + 1.0);
+        }
+        sums.push(at);
+    }
+    sums
+}
