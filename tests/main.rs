@@ -13,6 +13,7 @@ mod design;
 mod determinism;
 mod equations;
 mod estimator;
+mod laboratory;
 mod layers;
 mod paper_deviation;
 mod paper_page;

@@ -1,0 +1,246 @@
+//! A device run on a programme: legs between two changes of a command, on each of which the equations are smooth but for impacts.
+
+use differential_equations::interpolate::Interpolation;
+use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
+use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
+use differential_equations::status::Status;
+
+use super::concealed::Concealed;
+use super::equations::{Equations, Leg, Reading, STATES, State};
+use super::programme::Programme;
+use super::rig::Rig;
+
+/// Relative tolerance of a step.
+const TOLERANCE: f64 = 1e-8;
+/// First step after a change of a command [s].
+const FIRST_STEP: f64 = 1e-6;
+/// Steps at most in a recording.
+const MOST_STEPS: usize = 20_000_000;
+
+/// What really happens in a recording, one value per sample time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Course {
+    /// What ideal sensors with the device's own errors read, in the order of [`super::CHANNELS`].
+    pub readings: [Vec<f64>; 4],
+    /// Contact force [N].
+    pub contact: Vec<f64>,
+    /// Pressures of the chambers [Pa absolute].
+    pub pressures: [Vec<f64>; 2],
+    /// Air in the chambers and the line [kg].
+    pub air: Vec<f64>,
+}
+
+/// A device that cannot be run.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LaboratoryError {
+    /// The integrator gave up.
+    #[error("{recording}: the laboratory's integrator is stuck at {time} s: {what}")]
+    Stuck {
+        /// The recording.
+        recording: String,
+        /// When [s].
+        time: f64,
+        /// What it says.
+        what: String,
+    },
+}
+
+impl ODE<f64, State> for Equations<'_> {
+    fn diff(&self, time: f64, state: &State, rates: &mut State) {
+        *rates = self.rates(time, state);
+    }
+}
+
+type Method = ExplicitRungeKutta<Ordinary, DormandPrince, f64, State, 5, 7, 7>;
+
+fn method(
+    equations: &Equations<'_>,
+    time: f64,
+    end: f64,
+    state: &State,
+    step: f64,
+) -> Option<Method> {
+    let mut method: Method = ExplicitRungeKutta::dopri5()
+        .rtol(TOLERANCE)
+        .atol(0.1 * TOLERANCE)
+        .h0(step.min(end - time))
+        .max_steps(usize::MAX)
+        .max_rejects(usize::MAX);
+    method.init(equations, time, end, state).ok()?;
+    method.set_status(Status::Solving);
+    Some(method)
+}
+
+/// Changes of what acts on the device: time [s], leg from then on.
+fn legs(rig: &Rig, concealed: &Concealed, programme: &Programme) -> Vec<(f64, Leg)> {
+    let mut acted_on = 0.0f64;
+    let mut targets = vec![(0.0, 0.0)];
+    for (time, pressure) in &programme.set_pressures {
+        acted_on = acted_on.clamp(pressure - concealed.play, pressure + concealed.play);
+        targets.push((time + concealed.dead_time, rig.gain * acted_on));
+    }
+    let mut valve = vec![(0.0, true)];
+    for (time, extends) in &programme.valve {
+        // A valve that is told to stay has nothing to be late with.
+        let late = if *time > 0.0 {
+            concealed.switching_delay
+        } else {
+            0.0
+        };
+        valve.push((time + late, *extends));
+    }
+    let mut times: Vec<f64> = targets
+        .iter()
+        .map(|t| t.0)
+        .chain(valve.iter().map(|v| v.0))
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    let last = |list: &[(f64, f64)], time: f64| {
+        list.iter()
+            .rev()
+            .find(|c| c.0 <= time + 1e-9)
+            .map_or(0.0, |c| c.1)
+    };
+    times
+        .into_iter()
+        .map(|time| {
+            let extends = valve
+                .iter()
+                .rev()
+                .find(|v| v.0 <= time + 1e-9)
+                .is_none_or(|v| v.1);
+            (
+                time,
+                Leg {
+                    extends,
+                    target: last(&targets, time),
+                },
+            )
+        })
+        .collect()
+}
+
+/// Runs a device.
+///
+/// # Errors
+/// The integrator cannot go on.
+pub fn run(
+    rig: &Rig,
+    concealed: &Concealed,
+    programme: &Programme,
+) -> Result<Course, LaboratoryError> {
+    let mut equations = Equations::new(rig, concealed, programme.surface.as_ref());
+    let mut state = equations.start();
+    let samples = &programme.times;
+    // Force is read when its stamp says less its delay; an index tells where it belongs.
+    let late = concealed.force_late;
+    let mut wanted: Vec<(f64, usize, bool)> = samples
+        .iter()
+        .enumerate()
+        .flat_map(|(i, t)| {
+            let both = [(*t, i, false), ((t - late).max(0.0), i, true)];
+            both.into_iter().take(if late == 0.0 { 1 } else { 2 })
+        })
+        .collect();
+    wanted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let end = wanted.last().map_or(0.0, |w| w.0) + 1e-6;
+    let mut readings = vec![Reading::default(); samples.len()];
+    let mut note = |at: &(f64, usize, bool), reading: Reading| {
+        if at.2 {
+            readings[at.1].force = reading.force;
+        } else {
+            let force = if late == 0.0 {
+                reading.force
+            } else {
+                readings[at.1].force
+            };
+            readings[at.1] = Reading { force, ..reading };
+        }
+    };
+    let legs = legs(rig, concealed, programme);
+    let mut next = 0;
+    for (index, (from, leg)) in legs.iter().enumerate() {
+        let until = legs.get(index + 1).map_or(end, |l| l.0).min(end);
+        if until <= *from {
+            continue;
+        }
+        equations.leg = *leg;
+        // What a sample at the very start of a leg reads is the state there.
+        while next < wanted.len() && wanted[next].0 <= from + 1e-12 {
+            note(&wanted[next], equations.read(*from, &state));
+            next += 1;
+        }
+        let stuck = |time: f64, what: String| LaboratoryError::Stuck {
+            recording: programme.name.clone(),
+            time,
+            what,
+        };
+        let fresh = |time: f64, state: &State, step: f64| {
+            method(&equations, time, until, state, step)
+                .ok_or_else(|| stuck(time, "it cannot start".to_owned()))
+        };
+        let mut solver = fresh(*from, &state, FIRST_STEP)?;
+        for steps in 0.. {
+            let left = until - solver.t();
+            if left <= 1e-12 {
+                break;
+            }
+            if solver.h() >= left * (1.0 - 1e-9) {
+                solver.set_h(left);
+            }
+            if steps > MOST_STEPS {
+                return Err(stuck(solver.t(), "too many steps".to_owned()));
+            }
+            if solver.step(&equations).is_err() {
+                // Its test of stiffness is no failure here: accuracy is held all the same.
+                let (time, state, step) = (solver.t(), *solver.y(), 0.5 * solver.h().min(left));
+                if !(step > 1e-13) || !state.iter().all(|v| v.is_finite()) {
+                    return Err(stuck(time, "its steps vanish".to_owned()));
+                }
+                solver = fresh(time, &state, step)?;
+                continue;
+            }
+            if matches!(solver.status(), Status::RejectedStep) {
+                continue;
+            }
+            while next < wanted.len() && wanted[next].0 <= solver.t() + 1e-12 {
+                let time = wanted[next].0.clamp(solver.t_prev(), solver.t());
+                let there: State = solver
+                    .interpolate(time)
+                    .map_err(|error| stuck(time, format!("{error:?}")))?;
+                note(&wanted[next], equations.read(time, &there));
+                next += 1;
+            }
+        }
+        state = *solver.y();
+    }
+    Ok(course(concealed, programme, &readings))
+}
+
+fn course(concealed: &Concealed, programme: &Programme, readings: &[Reading]) -> Course {
+    let of = |value: &dyn Fn(&Reading) -> f64| readings.iter().map(value).collect::<Vec<f64>>();
+    let times = programme.times.iter();
+    let force = readings.iter().zip(times).map(|(reading, time)| {
+        let [bias, drift] = concealed.force_bias;
+        // The zero drifts in the instrument's own time.
+        let value = concealed.force_gain * reading.force + bias + drift * time;
+        value.clamp(-concealed.force_limit, concealed.force_limit)
+    });
+    Course {
+        readings: [
+            of(&|r| r.outlet),
+            of(&|r| concealed.stroke_gain * r.stroke),
+            force.collect(),
+            of(&|r| r.acceleration),
+        ],
+        contact: of(&|r| r.contact),
+        pressures: [of(&|r| r.pressures[0]), of(&|r| r.pressures[1])],
+        air: of(&|r| r.air),
+    }
+}
+
+const _: () = assert!(
+    STATES == 24,
+    "the scaled norm of a step is over this many states"
+);
