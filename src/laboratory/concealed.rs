@@ -103,14 +103,12 @@ pub struct Concealed {
     pub ripple: Option<[f64; 2]>,
     /// Unlisted: a spot at which the piston sticks: extra dry friction [N], where [m], half-width [m].
     pub sticky_spot: Option<[f64; 3]>,
-    /// Unlisted: dry friction in retraction alone [N].
-    pub one_way_friction: f64,
+    /// Unlisted: damping in retraction alone, as of a check valve that sticks [N s/m].
+    pub one_way_damping: f64,
     /// Unlisted: magnets along the stroke: force [N], pitch [m].
     pub detent: Option<[f64; 2]>,
     /// Unlisted: drop of the outlet with the flow drawn [Pa s/kg].
     pub outlet_droop: f64,
-    /// Unlisted: load cell that feels the outlet's hose, force over outlet pressure [N/Pa].
-    pub pressure_crosstalk: f64,
 }
 
 impl Default for Concealed {
@@ -148,10 +146,9 @@ impl Default for Concealed {
             force_late: 0.0,
             ripple: None,
             sticky_spot: None,
-            one_way_friction: 0.0,
+            one_way_damping: 0.0,
             detent: None,
             outlet_droop: 0.0,
-            pressure_crosstalk: 0.0,
         }
     }
 }

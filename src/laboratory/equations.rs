@@ -55,8 +55,8 @@ pub(super) mod at {
 const UNIT: f64 = 1e5;
 /// See the module's head.
 const SMOOTH: f64 = 1e-3;
-/// Heat capacity of a chamber's wall [J/K]: some 50 g of aluminium that take part.
-const WALL_CAPACITY: f64 = 45.0;
+/// Heat capacity of a chamber's wall [J/K]: some 150 g of aluminium.
+const WALL_CAPACITY: f64 = 135.0;
 /// Conductance from wall to surroundings [W/K].
 const WALL_TO_AIR: f64 = 1.0;
 /// Time in which the droop of an outlet builds up [s].
@@ -110,7 +110,6 @@ pub(super) struct Equations<'a> {
 
 /// What the line and its regulator do at a moment.
 struct Line {
-    outlet: f64,
     at_valve: f64,
     drawn: f64,
     rates: [f64; CELLS],
@@ -212,7 +211,6 @@ impl<'a> Equations<'a> {
         let mut rates = [0.0; CELLS];
         let Some([volume, resistance]) = self.concealed.hose else {
             return Line {
-                outlet,
                 at_valve: outlet,
                 drawn: onward(outlet),
                 rates,
@@ -235,7 +233,6 @@ impl<'a> Equations<'a> {
             inward = out;
         }
         Line {
-            outlet,
             at_valve: cell(self.cells - 1),
             drawn,
             rates,
@@ -277,7 +274,6 @@ impl<'a> Equations<'a> {
         move_air(None, Some(0), leak);
 
         let speed = state[at::SPEED];
-        let stroke = state[at::PLACE] * rig.stroke;
         let rt = gas.constant * gas.temperature;
         let growth = [self.areas[0] * speed, -self.areas[1] * speed];
         for side in 0..2 {
@@ -317,7 +313,6 @@ impl<'a> Equations<'a> {
         rates[at::PLACE] = speed / rig.stroke;
         rates[at::SPEED] = force / rig.mass;
         rates[at::SEAL] = seal_rate;
-        let _ = stroke;
         if concealed.force_lag > 0.0 {
             let signal = contact + concealed.crosstalk * rates[at::SPEED];
             rates[at::FORCE] = (signal / 100.0 - state[at::FORCE]) / concealed.force_lag;
@@ -371,13 +366,12 @@ impl<'a> Equations<'a> {
             let share = (1.0 - distance.max(0.0) / length).max(0.0);
             force -= damping * share * speed;
         }
-        let dry = (speed / DRY_SPEED).tanh();
         if let Some([more, place, width]) = concealed.sticky_spot {
             let away = (stroke - place) / width;
-            force -= more * (-away * away).exp() * dry;
+            force -= more * (-away * away).exp() * (speed / DRY_SPEED).tanh();
         }
         if speed < 0.0 {
-            force -= concealed.one_way_friction * dry;
+            force -= concealed.one_way_damping * speed;
         }
         if let Some([strength, pitch]) = concealed.detent {
             force -= strength * (TAU * stroke / pitch).sin();
@@ -449,7 +443,7 @@ impl<'a> Equations<'a> {
             stroke,
             acceleration,
             contact,
-            force: signal + self.concealed.pressure_crosstalk * outlet,
+            force: signal,
             pressures,
             air,
         }

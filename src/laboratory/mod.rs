@@ -7,19 +7,33 @@
 //!
 //!     programme -> device (with something concealed) -> sensors -> recordings + rig file + sealed truth
 
+mod case;
 mod concealed;
 mod course;
+mod dirt;
 mod draw;
+mod effects;
 mod equations;
 mod programme;
+mod recipes;
 mod rig;
+mod sealed;
 mod sensors;
+mod shown;
+mod visibility;
+mod write;
 
+pub use case::{Case, Recipe};
 pub use concealed::{Concealed, Seals, Swing};
 pub use course::{Course, LaboratoryError, run};
+pub use dirt::Dirt;
 pub use draw::{Believed, TOLERANCES};
+pub use effects::{EFFECTS, LabEffect, UNLISTED_EFFECTS};
 pub use programme::{Programme, Surface, Wave};
+pub use recipes::{LOST, shipped, sizes};
 pub use rig::{AIR, Gas, Rig};
+pub use sealed::{Known, SealedCase, SealedEffect, SealedInterval};
+pub use write::write_case;
 
 /// Columns of the measured channels, in the order of all arrays of four here.
 pub const CHANNELS: [&str; 4] = [
