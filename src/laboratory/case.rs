@@ -132,6 +132,18 @@ impl Recipe {
         })
     }
 
+    /// The device as it really is, what is concealed in it, and what is done with it.
+    ///
+    /// # Errors
+    /// The integrator cannot go on.
+    ///
+    /// # Panics
+    /// An effect that does not exist.
+    pub fn reality(&self) -> Result<(Rig, Concealed, Vec<Programme>), LaboratoryError> {
+        let setting = self.setting()?;
+        Ok((setting.pair.real, setting.concealed, setting.programmes))
+    }
+
     /// How strongly one effect shows at shares of its largest, with what else is in the recipe left out.
     ///
     /// # Errors

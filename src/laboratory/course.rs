@@ -244,3 +244,99 @@ const _: () = assert!(
     STATES == 24,
     "the scaled norm of a step is over this many states"
 );
+
+#[cfg(test)]
+mod tests {
+    use super::super::draw::Believed;
+    use super::*;
+
+    fn programme(pressure: f64, times: Vec<f64>) -> Programme {
+        Programme {
+            name: "test".to_owned(),
+            set_pressures: vec![(0.0, pressure)],
+            valve: vec![(0.0, true)],
+            surface: None,
+            times,
+        }
+    }
+
+    #[test]
+    fn sealed_chambers_keep_their_air_whatever_the_piston_does() {
+        let mut rig = Believed::draw(3).rig;
+        (rig.supply_orifice, rig.exhaust_orifice, rig.gravity) = (0.0, 0.0, 30.0);
+        let concealed = Concealed {
+            cross_leak: 1e-7,
+            ..Concealed::default()
+        };
+        let times = (0..200).map(|i| f64::from(i) * 0.01).collect();
+        let course = run(&rig, &concealed, &programme(0.0, times)).unwrap();
+        let stroke = &course.readings[1];
+        assert!(stroke.iter().any(|x| *x > 0.1 * rig.stroke), "it moves");
+        for air in &course.air {
+            assert!((air / course.air[0] - 1.0).abs() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn a_chamber_behind_a_choked_orifice_fills_at_a_constant_rate() {
+        let mut rig = Believed::draw(4).rig;
+        // Held on a hard stop, and a regulator that is there at once.
+        (rig.gravity, rig.time_constant, rig.stop) = (-500.0, 1e-5, [1e9, 2e5]);
+        let set = 8e5;
+        let times: Vec<f64> = (1..=20).map(|i| f64::from(i) * 5e-4).collect();
+        let course = run(&rig, &Concealed::default(), &programme(set, times.clone())).unwrap();
+        let (gas, up) = (rig.gas, set + rig.gas.atmosphere);
+        let k = gas.ratio;
+        let choked = (k * (2.0 / (k + 1.0)).powf((k + 1.0) / (k - 1.0))).sqrt();
+        let volume = rig.dead_volume + rig.areas()[0] * course.readings[1][19];
+        let root = (gas.constant * gas.temperature).sqrt();
+        let slope = rig.supply_orifice * rig.discharge * up * choked * root / volume;
+        let [from, to] = [5, 19].map(|i| course.pressures[0][i]);
+        assert!(to < 0.528 * up, "choked to the end");
+        let found = (to - from) / (times[19] - times[5]);
+        assert!((found / slope - 1.0).abs() < 1e-4, "{found} {slope}");
+    }
+
+    #[test]
+    fn air_that_keeps_its_heat_is_compressed_adiabatically() {
+        let mut rig = Believed::draw(5).rig;
+        (rig.supply_orifice, rig.exhaust_orifice, rig.gravity) = (0.0, 0.0, 30.0);
+        let concealed = Concealed {
+            wall_conductance: Some(0.0),
+            ..Concealed::default()
+        };
+        let times: Vec<f64> = (0..100).map(|i| f64::from(i) * 0.004).collect();
+        let course = run(&rig, &concealed, &programme(0.0, times)).unwrap();
+        let volume = |i: usize| rig.dead_volume + rig.areas()[0] * course.readings[1][i];
+        let constant = |i: usize| course.pressures[0][i] * volume(i).powf(rig.gas.ratio);
+        for i in 0..100 {
+            assert!((constant(i) / constant(0) - 1.0).abs() < 1e-5, "{i}");
+        }
+    }
+
+    #[test]
+    fn a_late_stamp_is_the_force_of_that_time_before() {
+        let mut believed = Believed::draw(6);
+        believed.rig.gravity = -5.0;
+        let mut programme = believed.programmes(6, 2.0)[0].clone();
+        let late = Concealed {
+            force_late: 0.02,
+            ..Concealed::default()
+        };
+        let now = run(&believed.rig, &Concealed::default(), &programme).unwrap();
+        let then = run(&believed.rig, &late, &programme).unwrap();
+        for i in 5..programme.times.len() {
+            let off = then.readings[2][i] - now.readings[2][i - 5];
+            assert!(
+                off.abs() < 1e-3 * (1.0 + now.readings[2][i - 5].abs()),
+                "{i} {off}"
+            );
+        }
+        // The other way round: the programme's own times do not matter to what happens.
+        programme.times.retain(|t| (t * 125.0).fract() < 1e-6);
+        let fewer = run(&believed.rig, &Concealed::default(), &programme).unwrap();
+        let last = fewer.contact.len() - 1;
+        let twin = now.contact[2 * last];
+        assert!((fewer.contact[last] - twin).abs() < 1e-3 * (1.0 + twin));
+    }
+}

@@ -68,7 +68,7 @@ impl Scene<'_> {
             breakaway: coulomb,
             stribeck_velocity: 0.01,
             viscous,
-            presliding: self.about(4e-5),
+            presliding: self.about(2e-5),
             per_pressure: 0.0,
             elastic_share: 0.4,
         }

@@ -2,7 +2,7 @@
 //!
 //!     regulator    T p' = K u - p, or p'' + 2 z w p' + w^2 p = w^2 K u, rates limited; outlet = min(max(p, 0), reservoir) + ripple - droop
 //!     reservoir    m' = m_c s(p) - drawn
-//!     line         N cells between N equal resistances, the last half a cell at the valve (lines of lumped cells: Watton, Fluid Power Systems, ch. 4)
+//!     line         a fitting, then N cells with equal resistances between, of the first and the last one half (Watton, Fluid Power Systems, ch. 4)
 //!     orifice      m' = A C p_u / sqrt(R T_u) f(u),  f = y / (y^2 + e^2)^(1/4),  y = 2k/(k-1) (u^(2/k) - u^((k+1)/k)),  u held at the critical ratio
 //!     chamber      E' = cp (T_in m'_in - T m'_out) - p V' + G (T_w - T),  p V = m R T;   C_w T_w' = -G (T_w - T) - G_a (T_w - T_a)
 //!     piston       M x'' = p1 A1 - p2 A2 - pa (A1 - A2) + M g + F_0 - k_s x - F_seal - F_cushion + stops - contact
@@ -65,6 +65,8 @@ const DROOP_TIME: f64 = 1e-3;
 const FULL: f64 = 7e5;
 /// Speed over which a dry force that has no bristles turns its sign [m/s].
 const DRY_SPEED: f64 = 1e-3;
+/// Share of a line's resistance in the fitting before it [1]: a hose's own is small beside what makes a line slow.
+const FITTING: f64 = 0.8;
 /// Fastest exchange between cells of a line that is resolved [1/s].
 const FASTEST_CELL: f64 = 6e4;
 
@@ -216,20 +218,19 @@ impl<'a> Equations<'a> {
                 rates,
             };
         };
-        let n = self.cells as f64;
         let rt = self.rig.gas.constant * self.rig.gas.temperature;
+        let parts = (self.cells - 1) as f64;
         let cell = |i: usize| state[at::LINE + i] * UNIT;
-        let between = |before: f64, after: f64| (before - after) * n / resistance;
-        let drawn = between(outlet, cell(0));
+        let along = (1.0 - FITTING) * resistance / parts;
+        let drawn = (outlet - cell(0)) / (FITTING * resistance);
         let mut inward = drawn;
         for (i, rate) in rates.iter_mut().enumerate().take(self.cells) {
-            let last = i + 1 == self.cells;
-            let (out, share) = if last {
-                (onward(cell(i)), 0.5)
+            let out = if i + 1 == self.cells {
+                onward(cell(i))
             } else {
-                (between(cell(i), cell(i + 1)), 1.0)
+                (cell(i) - cell(i + 1)) / along
             };
-            *rate = (inward - out) * rt * n / (share * volume);
+            *rate = (inward - out) * rt / (self.share_of_line(i) * volume);
             inward = out;
         }
         Line {
@@ -237,6 +238,13 @@ impl<'a> Equations<'a> {
             drawn,
             rates,
         }
+    }
+
+    /// Share of the line's volume in a cell [1].
+    fn share_of_line(&self, cell: usize) -> f64 {
+        let parts = (self.cells - 1) as f64;
+        let half = cell == 0 || cell + 1 == self.cells;
+        if half { 0.5 / parts } else { 1.0 / parts }
     }
 
     /// Rates of the state.
@@ -432,10 +440,8 @@ impl<'a> Equations<'a> {
         let rt = self.rig.gas.constant * self.rig.gas.temperature;
         let mut air = (state[at::AIR] + state[at::AIR + 1]) * UNIT * self.swept / rt;
         if let Some([volume, _]) = self.concealed.hose {
-            let share = volume / self.cells as f64 / rt;
             for cell in 0..self.cells {
-                let half = if cell + 1 == self.cells { 0.5 } else { 1.0 };
-                air += half * share * UNIT * state[at::LINE + cell];
+                air += self.share_of_line(cell) * volume / rt * UNIT * state[at::LINE + cell];
             }
         }
         Reading {
@@ -455,9 +461,9 @@ fn cells(rig: &Rig, concealed: &Concealed) -> usize {
     let Some([volume, resistance]) = concealed.hose else {
         return 1;
     };
-    let slow = rig.gas.constant * rig.gas.temperature / (volume * resistance);
+    let slow = rig.gas.constant * rig.gas.temperature / (volume * (1.0 - FITTING) * resistance);
     let most = (FASTEST_CELL / (4.0 * slow)).sqrt();
-    (most as usize).clamp(2, CELLS)
+    (most as usize).clamp(3, CELLS)
 }
 
 /// Friction [N] of seals at a deflection, over that at which they slide [1], a speed [m/s] and a pressure difference [Pa]; and the deflection's rate.

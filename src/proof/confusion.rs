@@ -265,7 +265,7 @@ mod tests {
             page.contains("| a | 1/2 | 1/2 | 0 | 1.00 | 30.0 | gain 1.05 |"),
             "{page}"
         );
-        assert!(page.contains("| a | a + b 1, itself 1 |"));
+        assert!(page.contains("| a | itself 1, a + b 1 |"));
         assert!(page.contains("| a | itself 1, nothing 1 |"));
         assert!(
             page.contains("| 0 | 1 | 1.00 % | 1.00 % | 1/1 | 0.900 | 1.70 |"),

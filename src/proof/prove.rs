@@ -117,3 +117,61 @@ fn same_times(one: &[f64], other: &[f64]) -> bool {
     const WRITTEN: f64 = 5e-4;
     one.len() == other.len() && one.iter().zip(other).all(|(a, b)| (a - b).abs() < WRITTEN)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::answer::{SCHEMA, Verdict};
+    use crate::laboratory::{Recipe, write_case};
+
+    fn nothing() -> Answer {
+        Answer {
+            schema: SCHEMA,
+            verdict: Verdict::NothingMissing,
+            effects: Vec::new(),
+            mismatch: Vec::new(),
+            seconds: 1.0,
+            alternatives: Vec::new(),
+            notes: Vec::new(),
+            details: Default::default(),
+        }
+    }
+
+    #[test]
+    fn nothing_sealed_is_there_until_all_is_answered() {
+        let room = tempfile::tempdir().unwrap();
+        let place = |name: &str| room.path().join(name);
+        let recipe = Recipe {
+            name: "one".to_owned(),
+            seed: 1,
+            effects: Vec::new(),
+            duration: 2.0,
+            dirt: None,
+        };
+        let case = recipe.make().unwrap();
+        write_case(&case, &place("cases").join("one"), Some(&place("safe"))).unwrap();
+        let diagnose = |folder: &Path, out: &Path| {
+            assert!(folder.join("rig.toml").is_file() && !place("sealed").exists());
+            // A prediction that is perfect: what was measured.
+            std::fs::create_dir_all(out).unwrap();
+            std::fs::copy(place("safe").join("one.predict.csv"), out.join(PREDICTION)).unwrap();
+            std::fs::rename(place("safe"), place("sealed")).unwrap();
+            Ok(nothing())
+        };
+        let go = |only: &[String]| {
+            prove(
+                &place("cases"),
+                &place("sealed"),
+                only,
+                &place("out"),
+                1,
+                &diagnose,
+            )
+        };
+        let error = go(&["two".to_owned()]).unwrap_err().to_string();
+        assert!(error.contains("named two"), "{error}");
+        let summary = go(&[]).unwrap();
+        assert_eq!((summary.clean, summary.predicted), ([1, 1], [1, 1]));
+        assert_eq!(summary.cases[0].prediction, Some(0.0));
+    }
+}

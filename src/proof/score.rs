@@ -268,6 +268,7 @@ mod tests {
             seconds: 1.0,
             alternatives: Vec::new(),
             notes: Vec::new(),
+            details: Default::default(),
         }
     }
 

@@ -214,3 +214,72 @@ fn attempt(
         score,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::answer::{Answer, SCHEMA, Verdict};
+
+    #[test]
+    fn a_sweep_goes_on_where_it_was_stopped_and_only_as_it_began() {
+        let room = tempfile::tempdir().unwrap();
+        let out = room.path().join("sweep");
+        let mut plan = SweepPlan {
+            effects: vec!["force_sensor_gain_error".to_owned()],
+            seeds: 1,
+            sizes: 2,
+            empty: 1,
+            duration: 2.0,
+            jobs: 2,
+            resume: false,
+        };
+        let asked = AtomicUsize::new(0);
+        let diagnose = |folder: &Path, _: &Path| {
+            assert!(folder.join("rig.toml").is_file());
+            asked.fetch_add(1, Ordering::Relaxed);
+            Ok(Answer {
+                schema: SCHEMA,
+                verdict: Verdict::NothingMissing,
+                effects: Vec::new(),
+                mismatch: Vec::new(),
+                seconds: 1.0,
+                alternatives: Vec::new(),
+                notes: Vec::new(),
+                details: Default::default(),
+            })
+        };
+        let first = sweep(&plan, &out, &diagnose, &|_| ()).unwrap();
+        assert_eq!((first.len(), asked.load(Ordering::Relaxed)), (3, 3));
+        assert!(
+            first[0].shows > 100.0 && first[1].shows < 6.0,
+            "{} {}",
+            first[0].shows,
+            first[1].shows
+        );
+        assert!(!first[0].score.named_exactly && first[2].score.named_exactly);
+        assert_eq!(
+            std::fs::read_dir(&out).unwrap().count(),
+            1,
+            "no case is left"
+        );
+
+        let standing = sweep(&plan, &out, &diagnose, &|_| ()).unwrap_err();
+        assert!(matches!(standing, ProofError::Standing { .. }));
+        plan.resume = true;
+        std::fs::remove_file(out.join("outcomes/empty-1000000.json")).unwrap();
+        let second = sweep(&plan, &out, &diagnose, &|_| ()).unwrap();
+        let made = |all: &[Outcome]| all.iter().map(|o| o.made.clone()).collect::<Vec<_>>();
+        assert_eq!(made(&second), made(&first));
+        assert_eq!(asked.load(Ordering::Relaxed), 4);
+        plan.duration = 3.0;
+        let other = sweep(&plan, &out, &diagnose, &|_| ()).unwrap_err();
+        assert!(matches!(other, ProofError::OtherPlan { .. }), "{other}");
+        plan.effects = vec!["gremlins".to_owned()];
+        assert!(
+            sweep(&plan, &out, &diagnose, &|_| ())
+                .unwrap_err()
+                .to_string()
+                .contains("gremlins")
+        );
+    }
+}
