@@ -195,7 +195,7 @@ pub fn run(
             if solver.step(&equations).is_err() {
                 // Its test of stiffness is no failure here: accuracy is held all the same.
                 let (time, state, step) = (solver.t(), *solver.y(), 0.5 * solver.h().min(left));
-                if !(step > 1e-13) || !state.iter().all(|v| v.is_finite()) {
+                if step.is_nan() || step <= 1e-13 || !state.iter().all(|v| v.is_finite()) {
                     return Err(stuck(time, "its steps vanish".to_owned()));
                 }
                 solver = fresh(time, &state, step)?;
