@@ -144,7 +144,9 @@ fn with_effect(rig: &Rig, concealed: &Concealed, name: &str) -> PlantParameters 
         }
         "hose_volume" => {
             let [volume, resistance] = concealed.hose.unwrap();
-            device.hose = Some(Hose::lumped(volume, resistance));
+            // What lies along the air is met by half of it on average (Elmore's delay).
+            let met = 0.5 * (1.0 + concealed.fitting_share);
+            device.hose = Some(Hose::lumped(met * volume, resistance));
         }
         "supply_droop" => {
             let [volume, flow] = concealed.reservoir.unwrap();
@@ -189,8 +191,6 @@ fn with_effect(rig: &Rig, concealed: &Concealed, name: &str) -> PlantParameters 
 #[test]
 fn effects_mean_the_same_in_the_laboratory_and_in_the_simulator() {
     for effect in &EFFECTS {
-        let richer = effect.name.contains("friction")
-            || ["presliding_hysteresis", "hose_volume"].contains(&effect.name);
         let mut most = [0.0f64; 4];
         for seed in 0..3 {
             let recipe = Recipe {
@@ -200,7 +200,9 @@ fn effects_mean_the_same_in_the_laboratory_and_in_the_simulator() {
                 duration: 4.0,
                 dirt: None,
             };
-            let (rig, concealed, programmes) = recipe.reality().unwrap();
+            let (rig, mut concealed, programmes) = recipe.reality().unwrap();
+            // Nearly one lump: what remains goes with the share that is not (a tenth of what it is at a fifth).
+            concealed.fitting_share = 0.98;
             let plant = with_effect(&rig, &concealed, effect.name);
             for programme in &programmes[..3] {
                 let ours = run(&rig, &concealed, programme).unwrap().readings;
@@ -211,8 +213,13 @@ fn effects_mean_the_same_in_the_laboratory_and_in_the_simulator() {
                 }
             }
         }
-        println!("{:28} {most:.2?}", effect.name);
-        let allowed = if richer { 30.0 } else { 0.5 };
+        let allowed = match effect.name {
+            "hose_volume" => 6.0,
+            "presliding_hysteresis" => 1.5,
+            // Seals that are elastic at first, and damped while they bend.
+            name if name.contains("friction") => 20.0,
+            _ => 0.5,
+        };
         assert!(
             most.iter().all(|m| *m < allowed),
             "{} {most:.2?}",

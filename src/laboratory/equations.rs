@@ -65,8 +65,6 @@ const DROOP_TIME: f64 = 1e-3;
 const FULL: f64 = 7e5;
 /// Speed over which a dry force that has no bristles turns its sign [m/s].
 const DRY_SPEED: f64 = 1e-3;
-/// Share of a line's resistance in the fitting before it [1]: a hose's own is small beside what makes a line slow.
-const FITTING: f64 = 0.8;
 /// Fastest exchange between cells of a line that is resolved [1/s].
 const FASTEST_CELL: f64 = 6e4;
 
@@ -221,8 +219,9 @@ impl<'a> Equations<'a> {
         let rt = self.rig.gas.constant * self.rig.gas.temperature;
         let parts = (self.cells - 1) as f64;
         let cell = |i: usize| state[at::LINE + i] * UNIT;
-        let along = (1.0 - FITTING) * resistance / parts;
-        let drawn = (outlet - cell(0)) / (FITTING * resistance);
+        let fitting = self.concealed.fitting_share;
+        let along = (1.0 - fitting) * resistance / parts;
+        let drawn = (outlet - cell(0)) / (fitting * resistance);
         let mut inward = drawn;
         for (i, rate) in rates.iter_mut().enumerate().take(self.cells) {
             let out = if i + 1 == self.cells {
@@ -461,7 +460,8 @@ fn cells(rig: &Rig, concealed: &Concealed) -> usize {
     let Some([volume, resistance]) = concealed.hose else {
         return 1;
     };
-    let slow = rig.gas.constant * rig.gas.temperature / (volume * (1.0 - FITTING) * resistance);
+    let slow = rig.gas.constant * rig.gas.temperature
+        / (volume * (1.0 - concealed.fitting_share) * resistance);
     let most = (FASTEST_CELL / (4.0 * slow)).sqrt();
     (most as usize).clamp(3, CELLS)
 }
