@@ -13,7 +13,7 @@ use super::localise::{Parting, partings, robust_rms};
 use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
 use super::regime::{Regime, regimes};
-use super::search::{Hypothesis, Search};
+use super::search::{Hypothesis, Search, stands_for};
 use crate::plant::{CHANNELS, PlantParameters, simulate};
 
 /// Odds below which an explanation is no alternative [1].
@@ -157,6 +157,9 @@ fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
     let sums: Vec<Option<f64>> = ranked[..near].iter().map(Ranked::left_out_sum).collect();
     if let Some(first) = sums[0] {
         let others = sums.iter().enumerate().skip(1);
+        // A richer law in place of a plain one predicts a little better whether or not it is at work: the search has weighed them.
+        let others =
+            others.filter(|(i, _)| !stands_for(&ranked[*i].hypothesis, &ranked[0].hypothesis));
         let predicts = others.filter_map(|(i, sum)| Some((i, (*sum)?)));
         let better = predicts.min_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((index, sum)) = better

@@ -296,8 +296,28 @@ impl Search<'_> {
         self.eliminate(&mut full, say);
         self.add_small(&mut full, &scale, say);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        self.prefer_plain(&mut full, &scale);
         self.add_unlisted(&mut full, &unexplained, &scale, say);
         full
+    }
+
+    /// Of laws that exclude one another puts the plainest first that explains as much but for what idealisation leaves: a richer law bends to the errors
+    /// of a plain one.
+    fn prefer_plain(&self, full: &mut Vec<Hypothesis>, scale: &Scale) {
+        let Some(best) = full.first() else { return };
+        let allowed = scale.material_in_full(best.fit.cost());
+        let plainer = |h: &&Hypothesis| {
+            h.fit.free.len() < best.fit.free.len()
+                && h.fit.cost() - best.fit.cost() < allowed
+                && stands_for(h, best)
+        };
+        let plainest = (full.iter().enumerate())
+            .filter(|(_, h)| plainer(h))
+            .min_by_key(|(_, h)| h.fit.free.len());
+        if let Some((index, _)) = plainest {
+            let chosen = full.remove(index);
+            full.insert(0, chosen);
+        }
     }
 
     /// Where no known effect explains the mismatch, puts a term without a name first if it explains more.
@@ -582,6 +602,16 @@ impl Search<'_> {
             Some(&fitted.prediction),
         )
     }
+}
+
+/// Are the effects of two hypotheses the same but for laws that exclude one another?
+pub(super) fn stands_for(one: &Hypothesis, other: &Hypothesis) -> bool {
+    let covered = |a: &Hypothesis, b: &Hypothesis| {
+        a.effects
+            .iter()
+            .all(|effect| b.effects.iter().any(|known| known.excludes(effect)))
+    };
+    one.effects.len() == other.effects.len() && covered(one, other) && covered(other, one)
 }
 
 fn names(hypothesis: &Hypothesis) -> Vec<&'static str> {
