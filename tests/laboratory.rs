@@ -57,6 +57,7 @@ fn plant_of(rig: &Rig) -> PlantParameters {
             waviness: Periodic::NONE,
         },
         sensors: SensorErrors::NONE,
+        latent: None,
     }
 }
 

@@ -18,6 +18,7 @@ mod laboratory;
 mod layers;
 mod paper_deviation;
 mod paper_page;
+mod planted;
 mod predict;
 mod program;
 mod real_robots;
