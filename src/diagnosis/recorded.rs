@@ -111,6 +111,7 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
         set_pressure,
         extends: valve.iter().map(|position| *position > 0.5).collect(),
         surface,
+        cell: None,
     };
     inputs.check().map_err(|source| RecordedError::Inputs {
         file: file.to_owned(),

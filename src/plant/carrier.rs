@@ -1,6 +1,6 @@
 //! What acts on the piston of a recorded rig between two samples: weight and contact.
 //!
-//!     M dv/dt = F_device + M g_a - F_contact
+//!     M dv/dt = F_device + M g_a - c F_contact,   c the share of the contact's direction that lies along the stroke
 
 use super::contact::ContactParameters;
 use crate::device::{Carrier, PistonMotion};
@@ -11,12 +11,16 @@ pub(super) struct ReplayCarrier<'a> {
     pub contact: &'a ContactParameters,
     /// Is there a workpiece?
     pub present: bool,
-    /// Weight along extension [N].
-    pub weight: f64,
+    /// Weight along extension and its rate [N], [N/s].
+    pub weight: [f64; 2],
     /// Time at the start of the step [s].
     pub start: f64,
     /// Surface over the step: coefficients of 1, t, t2, t3.
     pub surface: [f64; 4],
+    /// Share of a motion along the stroke that goes into the surface [1].
+    pub share: f64,
+    /// Compliance of what carries the device, seen by the contact [m/N].
+    pub compliance: f64,
     /// Fastest rate of the contact [1/s].
     pub rate: f64,
     /// What the piston is held to, if it is.
@@ -58,9 +62,22 @@ impl ReplayCarrier<'_> {
     fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
         let [a, b, c, d] = self.surface;
         let (deviation, rate) = self.contact.deviation(self.start + time);
-        let surface = a + time * (b + time * (c + time * d)) + deviation;
-        let speed = b + time * (2.0 * c + 3.0 * time * d) + rate;
-        (motion.stroke - surface, motion.speed - speed)
+        let surface = a + time * (b + time * (c + time * d));
+        let speed = b + time * (2.0 * c + 3.0 * time * d);
+        (
+            self.share * (motion.stroke - surface) - deviation,
+            self.share * (motion.speed - speed) - rate,
+        )
+    }
+
+    fn pushing(&self, penetration: f64, rate: f64) -> f64 {
+        self.contact
+            .pushing_in_series(penetration, rate, self.compliance)
+    }
+
+    /// Weight along extension [N].
+    pub fn weight_at(&self, time: f64) -> f64 {
+        self.weight[0] + time * self.weight[1]
     }
 
     /// Force that holds the piston to a measured motion [N].
@@ -74,7 +91,11 @@ impl ReplayCarrier<'_> {
             return 0.0;
         }
         let (penetration, rate) = self.penetration(time, motion);
-        self.contact.force(penetration, rate)
+        if penetration > 0.0 {
+            self.pushing(penetration, rate).max(0.0)
+        } else {
+            0.0
+        }
     }
 }
 
@@ -82,13 +103,13 @@ impl Carrier for ReplayCarrier<'_> {
     const MOVES: bool = true;
 
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
-        let mut force = self.weight;
+        let mut force = self.weight_at(time);
         if let Some(hold) = &self.hold {
             force += hold.force(time, motion);
         }
         if touching {
             let (penetration, rate) = self.penetration(time, motion);
-            force -= self.contact.pushing(penetration, rate);
+            force -= self.share * self.pushing(penetration, rate);
         }
         force
     }
@@ -98,7 +119,7 @@ impl Carrier for ReplayCarrier<'_> {
             return false;
         }
         let (penetration, rate) = self.penetration(time, motion);
-        self.contact.pushes(penetration, rate)
+        penetration > 0.0 && self.pushing(penetration, rate) > 0.0
     }
 
     fn rate(&self) -> f64 {
@@ -109,7 +130,7 @@ impl Carrier for ReplayCarrier<'_> {
         // What the cubic can move by in the step.
         let [a, b, c, d] = self.surface;
         let nearest =
-            a + self.contact.least_deviation() - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
+            a + self.contact.least_deviation() / self.share - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
         if motion.stroke + reach < nearest {
             0.0
         } else {
@@ -133,6 +154,7 @@ impl ReplayCarrier<'_> {
         if let Some(hold) = &mut self.hold {
             hold.stroke = later(hold.stroke);
         }
+        self.weight[0] = self.weight_at(time);
         self.start += time;
     }
 }

@@ -1,10 +1,11 @@
 //! What does not change in a rig while it is recorded.
 
+use super::cell_parameters::CellParameters;
 use super::contact::ContactParameters;
 use super::sensors::SensorErrors;
 use crate::device::DeviceParameters;
 
-/// A rig: device, contact, sensors.
+/// A rig: device, contact, sensors; of a cell its arm and part too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlantParameters {
     /// The device.
@@ -13,6 +14,8 @@ pub struct PlantParameters {
     pub gravity_along_extension: f64,
     /// Tool on workpiece.
     pub contact: ContactParameters,
+    /// Arm and part of a cell.
+    pub cell: CellParameters,
     /// What the sensors do to what they measure.
     pub sensors: SensorErrors,
 }
@@ -20,7 +23,9 @@ pub struct PlantParameters {
 impl PlantParameters {
     /// Does the rig move as another one does where there is no workpiece?
     pub fn moves_freely_as(&self, other: &Self) -> bool {
-        self.device == other.device && self.gravity_along_extension == other.gravity_along_extension
+        self.device == other.device
+            && self.gravity_along_extension == other.gravity_along_extension
+            && self.cell == other.cell
     }
 
     /// Does the rig move as another one does, whatever its sensors say?

@@ -1,5 +1,6 @@
 //! A rig run on the inputs of a recording.
 
+use super::cell_course::Felt;
 use super::carrier::{Hold, ReplayCarrier, hermite};
 use super::guide::Guide;
 use super::inputs::PlantInputs;
@@ -86,15 +87,22 @@ pub fn trajectory(
     guide: Option<&Guide>,
 ) -> Trajectory {
     let device = Device::new(plant.device.clone());
-    let weight = plant.device.moving_mass * plant.gravity_along_extension;
+    let mass = plant.device.moving_mass;
+    let felt = inputs.cell.as_ref().map(|course| course.felt(&plant.cell));
+    let moved = felt.as_ref().map(Felt::surface);
+    let surface = moved.as_ref().unwrap_or(&inputs.surface);
+    let pull = |i: usize| {
+        let felt = felt.as_ref().map(|felt| felt.pull[i]);
+        mass * felt.unwrap_or(plant.gravity_along_extension)
+    };
     let mut motion = PistonMotion {
-        stroke: weight.min(0.0) / plant.device.end_stop.stiffness,
+        stroke: pull(0).min(0.0) / plant.device.end_stop.stiffness,
         speed: 0.0,
     };
     let mut state = device.at_rest(motion.stroke, 0.0);
     let count = inputs.time.len();
     let mut truth = Trajectory::default();
-    let rate = plant.contact.rate(plant.device.moving_mass);
+    let rate = plant.contact.rate(mass);
     let usual = usual_step(&inputs.time);
     for i in 0..count {
         state.valve = if inputs.extends[i] {
@@ -109,18 +117,25 @@ pub fn trajectory(
             inputs.time[i + 1] - inputs.time[i]
         };
         let next = if last { i } else { i + 1 };
-        let present = inputs.surface[i].is_finite() && inputs.surface[next].is_finite();
+        let present = surface[i].is_finite() && surface[next].is_finite();
         let mut carrier = ReplayCarrier {
             contact: &plant.contact,
             present,
-            weight,
+            weight: [pull(i), (pull(next) - pull(i)) / h],
+            share: 1.0,
+            compliance: 0.0,
             start: inputs.time[i],
             surface: [0.0; 4],
             rate: if present { rate } else { 0.0 },
             hold: None,
         };
+        if let Some(felt) = &felt {
+            let [a, b, c] = felt.compliance[i];
+            carrier.share = felt.share[i];
+            carrier.compliance = a + motion.stroke * (b + motion.stroke * c);
+        }
         if let Some(guide) = guide {
-            let (stiffness, damping) = Guide::hold(plant.device.moving_mass);
+            let (stiffness, damping) = Guide::hold(mass);
             let gain = plant.sensors.stroke_gain;
             let pair = |values: &[f64]| [values[i] / gain, values[next] / gain];
             carrier.hold = Some(Hold {
@@ -132,8 +147,8 @@ pub fn trajectory(
         if present {
             carrier.surface = hermite(
                 h,
-                [inputs.surface[i], inputs.surface[next]],
-                [inputs.surface_slope(i), inputs.surface_slope(next)],
+                [surface[i], surface[next]],
+                [inputs.slope(surface, i), inputs.slope(surface, next)],
             );
         }
         truth.note(&device, &state, motion, &carrier);
@@ -179,7 +194,7 @@ impl Trajectory {
         let pressures = device.pressures(state, motion.stroke);
         let contact_force = carrier.contact_force(0.0, motion);
         let hold_force = carrier.hold_force(0.0, motion);
-        let outside = carrier.weight + hold_force - contact_force;
+        let outside = carrier.weight_at(0.0) + hold_force - carrier.share * contact_force;
         let force = device.piston_force(state, motion) + outside;
         self.outlet.push(state.regulator.outlet);
         self.stroke.push(motion.stroke);

@@ -3,7 +3,7 @@
 use crate::device::DeviceParameters;
 use crate::effects::Quantity;
 use crate::physics::regulator::RegulatorParameters;
-use crate::plant::{ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors};
+use crate::plant::{CellParameters, ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors};
 
 /// A number of the file.
 pub(super) struct Row {
@@ -93,6 +93,7 @@ pub(super) fn blank() -> PlantParameters {
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         },
+        cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
     }
 }
