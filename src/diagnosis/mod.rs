@@ -1,6 +1,7 @@
 //! Finds what physics recordings contain that the believed model leaves out.
 
 pub mod answer;
+pub mod bumps;
 pub mod clean;
 pub mod estimate;
 pub mod evidence;

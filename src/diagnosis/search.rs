@@ -5,7 +5,7 @@ use super::fit::{
     Effort, FULL, Fit, ROUGH, Stage, fit, foretold_rough, jacobian, rough_noise, with_values,
 };
 use super::free::{Free, Prior, free_of};
-use crate::effects::{CATALOGUE, Clues, Effect};
+use crate::effects::{Clues, Effect};
 use crate::plant::PlantParameters;
 use rayon::prelude::*;
 
@@ -43,6 +43,8 @@ pub struct Search<'a> {
     pub believed: PlantParameters,
     /// What is tolerated.
     pub tolerated: Vec<Free>,
+    /// Effects that may be at work.
+    pub candidates: Vec<&'static Effect>,
 }
 
 impl Search<'_> {
@@ -93,6 +95,7 @@ impl Search<'_> {
     /// What more each effect could explain, roughly: columns of what is free already are taken as they are. Best first.
     pub fn screen(&self, from: &Hypothesis, stages: &[Stage]) -> Vec<Hypothesis> {
         let periodic = super::spectrum::strongest(self.evidence, &from.fit.prediction);
+        let bumps = super::bumps::strongest(self.evidence, &from.fit.prediction);
         let readings = self
             .evidence
             .recordings
@@ -104,9 +107,12 @@ impl Search<'_> {
                 .filter(|f| f.is_finite())
                 .fold(0.0, |a, b| b.max(a)),
             periodic: &periodic,
+            bumps: &bumps,
         };
-        let starts: Vec<(&'static Effect, Vec<f64>)> = CATALOGUE
+        let starts: Vec<(&'static Effect, Vec<f64>)> = self
+            .candidates
             .iter()
+            .copied()
             .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
             .flat_map(|effect| {
                 (effect.starts)(&clues)

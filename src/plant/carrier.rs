@@ -23,6 +23,8 @@ pub(super) struct ReplayCarrier<'a> {
     pub compliance: f64,
     /// Fastest rate of the contact [1/s].
     pub rate: f64,
+    /// What swinging links add to the surface: coefficients of 1, t, t2.
+    pub swung: [f64; 3],
     /// What the piston is held to, if it is.
     pub hold: Option<Hold>,
 }
@@ -62,8 +64,9 @@ impl ReplayCarrier<'_> {
     fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
         let [a, b, c, d] = self.surface;
         let (deviation, rate) = self.contact.deviation(self.start + time);
-        let surface = a + time * (b + time * (c + time * d));
-        let speed = b + time * (2.0 * c + 3.0 * time * d);
+        let [lift, lifting, more] = self.swung;
+        let surface = a + lift + time * (b + lifting + time * (c + more + time * d));
+        let speed = b + lifting + time * (2.0 * (c + more) + 3.0 * time * d);
         (
             self.share * (motion.stroke - surface) - deviation,
             self.share * (motion.speed - speed) - rate,
@@ -129,8 +132,8 @@ impl Carrier for ReplayCarrier<'_> {
     fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
         // What the cubic can move by in the step.
         let [a, b, c, d] = self.surface;
-        let nearest =
-            a + self.contact.least_deviation() / self.share - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
+        let nearest = a + self.swung[0] - dt * self.swung[1].abs()
+            + self.contact.least_deviation() / self.share - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
         if motion.stroke + reach < nearest {
             0.0
         } else {

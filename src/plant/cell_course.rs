@@ -9,7 +9,7 @@
 //! o_j axis and origin of joint j, K_j stiffness between its motor and its link. Joints that are off turn all behind them about their axes, from the last
 //! one to the first: the product of exponentials (Brockett, 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
 
-use super::cell_parameters::{CellParameters, MOST_JOINTS};
+use super::cell_parameters::CellParameters;
 use super::servo::follow;
 use glam::{DQuat, DVec3};
 
@@ -26,6 +26,8 @@ pub struct JointCourse {
     pub origin: Vec<DVec3>,
     /// Torque that accelerates what is behind it [N m].
     pub torque: Vec<f64>,
+    /// Inertia of what is behind it, without the moving mass's along the slide [kg m2].
+    pub inertia: Vec<f64>,
 }
 
 /// A point of the followed edge.
@@ -60,6 +62,8 @@ pub struct CellCourse {
     pub edge_middle: f64,
     /// Radius of the ball [m].
     pub ball_radius: f64,
+    /// Moving mass [kg].
+    pub moving_mass: f64,
     /// Distance of the moving mass's centre behind the ball's [m].
     pub mass_behind_ball: f64,
     /// Stroke at which the moving mass's centre is taken to be accelerated [m].
@@ -77,12 +81,16 @@ pub struct Felt {
     pub share: Vec<f64>,
     /// Gravity less the flange's acceleration, along the slide [m/s2].
     pub pull: Vec<f64>,
-    /// Compliance k: coefficients of 1, x, x2 [m/N].
+    /// Speed of the ball along the edge [m/s].
+    pub speed: Vec<f64>,
+    /// Force that accelerates the moving mass with the flange, along the slide [N].
+    pub carried: Vec<f64>,
+    /// Compliance k of the joints that follow the forces at once: coefficients of 1, x, x2 [m/N].
     pub compliance: Vec<[f64; 3]>,
 }
 
 /// Speed along the edge at which friction is felt in full [m/s].
-const SLIDING: f64 = 1e-3;
+pub(super) const SLIDING: f64 = 1e-3;
 
 impl CellCourse {
     /// Number of samples.
@@ -115,8 +123,9 @@ impl CellCourse {
             slides.push(slide);
         }
         let mut felt = Felt::default();
+        let swinging = cell.swinging(self);
         for i in 0..count {
-            self.note(&mut felt, cell, i, &balls, &slides);
+            self.note(&mut felt, cell, &swinging, i, &balls, &slides);
         }
         felt
     }
@@ -141,6 +150,7 @@ impl CellCourse {
         &self,
         felt: &mut Felt,
         cell: &CellParameters,
+        swinging: &[usize],
         i: usize,
         balls: &[DVec3],
         slides: &[DVec3],
@@ -156,10 +166,11 @@ impl CellCourse {
         let mut standoff = n.dot(ball - edge.point) - self.ball_radius - lift;
         let mut share = -n.dot(slide);
         let speed = self.slope(i, |j| balls[j]).dot(edge.tangent);
-        let drag = -cell.friction * (speed / SLIDING).tanh();
+        let drag = -cell.friction * (speed / SLIDING).clamp(-1.0, 1.0);
         let mut compliance = [0.0; 3];
-        for (joint, stiffness) in self.joints.iter().zip(cell.joint_stiffness) {
-            if stiffness == f64::INFINITY {
+        for (index, joint) in self.joints.iter().enumerate() {
+            let stiffness = cell.joint_stiffness[index];
+            if stiffness == f64::INFINITY || swinging.contains(&index) {
                 continue;
             }
             let (axis, lever) = (joint.axis[i], ball - joint.origin[i]);
@@ -178,6 +189,8 @@ impl CellCourse {
         let acceleration = self.curvature(i, mass_at);
         felt.standoff.push(standoff);
         felt.share.push(share);
+        felt.speed.push(speed);
+        felt.carried.push(self.moving_mass * acceleration.dot(slide));
         felt.pull.push((self.gravity - acceleration).dot(slide));
         felt.compliance.push(compliance);
     }
@@ -225,4 +238,3 @@ impl Felt {
     }
 }
 
-const _: () = assert!(MOST_JOINTS >= 7);

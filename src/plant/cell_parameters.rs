@@ -10,10 +10,14 @@ pub struct CellParameters {
     pub servo_bandwidth: f64,
     /// Stiffness of the spring between the motor and the link of each joint [N m/rad].
     pub joint_stiffness: [f64; MOST_JOINTS],
+    /// Damping ratio of a link that swings on its joint's spring [1].
+    pub joint_damping_ratio: f64,
     /// What each joint's encoder reads beyond the truth [rad].
     pub encoder_offset: [f64; MOST_JOINTS],
     /// Friction of the tool along the edge [1].
     pub friction: f64,
+    /// Stroke at which a recording starts [m].
+    pub start_stroke: f64,
     /// How far the part stands out along the bisector at the middle of its edge [m].
     pub part_shift: f64,
     /// Slope of that along the edge [m/m].
@@ -56,8 +60,10 @@ impl CellParameters {
     pub const RIGID: Self = Self {
         servo_bandwidth: f64::INFINITY,
         joint_stiffness: [f64::INFINITY; MOST_JOINTS],
+        joint_damping_ratio: 0.2,
         encoder_offset: [0.0; MOST_JOINTS],
         friction: 0.0,
+        start_stroke: 0.0,
         part_shift: 0.0,
         part_tilt: 0.0,
         burr: Burr::NONE,

@@ -131,6 +131,20 @@ impl ContactParameters {
         }
     }
 
+    /// Does it push?
+    pub fn pushes(&self, penetration: f64, rate: f64) -> bool {
+        penetration > 0.0 && self.pushing(penetration, rate) > 0.0
+    }
+
+    /// Force [N].
+    pub fn force(&self, penetration: f64, rate: f64) -> f64 {
+        if penetration > 0.0 {
+            self.pushing(penetration, rate).max(0.0)
+        } else {
+            0.0
+        }
+    }
+
     /// Stiffness [N/m] at a force [N].
     pub fn stiffness_at(&self, force: f64) -> f64 {
         match self.law {

@@ -11,6 +11,7 @@ mod carrier;
 mod cell_course;
 mod cell_parameters;
 mod contact;
+mod flexing;
 mod guide;
 mod inputs;
 mod parameters;

@@ -2,6 +2,7 @@
 
 use super::cell_course::Felt;
 use super::carrier::{Hold, ReplayCarrier, hermite};
+use super::flexing::{Bending, Flexing};
 use super::guide::Guide;
 use super::inputs::PlantInputs;
 use super::parameters::PlantParameters;
@@ -96,10 +97,15 @@ pub fn trajectory(
         mass * felt.unwrap_or(plant.gravity_along_extension)
     };
     let mut motion = PistonMotion {
-        stroke: pull(0).min(0.0) / plant.device.end_stop.stiffness,
+        stroke: plant.cell.start_stroke + pull(0).min(0.0) / plant.device.end_stop.stiffness,
         speed: 0.0,
     };
     let mut state = device.at_rest(motion.stroke, 0.0);
+    let mut flexing = inputs
+        .cell
+        .as_ref()
+        .map(|course| Flexing::new(course, &plant.cell))
+        .filter(|flexing| !flexing.is_stiff());
     let count = inputs.time.len();
     let mut truth = Trajectory::default();
     let rate = plant.contact.rate(mass);
@@ -124,6 +130,7 @@ pub fn trajectory(
             weight: [pull(i), (pull(next) - pull(i)) / h],
             share: 1.0,
             compliance: 0.0,
+            swung: [0.0; 3],
             start: inputs.time[i],
             surface: [0.0; 4],
             rate: if present { rate } else { 0.0 },
@@ -151,16 +158,31 @@ pub fn trajectory(
                 [inputs.slope(surface, i), inputs.slope(surface, next)],
             );
         }
+        if let Some(flexing) = &flexing {
+            carrier.swung = flexing.now(i, motion.stroke, carrier.share);
+        }
         truth.note(&device, &state, motion, &carrier);
         if last {
             break;
         }
         // Over a gap in the recording the inputs are held, in steps of the usual length.
-        let parts = (h / usual - 0.01).ceil().max(1.0);
+        let least = if flexing.is_some() { FLEXING_PARTS } else { 1.0 };
+        let parts = (h / usual - 0.01).ceil().max(1.0) * least;
         for part in 0..parts as usize {
             let mut leg = carrier;
             if part > 0 {
                 leg.move_start(h * part as f64 / parts);
+            }
+            if let (Some(flexing), Some(felt)) = (&mut flexing, &felt) {
+                leg.swung = flexing.now(i, motion.stroke, leg.share);
+                let forces = Bending {
+                    contact: leg.contact_force(0.0, motion),
+                    push: device.piston_force(&state, motion) + leg.weight[0] + felt.carried[i],
+                    stroke: motion.stroke,
+                };
+                let swung = flexing.advance(felt, i, h / parts, forces);
+                leg.swung = swung.lift.map(|lift| lift / leg.share);
+                leg.weight[0] -= mass * swung.acceleration;
             }
             device.advance_carried_unaudited(
                 &mut state,
@@ -174,6 +196,9 @@ pub fn trajectory(
     }
     truth
 }
+
+/// Steps into which a sample is cut where links swing.
+const FLEXING_PARTS: f64 = 2.0;
 
 /// The median distance of samples [s].
 fn usual_step(time: &[f64]) -> f64 {

@@ -1,11 +1,12 @@
 //! From the commands of a recorded cell to what its device feels: the arm's course along the part's edge.
 
 use crate::arm::chain::{BodyInertia, Chain, JointKind, MAX_JOINTS};
-use crate::arm::dynamics::inverse_dynamics;
+use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::link_poses;
 use crate::plant::{CellCourse, EdgeStation, JointCourse, MOST_JOINTS, follow};
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
+use nalgebra::DMatrix;
 
 const _: () = assert!(MAX_JOINTS == MOST_JOINTS);
 
@@ -66,6 +67,7 @@ impl ReplayCell {
                     axis: Vec::with_capacity(count),
                     origin: Vec::with_capacity(count),
                     torque: Vec::with_capacity(count),
+                    inertia: Vec::with_capacity(count),
                 })
                 .collect(),
             bandwidth,
@@ -74,6 +76,7 @@ impl ReplayCell {
             edge: commands.edge.to_vec(),
             edge_middle: 0.5 * self.edge_length,
             ball_radius: self.ball_radius,
+            moving_mass: self.moving_mass,
             mass_behind_ball: self.ball_centre - self.mass_centre,
             usual_stroke,
             gravity: self.gravity,
@@ -82,6 +85,7 @@ impl ReplayCell {
         let (mut q, mut qdd) = (vec![0.0; joints], vec![0.0; joints]);
         let still = vec![0.0; joints];
         let mut torques = vec![0.0; joints];
+        let mut masses = DMatrix::zeros(joints, joints);
         for i in 0..count {
             for (j, followed) in followed.iter().enumerate() {
                 q[j] = followed.angle[i];
@@ -90,15 +94,21 @@ impl ReplayCell {
             link_poses(&self.chain, self.world_from_base, &q, &mut poses);
             // Gravity and Coriolis torques are compensated: only what accelerates bends the springs.
             inverse_dynamics(&loaded, DQuat::IDENTITY, DVec3::ZERO, &q, &still, &qdd, &mut torques);
-            for (j, joint) in course.joints.iter_mut().enumerate() {
-                joint.axis.push(poses[j].rotation * self.chain.joints[j].axis);
-                joint.origin.push(poses[j].translation);
-                joint.torque.push(torques[j]);
-            }
+            mass_matrix(&loaded, &q, &mut masses);
             let last = poses.last().copied().unwrap_or(self.world_from_base);
             let flange = last * self.chain.tip_from_last;
             let slide = flange.rotation * DVec3::Z;
-            course.ball.push(flange.translation + slide * self.ball_centre);
+            let ball = flange.translation + slide * self.ball_centre;
+            for (j, joint) in course.joints.iter_mut().enumerate() {
+                let axis = poses[j].rotation * self.chain.joints[j].axis;
+                let along = axis.cross(ball - poses[j].translation).dot(slide);
+                joint.axis.push(axis);
+                joint.origin.push(poses[j].translation);
+                let freed = self.moving_mass * along * along;
+                joint.inertia.push(masses[(j, j)] - freed);
+                joint.torque.push(torques[j]);
+            }
+            course.ball.push(ball);
             course.slide.push(slide);
         }
         course
