@@ -54,5 +54,8 @@ pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<f64> {
             found.push(index);
         }
     }
-    found.iter().map(|index| (*index as f64 + 0.5) * CELL).collect()
+    found
+        .iter()
+        .map(|index| (*index as f64 + 0.5) * CELL)
+        .collect()
 }

@@ -3,6 +3,7 @@
 //!     M dv/dt = F_device + M g_a - c F_contact,   c the share of the contact's direction that lies along the stroke
 
 use super::contact::ContactParameters;
+use super::flexing::Swung;
 use crate::device::{Carrier, PistonMotion};
 
 /// Weight and contact over one step, in which the robot's surface follows a cubic.
@@ -19,12 +20,10 @@ pub(super) struct ReplayCarrier<'a> {
     pub surface: [f64; 4],
     /// Share of a motion along the stroke that goes into the surface [1].
     pub share: f64,
-    /// Compliance of what carries the device, seen by the contact [m/N].
-    pub compliance: f64,
     /// Fastest rate of the contact [1/s].
     pub rate: f64,
-    /// What swinging links add to the surface: coefficients of 1, t, t2.
-    pub swung: [f64; 3],
+    /// What swinging links do.
+    pub swung: Swung,
     /// What the piston is held to, if it is.
     pub hold: Option<Hold>,
 }
@@ -64,7 +63,7 @@ impl ReplayCarrier<'_> {
     fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
         let [a, b, c, d] = self.surface;
         let (deviation, rate) = self.contact.deviation(self.start + time);
-        let [lift, lifting, more] = self.swung;
+        let [lift, lifting, more] = self.swung.surface;
         let surface = a + lift + time * (b + lifting + time * (c + more + time * d));
         let speed = b + lifting + time * (2.0 * (c + more) + 3.0 * time * d);
         (
@@ -73,9 +72,9 @@ impl ReplayCarrier<'_> {
         )
     }
 
-    fn pushing(&self, penetration: f64, rate: f64) -> f64 {
-        self.contact
-            .pushing_in_series(penetration, rate, self.compliance)
+    /// Share of the contact force along the stroke [1].
+    pub fn axial_share(&self) -> f64 {
+        self.share - self.swung.turned
     }
 
     /// Weight along extension [N].
@@ -94,11 +93,7 @@ impl ReplayCarrier<'_> {
             return 0.0;
         }
         let (penetration, rate) = self.penetration(time, motion);
-        if penetration > 0.0 {
-            self.pushing(penetration, rate).max(0.0)
-        } else {
-            0.0
-        }
+        self.contact.force(penetration, rate)
     }
 }
 
@@ -112,7 +107,7 @@ impl Carrier for ReplayCarrier<'_> {
         }
         if touching {
             let (penetration, rate) = self.penetration(time, motion);
-            force -= self.share * self.pushing(penetration, rate);
+            force -= self.axial_share() * self.contact.pushing(penetration, rate);
         }
         force
     }
@@ -122,7 +117,7 @@ impl Carrier for ReplayCarrier<'_> {
             return false;
         }
         let (penetration, rate) = self.penetration(time, motion);
-        penetration > 0.0 && self.pushing(penetration, rate) > 0.0
+        self.contact.pushes(penetration, rate)
     }
 
     fn rate(&self) -> f64 {
@@ -132,8 +127,9 @@ impl Carrier for ReplayCarrier<'_> {
     fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
         // What the cubic can move by in the step.
         let [a, b, c, d] = self.surface;
-        let nearest = a + self.swung[0] - dt * self.swung[1].abs()
-            + self.contact.least_deviation() / self.share - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
+        let nearest = a + self.swung.surface[0] - dt * self.swung.surface[1].abs()
+            + self.contact.least_deviation() / self.share
+            - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
         if motion.stroke + reach < nearest {
             0.0
         } else {

@@ -1,17 +1,16 @@
 //! A cell's arm over a recording, reduced to what the device at its end feels.
 //!
-//!     d = x c - s - k F            penetration along the bisector n of the edge
+//!     d = x c - s                  penetration along the bisector n of the edge, the links' swing aside (`flexing`)
 //!     s = n . (b - e) - r - l      standoff at no stroke
 //!     c = -n . a                   share of the stroke that goes into the part
-//!     k = sum J_j (J_j - mu t_j)/K_j,   J_j = n . (z_j x (b + a x - o_j)),   t_j along the edge likewise
 //!
-//! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out, x stroke, F contact force, z_j and
-//! o_j axis and origin of joint j, K_j stiffness between its motor and its link. Joints that are off turn all behind them about their axes, from the last
+//! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out, x stroke. Joints that are off turn all behind them about their axes, from the last
 //! one to the first: the product of exponentials (Brockett, 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
 
 use super::cell_parameters::CellParameters;
 use super::servo::follow;
 use glam::{DQuat, DVec3};
+use nalgebra::DMatrix;
 
 /// One joint over a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,8 +25,6 @@ pub struct JointCourse {
     pub origin: Vec<DVec3>,
     /// Torque that accelerates what is behind it [N m].
     pub torque: Vec<f64>,
-    /// Inertia of what is behind it, without the moving mass's along the slide [kg m2].
-    pub inertia: Vec<f64>,
 }
 
 /// A point of the followed edge.
@@ -62,6 +59,8 @@ pub struct CellCourse {
     pub edge_middle: f64,
     /// Radius of the ball [m].
     pub ball_radius: f64,
+    /// Mass matrices of every [`INERTIA_EVERY`]th sample, without the moving mass's along the slide [kg m2].
+    pub inertia: Vec<DMatrix<f64>>,
     /// Moving mass [kg].
     pub moving_mass: f64,
     /// Distance of the moving mass's centre behind the ball's [m].
@@ -85,10 +84,10 @@ pub struct Felt {
     pub speed: Vec<f64>,
     /// Force that accelerates the moving mass with the flange, along the slide [N].
     pub carried: Vec<f64>,
-    /// Compliance k of the joints that follow the forces at once: coefficients of 1, x, x2 [m/N].
-    pub compliance: Vec<[f64; 3]>,
 }
 
+/// Samples to a mass matrix: an arm hardly changes its posture in so many.
+pub const INERTIA_EVERY: usize = 16;
 /// Speed along the edge at which friction is felt in full [m/s].
 pub(super) const SLIDING: f64 = 1e-3;
 
@@ -123,9 +122,8 @@ impl CellCourse {
             slides.push(slide);
         }
         let mut felt = Felt::default();
-        let swinging = cell.swinging(self);
         for i in 0..count {
-            self.note(&mut felt, cell, &swinging, i, &balls, &slides);
+            self.note(&mut felt, cell, i, &balls, &slides);
         }
         felt
     }
@@ -143,14 +141,17 @@ impl CellCourse {
                 Turn::Constant(-offset)
             }
         };
-        self.joints.iter().zip(cell.encoder_offset).map(turn).collect()
+        self.joints
+            .iter()
+            .zip(cell.encoder_offset)
+            .map(turn)
+            .collect()
     }
 
     fn note(
         &self,
         felt: &mut Felt,
         cell: &CellParameters,
-        swinging: &[usize],
         i: usize,
         balls: &[DVec3],
         slides: &[DVec3],
@@ -160,39 +161,19 @@ impl CellCourse {
         let (ball, slide) = (balls[i], slides[i]);
         let along = (ball + slide * self.usual_stroke - edge.point).dot(edge.tangent);
         let station = edge.station + along;
-        let lift = cell.part_shift
-            + cell.part_tilt * (station - self.edge_middle)
-            + cell.burr.at(station);
-        let mut standoff = n.dot(ball - edge.point) - self.ball_radius - lift;
-        let mut share = -n.dot(slide);
+        let lift =
+            cell.part_shift + cell.part_tilt * (station - self.edge_middle) + cell.burr.at(station);
+        let standoff = n.dot(ball - edge.point) - self.ball_radius - lift;
+        let share = -n.dot(slide);
         let speed = self.slope(i, |j| balls[j]).dot(edge.tangent);
-        let drag = -cell.friction * (speed / SLIDING).clamp(-1.0, 1.0);
-        let mut compliance = [0.0; 3];
-        for (index, joint) in self.joints.iter().enumerate() {
-            let stiffness = cell.joint_stiffness[index];
-            if stiffness == f64::INFINITY || swinging.contains(&index) {
-                continue;
-            }
-            let (axis, lever) = (joint.axis[i], ball - joint.origin[i]);
-            let (swing, turn) = (axis.cross(lever), axis.cross(slide));
-            let lifts = [swing.dot(n), turn.dot(n)];
-            let pushed = n + drag * edge.tangent;
-            let driven = [swing.dot(pushed), turn.dot(pushed)];
-            compliance[0] += lifts[0] * driven[0] / stiffness;
-            compliance[1] += (lifts[0] * driven[1] + lifts[1] * driven[0]) / stiffness;
-            compliance[2] += lifts[1] * driven[1] / stiffness;
-            let sag = -joint.torque[i] / stiffness;
-            standoff += sag * lifts[0];
-            share -= sag * lifts[1];
-        }
         let mass_at = |j: usize| balls[j] + slides[j] * (self.usual_stroke - self.mass_behind_ball);
         let acceleration = self.curvature(i, mass_at);
         felt.standoff.push(standoff);
         felt.share.push(share);
         felt.speed.push(speed);
-        felt.carried.push(self.moving_mass * acceleration.dot(slide));
+        felt.carried
+            .push(self.moving_mass * acceleration.dot(slide));
         felt.pull.push((self.gravity - acceleration).dot(slide));
-        felt.compliance.push(compliance);
     }
 
     /// Rate of a point that is known at the samples [m/s].
@@ -237,4 +218,3 @@ impl Felt {
         pairs.map(|(standoff, share)| standoff / share).collect()
     }
 }
-

@@ -10,8 +10,8 @@ pub struct CellParameters {
     pub servo_bandwidth: f64,
     /// Stiffness of the spring between the motor and the link of each joint [N m/rad].
     pub joint_stiffness: [f64; MOST_JOINTS],
-    /// Damping ratio of a link that swings on its joint's spring [1].
-    pub joint_damping_ratio: f64,
+    /// Damping over stiffness of each joint, a time [s].
+    pub joint_damping: f64,
     /// What each joint's encoder reads beyond the truth [rad].
     pub encoder_offset: [f64; MOST_JOINTS],
     /// Friction of the tool along the edge [1].
@@ -60,7 +60,7 @@ impl CellParameters {
     pub const RIGID: Self = Self {
         servo_bandwidth: f64::INFINITY,
         joint_stiffness: [f64::INFINITY; MOST_JOINTS],
-        joint_damping_ratio: 0.2,
+        joint_damping: 3e-3,
         encoder_offset: [0.0; MOST_JOINTS],
         friction: 0.0,
         start_stroke: 0.0,

@@ -104,33 +104,6 @@ impl ContactParameters {
         elastic + self.damping * rate
     }
 
-    /// As `pushing`, where something elastic of a compliance [m/N] gives way in series with it.
-    ///
-    /// Of Z = (k + c s)/(1 + g (k + c s)) the first two orders of s; of Hertz's law the force that both bear.
-    pub fn pushing_in_series(&self, penetration: f64, rate: f64, compliance: f64) -> f64 {
-        if compliance == 0.0 {
-            return self.pushing(penetration, rate);
-        }
-        match self.law {
-            ContactLaw::Linear { stiffness } => {
-                let share = 1.0 / (1.0 + compliance * stiffness);
-                share * (stiffness * penetration + share * self.damping * rate)
-            }
-            ContactLaw::Hertz { stiffness } => {
-                /// Newton's steps: each squares an error of a few per cent.
-                const STEPS: usize = 4;
-                let mut force = self.pushing(penetration, 0.0);
-                for _ in 0..STEPS {
-                    let depth = (penetration - compliance * force).max(0.0);
-                    let excess = force - stiffness * depth * depth.sqrt();
-                    force -= excess / (1.0 + 1.5 * compliance * stiffness * depth.sqrt());
-                }
-                let share = 1.0 / (1.0 + compliance * self.stiffness_at(force.max(0.0)));
-                force + share * share * self.damping * rate
-            }
-        }
-    }
-
     /// Does it push?
     pub fn pushes(&self, penetration: f64, rate: f64) -> bool {
         penetration > 0.0 && self.pushing(penetration, rate) > 0.0

@@ -1,35 +1,40 @@
-//! Links that swing on the springs of their joints, slowly enough for the samples to show it.
+//! Links that swing on the springs of their joints.
 //!
-//!     M d'' + D d' + K d = J_n F + J_t T - J_a (M_t x'' ...) - tau       link against motor, each joint by itself
-//!     T = -mu F sat(v / v_s),   v = v_motors + sum J_t d'
+//!     M d'' + D d' + K d = J_n F + J_t T + J_a (c F - G) - tau           links against motors
+//!     T = -mu F sat(v / v_s),   v = v_motors + J_t . d'
 //!
-//! d deflection [rad], M inertia about the joint [kg m2], D = 2 zeta sqrt(K M), J_n, J_t, J_a levers of the ball along bisector, edge and slide [m], F contact
-//! force, T friction along the edge (regularised: no friction at rest), tau what the motors' acceleration takes. The slide lets the moving mass go its own way
-//! along its axis: there the links feel what the device pushes with. (Spong, J. Dyn. Syst. Meas. Control 109, 1987.) The rule of the implicit midpoint,
-//! friction in closed form; the forces from the steps before.
+//! d deflections [rad], M mass matrix without the moving mass's along the slide, which there goes its own way [kg m2], D = b K (Kelvin and Voigt), J_n, J_t,
+//! J_a levers of the ball along bisector, edge and slide [m], F contact force, c its share along the slide, G what the device pushes the moving mass with, T
+//! friction along the edge, regularised so that there is none at rest, tau what the motors' acceleration takes. (Spong, J. Dyn. Syst. Meas. Control 109,
+//! 1987; gravity and Coriolis torques are taken to be compensated.)
+//!
+//! Trapezoidal in springs and contact, implicit in friction, all in the speeds at the end of a step.
 
-use super::cell_course::{CellCourse, Felt, SLIDING};
-use super::cell_parameters::CellParameters;
+use super::cell_course::{CellCourse, Felt, INERTIA_EVERY, SLIDING};
+use super::cell_parameters::{CellParameters, MOST_JOINTS};
+use nalgebra::DMatrix;
 
-/// Swing per sample beyond which the samples do not resolve it, and the deflection follows the forces at once [rad].
-pub(super) const RESOLVED: f64 = 1.0;
+/// One number a joint.
+type Joints = [f64; MOST_JOINTS];
 
-/// One joint that swings.
-#[derive(Debug, Clone, Copy)]
-struct Swing {
-    joint: usize,
-    deflection: f64,
-    speed: f64,
-    /// Torque at the step before [N m].
-    before: Option<f64>,
-}
-
-/// Joints that swing.
+/// Links on their springs.
 #[derive(Debug, Clone)]
 pub(super) struct Flexing<'a> {
     course: &'a CellCourse,
     cell: &'a CellParameters,
-    swings: Vec<Swing>,
+    count: usize,
+    deflection: Joints,
+    speed: Joints,
+    /// Inverse of what multiplies the speeds, and what it goes with.
+    inverse: Option<(Key, Vec<f64>)>,
+}
+
+/// What an inverse goes with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Key {
+    inertia: usize,
+    touching: bool,
+    step: f64,
 }
 
 /// Forces that bend the arm.
@@ -37,122 +42,182 @@ pub(super) struct Flexing<'a> {
 pub(super) struct Bending {
     /// Contact force [N].
     pub contact: f64,
+    /// Stiffness of the contact [N/m].
+    pub stiffness: f64,
+    /// Its damping [N s/m].
+    pub damping: f64,
     /// What the device pushes the moving mass with, its weight included [N].
     pub push: f64,
     /// Stroke [m].
     pub stroke: f64,
+    /// Its rate [m/s].
+    pub speed: f64,
 }
 
-/// What swinging does to the standoff over a step, along the bisector: coefficients of 1, t, t2 [m].
-#[derive(Debug, Clone, Copy, Default)]
+/// What swinging does over a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Swung {
-    /// Lift of the ball.
-    pub lift: [f64; 3],
+    /// Where the surface goes, seen along the slide: coefficients of 1, t, t2 [m].
+    pub surface: [f64; 3],
+    /// What the share of the contact force along the slide loses by the slide's turning [1].
+    pub turned: f64,
     /// Acceleration of the slide along its axis [m/s2].
     pub acceleration: f64,
 }
 
+/// Levers of one sample.
+struct Levers {
+    /// Along the bisector [m].
+    lift: Joints,
+    /// Along the edge [m].
+    slip: Joints,
+    /// Along the slide [m].
+    axial: Joints,
+    /// Turning of the slide towards the bisector [1].
+    turn: Joints,
+}
+
 impl<'a> Flexing<'a> {
-    /// Joints that swing slowly enough; none where all are stiff.
-    pub fn new(course: &'a CellCourse, cell: &'a CellParameters) -> Self {
-        let swings = cell.swinging(course).into_iter();
-        Self {
+    /// At rest; none where no joint gives.
+    pub fn new(course: &'a CellCourse, cell: &'a CellParameters) -> Option<Self> {
+        let count = course.joints.len();
+        let gives = cell.joint_stiffness[..count].iter().all(|k| k.is_finite());
+        (gives && count > 0).then_some(Self {
             course,
             cell,
-            swings: swings
-                .map(|joint| Swing {
-                    joint,
-                    deflection: 0.0,
-                    speed: 0.0,
-                    before: None,
-                })
-                .collect(),
-        }
+            count,
+            deflection: [0.0; MOST_JOINTS],
+            speed: [0.0; MOST_JOINTS],
+            inverse: None,
+        })
     }
 
-    /// Is every joint stiff?
-    pub fn is_stiff(&self) -> bool {
-        self.swings.is_empty()
+    fn levers(&self, i: usize, stroke: f64) -> Levers {
+        let edge = &self.course.edge[i];
+        let slide = self.course.slide[i];
+        let ball = self.course.ball[i] + slide * stroke;
+        let zero = [0.0; MOST_JOINTS];
+        let mut levers = Levers {
+            lift: zero,
+            slip: zero,
+            axial: zero,
+            turn: zero,
+        };
+        for (j, joint) in self.course.joints.iter().enumerate() {
+            let swing = joint.axis[i].cross(ball - joint.origin[i]);
+            levers.lift[j] = swing.dot(edge.bisector);
+            levers.slip[j] = swing.dot(edge.tangent);
+            levers.axial[j] = swing.dot(slide);
+            levers.turn[j] = joint.axis[i].cross(slide).dot(edge.bisector);
+        }
+        levers
     }
 
-    /// Where the ball is lifted to now, seen along the slide: coefficients of 1, t, t2 over what comes next.
-    pub fn now(&self, i: usize, stroke: f64, share: f64) -> [f64; 3] {
-        let ball = self.course.ball[i] + self.course.slide[i] * stroke;
-        let mut lift = [0.0; 3];
-        for swing in &self.swings {
-            let joint = &self.course.joints[swing.joint];
-            let lever = joint.axis[i].cross(ball - joint.origin[i]);
-            let lever = lever.dot(self.course.edge[i].bisector) / share;
-            lift[0] += lever * swing.deflection;
-            lift[1] += lever * swing.speed;
+    /// Where the surface is now, and where it goes.
+    pub fn now(&self, i: usize, stroke: f64, share: f64) -> Swung {
+        let levers = self.levers(i, stroke);
+        Swung {
+            surface: [
+                dot(&levers.lift, &self.deflection) / share,
+                dot(&levers.lift, &self.speed) / share,
+                0.0,
+            ],
+            turned: dot(&levers.turn, &self.deflection),
+            acceleration: 0.0,
         }
-        lift
     }
 
     /// Advances over `h` [s] from sample `i` under forces as they are now.
     pub fn advance(&mut self, felt: &Felt, i: usize, h: f64, forces: Bending) -> Swung {
-        let course = self.course;
-        let edge = &course.edge[i];
-        let slide = course.slide[i];
-        let ball = course.ball[i] + slide * forces.stroke;
-        let mut along = felt.speed[i];
-        for swing in &self.swings {
-            let joint = &course.joints[swing.joint];
-            let lever = joint.axis[i].cross(ball - joint.origin[i]);
-            along += lever.dot(edge.tangent) * swing.speed;
+        let share = felt.share[i];
+        let levers = self.levers(i, forces.stroke);
+        let key = Key {
+            inertia: i / INERTIA_EVERY,
+            touching: forces.contact > 0.0,
+            step: h,
+        };
+        let inertia = &self.course.inertia[key.inertia];
+        let (stiffness, halved) = self.springs(h);
+        // The contact over the step: as it is, with what the piston and the swing do to it by its middle.
+        let [spring, damper] = if key.touching {
+            [forces.stiffness, forces.damping]
+        } else {
+            [0.0; 2]
+        };
+        let implicit = 0.25 * h * spring + 0.5 * damper;
+        let lifting = dot(&levers.lift, &self.speed);
+        let contact = forces.contact + 0.5 * h * spring * share * forces.speed
+            - (0.25 * h * spring - 0.5 * damper) * lifting;
+        let mut right = [0.0; MOST_JOINTS];
+        for j in 0..self.count {
+            let motor = self.course.joints[j].torque[i] - levers.axial[j] * felt.carried[i];
+            let bent = levers.lift[j] + share * levers.axial[j];
+            right[j] = bent * contact
+                - levers.axial[j] * forces.push
+                - motor
+                - halved[j] * self.speed[j]
+                - stiffness[j] * self.deflection[j];
+            for k in 0..self.count {
+                right[j] += inertia[(j, k)] / h * self.speed[k];
+            }
         }
-        let mut swung = Swung::default();
-        for swing in &mut self.swings {
-            let joint = &course.joints[swing.joint];
-            let lever = joint.axis[i].cross(ball - joint.origin[i]);
-            let (lift, slip) = (lever.dot(edge.bisector), lever.dot(edge.tangent));
-            let (axial, share) = (lever.dot(slide), felt.share[i]);
-            let stiffness = self.cell.joint_stiffness[swing.joint];
-            let inertia = joint.inertia[i];
-            let damping = 2.0 * self.cell.joint_damping_ratio * (stiffness * inertia).sqrt();
-            let motors = joint.torque[i] - axial * felt.carried[i];
-            // n F less its part along the slide, and in its stead what the device pushes with.
-            let torque = (lift + share * axial) * forces.contact - axial * forces.push - motors;
-            let ahead = swing.before.map_or(torque, |before| 1.5 * torque - 0.5 * before);
-            swing.before = Some(torque);
-            // (2 M/h + D + K h/2) v + K d - 2 M/h v0 = torque + slip T(others + slip v)
-            let bent = 2.0 * inertia / h + damping + 0.5 * stiffness * h;
-            let right = ahead + 2.0 * inertia / h * swing.speed - stiffness * swing.deflection;
-            let others = along - slip * swing.speed;
-            let most = self.cell.friction * forces.contact;
-            let grip = most / SLIDING;
-            let mut middle = (right - slip * grip * others) / (bent + slip * slip * grip);
-            let slides = others + slip * middle;
-            if slides.abs() > SLIDING {
-                middle = (right - slip * most * slides.signum()) / bent;
-            }
-            let end = 2.0 * middle - swing.speed;
-            let rate = (end - swing.speed) / h;
-            let path = [swing.deflection, swing.speed, 0.5 * rate];
-            for (total, part) in swung.lift.iter_mut().zip(path) {
-                *total += lift * part;
-            }
-            swung.acceleration += axial * rate;
-            along += slip * (end - swing.speed);
-            swing.deflection += h * middle;
-            swing.speed = end;
+        if self.inverse.as_ref().is_none_or(|(known, _)| *known != key) {
+            let matrix = DMatrix::from_fn(self.count, self.count, |j, k| {
+                let own = if j == k { halved[j] } else { 0.0 };
+                let bent = levers.lift[j] + share * levers.axial[j];
+                inertia[(j, k)] / h + own + implicit * bent * levers.lift[k]
+            });
+            // A mass matrix with springs has an inverse.
+            let inverse = matrix
+                .try_inverse()
+                .unwrap_or_else(|| DMatrix::zeros(self.count, self.count));
+            self.inverse = Some((key, inverse.as_slice().to_vec()));
+        }
+        let freely = self.solve(&right);
+        let dragged = self.solve(&levers.slip);
+        let most = self.cell.friction * forces.contact;
+        let grip = most / SLIDING;
+        let speed = felt.speed[i] + dot(&levers.slip, &freely);
+        let give = dot(&levers.slip, &dragged);
+        let mut friction = grip * speed / (1.0 + grip * give);
+        if friction.abs() > most {
+            friction = most * friction.signum();
+        }
+        let mut swung = self.now(i, forces.stroke, share);
+        for j in 0..self.count {
+            let end = freely[j] - friction * dragged[j];
+            let rate = (end - self.speed[j]) / h;
+            swung.surface[2] += 0.5 * levers.lift[j] * rate / share;
+            swung.acceleration += levers.axial[j] * rate;
+            self.deflection[j] += 0.5 * h * (self.speed[j] + end);
+            self.speed[j] = end;
         }
         swung
     }
+
+    /// Stiffness [N m/rad] and half of what damping and springs take over a step [N m s/rad], of each joint.
+    fn springs(&self, h: f64) -> (Joints, Joints) {
+        let stiffness = self.cell.joint_stiffness;
+        let mut halved = [0.0; MOST_JOINTS];
+        for j in 0..self.count {
+            halved[j] = (0.5 * self.cell.joint_damping + 0.25 * h) * stiffness[j];
+        }
+        (stiffness, halved)
+    }
+
+    fn solve(&self, right: &Joints) -> Joints {
+        let mut out = [0.0; MOST_JOINTS];
+        if let Some((_, inverse)) = &self.inverse {
+            for k in 0..self.count {
+                for j in 0..self.count {
+                    out[j] += inverse[k * self.count + j] * right[k];
+                }
+            }
+        }
+        out
+    }
 }
 
-impl CellParameters {
-    /// Joints whose links swing slowly enough for the samples to show it.
-    pub(super) fn swinging(&self, course: &CellCourse) -> Vec<usize> {
-        let count = course.len();
-        if count < 2 {
-            return Vec::new();
-        }
-        let step = (course.time[count - 1] - course.time[0]) / (count - 1) as f64;
-        let swings = |joint: usize| {
-            let inertia = course.joints[joint].inertia[count / 2];
-            (self.joint_stiffness[joint] / inertia).sqrt() * step < RESOLVED
-        };
-        (0..course.joints.len()).filter(|joint| swings(*joint)).collect()
-    }
+fn dot(a: &Joints, b: &Joints) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -89,11 +89,7 @@ impl PlantInputs {
         let before = index.saturating_sub(1);
         let after = (index + 1).min(self.time.len() - 1);
         let usable = |i: usize| {
-            if values[i].is_finite() {
-                i
-            } else {
-                index
-            }
+            if values[i].is_finite() { i } else { index }
         };
         let (before, after) = (usable(before), usable(after));
         if before == after {

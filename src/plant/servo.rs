@@ -51,7 +51,9 @@ mod tests {
         // The step is a ramp over the first sample, so short that it is one.
         let mut time = vec![0.0, 1e-9];
         time.extend((1..500).map(|i| f64::from(i) * 2e-3));
-        let command: Vec<f64> = (0..time.len()).map(|i| f64::from(u8::from(i > 0))).collect();
+        let command: Vec<f64> = (0..time.len())
+            .map(|i| f64::from(u8::from(i > 0)))
+            .collect();
         let w = TAU * 25.0;
         for (t, q) in time.iter().zip(follow(&time, &command, 25.0).angle) {
             let exact = 1.0 - (1.0 + w * t) * (-w * t).exp();

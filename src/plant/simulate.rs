@@ -1,8 +1,8 @@
 //! A rig run on the inputs of a recording.
 
-use super::cell_course::Felt;
 use super::carrier::{Hold, ReplayCarrier, hermite};
-use super::flexing::{Bending, Flexing};
+use super::cell_course::Felt;
+use super::flexing::{Bending, Flexing, Swung};
 use super::guide::Guide;
 use super::inputs::PlantInputs;
 use super::parameters::PlantParameters;
@@ -104,8 +104,7 @@ pub fn trajectory(
     let mut flexing = inputs
         .cell
         .as_ref()
-        .map(|course| Flexing::new(course, &plant.cell))
-        .filter(|flexing| !flexing.is_stiff());
+        .and_then(|course| Flexing::new(course, &plant.cell));
     let count = inputs.time.len();
     let mut truth = Trajectory::default();
     let rate = plant.contact.rate(mass);
@@ -129,17 +128,14 @@ pub fn trajectory(
             present,
             weight: [pull(i), (pull(next) - pull(i)) / h],
             share: 1.0,
-            compliance: 0.0,
-            swung: [0.0; 3],
+            swung: Swung::default(),
             start: inputs.time[i],
             surface: [0.0; 4],
             rate: if present { rate } else { 0.0 },
             hold: None,
         };
         if let Some(felt) = &felt {
-            let [a, b, c] = felt.compliance[i];
             carrier.share = felt.share[i];
-            carrier.compliance = a + motion.stroke * (b + motion.stroke * c);
         }
         if let Some(guide) = guide {
             let (stiffness, damping) = Guide::hold(mass);
@@ -166,7 +162,11 @@ pub fn trajectory(
             break;
         }
         // Over a gap in the recording the inputs are held, in steps of the usual length.
-        let least = if flexing.is_some() { FLEXING_PARTS } else { 1.0 };
+        let least = if flexing.is_some() {
+            FLEXING_PARTS
+        } else {
+            1.0
+        };
         let parts = (h / usual - 0.01).ceil().max(1.0) * least;
         for part in 0..parts as usize {
             let mut leg = carrier;
@@ -175,13 +175,17 @@ pub fn trajectory(
             }
             if let (Some(flexing), Some(felt)) = (&mut flexing, &felt) {
                 leg.swung = flexing.now(i, motion.stroke, leg.share);
+                let contact = leg.contact_force(0.0, motion);
                 let forces = Bending {
-                    contact: leg.contact_force(0.0, motion),
+                    contact,
+                    stiffness: plant.contact.stiffness_at(contact),
+                    damping: plant.contact.damping,
                     push: device.piston_force(&state, motion) + leg.weight[0] + felt.carried[i],
                     stroke: motion.stroke,
+                    speed: motion.speed,
                 };
                 let swung = flexing.advance(felt, i, h / parts, forces);
-                leg.swung = swung.lift.map(|lift| lift / leg.share);
+                leg.swung = swung;
                 leg.weight[0] -= mass * swung.acceleration;
             }
             device.advance_carried_unaudited(
@@ -219,7 +223,7 @@ impl Trajectory {
         let pressures = device.pressures(state, motion.stroke);
         let contact_force = carrier.contact_force(0.0, motion);
         let hold_force = carrier.hold_force(0.0, motion);
-        let outside = carrier.weight_at(0.0) + hold_force - carrier.share * contact_force;
+        let outside = carrier.weight_at(0.0) + hold_force - carrier.axial_share() * contact_force;
         let force = device.piston_force(state, motion) + outside;
         self.outlet.push(state.regulator.outlet);
         self.stroke.push(motion.stroke);

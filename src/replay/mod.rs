@@ -3,10 +3,10 @@
 use crate::arm::chain::{BodyInertia, Chain, JointKind, MAX_JOINTS};
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::link_poses;
-use crate::plant::{CellCourse, EdgeStation, JointCourse, MOST_JOINTS, follow};
+use crate::plant::{CellCourse, EdgeStation, INERTIA_EVERY, JointCourse, MOST_JOINTS, follow};
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 const _: () = assert!(MAX_JOINTS == MOST_JOINTS);
 
@@ -67,7 +67,6 @@ impl ReplayCell {
                     axis: Vec::with_capacity(count),
                     origin: Vec::with_capacity(count),
                     torque: Vec::with_capacity(count),
-                    inertia: Vec::with_capacity(count),
                 })
                 .collect(),
             bandwidth,
@@ -76,6 +75,7 @@ impl ReplayCell {
             edge: commands.edge.to_vec(),
             edge_middle: 0.5 * self.edge_length,
             ball_radius: self.ball_radius,
+            inertia: Vec::with_capacity(count / INERTIA_EVERY + 1),
             moving_mass: self.moving_mass,
             mass_behind_ball: self.ball_centre - self.mass_centre,
             usual_stroke,
@@ -86,6 +86,7 @@ impl ReplayCell {
         let still = vec![0.0; joints];
         let mut torques = vec![0.0; joints];
         let mut masses = DMatrix::zeros(joints, joints);
+        let mut levers = DVector::zeros(joints);
         for i in 0..count {
             for (j, followed) in followed.iter().enumerate() {
                 q[j] = followed.angle[i];
@@ -93,20 +94,31 @@ impl ReplayCell {
             }
             link_poses(&self.chain, self.world_from_base, &q, &mut poses);
             // Gravity and Coriolis torques are compensated: only what accelerates bends the springs.
-            inverse_dynamics(&loaded, DQuat::IDENTITY, DVec3::ZERO, &q, &still, &qdd, &mut torques);
-            mass_matrix(&loaded, &q, &mut masses);
+            inverse_dynamics(
+                &loaded,
+                DQuat::IDENTITY,
+                DVec3::ZERO,
+                &q,
+                &still,
+                &qdd,
+                &mut torques,
+            );
             let last = poses.last().copied().unwrap_or(self.world_from_base);
             let flange = last * self.chain.tip_from_last;
             let slide = flange.rotation * DVec3::Z;
             let ball = flange.translation + slide * self.ball_centre;
             for (j, joint) in course.joints.iter_mut().enumerate() {
                 let axis = poses[j].rotation * self.chain.joints[j].axis;
-                let along = axis.cross(ball - poses[j].translation).dot(slide);
+                levers[j] = axis.cross(ball - poses[j].translation).dot(slide);
                 joint.axis.push(axis);
                 joint.origin.push(poses[j].translation);
-                let freed = self.moving_mass * along * along;
-                joint.inertia.push(masses[(j, j)] - freed);
                 joint.torque.push(torques[j]);
+            }
+            if i % INERTIA_EVERY == 0 {
+                mass_matrix(&loaded, &q, &mut masses);
+                // The slide lets the moving mass go its own way along its axis.
+                let own = &levers * levers.transpose() * self.moving_mass;
+                course.inertia.push(&masses - own);
             }
             course.ball.push(ball);
             course.slide.push(slide);
@@ -132,6 +144,10 @@ impl ReplayCell {
     /// Do all joints turn, and are there as many as can be told apart?
     pub fn is_served(&self) -> bool {
         self.chain.len() <= MOST_JOINTS
-            && self.chain.joints.iter().all(|joint| joint.kind == JointKind::Revolute)
+            && self
+                .chain
+                .joints
+                .iter()
+                .all(|joint| joint.kind == JointKind::Revolute)
     }
 }

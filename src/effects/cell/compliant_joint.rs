@@ -6,7 +6,7 @@
 //! Confused with: contact stiffness (the same in every posture), the other joints (told apart by their levers: those of several leans and places).
 
 use super::*;
-use Coordinate::{Linear, Logarithmic};
+use Coordinate::Logarithmic;
 
 /// Name in the vocabulary.
 pub(super) const NAME: &str = "compliant_joint";
@@ -30,8 +30,7 @@ pub(super) const fn effect<const J: usize>() -> Effect {
         group: None,
         parameters: |p| {
             let believed = p.cell.joint_stiffness[J];
-            vec![
-            reported(
+            vec![reported(
                 Quantity {
                     name: "stiffness_n_m_per_rad",
                     get: |p| p.cell.joint_stiffness[J],
@@ -39,22 +38,12 @@ pub(super) const fn effect<const J: usize>() -> Effect {
                 },
                 Logarithmic,
                 [1e-4 * believed, 100.0 * believed],
-            ),
-            Parameter {
-                quantity: Quantity {
-                    name: "damping_ratio",
-                    get: |p| p.cell.joint_damping_ratio,
-                    set: |p, v| p.cell.joint_damping_ratio = v,
-                },
-                coordinate: Linear(0.05),
-                bounds: [0.0, 2.0],
-                reported: false,
-            }]
+            )]
         },
         starts: |clues: &Clues<'_>| {
             let believed = clues.plant.cell.joint_stiffness[J];
             let shares = [0.02, 0.1, 0.4].iter();
-            shares.map(|share| vec![share * believed, 0.2]).collect()
+            shares.map(|share| vec![share * believed]).collect()
         },
     }
 }

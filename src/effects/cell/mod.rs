@@ -41,7 +41,9 @@ const fn joint<const J: usize>() -> [Effect; 2] {
 #[must_use]
 pub fn vocabulary(name: &str) -> (&str, Option<usize>) {
     for of_joint in [compliant_joint::NAME, joint_encoder_offset::NAME] {
-        let number = name.strip_prefix(of_joint).and_then(|n| n.strip_prefix('_'));
+        let number = name
+            .strip_prefix(of_joint)
+            .and_then(|n| n.strip_prefix('_'));
         if let Some(joint) = number.and_then(|n| n.parse().ok()) {
             return (of_joint, Some(joint));
         }
