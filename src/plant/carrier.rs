@@ -22,6 +22,8 @@ pub(super) struct ReplayCarrier<'a> {
     pub share: f64,
     /// Fastest rate of the contact [1/s].
     pub rate: f64,
+    /// A burr on the edge and its rate: of a cell [m], [m/s]; none on a bench.
+    pub burr: Option<[f64; 2]>,
     /// What swinging links do.
     pub swung: Swung,
     /// What the piston is held to, if it is.
@@ -62,7 +64,12 @@ pub(super) fn hermite(h: f64, values: [f64; 2], slopes: [f64; 2]) -> [f64; 4] {
 impl ReplayCarrier<'_> {
     fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
         let [a, b, c, d] = self.surface;
-        let (deviation, rate) = self.contact.deviation(self.start + time);
+        let (mut deviation, mut rate) = self.contact.deviation(self.start + time);
+        if let Some([height, rise]) = self.burr {
+            // The ball's own motion is damped, whatever the shape that it meets.
+            deviation -= height + time * rise;
+            rate = 0.0;
+        }
         let [lift, lifting, more] = self.swung.surface;
         let surface = a + lift + time * (b + lifting + time * (c + more + time * d));
         let speed = b + lifting + time * (2.0 * (c + more) + 3.0 * time * d);
@@ -127,7 +134,9 @@ impl Carrier for ReplayCarrier<'_> {
     fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
         // What the cubic can move by in the step.
         let [a, b, c, d] = self.surface;
-        let nearest = a + self.swung.surface[0] - dt * self.swung.surface[1].abs()
+        let burr = self.burr.map_or(0.0, |[height, _]| height.abs());
+        let nearest = a - burr / self.share + self.swung.surface[0]
+            - dt * self.swung.surface[1].abs()
             + self.contact.least_deviation() / self.share
             - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
         if motion.stroke + reach < nearest {
@@ -154,6 +163,9 @@ impl ReplayCarrier<'_> {
             hold.stroke = later(hold.stroke);
         }
         self.weight[0] = self.weight_at(time);
+        if let Some([height, rise]) = &mut self.burr {
+            *height += time * *rise;
+        }
         self.start += time;
     }
 }

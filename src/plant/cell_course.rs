@@ -4,7 +4,7 @@
 //!     s = n . (b - e) - r - l      standoff at no stroke
 //!     c = -n . a                   share of the stroke that goes into the part
 //!
-//! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out, x stroke. Joints that are off turn all behind them about their axes, from the last
+//! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out (a burr is met by the ball alone, `carrier`), x stroke. Joints that are off turn all behind them about their axes, from the last
 //! one to the first: the product of exponentials (Brockett, 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
 
 use super::cell_parameters::CellParameters;
@@ -80,6 +80,8 @@ pub struct Felt {
     pub share: Vec<f64>,
     /// Gravity less the flange's acceleration, along the slide [m/s2].
     pub pull: Vec<f64>,
+    /// Height of the burr under the ball [m].
+    pub burr: Vec<f64>,
     /// Speed of the ball along the edge [m/s].
     pub speed: Vec<f64>,
     /// Force that accelerates the moving mass with the flange, along the slide [N].
@@ -161,8 +163,7 @@ impl CellCourse {
         let (ball, slide) = (balls[i], slides[i]);
         let along = (ball + slide * self.usual_stroke - edge.point).dot(edge.tangent);
         let station = edge.station + along;
-        let lift =
-            cell.part_shift + cell.part_tilt * (station - self.edge_middle) + cell.burr.at(station);
+        let lift = cell.part_shift + cell.part_tilt * (station - self.edge_middle);
         let standoff = n.dot(ball - edge.point) - self.ball_radius - lift;
         let share = -n.dot(slide);
         let speed = self.slope(i, |j| balls[j]).dot(edge.tangent);
@@ -170,6 +171,7 @@ impl CellCourse {
         let acceleration = self.curvature(i, mass_at);
         felt.standoff.push(standoff);
         felt.share.push(share);
+        felt.burr.push(cell.burr.at(station));
         felt.speed.push(speed);
         felt.carried
             .push(self.moving_mass * acceleration.dot(slide));

@@ -128,6 +128,7 @@ pub fn trajectory(
             present,
             weight: [pull(i), (pull(next) - pull(i)) / h],
             share: 1.0,
+            burr: None,
             swung: Swung::default(),
             start: inputs.time[i],
             surface: [0.0; 4],
@@ -136,6 +137,8 @@ pub fn trajectory(
         };
         if let Some(felt) = &felt {
             carrier.share = felt.share[i];
+            let rise = (felt.burr[next] - felt.burr[i]) / h;
+            carrier.burr = Some([felt.burr[i], rise]);
         }
         if let Some(guide) = guide {
             let (stiffness, damping) = Guide::hold(mass);
