@@ -9,11 +9,13 @@ use super::atomic::write_atomic;
 use super::{Channel, Recording, RecordingError};
 use columns::{COLUMNS, Column, TIME};
 
+mod cell;
 mod columns;
 mod table;
 #[cfg(test)]
 mod tests;
 
+pub use cell::{CellRecording, read_cell_csv};
 pub use columns::{median_step, plausible_range};
 
 /// A recording with what its file holds besides.
@@ -32,7 +34,7 @@ pub struct CsvRecording {
 /// # Errors
 /// File, line and column of what is wrong, what was found and what was expected.
 pub fn read_csv(path: &Path) -> Result<CsvRecording, RecordingError> {
-    let table = table::read(path)?;
+    let table = table::read(path, &COLUMNS)?;
     let mut channels = Vec::new();
     for (column, values) in COLUMNS.iter().zip(&table.columns) {
         match values {

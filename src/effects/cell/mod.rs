@@ -12,9 +12,6 @@ use super::effect::{Clues, Effect, Parameter};
 use super::quantity::{Coordinate, Quantity};
 use crate::plant::MOST_JOINTS;
 
-/// Effects of one joint, under a name that ends with its number: an arm has up to as many joints.
-const JOINTS: [usize; MOST_JOINTS] = [1, 2, 3, 4, 5, 6, 7, 8];
-
 /// Effects that the recordings of the device show, whatever its arm.
 pub static CELL_EFFECTS: [Effect; 2] = [part_misplaced::EFFECT, burr::EFFECT];
 
@@ -71,8 +68,8 @@ mod tests {
 
     #[test]
     fn a_joint_s_effect_says_which_joint() {
-        for (index, joint) in JOINTS.into_iter().enumerate() {
-            let [spring, encoder] = &JOINT_EFFECTS[index];
+        for (index, [spring, encoder]) in JOINT_EFFECTS.iter().enumerate() {
+            let joint = index + 1;
             assert_eq!(vocabulary(spring.name), ("compliant_joint", Some(joint)));
             let name = vocabulary(encoder.name);
             assert_eq!(name, ("joint_encoder_offset", Some(joint)));
