@@ -49,6 +49,9 @@ enum Command {
     /// Say what a rig file, believed or improved, predicts for the inputs of a recording.
     #[command(after_help = "Example: idc predict improved.toml predict.csv --out prediction.csv")]
     Predict(PredictArguments),
+    /// Find what physics the recordings of a rig contain that its model leaves out.
+    #[command(after_help = super::diagnose::EXAMPLES)]
+    Diagnose(DiagnoseArguments),
 }
 
 #[derive(Debug, Args)]
@@ -110,6 +113,33 @@ pub(super) struct PredictArguments {
     pub(super) quiet: bool,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct DiagnoseArguments {
+    /// Folder with rig.toml and the recordings that it names; with --all, a folder of such folders.
+    pub(super) case: PathBuf,
+    /// Folder for diagnosis.json, prediction.csv, improved.toml and account.txt [default: runs/<name of the case's folder>].
+    #[arg(long)]
+    pub(super) out: Option<PathBuf>,
+    /// Diagnose every folder in it that holds a rig.toml, each into a folder of its name.
+    #[arg(long)]
+    pub(super) all: bool,
+    /// Go on where it was stopped: what has been diagnosed already is left as it is.
+    #[arg(long, conflicts_with = "force")]
+    pub(super) resume: bool,
+    /// Put new diagnoses in place of old ones.
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Cases at a time with --all [default: as many as there are processors]; the processors are shared among them, and results do not depend on it.
+    #[arg(long, requires = "all", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) jobs: Option<u16>,
+    /// Print nothing but errors.
+    #[arg(long)]
+    pub(super) quiet: bool,
+    /// Print what diagnosis.json holds instead of the account; with --all, one line for each case.
+    #[arg(long, conflicts_with = "quiet")]
+    pub(super) json: bool,
+}
+
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 pub(super) enum MeshUnit {
     Mm,
@@ -127,6 +157,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Design(arguments) => design(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
+        Command::Diagnose(arguments) => super::diagnose::run(arguments),
     }
 }
 
@@ -314,7 +345,7 @@ fn opening(arguments: &RunArguments) -> Opening {
         })
 }
 
-fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
+pub(super) fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
     let default = || Path::new("runs").join(input.file_stem().unwrap_or_default());
     out.cloned().unwrap_or_else(default)
 }

@@ -2,6 +2,7 @@
 
 use crate::cell::CellError;
 use crate::design::DesignError;
+use crate::diagnosis::answer::AnswerError;
 use crate::diagnosis::recorded::RecordedError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
@@ -82,6 +83,47 @@ pub enum AppError {
     /// A recording of a rig.
     #[error(transparent)]
     Recorded(#[from] RecordedError),
+    /// A folder without a rig file.
+    #[error(
+        "{folder} holds no rig.toml; expected a folder with one and the recordings that it names (--all takes a folder of such folders)"
+    )]
+    NoCase {
+        /// The folder.
+        folder: String,
+    },
+    /// A folder without cases.
+    #[error(
+        "{folder}: {reason}; expected a folder of folders, each with a rig.toml and the recordings that it names"
+    )]
+    NoCases {
+        /// The folder.
+        folder: String,
+        /// Why there are none.
+        reason: String,
+    },
+    /// A rig file that names nothing to diagnose from.
+    #[error("{file}: `recordings.fit` names no recording, expected the CSV files to diagnose from")]
+    NoRecordings {
+        /// Rig file.
+        file: String,
+    },
+    /// A diagnosis stands where one is to go.
+    #[error(
+        "{folder} holds a diagnosis already; expected another folder, --force to put a new one in its place, or --resume to keep it"
+    )]
+    Diagnosed {
+        /// The folder.
+        folder: String,
+    },
+    /// The output would go among the inputs.
+    #[error("--out is {folder}, where the recordings stand; expected another folder")]
+    AmongInputs {
+        /// The folder.
+        folder: String,
+    },
+    /// A diagnosis that cannot be written.
+    #[error(transparent)]
+    Answer(#[from] AnswerError),
     /// The output would take the place of an input.
     #[error("--out is {file}, which is read here; expected another file")]
     Overwrites {

@@ -5,6 +5,7 @@ mod bench_figures;
 mod bench_picture;
 mod cli;
 mod design;
+mod diagnose;
 mod edges;
 mod error;
 mod estimate_figure;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::details::Details;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
 
@@ -28,6 +29,9 @@ pub struct Answer {
     /// What else an engineer should know, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// What is not scored.
+    #[serde(flatten)]
+    pub details: Details,
 }
 
 /// What a diagnosis comes to.
@@ -255,6 +259,7 @@ mod tests {
                 odds: 0.02,
             }],
             notes: Vec::new(),
+            details: Details::default(),
         }
     }
 

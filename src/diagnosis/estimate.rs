@@ -43,7 +43,8 @@ pub fn estimates(believed: &PlantParameters, hypothesis: &Hypothesis, samples: u
         let free = &fit.free[index];
         let deviation = covariance[(index, index)].max(0.0).sqrt();
         let at = free.coordinate.of(fit.values[index]);
-        let ends = [-INTERVAL, INTERVAL].map(|z| free.coordinate.value(at + z * deviation));
+        let ends =
+            [-INTERVAL, INTERVAL].map(|z| free.clamp(free.coordinate.value(at + z * deviation)));
         Number {
             name: free.quantity.name,
             value: fit.values[index],

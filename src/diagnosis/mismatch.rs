@@ -69,7 +69,7 @@ pub fn intervals(
 }
 
 /// Runs of samples that moved, merged, widened, single samples dropped.
-fn merged(time: &[f64], moved: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
+pub(super) fn merged(time: &[f64], moved: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
     let mut runs: Vec<([f64; 2], usize)> = Vec::new();
     for (i, t) in time.iter().enumerate() {
         if !moved(i) {

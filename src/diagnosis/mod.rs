@@ -1,13 +1,24 @@
 //! Finds what physics recordings contain that the believed model leaves out.
 
+pub mod account;
 pub mod answer;
 pub mod bumps;
+pub mod case;
 pub mod clean;
+pub mod conclude;
+pub mod details;
+pub mod diagnose;
 pub mod estimate;
 pub mod evidence;
+pub mod experiment;
 pub mod fit;
 pub mod free;
+pub mod left_out;
+pub mod localise;
 pub mod mismatch;
+pub mod next_experiment;
 pub mod recorded;
+pub mod regime;
 pub mod search;
 pub mod spectrum;
+pub mod words;

@@ -70,26 +70,43 @@ pub fn write_csv(
     time: &[f64],
     columns: &[(&str, &[f64])],
 ) -> Result<(), RecordingError> {
-    write_atomic(path, |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        let names = columns.iter().map(|(name, _)| *name);
-        writer.write_record(std::iter::once(TIME).chain(names))?;
-        for (row, time) in time.iter().enumerate() {
-            writer.write_field(format!("{time:?}"))?;
-            for (_, values) in columns {
-                let value = values[row];
-                let text = if value.is_finite() {
-                    format!("{value:?}")
-                } else {
-                    String::new()
-                };
-                writer.write_field(text)?;
-            }
-            writer.write_record(None::<&[u8]>)?;
+    write_atomic(path, |file| write_columns(file, time, columns))
+}
+
+/// As [`write_csv`], as a text.
+///
+/// # Errors
+/// None that is to be expected: a text can always be written.
+pub fn columns_text(time: &[f64], columns: &[(&str, &[f64])]) -> Result<String, RecordingError> {
+    let mut bytes = Vec::new();
+    let fail = |cause: String| RecordingError::write(Path::new("columns"), cause);
+    write_columns(&mut bytes, time, columns).map_err(|error| fail(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|error| fail(error.to_string()))
+}
+
+fn write_columns(
+    output: impl std::io::Write,
+    time: &[f64],
+    columns: &[(&str, &[f64])],
+) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(output);
+    let names = columns.iter().map(|(name, _)| *name);
+    writer.write_record(std::iter::once(TIME).chain(names))?;
+    for (row, time) in time.iter().enumerate() {
+        writer.write_field(format!("{time:?}"))?;
+        for (_, values) in columns {
+            let value = values[row];
+            let text = if value.is_finite() {
+                format!("{value:?}")
+            } else {
+                String::new()
+            };
+            writer.write_field(text)?;
         }
-        writer.flush()?;
-        Ok::<(), csv::Error>(())
-    })
+        writer.write_record(None::<&[u8]>)?;
+    }
+    writer.flush()?;
+    Ok(())
 }
 
 /// Share of a sensor's readings that may be wild [1].

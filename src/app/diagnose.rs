@@ -1,0 +1,56 @@
+//! `idc diagnose`: from a folder with a rig file and recordings to what the model lacks, for one case or many.
+
+mod all;
+mod one;
+
+use super::cli::{DiagnoseArguments, output_folder};
+use super::error::{AppError, ExitCode};
+use super::output::say;
+
+/// For the help.
+pub(super) const EXAMPLES: &str = "Examples:
+  idc diagnose rigs/cell_3 --out runs/cell_3              one case: rig.toml names its recordings
+  idc diagnose rigs/cell_3 --out runs/cell_3 --force      the same again, in place of what is there
+  idc diagnose rigs/cell_3 --json | jq .effects           what was found, for a program
+  idc diagnose rigs --all --out runs/rigs                 every case below rigs/
+  idc diagnose rigs --all --out runs/rigs --resume        go on where it was stopped
+  idc diagnose rigs --all --out runs/rigs --jobs 1        one case at a time, each on all processors
+
+diagnosis.json is written last: where it stands, the others are complete. \
+Exit codes: 0 done, 2 bad input (with --all: of any case; the others are done all the same).";
+
+/// Diagnoses and writes.
+pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
+    let out = output_folder(arguments.out.as_ref(), &arguments.case);
+    let standing = match (arguments.resume, arguments.force) {
+        (true, _) => one::Standing::Keep,
+        (_, true) => one::Standing::Replace,
+        _ => one::Standing::Refuse,
+    };
+    if arguments.all {
+        return all::run(arguments, &out, standing);
+    }
+    if standing == one::Standing::Keep
+        && let Some(answer) = one::complete(&out)
+    {
+        if arguments.json {
+            say(&answer.text()?)?;
+        } else if !arguments.quiet {
+            say(&format!("{} holds a diagnosis already\n", out.display()))?;
+        }
+        return Ok(ExitCode::Done);
+    }
+    let prepared = one::Prepared::new(&arguments.case, &out, standing)?;
+    let finished = prepared.run(&mut |_| ())?;
+    if arguments.json {
+        say(&finished.document)?;
+    } else if !arguments.quiet {
+        say(&finished.account)?;
+        say(&format!(
+            "\nwritten to {}: {}\n",
+            out.display(),
+            finished.names.join(", ")
+        ))?;
+    }
+    Ok(ExitCode::Done)
+}

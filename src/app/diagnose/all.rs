@@ -1,0 +1,230 @@
+//! Many cases, some at a time; one that fails does not stop the others.
+
+use std::collections::VecDeque;
+use std::fmt::Write as _;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use super::super::cli::DiagnoseArguments;
+use super::super::error::{AppError, ExitCode};
+use super::super::output::say;
+use super::one::{Prepared, Standing, complete, is_case};
+use crate::diagnosis::answer::{Answer, Verdict};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// What became of a case.
+struct Outcome {
+    name: String,
+    result: Result<Done, String>,
+}
+
+struct Done {
+    answer: Answer,
+    /// Did it stand there already?
+    kept: bool,
+}
+
+/// Diagnoses all cases below a folder.
+pub(super) fn run(
+    arguments: &DiagnoseArguments,
+    out: &Path,
+    standing: Standing,
+) -> Result<ExitCode, AppError> {
+    let names = cases(&arguments.case)?;
+    let silent = arguments.quiet || arguments.json;
+    let bar = bar(names.len(), silent);
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = arguments.jobs.map_or(processors, usize::from);
+    let jobs = jobs.min(names.len());
+    let waiting: Mutex<VecDeque<(usize, String)>> =
+        Mutex::new(names.iter().cloned().enumerate().collect());
+    let outcomes: Mutex<Vec<(usize, Outcome)>> = Mutex::default();
+    let work = || {
+        let next = || locked(&waiting).pop_front();
+        while let Some((index, name)) = next() {
+            let case = arguments.case.join(&name);
+            let result = caught(|| one(&case, &out.join(&name), standing));
+            if let (Err(message), false) = (&result, silent) {
+                bar.suspend(|| eprintln!("failed: {name}: {message}"));
+            }
+            locked(&outcomes).push((index, Outcome { name, result }));
+            bar.inc(1);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..jobs {
+            scope.spawn(|| {
+                // A pool of its own: in a shared one a case would wait for parts of another, and its time would be that of both.
+                let threads = (processors / jobs).max(1);
+                match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+                    Ok(pool) => pool.install(work),
+                    Err(_) => work(),
+                }
+            });
+        }
+    });
+    bar.finish_and_clear();
+    let mut outcomes = outcomes
+        .into_inner()
+        .unwrap_or_else(PoisonError::into_inner);
+    outcomes.sort_by_key(|(index, _)| *index);
+    let outcomes: Vec<Outcome> = outcomes.into_iter().map(|(_, outcome)| outcome).collect();
+    report(arguments, out, &outcomes)
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A fault of ours in one case is no reason to lose the others.
+fn caught(work: impl FnOnce() -> Result<Done, AppError>) -> Result<Done, String> {
+    match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(result) => result.map_err(|error| error.to_string()),
+        Err(_) => Err("a fault of the program, see above; please report it".to_owned()),
+    }
+}
+
+fn one(case: &Path, out: &Path, standing: Standing) -> Result<Done, AppError> {
+    if standing == Standing::Keep
+        && let Some(answer) = complete(out)
+    {
+        return Ok(Done { answer, kept: true });
+    }
+    let finished = Prepared::new(case, out, standing)?.run(&mut |_| ())?;
+    Ok(Done {
+        answer: finished.answer,
+        kept: false,
+    })
+}
+
+/// Names of the folders that hold a case, `case-2` before `case-10`.
+fn cases(folder: &Path) -> Result<Vec<String>, AppError> {
+    let refuse = |reason: String| AppError::NoCases {
+        folder: folder.display().to_string(),
+        reason,
+    };
+    let entries = std::fs::read_dir(folder).map_err(|error| refuse(error.to_string()))?;
+    let paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
+    let mut names: Vec<String> = paths
+        .iter()
+        .filter(|path| is_case(path))
+        .filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()))
+        .collect();
+    if names.is_empty() {
+        return Err(refuse("none in it has a rig.toml".to_owned()));
+    }
+    names.sort_by(|a, b| natural(a).cmp(&natural(b)).then_with(|| a.cmp(b)));
+    Ok(names)
+}
+
+/// A name as runs of digits, by their value, and of other letters.
+fn natural(name: &str) -> Vec<(u128, String)> {
+    let mut parts: Vec<(u128, String)> = Vec::new();
+    let mut rest = name;
+    while !rest.is_empty() {
+        let text = rest
+            .find(|c: char| c.is_ascii_digit())
+            .unwrap_or(rest.len());
+        let (word, after) = rest.split_at(text);
+        let digits = after
+            .find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(after.len());
+        let (number, after) = after.split_at(digits);
+        parts.push((0, word.to_owned()));
+        parts.push((number.parse().unwrap_or(u128::MAX), String::new()));
+        rest = after;
+    }
+    parts
+}
+
+fn bar(count: usize, hidden: bool) -> ProgressBar {
+    if hidden {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(count as u64);
+    let style = ProgressStyle::with_template("{pos} of {len} cases {wide_bar} {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
+/// Prints what became of the cases.
+fn report(
+    arguments: &DiagnoseArguments,
+    out: &Path,
+    outcomes: &[Outcome],
+) -> Result<ExitCode, AppError> {
+    if arguments.json {
+        for outcome in outcomes {
+            let line = match &outcome.result {
+                Ok(done) => serde_json::json!({ "case": outcome.name, "diagnosis": done.answer }),
+                Err(error) => serde_json::json!({ "case": outcome.name, "error": error }),
+            };
+            say(&format!("{line}\n"))?;
+        }
+    } else if !arguments.quiet {
+        say(&table(outcomes))?;
+        say(&format!("written to {}\n", out.display()))?;
+    }
+    let failed: Vec<&Outcome> = outcomes.iter().filter(|o| o.result.is_err()).collect();
+    for outcome in &failed {
+        if let Err(error) = &outcome.result {
+            eprintln!("error: {}: {error}", outcome.name);
+        }
+    }
+    if failed.is_empty() {
+        return Ok(ExitCode::Done);
+    }
+    eprintln!("{} of {} cases failed", failed.len(), outcomes.len());
+    Ok(ExitCode::BadInput)
+}
+
+fn table(outcomes: &[Outcome]) -> String {
+    let wide = outcomes.iter().map(|o| o.name.chars().count()).max();
+    let wide = wide.unwrap_or(0).max(4);
+    let mut text = format!(
+        "{:<wide$}  {:<15}  {:>7}  effects\n",
+        "case", "verdict", "seconds"
+    );
+    for outcome in outcomes {
+        let name = &outcome.name;
+        // Writing into a text cannot fail.
+        let _ = match &outcome.result {
+            Ok(Done { answer, kept }) => {
+                let effects: Vec<&str> = answer.effects.iter().map(|e| e.name.as_str()).collect();
+                let note = if *kept { "  (stood already)" } else { "" };
+                let (verdict, seconds) = (word(answer.verdict), answer.seconds);
+                let effects = effects.join(" + ");
+                writeln!(
+                    text,
+                    "{name:<wide$}  {verdict:<15}  {seconds:>7.1}  {effects}{note}"
+                )
+            }
+            Err(_) => writeln!(text, "{name:<wide$}  {:<15}  {:>7}", "failed", ""),
+        };
+    }
+    text
+}
+
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Explained => "explained",
+        Verdict::NothingMissing => "nothing missing",
+        Verdict::Unlisted => "unlisted",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_names_count_by_their_value() {
+        let mut names = ["case-10", "case-2", "b", "case-2b", "case-02", "10", "9"];
+        names.sort_by(|a, b| natural(a).cmp(&natural(b)).then_with(|| a.cmp(b)));
+        assert_eq!(
+            names,
+            ["9", "10", "b", "case-02", "case-2", "case-2b", "case-10"]
+        );
+    }
+}

@@ -1,0 +1,224 @@
+//! One case: rig.toml and recordings in, diagnosis.json, prediction.csv, improved.toml and account.txt out.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::super::error::AppError;
+use super::super::files::OutputFolder;
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::case::{Case, NamedRecording, tolerated};
+use crate::diagnosis::diagnose::{Diagnosis, diagnose};
+use crate::diagnosis::estimate::Number;
+use crate::diagnosis::recorded::{COLUMNS, recorded};
+use crate::plant::{CHANNELS, simulate};
+use crate::recording::csv::{columns_text, read_csv};
+use crate::scenario::rig_file::{ImprovedEffect, RigFile, improved_text, load_rig};
+
+const RIG: &str = "rig.toml";
+const ACCOUNT: &str = "account.txt";
+const IMPROVED: &str = "improved.toml";
+const PREDICTION: &str = "prediction.csv";
+/// Written last: where it stands, the others do.
+const DIAGNOSIS: &str = "diagnosis.json";
+const NAMES: [&str; 4] = [ACCOUNT, IMPROVED, PREDICTION, DIAGNOSIS];
+
+/// What becomes of a diagnosis that stands where a new one is to go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// The new one is refused.
+    Refuse,
+    /// It is kept.
+    Keep,
+    /// The new one takes its place.
+    Replace,
+}
+
+/// A case that can be diagnosed, and a folder that its files can go to.
+pub(super) struct Prepared {
+    name: String,
+    rig: RigFile,
+    case: Case,
+    folder: OutputFolder,
+}
+
+/// A case that was diagnosed; its files are written.
+pub(super) struct Finished {
+    /// What was found.
+    pub answer: Answer,
+    /// diagnosis.json.
+    pub document: String,
+    /// account.txt.
+    pub account: String,
+    /// Names of the files written.
+    pub names: Vec<&'static str>,
+}
+
+/// Is this a folder with a case?
+pub(super) fn is_case(folder: &Path) -> bool {
+    folder.join(RIG).is_file()
+}
+
+/// The diagnosis that stands complete in a folder.
+pub(super) fn complete(folder: &Path) -> Option<Answer> {
+    let text = std::fs::read_to_string(folder.join(DIAGNOSIS)).ok()?;
+    let answer: Answer = serde_json::from_str(&text).ok()?;
+    let others = [ACCOUNT, IMPROVED];
+    let stand = others.iter().all(|name| folder.join(name).is_file());
+    stand.then_some(answer)
+}
+
+impl Prepared {
+    /// Reads rig and recordings, then makes the folder: bad input leaves nothing behind.
+    pub(super) fn new(folder: &Path, out: &Path, standing: Standing) -> Result<Self, AppError> {
+        if !is_case(folder) {
+            return Err(AppError::NoCase {
+                folder: folder.display().to_string(),
+            });
+        }
+        let rig = load_rig(&folder.join(RIG))?;
+        if rig.fit.is_empty() {
+            return Err(AppError::NoRecordings {
+                file: rig.path.display().to_string(),
+            });
+        }
+        let case = case_of(&rig, folder)?;
+        if standing == Standing::Refuse && out.join(DIAGNOSIS).exists() {
+            return Err(AppError::Diagnosed {
+                folder: out.display().to_string(),
+            });
+        }
+        if same_folder(folder, out) {
+            return Err(AppError::AmongInputs {
+                folder: out.display().to_string(),
+            });
+        }
+        let own = folder.canonicalize();
+        let own = own.as_deref().unwrap_or(folder);
+        Ok(Self {
+            name: own.file_name().unwrap_or_default().display().to_string(),
+            folder: OutputFolder::prepare(out, &NAMES)?,
+            rig,
+            case,
+        })
+    }
+
+    /// Diagnoses it and writes its files; `say` is told how far it is.
+    pub(super) fn run(&self, say: &mut dyn FnMut(&str)) -> Result<Finished, AppError> {
+        let start = Instant::now();
+        // An old diagnosis beside new files would pass for theirs.
+        self.folder.discard(DIAGNOSIS)?;
+        let diagnosis = diagnose(&self.case, say)?;
+        let improved = improved(&self.rig, &diagnosis);
+        let prediction = self.prediction(&diagnosis)?;
+        let answer = diagnosis.answer(start.elapsed().as_secs_f64());
+        let document = answer.text()?;
+        let account = diagnosis.account(&self.name);
+        let mut files = vec![(ACCOUNT, account.as_str()), (IMPROVED, improved.as_str())];
+        match &prediction {
+            Some(text) => files.push((PREDICTION, text.as_str())),
+            // That of another rig file would pass for one of this.
+            None => self.folder.discard(PREDICTION)?,
+        }
+        files.push((DIAGNOSIS, document.as_str()));
+        let names = self.folder.write_texts(&files)?;
+        Ok(Finished {
+            answer,
+            document,
+            account,
+            names,
+        })
+    }
+
+    /// prediction.csv: what the improved model says of the recording that is to be predicted.
+    fn prediction(&self, diagnosis: &Diagnosis) -> Result<Option<String>, AppError> {
+        let Some(unseen) = &self.case.unseen else {
+            return Ok(None);
+        };
+        let inputs = &unseen.recorded.inputs;
+        let plant = &diagnosis.best().fit.prediction.plant;
+        let predicted = simulate(plant, inputs).readings;
+        for (column, values) in COLUMNS.into_iter().zip(&predicted) {
+            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                return Err(AppError::Astray {
+                    rig: IMPROVED.to_owned(),
+                    inputs: unseen.file.clone(),
+                    time: inputs.time[index],
+                    column,
+                    value: values[index],
+                });
+            }
+        }
+        let columns: [(&str, &[f64]); CHANNELS.len()] =
+            std::array::from_fn(|channel| (COLUMNS[channel], predicted[channel].as_slice()));
+        Ok(Some(columns_text(&inputs.time, &columns)?))
+    }
+}
+
+fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
+    let read = |name: &String| -> Result<NamedRecording, AppError> {
+        let path = folder.join(name);
+        let file = path.display().to_string();
+        let recorded = recorded(&file, &read_csv(&path)?.recording)?;
+        Ok(NamedRecording {
+            name: name.clone(),
+            file,
+            recorded,
+        })
+    };
+    let tolerances = rig.tolerances.iter();
+    Ok(Case {
+        believed: rig.plant.clone(),
+        tolerated: tolerances
+            .map(|t| tolerated(t.quantity, t.value, t.tolerance))
+            .collect(),
+        noise: rig.noise,
+        recordings: rig.fit.iter().map(read).collect::<Result<_, _>>()?,
+        unseen: rig.predict.as_ref().map(read).transpose()?,
+    })
+}
+
+/// improved.toml: the rig file with what was found.
+fn improved(rig: &RigFile, diagnosis: &Diagnosis) -> String {
+    let estimates = &diagnosis.estimates;
+    let tolerated: Vec<(&str, f64, f64, f64)> = estimates
+        .tolerated
+        .iter()
+        .map(|n| (n.name, n.value, n.interval[0], n.interval[1]))
+        .collect();
+    let mut effects: Vec<ImprovedEffect> = Vec::new();
+    // What the rig file names already stays, unless what was found stands in its place.
+    for (effect, values) in &rig.effects {
+        if estimates
+            .effects
+            .iter()
+            .all(|(new, _)| !new.excludes(effect))
+        {
+            let parameters = (effect.parameters)(&diagnosis.believed);
+            let pairs = parameters.iter().zip(values);
+            effects.push(ImprovedEffect {
+                effect,
+                parameters: pairs
+                    .map(|(p, value)| (p.quantity.name, *value, None))
+                    .collect(),
+            });
+        }
+    }
+    for (effect, numbers) in &estimates.effects {
+        let parameters = (effect.parameters)(&diagnosis.believed);
+        let own = |n: &&Number| parameters.iter().any(|p| p.quantity.name == n.name);
+        effects.push(ImprovedEffect {
+            effect,
+            parameters: numbers
+                .iter()
+                .filter(own)
+                .map(|n| (n.name, n.value, Some(n.interval)))
+                .collect(),
+        });
+    }
+    improved_text(rig, &tolerated, &effects)
+}
+
+fn same_folder(one: &Path, other: &Path) -> bool {
+    let canonical = |path: &Path| -> Option<PathBuf> { path.canonicalize().ok() };
+    canonical(one).is_some() && canonical(one) == canonical(other)
+}

@@ -1,0 +1,154 @@
+//! What a diagnosis is given: a rig as believed, what is tolerated of it, and recordings of what it did.
+
+use super::clean::{Cleaning, clean};
+use super::evidence::{Evidence, Measured};
+use super::free::{Free, Prior};
+use super::recorded::{COLUMNS, Recorded, RecordedError};
+use crate::effects::{Coordinate, Quantity};
+use crate::plant::{CHANNELS, PlantParameters};
+
+/// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
+const OTHER_NOISE: f64 = 1.5;
+
+/// A recording by its name.
+#[derive(Debug, Clone)]
+pub struct NamedRecording {
+    /// File name, as the rig file has it.
+    pub name: String,
+    /// The file, for messages.
+    pub file: String,
+    /// What it holds.
+    pub recorded: Recorded,
+}
+
+/// A case to be diagnosed.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The rig as believed.
+    pub believed: PlantParameters,
+    /// What is tolerated of it.
+    pub tolerated: Vec<Free>,
+    /// Standard deviation of each sensor's noise as its sheet has it, in the order of [`CHANNELS`].
+    pub noise: [f64; CHANNELS.len()],
+    /// Recordings to diagnose from.
+    pub recordings: Vec<NamedRecording>,
+    /// Recording to be predicted.
+    pub unseen: Option<NamedRecording>,
+}
+
+/// A number that is believed to lie within a relative tolerance of a value, any part of it being as likely: the normal distribution of that spread.
+#[must_use]
+pub fn tolerated(quantity: Quantity, value: f64, tolerance: f64) -> Free {
+    let half = (value * tolerance).abs();
+    let deviation = half / 3f64.sqrt();
+    Free {
+        quantity,
+        start: value,
+        coordinate: Coordinate::Linear(deviation),
+        bounds: [value - half, value + half],
+        prior: Prior::Normal {
+            mean: value,
+            deviation,
+        },
+    }
+}
+
+/// Recordings made fit to be believed.
+#[derive(Debug)]
+pub struct Prepared {
+    /// What is left of them.
+    pub evidence: Evidence,
+    /// What was set aside in each.
+    pub cleanings: Vec<Cleaning>,
+    /// Sentences on what was done, for people.
+    pub notes: Vec<String>,
+}
+
+/// Sets aside what is wild, finds the noise, checks that there is something to diagnose from.
+///
+/// # Errors
+/// A recording that is too short, measures nothing, or is in other units than the rig file.
+pub fn prepare(case: &Case) -> Result<Prepared, RecordedError> {
+    let mass = case.believed.device.moving_mass;
+    let mut cleanings = Vec::new();
+    let mut notes = Vec::new();
+    let mut measured = Vec::new();
+    for recording in &case.recordings {
+        let mut readings = recording.recorded.readings.clone();
+        let inputs = recording.recorded.inputs.clone();
+        let cleaning = clean(&inputs.time, &mut readings, &case.noise, mass);
+        recording
+            .recorded
+            .check(&recording.file, &cleaning.noise, &case.noise)?;
+        let name = &recording.name;
+        notes.extend(missing(name, &readings));
+        if recording.recorded.filled > 0 {
+            notes.push(format!(
+                "{name}: {} lost values of the inputs filled in",
+                recording.recorded.filled
+            ));
+        }
+        let sentences = cleaning.account(&case.noise);
+        notes.extend(
+            sentences
+                .iter()
+                .map(|sentence| format!("{name}: {sentence}")),
+        );
+        cleanings.push(cleaning);
+        measured.push(Measured {
+            name: name.clone(),
+            free: inputs.surface.iter().all(|surface| surface.is_nan()),
+            inputs,
+            readings,
+        });
+    }
+    let noise = believed_noise(&cleanings, &case.noise);
+    Ok(Prepared {
+        evidence: Evidence::new(measured, noise),
+        cleanings,
+        notes,
+    })
+}
+
+fn missing(name: &str, readings: &[Vec<f64>; CHANNELS.len()]) -> Vec<String> {
+    let lacks = |values: &Vec<f64>| values.iter().all(|value| value.is_nan());
+    let absent = COLUMNS.into_iter().zip(readings).filter(|(_, v)| lacks(v));
+    absent
+        .map(|(column, _)| format!("{name}: {column} was not measured; the diagnosis does without"))
+        .collect()
+}
+
+/// Noise of each channel: the sheet's, unless the recordings show clearly another.
+fn believed_noise(cleanings: &[Cleaning], sheet: &[f64; CHANNELS.len()]) -> [f64; CHANNELS.len()] {
+    std::array::from_fn(|channel| {
+        let mut found: Vec<f64> = cleanings
+            .iter()
+            .filter_map(|cleaning| cleaning.noise[channel])
+            .filter(|noise| *noise > 0.0)
+            .collect();
+        found.sort_by(f64::total_cmp);
+        match found.get(found.len() / 2) {
+            Some(noise)
+                if !(1.0 / OTHER_NOISE..OTHER_NOISE).contains(&(noise / sheet[channel])) =>
+            {
+                *noise
+            }
+            _ => sheet[channel],
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sheet_is_believed_unless_the_recordings_clearly_differ() {
+        let shown = |noise: f64| Cleaning {
+            noise: [Some(noise), None, Some(0.0), Some(1.2)],
+            ..Cleaning::default()
+        };
+        let noise = believed_noise(&[shown(3.0), shown(3.2), shown(0.9)], &[1.0; 4]);
+        assert_eq!(noise, [3.0, 1.0, 1.0, 1.0]);
+    }
+}

@@ -1,0 +1,277 @@
+//! From what was found to diagnosis.json.
+
+use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
+use super::details::{
+    ChannelMisfit, ChannelNoise, Details, LinkReport, NextExperiment, PredictionError,
+    RegimeReport, ToleratedNumber,
+};
+use super::diagnose::{Diagnosis, names_of};
+use super::estimate::Number;
+use super::fit::robust_sum;
+use super::localise::{Link, NOISE_ALONE, misfits, robust_rms};
+use super::recorded::COLUMNS;
+use crate::plant::CHANNELS;
+
+/// Variables named at most for a link.
+const MOST_REGIMES: usize = 5;
+/// Stands for each recording in turn.
+pub const IN_TURN: &str = "left out in turn";
+
+impl Link {
+    /// Name in an answer.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Regulator => "regulator",
+            Self::Piston => "piston",
+            Self::Contact => "contact",
+        }
+    }
+}
+
+impl Diagnosis {
+    /// diagnosis.json; `seconds` is how long it took.
+    #[must_use]
+    pub fn answer(&self, seconds: f64) -> Answer {
+        let effects = self.found();
+        let name = |recording: usize| self.evidence.recordings[recording].name.clone();
+        Answer {
+            schema: SCHEMA,
+            verdict: if effects.is_empty() {
+                Verdict::NothingMissing
+            } else {
+                Verdict::Explained
+            },
+            effects,
+            mismatch: self
+                .mismatch
+                .iter()
+                .map(|interval| Mismatch {
+                    recording: name(interval.recording),
+                    channel: COLUMNS[interval.channel as usize].to_owned(),
+                    start_s: interval.start,
+                    end_s: interval.end,
+                })
+                .collect(),
+            seconds,
+            alternatives: self
+                .rivals()
+                .map(|ranked| Alternative {
+                    effects: names_of(&ranked.hypothesis),
+                    odds: ranked.odds,
+                })
+                .collect(),
+            notes: self.notes.clone(),
+            details: self.details(),
+        }
+    }
+
+    /// What is missing, with its numbers: the one place where a diagnosis gets its effects from.
+    fn found(&self) -> Vec<FoundEffect> {
+        let effects = self.estimates.effects.iter();
+        effects
+            .map(|(effect, numbers)| FoundEffect {
+                name: effect.name.to_owned(),
+                subsystem: effect.subsystem.name().to_owned(),
+                confidence: self.confidence(effect.name),
+                parameters: numbers
+                    .iter()
+                    .filter(|number| number.reported)
+                    .map(|number| (number.name.to_owned(), estimate(number)))
+                    .collect(),
+                depends_on: Vec::new(),
+            })
+            .collect()
+    }
+
+    /// Probability that an effect is at work, by its name.
+    #[must_use]
+    pub fn confidence(&self, name: &str) -> f64 {
+        let names =
+            |r: &&super::diagnose::Ranked| r.hypothesis.effects.iter().any(|e| e.name == name);
+        let with = self.ranked.iter().filter(names);
+        with.map(|r| r.probability).sum::<f64>().min(1.0)
+    }
+
+    /// Share of the mismatch of the baseline that is explained [1]; none where there is no mismatch beyond noise.
+    #[must_use]
+    pub fn explained_share(&self) -> Option<f64> {
+        if self.best().effects.is_empty() {
+            return None;
+        }
+        let noise = self.evidence.count() as f64;
+        let before = robust_sum(&self.baseline.prediction.residuals);
+        let after = self.best().fit.misfit;
+        (before > noise).then(|| ((before - after) / (before - noise)).clamp(0.0, 1.0))
+    }
+
+    /// Errors of prediction: of the recording to be predicted where it was measured, otherwise of each left out in turn.
+    #[must_use]
+    pub fn prediction_errors(&self) -> Vec<PredictionError> {
+        let error = |recording: &str, channel: usize, before: f64, after: f64| {
+            let noise = self.evidence.noise[channel];
+            PredictionError {
+                recording: recording.to_owned(),
+                channel: COLUMNS[channel].to_owned(),
+                before: before * noise,
+                after: after * noise,
+                noise,
+                before_sigmas: before,
+                after_sigmas: after,
+            }
+        };
+        if let Some((name, errors)) = &self.unseen {
+            let errors = errors.iter();
+            return errors
+                .map(|e| error(name, e.channel, e.before, e.after))
+                .collect();
+        }
+        let Some(left) = &self.ranked[0].left_out else {
+            return Vec::new();
+        };
+        let of_channel = |channel: usize| {
+            let after: Vec<f64> = left
+                .iter()
+                .flat_map(|r| r[channel].iter().copied())
+                .collect();
+            let before: Vec<f64> = self
+                .by_channel(&self.baseline.prediction.residuals)
+                .filter(|(_, of, _)| *of as usize == channel)
+                .flat_map(|(_, _, residuals)| residuals.iter().copied())
+                .collect();
+            let (_, before) = robust_rms(&before)?;
+            let (_, after) = robust_rms(&after)?;
+            Some(error(IN_TURN, channel, before, after))
+        };
+        (0..CHANNELS.len()).filter_map(of_channel).collect()
+    }
+
+    fn by_channel<'a>(
+        &'a self,
+        residuals: &'a [f64],
+    ) -> impl Iterator<Item = (usize, crate::plant::Channel, &'a [f64])> {
+        super::localise::by_channel(&self.evidence, residuals)
+    }
+
+    /// What is not scored.
+    #[must_use]
+    pub fn details(&self) -> Details {
+        Details {
+            noise: self.noises(),
+            misfit: self.misfits(),
+            parts: self
+                .baseline
+                .partings
+                .iter()
+                .map(|parting| Mismatch {
+                    recording: self.evidence.recordings[parting.recording].name.clone(),
+                    channel: COLUMNS[parting.channel as usize].to_owned(),
+                    start_s: parting.span[0],
+                    end_s: parting.span[1],
+                })
+                .collect(),
+            links: self.link_reports(),
+            explained_share: self.explained_share(),
+            tolerated: self.tolerated(),
+            prediction: self.prediction_errors(),
+            next_experiment: self.next_experiment(),
+        }
+    }
+
+    fn noises(&self) -> Vec<ChannelNoise> {
+        let of = |(channel, column): (usize, &str)| ChannelNoise {
+            channel: column.to_owned(),
+            standard_deviation: self.evidence.noise[channel],
+            shown: self.cleanings.iter().map(|c| c.noise[channel]).collect(),
+        };
+        COLUMNS.into_iter().enumerate().map(of).collect()
+    }
+
+    fn misfits(&self) -> Vec<ChannelMisfit> {
+        let evidence = &self.evidence;
+        let believed = misfits(evidence, &self.as_believed.residuals);
+        let baseline = misfits(evidence, &self.baseline.prediction.residuals);
+        let improved = misfits(evidence, &self.best().fit.prediction.residuals);
+        let left = |recording: usize, channel: usize| {
+            let left = self.ranked[0].left_out.as_ref()?;
+            robust_rms(&left[recording][channel]).map(|(_, rms)| rms)
+        };
+        let together = believed.iter().zip(&baseline).zip(&improved);
+        together
+            .map(|((believed, baseline), improved)| ChannelMisfit {
+                recording: evidence.recordings[believed.recording].name.clone(),
+                channel: COLUMNS[believed.channel as usize].to_owned(),
+                samples: believed.samples,
+                believed_sigmas: believed.sigmas,
+                tolerated_sigmas: baseline.sigmas,
+                improved_sigmas: improved.sigmas,
+                left_out_sigmas: left(believed.recording, believed.channel as usize),
+            })
+            .collect()
+    }
+
+    fn link_reports(&self) -> Vec<LinkReport> {
+        let links = self.baseline.links.iter();
+        links
+            .map(|(link, regimes)| {
+                let explained = link.size <= NOISE_ALONE;
+                let named = if explained { 0 } else { MOST_REGIMES };
+                LinkReport {
+                    link: link.link.name().to_owned(),
+                    sigmas: link.size,
+                    explained,
+                    regimes: regimes
+                        .iter()
+                        .take(named)
+                        .map(|regime| RegimeReport {
+                            variable: regime.variable.to_owned(),
+                            share: regime.share,
+                        })
+                        .collect(),
+                }
+            })
+            .collect()
+    }
+
+    fn tolerated(&self) -> Vec<ToleratedNumber> {
+        let believed = |number: &Number| {
+            let free = self.best().fit.free.iter();
+            let mut own = free.filter(|f| f.quantity.name == number.name);
+            own.next().map(|f| (f.quantity.get)(&self.believed))
+        };
+        let numbers = self.estimates.tolerated.iter();
+        numbers
+            .filter_map(|number| {
+                Some(ToleratedNumber {
+                    key: number.name.to_owned(),
+                    believed: believed(number)?,
+                    found: estimate(number),
+                })
+            })
+            .collect()
+    }
+
+    /// The experiment that tells the best explanation from the next.
+    #[must_use]
+    pub fn next_experiment(&self) -> Option<NextExperiment> {
+        let (best, others) = self.experiments.split_first()?;
+        Some(NextExperiment {
+            name: best.experiment.name.to_owned(),
+            instruction: best.experiment.instruction.clone(),
+            from: names_of(&self.ranked.get(1)?.hypothesis),
+            found: names_of(self.best()),
+            sigmas: best.square.sqrt(),
+            seconds: best.duration,
+            others: others
+                .iter()
+                .map(|other| (other.experiment.name.to_owned(), other.square.sqrt()))
+                .collect(),
+        })
+    }
+}
+
+fn estimate(number: &Number) -> Estimate {
+    let [low, high] = number.interval;
+    let value = number.value;
+    Estimate { value, low, high }
+}

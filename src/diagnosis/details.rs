@@ -1,0 +1,128 @@
+//! What diagnosis.json holds beyond what is scored. Sigmas are standard deviations of the sensor's noise.
+
+use serde::{Deserialize, Serialize};
+
+use super::answer::Estimate;
+
+/// All of it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Details {
+    /// Standard deviation of the noise that each channel was given, by column.
+    pub noise: Vec<ChannelNoise>,
+    /// How far each channel of each recording is from the models.
+    pub misfit: Vec<ChannelMisfit>,
+    /// Where recordings part from the believed model moved within its tolerances.
+    pub parts: Vec<super::answer::Mismatch>,
+    /// What each link of the chain leaves, and what says when.
+    pub links: Vec<LinkReport>,
+    /// Share of the mismatch that is explained [1]; none where there is none.
+    pub explained_share: Option<f64>,
+    /// Numbers of the rig file within their tolerances.
+    pub tolerated: Vec<ToleratedNumber>,
+    /// Errors of prediction on what was not fitted to.
+    pub prediction: Vec<PredictionError>,
+    /// What to record next.
+    pub next_experiment: Option<NextExperiment>,
+}
+
+/// Noise of a channel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChannelNoise {
+    /// Column.
+    pub channel: String,
+    /// Standard deviation taken, in the column's unit.
+    pub standard_deviation: f64,
+    /// What the recordings show, in the order of them, in the column's unit.
+    pub shown: Vec<Option<f64>>,
+}
+
+/// How far a channel of a recording is from the models.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChannelMisfit {
+    /// File name.
+    pub recording: String,
+    /// Column.
+    pub channel: String,
+    /// Samples that count.
+    pub samples: usize,
+    /// As believed.
+    pub believed_sigmas: f64,
+    /// Moved within its tolerances.
+    pub tolerated_sigmas: f64,
+    /// With what was found.
+    pub improved_sigmas: f64,
+    /// With what was found, fitted to the other recordings.
+    pub left_out_sigmas: Option<f64>,
+}
+
+/// What a link of the chain leaves, given its own measured input.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LinkReport {
+    /// `regulator`, `piston` (chambers and force balance) or `contact` (and load cell).
+    pub link: String,
+    /// Robust root mean square.
+    pub sigmas: f64,
+    /// Does it explain its own recording?
+    pub explained: bool,
+    /// Variables that say when the mismatch appears.
+    pub regimes: Vec<RegimeReport>,
+}
+
+/// How much of a mismatch a variable tells.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RegimeReport {
+    /// The variable.
+    pub variable: String,
+    /// Share of the variance [1].
+    pub share: f64,
+}
+
+/// A number of the rig file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ToleratedNumber {
+    /// Dotted key.
+    pub key: String,
+    /// As believed.
+    pub believed: f64,
+    /// As found.
+    pub found: Estimate,
+}
+
+/// Error of prediction of a channel, before and after.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PredictionError {
+    /// The recording that was predicted; `left out in turn` for each of those to diagnose from, by a fit to the others.
+    pub recording: String,
+    /// Column.
+    pub channel: String,
+    /// Root mean square by the believed model moved within its tolerances, in the column's unit.
+    pub before: f64,
+    /// That by the improved one.
+    pub after: f64,
+    /// The sensor's noise.
+    pub noise: f64,
+    /// `before` over noise.
+    pub before_sigmas: f64,
+    /// `after` over noise.
+    pub after_sigmas: f64,
+}
+
+/// What to record next.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NextExperiment {
+    /// Name of the experiment.
+    pub name: String,
+    /// What to do.
+    pub instruction: String,
+    /// The explanation that it tells ...
+    pub from: Vec<String>,
+    /// ... from the one found.
+    pub found: Vec<String>,
+    /// How far apart they would stand after a new fit, in sigmas.
+    pub sigmas: f64,
+    /// How long it takes [s].
+    pub seconds: f64,
+    /// The others that were tried: name, sigmas.
+    pub others: Vec<(String, f64)>,
+}

@@ -1,0 +1,264 @@
+//! From a case to everything that is found in it.
+
+use super::case::{Case, NamedRecording, Prepared, prepare};
+use super::clean::{Cleaning, clean};
+use super::estimate::{Estimates, estimates};
+use super::evidence::{Evidence, Prediction};
+use super::fit::robust_sum;
+use super::free::Free;
+use super::left_out::left_out;
+use super::localise::{LinkResidual, Parting, links, partings, robust_rms};
+use super::mismatch::{Interval, intervals};
+use super::next_experiment::{Separation, separations};
+use super::recorded::RecordedError;
+use super::regime::{Regime, regimes};
+use super::search::{Hypothesis, Search};
+use crate::plant::{CHANNELS, PlantParameters, simulate};
+
+/// Odds below which an explanation is no alternative [1].
+pub const LEAST_ODDS: f64 = 0.01;
+
+/// An explanation among others.
+#[derive(Debug, Clone)]
+pub struct Ranked {
+    /// The explanation.
+    pub hypothesis: Hypothesis,
+    /// What it costs, penalty included [1].
+    pub score: f64,
+    /// Its odds against the best one [1].
+    pub odds: f64,
+    /// Its probability among those looked at in full [1].
+    pub probability: f64,
+    /// What it leaves of each recording, fitted to the others, in standard deviations, by recording and channel; none where there are no others.
+    pub left_out: Option<Vec<[Vec<f64>; CHANNELS.len()]>>,
+}
+
+impl Ranked {
+    /// Robust sum of squares of what was left out in turn.
+    fn left_out_sum(&self) -> Option<f64> {
+        let channels = self.left_out.as_ref()?.iter().flatten();
+        Some(channels.map(|residuals| robust_sum(residuals)).sum())
+    }
+}
+
+/// The believed model, moved within its tolerances as far as recordings that it may not explain allow.
+#[derive(Debug)]
+pub struct Baseline {
+    /// The description.
+    pub plant: PlantParameters,
+    /// What it gives.
+    pub prediction: Prediction,
+    /// What each link of the chain leaves, and what says when.
+    pub links: Vec<(LinkResidual, Vec<Regime>)>,
+    /// Where recordings part from it.
+    pub partings: Vec<Parting>,
+}
+
+/// Error of prediction of a channel of a recording that was not fitted to, in standard deviations of the noise [1].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unseen {
+    /// Index of the channel.
+    pub channel: usize,
+    /// Of the baseline.
+    pub before: f64,
+    /// Of the best explanation.
+    pub after: f64,
+}
+
+/// What was found.
+#[derive(Debug)]
+pub struct Diagnosis {
+    /// The rig as believed.
+    pub believed: PlantParameters,
+    /// What is tolerated of it.
+    pub tolerated: Vec<Free>,
+    /// The recordings, cleaned.
+    pub evidence: Evidence,
+    /// What was set aside in each of them.
+    pub cleanings: Vec<Cleaning>,
+    /// What an engineer should know of the recordings, a sentence each.
+    pub notes: Vec<String>,
+    /// Explanations, best first.
+    pub ranked: Vec<Ranked>,
+    /// Numbers of the best.
+    pub estimates: Estimates,
+    /// Where its effects act.
+    pub mismatch: Vec<Interval>,
+    /// What the believed model says, as it stands in the rig file.
+    pub as_believed: Prediction,
+    /// The believed model, moved within its tolerances.
+    pub baseline: Baseline,
+    /// Name of the recording to be predicted, and errors of its prediction where it has measured columns.
+    pub unseen: Option<(String, Vec<Unseen>)>,
+    /// Experiments that would tell the best from the next, best first; none where there is no next.
+    pub experiments: Vec<Separation>,
+}
+
+/// Diagnoses a case; `say` is told how far it is.
+///
+/// # Errors
+/// Recordings that nothing can be told from.
+pub fn diagnose(case: &Case, say: &mut dyn FnMut(&str)) -> Result<Diagnosis, RecordedError> {
+    let Prepared {
+        evidence,
+        cleanings,
+        notes,
+    } = prepare(case)?;
+    let search = Search {
+        evidence: &evidence,
+        believed: case.believed.clone(),
+        tolerated: case.tolerated.clone(),
+    };
+    let ranked = rank(&search, search.run(say));
+    let best = &ranked[0].hypothesis;
+    say("locating the mismatch");
+    let baseline = baseline(&search, best);
+    let unseen = case.unseen.as_ref().and_then(|unseen| {
+        let errors = unseen_errors(case, &evidence, unseen, &baseline.plant, best)?;
+        Some((unseen.name.clone(), errors))
+    });
+    say("comparing experiments");
+    let experiments = ranked.get(1).map_or_else(Vec::new, |rival| {
+        separations(&evidence, &best.fit, &rival.hypothesis.fit)
+    });
+    Ok(Diagnosis {
+        believed: case.believed.clone(),
+        tolerated: case.tolerated.clone(),
+        estimates: estimates(&case.believed, best, evidence.count()),
+        mismatch: intervals(&evidence, &case.believed, best),
+        as_believed: evidence.predict(&case.believed, false, None),
+        baseline,
+        unseen,
+        experiments,
+        ranked,
+        cleanings,
+        notes,
+        evidence,
+    })
+}
+
+/// Explanations by evidence, unless what was left out in turn speaks as clearly for another as evidence would have to.
+fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
+    let mut ranked: Vec<Ranked> = found
+        .into_iter()
+        .map(|hypothesis| Ranked {
+            score: search.score(&hypothesis),
+            odds: 1.0,
+            probability: 1.0,
+            left_out: None,
+            hypothesis,
+        })
+        .collect();
+    let limit = -2.0 * LEAST_ODDS.ln();
+    let close = ranked[0].score + limit;
+    let near = ranked.iter().take_while(|r| r.score <= close).count();
+    for leading in &mut ranked[..near] {
+        leading.left_out = left_out(search.evidence, &leading.hypothesis.fit);
+    }
+    let sums: Vec<Option<f64>> = ranked[..near].iter().map(Ranked::left_out_sum).collect();
+    if let Some(first) = sums[0] {
+        let others = sums.iter().enumerate().skip(1);
+        let predicts = others.filter_map(|(i, sum)| Some((i, (*sum)?)));
+        let better = predicts.min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((index, sum)) = better
+            && first - sum > limit
+        {
+            let chosen = ranked.remove(index);
+            ranked.insert(0, chosen);
+        }
+    }
+    let best = ranked[0].score;
+    // One that was put first for what it predicts is not held to be less likely than those behind it.
+    let odds = |score: f64| (-0.5 * (score - best)).exp().min(1.0);
+    let sum: f64 = ranked.iter().map(|r| odds(r.score)).sum();
+    for r in &mut ranked {
+        r.odds = odds(r.score);
+        r.probability = r.odds / sum;
+    }
+    ranked
+}
+
+/// The baseline with what it leaves; of a rig that misses nothing, the best explanation is it.
+fn baseline(search: &Search<'_>, best: &Hypothesis) -> Baseline {
+    let evidence = search.evidence;
+    let (plant, held) = if best.effects.is_empty() {
+        let plant = best.fit.prediction.plant.clone();
+        let held = evidence.predict(&plant, true, None);
+        (plant, held)
+    } else {
+        let prediction = search.baseline().fit.prediction;
+        let plant = prediction.plant.clone();
+        let held = if prediction.guided {
+            prediction
+        } else {
+            evidence.predict(&plant, true, None)
+        };
+        (plant, held)
+    };
+    let prediction = evidence.predict(&plant, false, None);
+    let links = links(evidence, &held).into_iter().map(|link| {
+        let regimes = regimes(evidence, &plant, &held.courses, &link.sigmas);
+        (link, regimes)
+    });
+    Baseline {
+        links: links.collect(),
+        partings: partings(evidence, &prediction.residuals),
+        plant,
+        prediction,
+    }
+}
+
+/// Errors of prediction of a recording that was not looked at; none where it holds no measured column.
+fn unseen_errors(
+    case: &Case,
+    evidence: &Evidence,
+    unseen: &NamedRecording,
+    baseline: &PlantParameters,
+    best: &Hypothesis,
+) -> Option<Vec<Unseen>> {
+    let inputs = &unseen.recorded.inputs;
+    let mut measured = unseen.recorded.readings.clone();
+    if measured.iter().flatten().all(|value| value.is_nan()) {
+        return None;
+    }
+    clean(
+        &inputs.time,
+        &mut measured,
+        &case.noise,
+        case.believed.device.moving_mass,
+    );
+    let before = simulate(baseline, inputs).readings;
+    let after = simulate(&best.fit.prediction.plant, inputs).readings;
+    let error = |channel: usize, predicted: &[f64]| {
+        let pairs = measured[channel].iter().zip(predicted);
+        let noise = evidence.noise[channel];
+        let sigmas: Vec<f64> = pairs.map(|(m, p)| (m - p) / noise).collect();
+        robust_rms(&sigmas).map(|(_, rms)| rms)
+    };
+    let channels = (0..CHANNELS.len()).filter_map(|channel| {
+        Some(Unseen {
+            channel,
+            before: error(channel, &before[channel])?,
+            after: error(channel, &after[channel])?,
+        })
+    });
+    Some(channels.collect())
+}
+
+impl Diagnosis {
+    /// The best explanation.
+    pub fn best(&self) -> &Hypothesis {
+        &self.ranked[0].hypothesis
+    }
+
+    /// Rivals that the recordings do not rule out.
+    pub fn rivals(&self) -> impl Iterator<Item = &Ranked> {
+        self.ranked[1..].iter().filter(|r| r.odds >= LEAST_ODDS)
+    }
+}
+
+/// Names of an explanation's effects.
+pub fn names_of(hypothesis: &Hypothesis) -> Vec<String> {
+    let effects = hypothesis.effects.iter();
+    effects.map(|effect| effect.name.to_owned()).collect()
+}

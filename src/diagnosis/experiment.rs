@@ -1,0 +1,172 @@
+//! Experiments that a bench can do, within what its recordings show that it does.
+
+use super::evidence::Evidence;
+use crate::plant::{PlantInputs, PlantParameters};
+use std::f64::consts::TAU;
+
+/// An experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Experiment {
+    /// Its name.
+    pub name: &'static str,
+    /// What to do.
+    pub instruction: String,
+    /// The same for the simulator.
+    pub inputs: PlantInputs,
+}
+
+/// What the device does in its recordings.
+struct Limits {
+    /// Step of the samples [s].
+    step: f64,
+    /// Highest set pressure [Pa gauge].
+    pressure: f64,
+    /// Where the workpiece stands [m].
+    surface: f64,
+    /// How far it moves to either side [m].
+    travel: f64,
+}
+
+impl Limits {
+    fn new(evidence: &Evidence, plant: &PlantParameters) -> Self {
+        let inputs = || evidence.recordings.iter().map(|m| &m.inputs);
+        let stroke = plant.device.full_stroke;
+        let surfaces: Vec<f64> = inputs()
+            .flat_map(|i| i.surface.iter().copied())
+            .filter(|x| x.is_finite() && *x > 0.1 * stroke && *x < 0.9 * stroke)
+            .collect();
+        let middle = if surfaces.is_empty() {
+            0.5 * stroke
+        } else {
+            surfaces.iter().sum::<f64>() / surfaces.len() as f64
+        };
+        let pressures = inputs().flat_map(|i| i.set_pressure.iter().copied());
+        let steps = inputs().map(|i| crate::recording::csv::median_step(&i.time));
+        Self {
+            step: steps.fold(f64::INFINITY, f64::min),
+            pressure: pressures.fold(0.0, f64::max),
+            surface: middle,
+            travel: (0.2 * stroke)
+                .min(0.8 * middle)
+                .min(0.8 * (stroke - middle)),
+        }
+    }
+
+    fn inputs(&self, duration: f64, at: impl Fn(f64) -> (f64, bool, f64)) -> PlantInputs {
+        let count = (duration / self.step).round() as usize + 1;
+        let time: Vec<f64> = (0..count).map(|i| i as f64 * self.step).collect();
+        let values: Vec<(f64, bool, f64)> = time.iter().map(|t| at(*t)).collect();
+        PlantInputs {
+            set_pressure: values.iter().map(|v| v.0).collect(),
+            extends: values.iter().map(|v| v.1).collect(),
+            surface: values.iter().map(|v| v.2).collect(),
+            time,
+        }
+    }
+}
+
+/// Triangle wave between 0 and 1 that starts at 0.
+fn triangle(phase: f64) -> f64 {
+    let phase = phase.rem_euclid(1.0);
+    if phase < 0.5 {
+        2.0 * phase
+    } else {
+        2.0 - 2.0 * phase
+    }
+}
+
+/// The experiments for a bench.
+#[must_use]
+pub fn experiments(evidence: &Evidence, plant: &PlantParameters) -> Vec<Experiment> {
+    let limits = Limits::new(evidence, plant);
+    let top = limits.pressure;
+    let (surface, travel) = (limits.surface, limits.travel);
+    let (bar, mm) = (|p: f64| p * 1e-5, |x: f64| x * 1e3);
+    let free = f64::NAN;
+    let high = bar(top);
+    let fixed = format!("the surface fixed at {:.0} mm", mm(surface));
+    // The tool is set down on the surface before anything is asked of it.
+    let settled = |t: f64, then: f64| if t < 1.0 { 0.5 * top } else { then };
+    let ride = move |frequency: f64| {
+        move |t: f64| {
+            let on = 1.0 - (-t / 0.5).exp();
+            (
+                0.5 * top,
+                true,
+                surface + travel * on * (TAU * frequency * t).sin(),
+            )
+        }
+    };
+    vec![
+        Experiment {
+            name: "pressure_ramp",
+            instruction: format!(
+                "with {fixed}, raise the set pressure slowly from 0 to {high:.1} bar and back, twice in 10 s"
+            ),
+            inputs: limits.inputs(10.0, |t| (top * triangle(t / 5.0), true, surface)),
+        },
+        Experiment {
+            name: "pressure_steps",
+            instruction: format!(
+                "with {fixed}, step the set pressure between {:.1} and {:.1} bar every 0.5 s, for 8 s",
+                0.3 * high,
+                0.8 * high
+            ),
+            inputs: limits.inputs(8.0, |t| {
+                let up = (t / 0.5) as usize % 2 == 0;
+                (
+                    settled(t, if up { 0.8 * top } else { 0.3 * top }),
+                    true,
+                    surface,
+                )
+            }),
+        },
+        Experiment {
+            name: "free_strokes",
+            instruction: format!(
+                "without a workpiece, full strokes out and in at {:.1}, {:.1} and {high:.1} bar, 1.5 s each way",
+                0.33 * high,
+                0.67 * high
+            ),
+            inputs: limits.inputs(9.0, |t| {
+                (top * ((t / 3.0).floor() + 1.0) / 3.0, t % 3.0 < 1.5, free)
+            }),
+        },
+        Experiment {
+            name: "valve_reversals",
+            instruction: format!(
+                "without a workpiece, reverse the valve in mid-stroke, every 0.15 s, at {:.1} bar, for 6 s",
+                0.6 * high
+            ),
+            inputs: limits.inputs(6.0, |t| (0.6 * top, (t / 0.15) as usize % 2 == 0, free)),
+        },
+        Experiment {
+            name: "slow_ride",
+            instruction: format!(
+                "at a constant {:.1} bar, move the surface {:.0} mm to either side of {:.0} mm at 0.3 Hz, for 10 s",
+                0.5 * high,
+                mm(travel),
+                mm(surface)
+            ),
+            inputs: limits.inputs(10.0, ride(0.3)),
+        },
+        Experiment {
+            name: "fast_ride",
+            instruction: format!(
+                "at a constant {:.1} bar, move the surface {:.1} mm to either side of {:.0} mm at 3 Hz, for 6 s",
+                0.5 * high,
+                mm(0.2 * travel),
+                mm(surface)
+            ),
+            inputs: limits.inputs(6.0, move |t| {
+                let (pressure, extends, at) = ride(3.0)(t);
+                (pressure, extends, surface + 0.2 * (at - surface))
+            }),
+        },
+        Experiment {
+            name: "dwell",
+            instruction: format!("with {fixed}, hold {:.1} bar for 15 s", 0.5 * high),
+            inputs: limits.inputs(15.0, |_| (0.5 * top, true, surface)),
+        },
+    ]
+}

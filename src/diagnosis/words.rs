@@ -1,0 +1,202 @@
+//! Numbers, units and lines as people read them.
+
+use crate::plant::CHANNELS;
+
+/// Letters in a line of an account.
+const WIDTH: usize = 100;
+
+/// A unit for people: suffix of a name in SI, unit, and what a value in SI is multiplied by.
+type Shown = (&'static str, &'static str, f64);
+
+/// Units by the end of a name, longer ends first.
+#[rustfmt::skip] // A table: one unit a line.
+const UNITS: [Shown; 25] = [
+    ("_j_per_kg_k", "J/(kg K)", 1.0),
+    ("_pa_s_per_kg", "bar s/kg", 1e-5),
+    ("_n_s_per_m", "N s/m", 1.0),
+    ("_n_per_m15", "N/mm^1.5", 3.162_277_660_168_379e-5),
+    ("_m_per_s2", "m/s2", 1.0),
+    ("_rad_per_s", "rad/s", 1.0),
+    ("_kg_per_s", "g/s", 1e3),
+    ("_pa_per_s", "bar/s", 1e-5),
+    ("_n_per_pa", "N/bar", 1e5),
+    ("_n_per_m", "N/mm", 1e-3),
+    ("_n_per_s", "N/s", 1.0),
+    ("_w_per_k", "W/K", 1.0),
+    ("_m_per_s", "mm/s", 1e3),
+    ("_m2", "mm2", 1e6),
+    ("_m3", "cm3", 1e6),
+    ("_pa", "bar", 1e-5),
+    ("_kg", "kg", 1.0),
+    ("_hz", "Hz", 1.0),
+    ("_n", "N", 1.0),
+    ("_m", "mm", 1e3),
+    ("_s", "ms", 1e3),
+    ("_k", "K", 1.0),
+    ("_j", "J", 1.0),
+    ("_w", "W", 1.0),
+    ("", "", 1.0),
+];
+
+/// Unit of each channel and what a value in SI is multiplied by.
+pub const CHANNEL_UNITS: [(&str, f64); CHANNELS.len()] =
+    [("mbar", 1e-2), ("mm", 1e3), ("N", 1.0), ("m/s2", 1.0)];
+
+/// The channels.
+pub const CHANNEL_WORDS: [&str; CHANNELS.len()] =
+    ["regulator's pressure", "stroke", "force", "acceleration"];
+
+/// A name without its unit and its table, in words, with the unit and the factor that a value in SI is multiplied by.
+#[must_use]
+pub fn spoken(name: &str) -> (String, &'static str, f64) {
+    let (suffix, unit, factor) = UNITS
+        .into_iter()
+        .find(|(suffix, ..)| name.ends_with(suffix))
+        .unwrap_or(UNITS[UNITS.len() - 1]);
+    let stem = name.strip_suffix(suffix).unwrap_or(name);
+    let stem = stem.rsplit('.').next().unwrap_or(stem);
+    (stem.replace('_', " "), unit, factor)
+}
+
+/// A number with so many significant digits, without an exponent as long as that can be read.
+#[must_use]
+pub fn figures(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
+        .parse()
+        .unwrap_or(value);
+    let order = rounded.abs().log10().floor();
+    if !(-4.0..7.0).contains(&order) {
+        return format!("{value:.*e}", digits.saturating_sub(1));
+    }
+    let decimals = (digits as f64 - 1.0 - order).max(0.0) as usize;
+    format!("{rounded:.decimals$}")
+}
+
+/// A value with its interval, to two digits of the interval's half-width, in its unit: `13.2 N (12.8 to 13.6)`.
+#[must_use]
+pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
+    let half = 0.5 * (high - low);
+    let digits = |number: f64| {
+        let orders = number.abs().log10().floor() - half.log10().floor();
+        let digits = if orders.is_finite() {
+            orders + 2.0
+        } else {
+            3.0
+        };
+        figures(number, digits.clamp(2.0, 6.0) as usize)
+    };
+    let (value, low, high) = (digits(value), digits(low), digits(high));
+    if unit.is_empty() {
+        format!("{value} ({low} to {high})")
+    } else {
+        format!("{value} {unit} ({low} to {high})")
+    }
+}
+
+/// A share in percent.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent > 99.95 {
+        "all but 0.05 %".to_owned()
+    } else {
+        format!("{percent:.1} %")
+    }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+#[must_use]
+pub fn listed(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.clone(),
+        [all @ .., last] => format!("{} and {last}", all.join(", ")),
+    }
+}
+
+/// A text in lines, the first one begun by `first`, the others indented.
+#[must_use]
+pub fn wrapped(first: &str, text: &str) -> String {
+    let indent = " ".repeat(first.chars().count());
+    let mut lines = String::from(first);
+    let mut length = first.chars().count();
+    let mut fresh = true;
+    for word in text.split_whitespace() {
+        let size = word.chars().count();
+        if !fresh && length + 1 + size > WIDTH {
+            lines.push('\n');
+            lines.push_str(&indent);
+            length = indent.len();
+            fresh = true;
+        }
+        if !fresh {
+            lines.push(' ');
+            length += 1;
+        }
+        lines.push_str(word);
+        length += size;
+        fresh = false;
+    }
+    lines.push('\n');
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_lose_their_unit_and_values_get_one_that_people_use() {
+        let said = |name: &str| {
+            let (words, unit, factor) = spoken(name);
+            (words, unit, factor)
+        };
+        assert_eq!(
+            said("coulomb_force_n"),
+            ("coulomb force".to_owned(), "N", 1.0)
+        );
+        assert_eq!(
+            said("stribeck_velocity_m_per_s"),
+            ("stribeck velocity".to_owned(), "mm/s", 1e3)
+        );
+        assert_eq!(
+            said("half_width_pa"),
+            ("half width".to_owned(), "bar", 1e-5)
+        );
+        assert_eq!(said("gain"), ("gain".to_owned(), "", 1.0));
+        assert_eq!(
+            said("cylinder.moving_mass_kg"),
+            ("moving mass".to_owned(), "kg", 1.0)
+        );
+        // 1 N/m^1.5 over 1000^1.5 mm^1.5.
+        assert!((said("stiffness_n_per_m15").2 * 1000f64.powf(1.5) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn numbers_have_as_many_digits_as_are_known() {
+        assert_eq!(figures(13.2143, 3), "13.2");
+        assert_eq!(figures(0.99996, 3), "1.00");
+        assert_eq!(figures(1234.5, 2), "1200");
+        assert_eq!(figures(1.5e-9, 2), "1.5e-9");
+        assert_eq!(
+            with_interval(13.2143, [12.81, 13.62], "N"),
+            "13.21 N (12.81 to 13.62)"
+        );
+        assert_eq!(
+            with_interval(90.2, [70.0, 112.0], "N s/m"),
+            "90 N s/m (70 to 112)"
+        );
+        assert_eq!(with_interval(1.0, [1.0, 1.0], ""), "1.00 (1.00 to 1.00)");
+    }
+
+    #[test]
+    fn lines_end_before_the_margin() {
+        let text = wrapped("- ", &"word ".repeat(60));
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines.len() > 2 && lines.iter().all(|line| line.len() <= WIDTH));
+        assert!(lines[1].starts_with("  word") && lines[0].starts_with("- word"));
+    }
+}
