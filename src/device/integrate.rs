@@ -17,6 +17,10 @@ use crate::physics::valve::ValvePosition;
 const AIR_LIMIT: f64 = 1.2;
 /// Largest sub-step times the fastest rate of stops and load [rad].
 const MECHANICAL_LIMIT: f64 = 0.15;
+/// The same for a piston that hardly moves [rad]: its error, in proportion to its swing and to the fourth power of this, is as small.
+const SLOW_LIMIT: f64 = 0.6;
+/// Speed from which on a piston is no longer slow [m/s].
+const SWIFT: f64 = 0.03;
 /// Sub-steps of a step beyond which a device is out of all proportion: its run then ends with the state that cannot be.
 const MOST_SUBSTEPS: f64 = 2e4;
 /// Halvings when a change of mode is sought: to 1e-7 of a sub-step.
@@ -107,8 +111,8 @@ impl Device {
                 .regulator
                 .course(regulator, (dt - time).min(until_switching));
             // A hair's breadth less than one more sub-step is rounding.
-            let count = (course.duration / longest - 1e-9).ceil().max(1.0);
-            let h = course.duration / count;
+            let count = (course.duration / longest - 1e-9).ceil().max(0.0);
+            let h = course.duration / count.max(1.0);
             let mut leg = Leg {
                 device: self,
                 carrier,
@@ -154,8 +158,18 @@ impl Device {
         // What the valve may let in during the step.
         let outlet = self.parameters.gas.atmosphere + state.regulator.outlet;
         let spring = self.spring_rate(&state.air, volumes, outlet);
-        let mechanical = spring.max(self.piston_rates.within(carrier, motion, dt));
-        air.min(MECHANICAL_LIMIT / mechanical)
+        let fastest = spring.max(self.piston_rates.within(carrier, motion, dt));
+        let mechanical = MECHANICAL_LIMIT / fastest;
+        let allowed = air.min(dt);
+        if mechanical >= allowed {
+            return allowed;
+        }
+        let outside = carrier.force(0.0, motion, carrier.touches(0.0, motion));
+        let force = self.piston_force(state, motion) + outside;
+        let acceleration = force / self.parameters.moving_mass;
+        let speed = motion.speed.abs() + acceleration.abs() * dt;
+        let ease = (SWIFT / speed).sqrt().sqrt();
+        allowed.min(mechanical * ease.clamp(1.0, SLOW_LIMIT / MECHANICAL_LIMIT))
     }
 }
 

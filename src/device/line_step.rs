@@ -11,6 +11,7 @@ use super::pneumatics::Device;
 use super::state::AirState;
 use crate::physics::flow_slope::FlowSlope;
 use crate::physics::hose::Hose;
+use crate::physics::line_chain::{LineChain, UPSTREAM};
 use crate::physics::valve::ValvePosition;
 
 /// Longest sub-step that a line is taken in however fast it is [s], for accuracy alone: tests/equations/lines.rs.
@@ -84,7 +85,8 @@ pub(super) fn longest(parameters: &DeviceParameters, valve_rate: f64) -> f64 {
     let gas = &parameters.gas;
     let rt = gas.specific_gas_constant * gas.temperature;
     let through = rt / hose.resistance_at_rest(gas.atmosphere);
-    let mut rate = (valve_rate + through) / hose.volume;
+    let within = hose.segments() as f64 * through;
+    let mut rate = (valve_rate + within) / hose.segment_volume();
     if let Some(reservoir) = &parameters.supply_reservoir {
         rate += reservoir.rate(gas) + through / reservoir.volume;
     }
@@ -103,6 +105,7 @@ impl<C: Carrier> Leg<'_, C> {
     ) -> Flow {
         let mut rates = [*start; 6];
         let mut feed = Feed::of(&start.air);
+        let upstream = hose.segments() - 1;
         for stage in 0..6 {
             let at = time + NODES[stage] * h;
             let outlet = self.course.at(at - self.course_start);
@@ -113,6 +116,9 @@ impl<C: Carrier> Leg<'_, C> {
                 let weight = h * IMPLICIT[stage][earlier];
                 held.line += weight * rates[earlier].air.hose_mass;
                 held.reservoir += weight * rates[earlier].air.reservoir_mass;
+                for j in 0..upstream {
+                    held.upstream[j] += weight * rates[earlier].air.upstream[j];
+                }
             }
             if stage > 0 {
                 let share = h * IMPLICIT_SHARE;
@@ -125,19 +131,21 @@ impl<C: Carrier> Leg<'_, C> {
                     (held, share),
                 );
             }
-            flow.air.hose_mass = feed.line;
-            flow.air.reservoir_mass = feed.reservoir;
+            feed.put(&mut flow.air);
             rates[stage] = self.rates::<LEDGER>(&flow, start.motion.stroke, at, outlet, mode);
         }
         let weights = IMPLICIT[5].iter().chain([&IMPLICIT_SHARE]);
         let mut end = *start;
-        for (weight, rates) in weights.zip(&rates) {
+        for (weight, rates) in weights.clone().zip(&rates) {
             end = end.after(rates, h * weight, LEDGER);
         }
         // The last stage is the end but for rounding, which a fast line would take for a flow.
-        end.air.entered += feed.line - end.air.hose_mass;
-        end.air.hose_mass = feed.line;
-        end.air.reservoir_mass = feed.reservoir;
+        let mut summed = start.air.line_mass();
+        for (weight, rates) in weights.zip(&rates) {
+            summed += h * weight * rates.air.line_mass();
+        }
+        feed.put(&mut end.air);
+        end.air.entered += end.air.line_mass() - summed;
         end
     }
 }
@@ -145,7 +153,10 @@ impl<C: Carrier> Leg<'_, C> {
 /// What is implicit: air before the valve [kg].
 #[derive(Debug, Clone, Copy)]
 struct Feed {
+    /// In the last segment.
     line: f64,
+    /// In those before.
+    upstream: [f64; UPSTREAM],
     /// 0 without one.
     reservoir: f64,
 }
@@ -154,8 +165,15 @@ impl Feed {
     fn of(air: &AirState) -> Self {
         Self {
             line: air.hose_mass,
+            upstream: air.upstream,
             reservoir: air.reservoir_mass,
         }
+    }
+
+    fn put(&self, air: &mut AirState) {
+        air.hose_mass = self.line;
+        air.upstream = self.upstream;
+        air.reservoir_mass = self.reservoir;
     }
 }
 
@@ -188,26 +206,56 @@ impl Device {
                 slope: factor * slope,
             }
         };
-        let capacity = gas.mass(1.0, hose.volume);
+        let capacity = gas.mass(1.0, hose.segment_volume());
         let stored = (capacity / share, held.line / capacity);
+        let chain = hose.segment_resistance().map(|resistance| {
+            let kept = held.upstream.map(|mass| mass / capacity);
+            LineChain::new(resistance, stored.0, &kept[..hose.segments() - 1])
+        });
+        // What the last segment sees of the line before it.
+        let (last, gain) = match &chain {
+            None => (*hose, 1.0),
+            Some(chain) => (hose.last_behind(chain.resistance()), chain.gain()),
+        };
+        let seen = |before: f64| chain.as_ref().map_or(before, |chain| chain.seen(before));
+        let within = |before: f64| last.balance(seen(before), after, stored, on);
+        let fed = |before: f64, reservoir: f64| {
+            let within = within(before);
+            let pressures = chain.map(|chain| chain.pressures(before, within));
+            Feed {
+                line: capacity * within,
+                upstream: pressures.map_or(held.upstream, |p| p.map(|p| capacity * p)),
+                reservoir,
+            }
+        };
         let before = gas.atmosphere + outlet;
-        let within = |before: f64| hose.balance(before, after, stored, on);
         let Some(reservoir) = &self.parameters.supply_reservoir else {
-            return Feed {
-                line: capacity * within(before),
-                reservoir: 0.0,
-            };
+            return fed(before, 0.0);
         };
         let drawn = |before: f64| {
             let within = within(before);
-            let drawn = hose.drawn(before, within, stored.0 + on(within).slope);
-            (within, drawn)
+            let drawn = last.drawn(seen(before), within, stored.0 + on(within).slope);
+            let Some(chain) = &chain else {
+                return (within, drawn);
+            };
+            // What enters the first segment: dp_1/dp_0 = B_1 + ... by two solutions of a linear chain.
+            let first = |before: f64, within: f64| {
+                let next = if hose.segments() > 1 {
+                    chain.pressures(before, within)[0]
+                } else {
+                    within
+                };
+                hose.mass_flow(before, next)
+            };
+            let follows = gain * drawn.slope * chain.resistance();
+            let flow = first(before, within);
+            let step = 1.0;
+            let slope = first(before + step, within + step * (gain - follows)) - flow;
+            (within, FlowSlope { flow, slope })
         };
-        let (within, pressure) = reservoir.balance(gas, before, (held.reservoir, share), drawn);
-        Feed {
-            line: capacity * within,
-            reservoir: gas.mass(pressure, reservoir.volume),
-        }
+        let (_, pressure) = reservoir.balance(gas, before, (held.reservoir, share), drawn);
+        let outlet = before.min(pressure);
+        fed(outlet, gas.mass(pressure, reservoir.volume))
     }
 }
 

@@ -7,6 +7,7 @@ use super::state::{AirState, DeviceState, EnergyLedger};
 use super::{Carrier, DeviceParameters, line_step};
 use crate::physics::chamber::Chamber;
 use crate::physics::gas_process::GasProcess;
+use crate::physics::line_chain::UPSTREAM;
 use crate::physics::orifice::FlowFunction;
 use crate::physics::piston::PistonAreas;
 use crate::physics::regulator::RegulatorState;
@@ -97,13 +98,15 @@ impl Device {
         }
         let pressures = [gas.atmosphere + regulator.outlet, gas.atmosphere];
         let masses = [0, 1].map(|i| gas.mass(pressures[i], self.chambers[i].volume(stroke)));
+        let hose = self.parameters.hose.as_ref();
+        let segment = hose.map_or(0.0, |h| gas.mass(pressures[0], h.segment_volume()));
+        let mut upstream = [0.0; UPSTREAM];
+        upstream[..hose.map_or(0, |h| h.segments() - 1)].fill(segment);
         let air = AirState {
             masses,
             energies: masses.map(|mass| mass * gas.specific_heat_volume() * gas.temperature),
-            hose_mass: self
-                .parameters
-                .hose
-                .map_or(0.0, |hose| gas.mass(pressures[0], hose.volume)),
+            hose_mass: segment,
+            upstream,
             reservoir_mass: self
                 .parameters
                 .supply_reservoir
@@ -323,7 +326,7 @@ impl Device {
         let outlet = outlet.min(stored);
         let before = match &self.parameters.hose {
             None => outlet,
-            Some(hose) => gas.pressure(air.hose_mass, hose.volume),
+            Some(hose) => gas.pressure(air.hose_mass, hose.segment_volume()),
         };
         let mut flows = [0.0; 2];
         flows[supplied] =
@@ -367,8 +370,28 @@ impl Device {
         let from_regulator = match &self.parameters.hose {
             None => flows[supplied],
             Some(hose) => {
-                let inflow = hose.mass_flow(outlet, before);
-                rates.hose_mass = inflow - flows[supplied];
+                let upstream = hose.segments() - 1;
+                let volume = hose.segment_volume();
+                let mut previous = outlet;
+                let mut carried = f64::NAN;
+                let mut inflow = f64::NAN;
+                for j in 0..upstream {
+                    let pressure = gas.pressure(air.upstream[j], volume);
+                    let flow = hose.mass_flow(previous, pressure);
+                    if j == 0 {
+                        inflow = flow;
+                    } else {
+                        rates.upstream[j - 1] = carried - flow;
+                    }
+                    (previous, carried) = (pressure, flow);
+                }
+                let last = hose.mass_flow(previous, before);
+                if upstream == 0 {
+                    inflow = last;
+                } else {
+                    rates.upstream[upstream - 1] = carried - last;
+                }
+                rates.hose_mass = last - flows[supplied];
                 inflow
             }
         };

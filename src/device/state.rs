@@ -1,5 +1,6 @@
 //! What changes in a device during a run.
 
+use crate::physics::line_chain::UPSTREAM;
 use crate::physics::regulator::RegulatorState;
 use crate::physics::switching_delay::Spool;
 use crate::physics::valve::ValvePosition;
@@ -30,8 +31,10 @@ pub struct AirState {
     pub masses: [f64; 2],
     /// Its internal energy [J]; used only if the gas has a temperature of its own.
     pub energies: [f64; 2],
-    /// Air in the line between regulator and valve [kg]; 0 without one.
+    /// Air in the line between regulator and valve [kg], in its last segment if it is distributed; 0 without one.
     pub hose_mass: f64,
+    /// Air in the segments before [kg], first the one behind the regulator.
+    pub upstream: [f64; UPSTREAM],
     /// Air in the reservoir in front of the regulator [kg]; 0 without one. It is not inside the device.
     pub reservoir_mass: f64,
     /// Air that has come in since the start, from the regulator and from the atmosphere, through the valve or a leak [kg].
@@ -43,10 +46,15 @@ pub struct AirState {
 impl AirState {
     /// All the air inside [kg].
     pub fn held(&self) -> f64 {
-        self.masses[0] + self.masses[1] + self.hose_mass
+        self.masses[0] + self.masses[1] + self.line_mass()
     }
 
-    /// This, plus `rates` over a time [s].
+    /// Air in the whole line [kg].
+    pub fn line_mass(&self) -> f64 {
+        self.hose_mass + self.upstream.iter().sum::<f64>()
+    }
+
+    /// This, plus `rates` over a time [s], but for what only `line_step` moves.
     #[inline(always)]
     pub(super) fn after(&self, rates: &Self, time: f64) -> Self {
         Self {
@@ -59,6 +67,7 @@ impl AirState {
                 self.energies[1] + time * rates.energies[1],
             ],
             hose_mass: self.hose_mass + time * rates.hose_mass,
+            upstream: self.upstream,
             reservoir_mass: self.reservoir_mass + time * rates.reservoir_mass,
             entered: self.entered + time * rates.entered,
             left: self.left + time * rates.left,

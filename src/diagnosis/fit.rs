@@ -381,17 +381,14 @@ pub fn fit(
     }
     let misfit = robust_sum(&here.residuals);
     let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
-    let rough = if here.guided {
-        Weighing {
-            shares: &shares,
-            limit: HUBER,
-            bounded: ROUGH[0].bounded,
-        }
-        .sum(&here.residuals)
-            + prior
-    } else {
-        f64::NAN
-    };
+    let held = (!here.guided).then(|| evidence.predict(&here.plant, true, None));
+    let rough = Weighing {
+        shares: &shares,
+        limit: HUBER,
+        bounded: ROUGH[0].bounded,
+    }
+    .sum(&held.as_ref().unwrap_or(&here).residuals)
+        + prior;
     Fit {
         free: free.to_vec(),
         values,
@@ -404,20 +401,22 @@ pub fn fit(
     }
 }
 
-/// Rough cost that a description could come to if what was free before were adjusted, by the derivatives known, without a simulation more.
-pub fn foretold_rough(
+/// Cost that a description could come to in a stage if what was free before were adjusted, by the derivatives known, without a simulation more.
+pub fn foretold(
     evidence: &Evidence,
     there: &Prediction,
     free: &[Free],
     values: &[f64],
     columns: &[Vec<f64>],
+    stage: &Stage,
 ) -> f64 {
-    let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
-    let wide = Weighing {
+    let shares = evidence.shares(stage.forgiven, stage.guided);
+    let weighing = |limit| Weighing {
         shares: &shares,
-        limit: limit_for(&there.residuals, &shares),
-        bounded: ROUGH[0].bounded,
+        limit,
+        bounded: stage.bounded,
     };
+    let wide = weighing(limit_for(&there.residuals, &shares));
     let (normal, gradient) = normal_equations(columns, &there.residuals, &wide, free, values);
     let mut adjusted = there.residuals.clone();
     if let Some((tried, _)) = step(free, values, &normal, &gradient, 1e-4, 3.0) {
@@ -428,12 +427,7 @@ pub fn foretold_rough(
             }
         }
     }
-    Weighing {
-        shares: &shares,
-        limit: HUBER,
-        bounded: ROUGH[0].bounded,
-    }
-    .sum(&adjusted)
+    weighing(HUBER).sum(&adjusted)
 }
 
 /// Damped step to where the quadratic model is least within the bounds, by an active set: values tried and the gain promised.

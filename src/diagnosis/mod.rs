@@ -19,6 +19,7 @@ pub mod mismatch;
 pub mod next_experiment;
 pub mod recorded;
 pub mod regime;
+mod scale;
 pub mod search;
 pub mod spectrum;
 pub mod words;

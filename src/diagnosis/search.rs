@@ -2,9 +2,10 @@
 
 use super::evidence::{Evidence, Prediction};
 use super::fit::{
-    Effort, FULL, Fit, ROUGH, Stage, fit, foretold_rough, jacobian, rough_noise, with_values,
+    Effort, FULL, Fit, ROUGH, Stage, fit, foretold, jacobian, rough_noise, with_values,
 };
 use super::free::{Free, Prior, free_of};
+use super::scale::Scale;
 use crate::effects::{Clues, Effect};
 use crate::plant::PlantParameters;
 use rayon::prelude::*;
@@ -23,6 +24,8 @@ const PARENTS: usize = 2;
 const REFINED: usize = 4;
 /// Rough cost behind the best at which a hypothesis is given up [1].
 const HOPELESS: f64 = 300.0;
+/// Share of what a hypothesis leaves unexplained that one more effect must explain, or the search stagnates [1].
+const STAGNATION: f64 = 0.5;
 /// Cost of having looked at so many effects: twice the logarithm of their number [1].
 const LOOK_ELSEWHERE: f64 = 7.0;
 
@@ -45,12 +48,26 @@ pub struct Search<'a> {
     pub tolerated: Vec<Free>,
     /// Effects that may be at work.
     pub candidates: Vec<&'static Effect>,
+    /// Effects that a link of its own has shown, with their numbers.
+    pub shown: Vec<Shown>,
+}
+
+/// An effect that a link of its own has shown, such as a servo's in commands and encoders: what it found is what is believed of its numbers.
+#[derive(Debug, Clone)]
+pub struct Shown {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// All its numbers.
+    pub numbers: Vec<Free>,
 }
 
 impl Search<'_> {
     /// The believed model within its tolerances, roughly.
     pub fn baseline(&self) -> Hypothesis {
-        self.fitted(vec![], &self.believed, &self.tolerated, ROUGH, 15, None)
+        let effects = self.shown.iter().map(|shown| shown.effect).collect();
+        let own = self.shown.iter().flat_map(|shown| &shown.numbers);
+        let free: Vec<Free> = self.tolerated.iter().chain(own).copied().collect();
+        self.fitted(effects, &self.believed, &free, ROUGH, 15, None)
     }
 
     fn fitted(
@@ -96,19 +113,7 @@ impl Search<'_> {
     pub fn screen(&self, from: &Hypothesis, stages: &[Stage]) -> Vec<Hypothesis> {
         let periodic = super::spectrum::strongest(self.evidence, &from.fit.prediction);
         let bumps = super::bumps::strongest(self.evidence, &from.fit.prediction);
-        let readings = self
-            .evidence
-            .recordings
-            .iter()
-            .flat_map(|m| m.readings[2].iter());
-        let clues = Clues {
-            plant: &from.fit.prediction.plant,
-            largest_force: readings
-                .filter(|f| f.is_finite())
-                .fold(0.0, |a, b| b.max(a)),
-            periodic: &periodic,
-            bumps: &bumps,
-        };
+        let clues = self.clues(from, &periodic, &bumps);
         let starts: Vec<(&'static Effect, Vec<f64>)> = self
             .candidates
             .iter()
@@ -122,7 +127,7 @@ impl Search<'_> {
             .collect();
         let glances: Vec<f64> = starts
             .par_iter()
-            .map(|(effect, start)| self.glance(from, effect, start))
+            .map(|(effect, start)| self.glance(from, effect, start, &stages[0]))
             .collect();
         // The best start of each effect, then the effects that promise most.
         let mut best: Vec<usize> = Vec::new();
@@ -142,7 +147,11 @@ impl Search<'_> {
             .par_iter()
             .map(|index| self.add(from, starts[*index].0, &starts[*index].1, stages, LOOK))
             .collect();
-        looked.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
+        let score = |hypothesis: &Hypothesis| match stages[0].guided {
+            true => self.rough_score(hypothesis),
+            false => self.score(hypothesis),
+        };
+        looked.sort_by(|a, b| score(a).total_cmp(&score(b)));
         looked
     }
 
@@ -169,8 +178,14 @@ impl Search<'_> {
             .unzip()
     }
 
-    /// Rough cost that a hypothesis with one more effect could come to by one step from a start.
-    fn glance(&self, from: &Hypothesis, effect: &'static Effect, start: &[f64]) -> f64 {
+    /// Cost that a hypothesis with one more effect could come to by one step from a start.
+    fn glance(
+        &self,
+        from: &Hypothesis,
+        effect: &'static Effect,
+        start: &[f64],
+        stage: &Stage,
+    ) -> f64 {
         let new = free_of(effect, &self.believed, start);
         let (mut free, mut columns) = self.beside(from, &new);
         let own = free.len();
@@ -179,9 +194,9 @@ impl Search<'_> {
         let plant = with_values(&from.fit.prediction.plant, &free, &values);
         let there = self
             .evidence
-            .predict(&plant, true, Some(&from.fit.prediction));
+            .predict(&plant, stage.guided, Some(&from.fit.prediction));
         columns.extend(jacobian(self.evidence, &there, &free, &values, own));
-        foretold_rough(self.evidence, &there, &free, &values, &columns)
+        foretold(self.evidence, &there, &free, &values, &columns, stage)
     }
 
     /// A hypothesis with one more effect from a start, fitted roughly.
@@ -221,80 +236,290 @@ impl Search<'_> {
     }
 
     /// The explanation that costs least, and those that come near: first roughly, then in full.
+    ///
+    /// Forward, one effect after the other, as long as one more explains what it must; backward, whatever the rest does as well without; at last
+    /// once more forward with the finest measure, for effects too small to be seen roughly.
     pub fn run(&self, say: &mut dyn FnMut(&str)) -> Vec<Hypothesis> {
         let noise = rough_noise(self.evidence);
-        let mut rough = vec![self.baseline()];
+        let baseline = self.baseline();
         say(&format!(
             "baseline {:.0}, noise {noise:.0}",
-            rough[0].fit.rough
+            baseline.fit.rough
         ));
+        let scale = Scale::of(self.evidence, &baseline, noise);
+        let mut levels = vec![vec![baseline]];
+        let mut full: Vec<Hypothesis> = Vec::new();
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
-        for depth in 0..MOST_EFFECTS {
-            let best = self.rough_score(&rough[0]);
-            // Beside one that leaves noise alone, no other need be carried on.
-            let spread = 6.0 * (2.0 * noise).sqrt();
-            let settled = rough[0].fit.rough < noise + spread;
-            let parents: Vec<Hypothesis> = rough
-                .iter()
-                .filter(|h| h.effects.len() == depth)
-                .take(if settled { 1 } else { PARENTS })
-                .cloned()
-                .collect();
-            for parent in &parents {
-                let score = self.rough_score(parent);
-                for candidate in self.screen(parent, ROUGH) {
-                    let gain = score - self.rough_score(&candidate);
-                    say(&format!("  {:?} rough gain {gain:.1}", candidate.effects));
-                    let names = names(&candidate);
-                    if gain > 0.0 && !tried.contains(&names) {
-                        tried.push(names);
-                        rough.push(candidate);
-                    }
-                }
-            }
-            rough.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
-            // The few that lead are fitted roughly with everything free.
-            let near = self.rough_score(&rough[0]).max(noise);
-            for leading in rough
-                .iter_mut()
-                .filter(|h| h.effects.len() == depth + 1)
-                .take(REFINED)
-            {
-                if depth > 0 && self.rough_score(leading) > 3.0 * near {
-                    break;
-                }
-                let refitted = self.refine(leading, ROUGH, 15);
-                if refitted.fit.rough < leading.fit.rough {
-                    *leading = refitted;
-                }
-                say(&format!(
-                    "  {:?} rough {:.1}",
-                    leading.effects,
-                    self.rough_score(leading)
-                ));
-            }
-            rough.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
-            if best - self.rough_score(&rough[0]) <= 0.0 {
+        while levels.len() <= MOST_EFFECTS && full.is_empty() {
+            let parents = &levels[levels.len() - 1];
+            let children = self.children(parents, &scale, &mut tried, say);
+            let before = parents[0].fit.rough - noise;
+            let Some(best) = children.first() else { break };
+            if self.rough_score(best) >= self.rough_score(&parents[0]) {
                 break;
+            }
+            let after = best.fit.rough - noise;
+            let stuck = levels.len() > 1 && after > STAGNATION * before;
+            if after < scale.rough_spread() {
+                full = self.in_full(&children, say);
+            } else if stuck {
+                // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
+                full = self.in_full(parents, say);
+                if !full.iter().any(|h| scale.is_adequate(h)) {
+                    full = self.anew(parents, &scale, say);
+                }
+                full.retain(|h| scale.is_adequate(h));
+            }
+            levels.push(children);
+        }
+        if full.is_empty() {
+            let mut all: Vec<Hypothesis> = levels.into_iter().flatten().collect();
+            all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
+            full = self.in_full(&all, say);
+        }
+        self.eliminate(&mut full, say);
+        self.add_small(&mut full, &scale, say);
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        full
+    }
+
+    /// Hypotheses of one effect more, those that lead fitted roughly with everything free; best first.
+    fn children(
+        &self,
+        parents: &[Hypothesis],
+        scale: &Scale,
+        tried: &mut Vec<Vec<&'static str>>,
+        say: &mut dyn FnMut(&str),
+    ) -> Vec<Hypothesis> {
+        let mut children = Vec::new();
+        for parent in parents.iter().take(PARENTS) {
+            let score = self.rough_score(parent);
+            let least = scale.material(parent.fit.rough);
+            for candidate in self.screen(parent, ROUGH) {
+                let gain = score - self.rough_score(&candidate);
+                say(&format!("  {:?} rough gain {gain:.1}", candidate.effects));
+                let names = names(&candidate);
+                if gain > least && !tried.contains(&names) {
+                    tried.push(names);
+                    children.push(candidate);
+                }
             }
         }
-        let mut full: Vec<Hypothesis> = Vec::new();
-        let leading = self.rough_score(&rough[0]);
-        for candidate in rough.iter().take(REFINED) {
-            if self.rough_score(candidate) > leading + HOPELESS {
+        children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
+        let near = children.first().map_or(0.0, |h| self.rough_score(h));
+        for leading in children.iter_mut().take(REFINED) {
+            if leading.effects.len() > 1 && self.rough_score(leading) > 3.0 * near {
                 break;
             }
-            let refined = self.refine(candidate, FULL, FULL_ITERATIONS);
+            let refitted = self.refine(leading, ROUGH, 15);
+            if refitted.fit.rough < leading.fit.rough {
+                *leading = refitted;
+            }
+            self.choose(leading);
+            say(&format!(
+                "  {:?} rough {:.1}",
+                leading.effects,
+                self.rough_score(leading)
+            ));
+        }
+        children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
+        children
+    }
+
+    /// Full fits of those that are not hopeless, best first.
+    fn in_full(&self, rough: &[Hypothesis], say: &mut dyn FnMut(&str)) -> Vec<Hypothesis> {
+        let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
+        let mut full: Vec<Hypothesis> = rough
+            .iter()
+            .take(REFINED)
+            .take_while(|h| self.rough_score(h) <= leading + HOPELESS)
+            .map(|candidate| self.refine(candidate, FULL, FULL_ITERATIONS))
+            .collect();
+        for refined in &full {
             say(&format!(
                 "  {:?} full {:.1} left {:.0}",
                 refined.effects,
-                self.score(&refined),
+                self.score(refined),
                 refined.fit.cost() - self.evidence.count() as f64
             ));
-            full.push(refined);
         }
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         full
+    }
+
+    /// Full fits of those that are not hopeless from where their last effect may start instead of from their rough fits, until one is adequate: what a
+    /// held piston does not show, such as sticking, a rough fit may have driven out.
+    fn anew(
+        &self,
+        rough: &[Hypothesis],
+        scale: &Scale,
+        say: &mut dyn FnMut(&str),
+    ) -> Vec<Hypothesis> {
+        let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
+        let near = |h: &&Hypothesis| self.rough_score(h) <= leading + HOPELESS;
+        let mut candidates: Vec<&Hypothesis> =
+            rough.iter().take(REFINED).take_while(near).collect();
+        // The richest law first: it has most to lose.
+        candidates.sort_by_key(|h| std::cmp::Reverse(h.fit.free.len()));
+        for candidate in candidates {
+            let Some(effect) = candidate.effects.last() else {
+                continue;
+            };
+            for start in (effect.starts)(&self.clues(candidate, &[], &[])) {
+                let mut other = candidate.clone();
+                let own = other.fit.values.len() - start.len();
+                other.fit.values[own..].copy_from_slice(&start);
+                let refined = self.refine(&other, FULL, FULL_ITERATIONS);
+                let left = refined.fit.cost() - self.evidence.count() as f64;
+                say(&format!("  {:?} anew left {left:.0}", refined.effects));
+                if scale.is_adequate(&refined) {
+                    return vec![refined];
+                }
+            }
+        }
+        Vec::new()
+    }
+
+    /// What an effect may be told when it is asked where to start.
+    fn clues<'b>(
+        &self,
+        from: &'b Hypothesis,
+        periodic: &'b [f64],
+        bumps: &'b [f64],
+    ) -> Clues<'b> {
+        let readings = self
+            .evidence
+            .recordings
+            .iter()
+            .flat_map(|m| m.readings[2].iter());
+        Clues {
+            plant: &from.fit.prediction.plant,
+            largest_force: readings
+                .filter(|f| f.is_finite())
+                .fold(0.0, |a, b| b.max(a)),
+            periodic,
+            bumps,
+        }
+    }
+
+    /// Takes effects out of the best hypothesis as long as it scores better without.
+    fn eliminate(&self, full: &mut Vec<Hypothesis>, say: &mut dyn FnMut(&str)) {
+        while let Some(best) = full.first()
+            && best.effects.len() > 1 + self.shown.len()
+        {
+            let score = self.score(best);
+            let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
+                .map(|index| self.without(best, index))
+                .collect();
+            fewer.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            let lighter = fewer.swap_remove(0);
+            say(&format!(
+                "  without: {:?} {:.1} against {score:.1}",
+                lighter.effects,
+                self.score(&lighter)
+            ));
+            let better = self.score(&lighter) < score;
+            full.push(lighter);
+            full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if !better {
+                break;
+            }
+        }
+    }
+
+    /// A hypothesis without one of its effects, fitted in full from where it was; what the effect freed is held to its tolerance again.
+    fn without(&self, hypothesis: &Hypothesis, index: usize) -> Hypothesis {
+        let fit = &hypothesis.fit;
+        let plant = &fit.prediction.plant;
+        let counts: Vec<usize> = hypothesis
+            .effects
+            .iter()
+            .map(|e| (e.parameters)(&self.believed).len())
+            .collect();
+        let own = fit.free.len() - counts.iter().sum::<usize>();
+        let start = own + counts[..index].iter().sum::<usize>();
+        let kept = fit.free.iter().zip(&fit.values).enumerate();
+        let others: Vec<Free> = kept
+            .filter(|(i, _)| *i >= own && !(start..start + counts[index]).contains(i))
+            .map(|(_, (f, value))| Free {
+                start: *value,
+                ..*f
+            })
+            .collect();
+        let mut free: Vec<Free> = self
+            .tolerated
+            .iter()
+            .filter(|f| !others.iter().any(|o| same(o, f, &self.believed)))
+            .map(|f| Free {
+                start: f.clamp((f.quantity.get)(plant)),
+                ..*f
+            })
+            .collect();
+        free.extend(others);
+        let mut effects = hypothesis.effects.clone();
+        effects.remove(index);
+        self.fitted(
+            effects,
+            &self.believed,
+            &free,
+            FULL,
+            FULL_ITERATIONS,
+            None,
+        )
+    }
+
+    /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.
+    fn add_small(&self, full: &mut Vec<Hypothesis>, scale: &Scale, say: &mut dyn FnMut(&str)) {
+        while let Some(best) = full.first()
+            && best.effects.len() < MOST_EFFECTS + self.shown.len()
+            && scale.is_adequate(best)
+        {
+            let score = self.score(best);
+            let least = scale.material_in_full(best.fit.cost());
+            let precise = &FULL[FULL.len() - 1..];
+            let Some(more) = self.screen(best, precise).into_iter().next() else {
+                return;
+            };
+            if score - self.score(&more) <= least {
+                return;
+            }
+            let more = self.refine(&more, precise, FULL_ITERATIONS);
+            let gain = score - self.score(&more);
+            say(&format!("  small: {:?} gain {gain:.1}", more.effects));
+            if gain <= least {
+                return;
+            }
+            full.insert(0, more);
+        }
+    }
+
+    /// Where an effect has a number without values between, takes the one that fits best roughly, from where the fit is.
+    fn choose(&self, hypothesis: &mut Hypothesis) {
+        let parameters = hypothesis
+            .effects
+            .iter()
+            .flat_map(|effect| (effect.parameters)(&self.believed));
+        let parameters: Vec<_> = parameters.collect();
+        let own = hypothesis.fit.free.len() - parameters.len();
+        for (index, parameter) in parameters.iter().enumerate() {
+            let present = hypothesis.fit.values[own + index];
+            let mut tried: Vec<Hypothesis> = parameter
+                .choices
+                .par_iter()
+                .filter(|choice| **choice != present)
+                .map(|choice| {
+                    let mut other = hypothesis.clone();
+                    other.fit.values[own + index] = *choice;
+                    self.refine(&other, ROUGH, 6)
+                })
+                .collect();
+            tried.sort_by(|a, b| a.fit.rough.total_cmp(&b.fit.rough));
+            if let Some(best) = tried.into_iter().next()
+                && best.fit.rough < hypothesis.fit.rough
+            {
+                *hypothesis = best;
+            }
+        }
     }
 
     /// Fits everything that is free in a hypothesis: the effects from where they are, what is tolerated from what was believed, because a model that

@@ -17,6 +17,7 @@ fn reported(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Par
         coordinate,
         bounds,
         reported: true,
+        choices: &[],
     }
 }
 fn hidden(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Parameter {
@@ -25,6 +26,7 @@ fn hidden(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Param
         coordinate,
         bounds,
         reported: false,
+        choices: &[],
     }
 }
 
@@ -87,11 +89,15 @@ fn oscillator(p: &PlantParameters) -> SecondOrder {
         damping_ratio: 1.0,
     })
 }
-/// Volume [m3] and resistance [Pa s/kg] of the line, at its smallest flows; where there is none, of one to begin with.
-fn line(p: &PlantParameters) -> (f64, f64) {
-    p.device.hose.map_or((1e-5, 1e8), |h| {
-        (h.volume, h.resistance_at_rest(p.device.gas.atmosphere))
+/// Volume [m3], resistance [Pa s/kg] at its smallest flows, and segments of the line; where there is none, of one to begin with.
+fn line(p: &PlantParameters) -> (f64, f64, usize) {
+    p.device.hose.map_or((1e-5, 1e8, 2), |h| {
+        let resistance = h.resistance_at_rest(p.device.gas.atmosphere);
+        (h.volume, resistance, h.segments())
     })
+}
+fn set_line(p: &mut PlantParameters, (volume, resistance, segments): (f64, f64, usize)) {
+    p.device.hose = Some(Hose::in_segments(volume, resistance, segments));
 }
 fn reservoir(p: &PlantParameters) -> SupplyReservoir {
     p.device
@@ -499,7 +505,7 @@ pub static CATALOGUE: &[Effect] = &[
                     Quantity {
                         name: "volume_m3",
                         get: |p| p.device.hose.map_or(0.0, |h| h.volume),
-                        set: |p, v| p.device.hose = Some(Hose::lumped(v, line(p).1)),
+                        set: |p, v| set_line(p, (v, line(p).1, line(p).2)),
                     },
                     Logarithmic,
                     [1e-6, 2e-3],
@@ -508,21 +514,33 @@ pub static CATALOGUE: &[Effect] = &[
                     Quantity {
                         name: "resistance_pa_s_per_kg",
                         get: |p| p.device.hose.map_or(0.0, |_| line(p).1),
-                        set: |p, v| p.device.hose = Some(Hose::lumped(line(p).0, v)),
+                        set: |p, v| set_line(p, (line(p).0, v, line(p).2)),
                     },
                     Logarithmic,
                     [1e6, 5e9],
                 ),
+                Parameter {
+                    choices: &[1.0, 2.0, 3.0, 4.0, 8.0],
+                    ..hidden(
+                        Quantity {
+                            name: "segments",
+                            get: |p| p.device.hose.map_or(0.0, |h| h.segments() as f64),
+                            set: |p, v| set_line(p, (line(p).0, line(p).1, v.round() as usize)),
+                        },
+                        Linear(1.0),
+                        [1.0, 8.0],
+                    )
+                },
             ]
         },
         starts: |_| {
             vec![
-                vec![2e-5, 3e7],
-                vec![5e-5, 5e7],
-                vec![5e-5, 3e8],
-                vec![1.5e-4, 5e7],
-                vec![1.5e-4, 3e8],
-                vec![4e-4, 1e8],
+                vec![2e-5, 3e7, 2.0],
+                vec![5e-5, 5e7, 2.0],
+                vec![5e-5, 3e8, 2.0],
+                vec![1.5e-4, 5e7, 2.0],
+                vec![1.5e-4, 3e8, 2.0],
+                vec![4e-4, 1e8, 2.0],
             ]
         },
     },

@@ -48,6 +48,8 @@ pub struct Parameter {
     pub bounds: [f64; 2],
     /// Is it a part of the answer, or only of the model?
     pub reported: bool,
+    /// Values between which a fit chooses, where there are no values between them; nothing for what varies continuously.
+    pub choices: &'static [f64],
 }
 
 /// What is known when an effect is asked where a fit might start.

@@ -11,12 +11,13 @@
 //! slopes of both: the flow has no kink and never falls as the pressure difference grows.
 //!
 //! Instead of a tube's law a line can have a constant resistance R_h = (p_in - p_h) / m_dot [Pa s/kg]: one that stands for fittings, or for an
-//! effect to be told apart.
+//! effect to be told apart. Such a line can be distributed (`super::line_chain`): resistance and volume in segments, one behind the other.
 //! Leaves out: roughness (a plastic hose is smooth); the losses at both ends and the air's acceleration, together 1.5 + 2 ln(p_in/p_h) beside f l/d, as
 //! much as 60 to 100 diameters of hose, and with them choking; the wave's delay of l over the speed of sound, 3 ms/m.
 
 use super::flow_slope::FlowSlope;
 use super::gas::Gas;
+use super::line_chain::MOST_SEGMENTS;
 
 /// Viscosity of air at 20 degrees Celsius [Pa s].
 const VISCOSITY: f64 = 1.82e-5;
@@ -41,8 +42,10 @@ pub struct Hose {
 enum LineLaw {
     /// In proportion to their difference.
     Constant {
-        /// Resistance [Pa s/kg].
+        /// Resistance of each segment [Pa s/kg].
         resistance: f64,
+        /// Segments one behind the other.
+        segments: usize,
     },
     /// As a tube's, laminar and turbulent.
     Tube {
@@ -68,13 +71,48 @@ impl Hose {
 
     /// A volume [m3] behind a constant resistance [Pa s/kg].
     pub fn lumped(volume: f64, resistance: f64) -> Self {
+        Self::in_segments(volume, resistance, 1)
+    }
+
+    /// A volume [m3] and a constant resistance [Pa s/kg] spread evenly over a number of segments, from 1 to [`MOST_SEGMENTS`].
+    pub fn in_segments(volume: f64, resistance: f64, segments: usize) -> Self {
+        let segments = segments.clamp(1, MOST_SEGMENTS);
         Self {
             volume,
-            law: LineLaw::Constant { resistance },
+            law: LineLaw::Constant {
+                resistance: resistance / segments as f64,
+                segments,
+            },
         }
     }
 
-    /// Mass flow into the line's volume [kg/s] from a pressure before it and the pressure in it [Pa absolute].
+    /// Segments one behind the other.
+    pub fn segments(&self) -> usize {
+        match self.law {
+            LineLaw::Constant { segments, .. } => segments,
+            LineLaw::Tube { .. } => 1,
+        }
+    }
+
+    /// Volume of each segment [m3].
+    pub fn segment_volume(&self) -> f64 {
+        self.volume / self.segments() as f64
+    }
+
+    /// The last segment with another constant resistance before it [Pa s/kg].
+    pub fn last_behind(&self, resistance: f64) -> Self {
+        Self::lumped(self.segment_volume(), resistance)
+    }
+
+    /// Resistance of a segment [Pa s/kg] of a line whose resistance is constant.
+    pub fn segment_resistance(&self) -> Option<f64> {
+        match self.law {
+            LineLaw::Constant { resistance, .. } => Some(resistance),
+            LineLaw::Tube { .. } => None,
+        }
+    }
+
+    /// Mass flow into a segment's volume [kg/s] from the pressure before it and the pressure in it [Pa absolute].
     pub fn mass_flow(&self, before: f64, within: f64) -> f64 {
         self.flow_slope(before, within).flow
     }
@@ -82,7 +120,7 @@ impl Hose {
     /// That flow, with its slope over the pressure in the line.
     fn flow_slope(&self, before: f64, within: f64) -> FlowSlope {
         match self.law {
-            LineLaw::Constant { resistance } => FlowSlope {
+            LineLaw::Constant { resistance, .. } => FlowSlope {
                 flow: (before - within) / resistance,
                 slope: -1.0 / resistance,
             },
@@ -101,7 +139,10 @@ impl Hose {
     /// Pressure drop over mass flow of the smallest flows, about a pressure [Pa absolute]: [Pa s/kg].
     pub fn resistance_at_rest(&self, pressure: f64) -> f64 {
         match self.law {
-            LineLaw::Constant { resistance } => resistance,
+            LineLaw::Constant {
+                resistance,
+                segments,
+            } => resistance * segments as f64,
             LineLaw::Tube { .. } => -1.0 / self.flow_slope(pressure, pressure).slope,
         }
     }
@@ -109,7 +150,10 @@ impl Hose {
     /// Pressure before the line [Pa absolute] that drives a mass flow [kg/s] against a pressure in it [Pa absolute].
     pub fn pressure_before(&self, mass_flow: f64, within: f64) -> f64 {
         match self.law {
-            LineLaw::Constant { resistance } => within + resistance * mass_flow,
+            LineLaw::Constant {
+                resistance,
+                segments,
+            } => within + resistance * segments as f64 * mass_flow,
             LineLaw::Tube { flow, drive } => {
                 let k = drive_of(mass_flow.abs() / flow).copysign(mass_flow);
                 (within * within + k / drive).max(0.0).sqrt()
@@ -122,7 +166,7 @@ impl Hose {
     pub fn drawn(&self, before: f64, within: f64, onward: f64) -> FlowSlope {
         let inward = self.flow_slope(before, within);
         let over_before = match self.law {
-            LineLaw::Constant { resistance } => 1.0 / resistance,
+            LineLaw::Constant { resistance, .. } => 1.0 / resistance,
             LineLaw::Tube { .. } => -inward.slope * before / within,
         };
         FlowSlope {

@@ -11,6 +11,7 @@ pub mod gas_process;
 pub mod hose;
 pub mod iso_6358;
 pub mod leakage;
+pub mod line_chain;
 pub mod orifice;
 pub mod piston;
 pub mod push_only;

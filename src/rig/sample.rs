@@ -100,7 +100,7 @@ impl RigLog {
             f64::from(u8::from(device.valve == ValvePosition::Extend)),
             device.air.masses[0],
             device.air.masses[1],
-            device.air.hose_mass,
+            device.air.line_mass(),
             device.air.entered,
             device.air.left,
             readings.force,

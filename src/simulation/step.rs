@@ -342,7 +342,7 @@ impl<'a> Simulation<'a> {
             gas.atmosphere + set_pressure,
             self.device.air.masses[0],
             self.device.air.masses[1],
-            self.device.air.hose_mass,
+            self.device.air.line_mass(),
             self.device.air.entered,
             self.device.air.left,
             across.length(),

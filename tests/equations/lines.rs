@@ -120,6 +120,32 @@ fn a_line_of_any_size_is_accurate_in_few_substeps() {
     reached("sub-steps of a millisecond", dearest, 6.0);
 }
 
+// Catches: air lost between segments; segments that exchange it faster than a sub-step and swing; a step of no length that a segment divides by.
+#[test]
+fn a_line_in_segments_keeps_its_air_and_many_are_one_tube_of_evenly_spread_resistance() {
+    let in_segments = |segments| DeviceParameters {
+        hose: Some(Hose::in_segments(1.2e-4, 8e7, segments)),
+        ..usual()
+    };
+    let (coarse, _) = course(&in_segments(8), 2);
+    let (fine, _) = course(&in_segments(8), 40);
+    let apart = |a: &[[f64; 3]], b: &[[f64; 3]]| {
+        let pairs = a.iter().zip(b);
+        pairs.map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max)
+    };
+    reached(
+        "segments, default sub-steps against forty",
+        apart(&coarse, &fine),
+        1e-4,
+    );
+    // The error of the number of segments falls in proportion to it.
+    let (one, _) = course(&in_segments(1), 2);
+    let (four, _) = course(&in_segments(4), 2);
+    let (far, near) = (apart(&one, &coarse), apart(&four, &coarse));
+    println!("one segment off by {far:.1e}, four by {near:.1e}");
+    assert!(far > 4.0 * near && near > 1e-3, "{far} {near}");
+}
+
 /// Pressure in a chamber of fixed volume and in its line [Pa absolute] at a time [s], by Runge-Kutta of the two equations in microseconds.
 fn filled_by_hand(parameters: &DeviceParameters, outlet: f64, start: f64, time: f64) -> [f64; 2] {
     let hose = parameters.hose.unwrap();

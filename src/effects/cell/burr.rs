@@ -41,6 +41,7 @@ pub(super) const EFFECT: Effect = Effect {
                 coordinate: Logarithmic,
                 bounds: [2e-4, 0.02],
                 reported: false,
+                choices: &[],
             },
         ]
     },

@@ -59,6 +59,7 @@ fn reported(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Par
         coordinate,
         bounds,
         reported: true,
+        choices: &[],
     }
 }
 

@@ -1,0 +1,67 @@
+//! What counts as noise, as adequate, and as worth a mention, on the scale of what there is to explain.
+//!
+//! A law of the catalogue is an idealisation: what it leaves of a large mismatch is large beside the noise and says nothing of other physics. So an
+//! effect beside another must gain a share of what that one gained, not only more than noise could.
+
+use super::evidence::Evidence;
+use super::fit::robust_sum;
+use super::search::Hypothesis;
+
+/// Standard deviations of the sum of squares that noise alone may come to [1].
+const SPREAD: f64 = 6.0;
+/// Share of the mismatch that the idealisation of a law may leave [1].
+const IDEALISATION: f64 = 0.02;
+/// Share of what is explained already below which one more effect is not told from the idealisation of the others [1].
+const IMMATERIAL: f64 = 1e-3;
+
+/// The scale of a search.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale {
+    /// Samples.
+    count: f64,
+    /// Sum of squares that noise alone has, roughly [1].
+    noise: f64,
+    /// Cost of the believed model within its tolerances, roughly and in full [1].
+    rough: f64,
+    full: f64,
+}
+
+impl Scale {
+    pub fn of(evidence: &Evidence, baseline: &Hypothesis, noise: f64) -> Self {
+        let fit = &baseline.fit;
+        let free = evidence.predict(&fit.prediction.plant, false, None);
+        Self {
+            count: evidence.count() as f64,
+            noise,
+            rough: fit.rough,
+            full: robust_sum(&free.residuals) + fit.prior,
+        }
+    }
+
+    /// What chance may add to the rough cost of noise [1].
+    pub fn rough_spread(&self) -> f64 {
+        let chance = SPREAD * (2.0 * self.noise).sqrt();
+        chance.max(IDEALISATION * IDEALISATION * (self.rough - self.noise))
+    }
+
+    /// Does a hypothesis that was fitted in full leave noise, or no more than the idealisation of its laws?
+    pub fn is_adequate(&self, hypothesis: &Hypothesis) -> bool {
+        let left = hypothesis.fit.cost() - self.count;
+        let chance = SPREAD * (2.0 * self.count).sqrt();
+        let idealised = match hypothesis.effects.len() {
+            0 => 0.0,
+            _ => IDEALISATION * (self.full - self.count),
+        };
+        left < chance.max(idealised)
+    }
+
+    /// What one more effect must gain roughly beside a hypothesis of a rough cost [1].
+    pub fn material(&self, rough: f64) -> f64 {
+        IMMATERIAL * (self.rough - rough).max(0.0)
+    }
+
+    /// The same in full.
+    pub fn material_in_full(&self, cost: f64) -> f64 {
+        IMMATERIAL * (self.full - cost).max(0.0)
+    }
+}
