@@ -37,6 +37,7 @@ pub mod path;
 pub mod physics;
 pub mod plant;
 pub mod recording;
+pub mod replay;
 pub mod report;
 pub mod rig;
 pub mod scenario;

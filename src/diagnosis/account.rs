@@ -1,7 +1,7 @@
 //! The account: what an engineer can act on.
 
 use super::conclude::IN_TURN;
-use super::diagnose::{Diagnosis, Ranked};
+use super::diagnose::{Diagnosis, Ranked, names_of};
 use super::localise::{Link, LinkResidual, Misfit, NOISE_ALONE, misfits};
 use super::regime::Regime;
 use super::words::{
@@ -51,12 +51,7 @@ impl Diagnosis {
     }
 
     fn headline(&self) -> String {
-        let names: Vec<String> = self
-            .best()
-            .effects
-            .iter()
-            .map(|e| e.name.to_owned())
-            .collect();
+        let names = names_of(self.best());
         if names.is_empty() {
             "nothing is missing".to_owned()
         } else {

@@ -10,6 +10,7 @@ use super::estimate::Number;
 use super::fit::robust_sum;
 use super::localise::{Link, NOISE_ALONE, misfits, robust_rms};
 use super::recorded::COLUMNS;
+use crate::effects::vocabulary;
 use crate::plant::CHANNELS;
 
 /// Variables named at most for a link.
@@ -71,13 +72,17 @@ impl Diagnosis {
         let effects = self.estimates.effects.iter();
         effects
             .map(|(effect, numbers)| FoundEffect {
-                name: effect.name.to_owned(),
+                name: vocabulary(effect.name).0.to_owned(),
                 subsystem: effect.subsystem.name().to_owned(),
                 confidence: self.confidence(effect.name),
-                parameters: numbers
-                    .iter()
-                    .filter(|number| number.reported)
-                    .map(|number| (number.name.to_owned(), estimate(number)))
+                parameters: joint_of(effect.name)
+                    .into_iter()
+                    .chain(
+                        numbers
+                            .iter()
+                            .filter(|number| number.reported)
+                            .map(|number| (number.name.to_owned(), estimate(number))),
+                    )
                     .collect(),
                 depends_on: Vec::new(),
             })
@@ -268,6 +273,17 @@ impl Diagnosis {
                 .collect(),
         })
     }
+}
+
+/// The joint that an effect is about, as one of its numbers.
+fn joint_of(name: &str) -> Option<(String, Estimate)> {
+    let joint = vocabulary(name).1? as f64;
+    let certain = Estimate {
+        value: joint,
+        low: joint,
+        high: joint,
+    };
+    Some(("joint".to_owned(), certain))
 }
 
 fn estimate(number: &Number) -> Estimate {

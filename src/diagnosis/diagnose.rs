@@ -13,6 +13,7 @@ use super::next_experiment::{Separation, separations};
 use super::recorded::RecordedError;
 use super::regime::{Regime, regimes};
 use super::search::{Hypothesis, Search};
+use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, PlantParameters, simulate};
 
 /// Odds below which an explanation is no alternative [1].
@@ -108,6 +109,8 @@ pub fn diagnose(case: &Case, say: &mut dyn FnMut(&str)) -> Result<Diagnosis, Rec
         evidence: &evidence,
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
+        candidates: case.candidates.clone(),
+        shown: case.shown.clone(),
     };
     let ranked = rank(&search, search.run(say));
     let best = &ranked[0].hypothesis;
@@ -118,7 +121,10 @@ pub fn diagnose(case: &Case, say: &mut dyn FnMut(&str)) -> Result<Diagnosis, Rec
         Some((unseen.name.clone(), errors))
     });
     say("comparing experiments");
-    let experiments = ranked.get(1).map_or_else(Vec::new, |rival| {
+    // The experiments known are those of a bench: what an arm can do is in its programs.
+    let of_bench = evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
+    let rival = ranked.get(1).filter(|_| of_bench);
+    let experiments = rival.map_or_else(Vec::new, |rival| {
         separations(&evidence, &best.fit, &rival.hypothesis.fit)
     });
     Ok(Diagnosis {
@@ -260,5 +266,10 @@ impl Diagnosis {
 /// Names of an explanation's effects.
 pub fn names_of(hypothesis: &Hypothesis) -> Vec<String> {
     let effects = hypothesis.effects.iter();
-    effects.map(|effect| effect.name.to_owned()).collect()
+    effects
+        .map(|effect| match vocabulary(effect.name) {
+            (name, Some(joint)) => format!("{name} (joint {joint})"),
+            (name, None) => name.to_owned(),
+        })
+        .collect()
 }

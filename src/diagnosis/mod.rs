@@ -21,5 +21,6 @@ pub mod recorded;
 pub mod regime;
 mod scale;
 pub mod search;
+pub mod servo;
 pub mod spectrum;
 pub mod words;

@@ -172,7 +172,7 @@ impl Recorded {
 }
 
 /// Puts the value before it in place of each lost one, and counts them.
-fn hold(values: &mut [f64]) -> usize {
+pub fn hold(values: &mut [f64]) -> usize {
     let mut filled = 0;
     for index in 1..values.len() {
         if values[index].is_nan() {

@@ -27,7 +27,7 @@ const HOPELESS: f64 = 300.0;
 /// Share of what a hypothesis leaves unexplained that one more effect must explain, or the search stagnates [1].
 const STAGNATION: f64 = 0.5;
 /// Cost of having looked at so many effects: twice the logarithm of their number [1].
-const LOOK_ELSEWHERE: f64 = 7.0;
+pub const LOOK_ELSEWHERE: f64 = 7.0;
 
 /// A set of effects, fitted together with what is tolerated.
 #[derive(Debug, Clone)]
@@ -381,12 +381,7 @@ impl Search<'_> {
     }
 
     /// What an effect may be told when it is asked where to start.
-    fn clues<'b>(
-        &self,
-        from: &'b Hypothesis,
-        periodic: &'b [f64],
-        bumps: &'b [f64],
-    ) -> Clues<'b> {
+    fn clues<'b>(&self, from: &'b Hypothesis, periodic: &'b [f64], bumps: &'b [f64]) -> Clues<'b> {
         let readings = self
             .evidence
             .recordings
@@ -458,14 +453,7 @@ impl Search<'_> {
         free.extend(others);
         let mut effects = hypothesis.effects.clone();
         effects.remove(index);
-        self.fitted(
-            effects,
-            &self.believed,
-            &free,
-            FULL,
-            FULL_ITERATIONS,
-            None,
-        )
+        self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None)
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.

@@ -1,6 +1,10 @@
 //! From the commands of a recorded cell to what its device feels: the arm's course along the part's edge.
 
-use crate::arm::chain::{BodyInertia, Chain, JointKind, MAX_JOINTS};
+mod load;
+
+pub use load::LoadedCell;
+
+use crate::arm::chain::{BodyInertia, Chain, MAX_JOINTS};
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::link_poses;
 use crate::plant::{CellCourse, EdgeStation, INERTIA_EVERY, JointCourse, MOST_JOINTS, follow};
@@ -139,15 +143,5 @@ impl ReplayCell {
             last.body = last.body.welded_to(&device.seen_from(&tip));
         }
         chain
-    }
-
-    /// Do all joints turn, and are there as many as can be told apart?
-    pub fn is_served(&self) -> bool {
-        self.chain.len() <= MOST_JOINTS
-            && self
-                .chain
-                .joints
-                .iter()
-                .all(|joint| joint.kind == JointKind::Revolute)
     }
 }

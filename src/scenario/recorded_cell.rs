@@ -15,6 +15,11 @@ use super::load;
 use super::sections::recorded_cell_sections;
 use super::workpiece::workpiece;
 use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, WorkpieceScenario};
+use crate::effects::Effect;
+
+mod effects;
+
+pub use effects::{FoundNumbers, apply, improved_cell_text};
 
 /// The file.
 #[derive(Debug, Deserialize)]
@@ -33,6 +38,8 @@ pub(super) struct RecordedCellFile {
     pub sensors: SensorsKeys,
     #[serde(default)]
     pub belief: BeliefKeys,
+    #[serde(default)]
+    pub effect: effects::EffectKeys,
 }
 
 /// `[joints]`.
@@ -69,6 +76,10 @@ pub(super) struct BeliefKeys {
 pub struct RecordedCell {
     /// File that it was read from.
     pub path: PathBuf,
+    /// Its text.
+    text: String,
+    /// Effects that the file names, in the order of the catalogue, with all their numbers.
+    pub effects: Vec<(&'static Effect, Vec<f64>)>,
     /// Name for people.
     pub title: String,
     /// The robot arm; its servo is in `servo_bandwidth`.
@@ -128,6 +139,8 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let standard = DVec3::new(0.0, 0.0, -9.81);
     Ok(RecordedCell {
         path: path.to_owned(),
+        effects: effects::effects(&document, &file.effect)?,
+        text: text.clone(),
         title: section("").text("title", &file.title)?,
         arm: load::arm(&section("arm"), &file.arm)?,
         workpiece: part,

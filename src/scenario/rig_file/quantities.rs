@@ -75,7 +75,7 @@ pub(super) const SENSOR_KEYS: [(&str, [f64; 2]); 5] = [
 const AMPLE_SUPPLY: f64 = 16e5;
 
 /// The believed model with all that a file does not say: no friction, no leaks, isothermal chambers, ideal sensors. Its numbers are for the file to set.
-pub(super) fn blank() -> PlantParameters {
+pub(in super::super) fn blank() -> PlantParameters {
     PlantParameters {
         device: DeviceParameters {
             regulator: RegulatorParameters {
