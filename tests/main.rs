@@ -19,6 +19,7 @@ mod paper_page;
 mod predict;
 mod program;
 mod real_robots;
+mod recorded_cell;
 mod rig_file;
 mod stiff_reference;
 mod stops;

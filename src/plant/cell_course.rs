@@ -7,7 +7,7 @@
 //! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out (a burr is met by the ball alone, `carrier`), x stroke. Joints that are off turn all behind them about their axes, from the last
 //! one to the first: the product of exponentials (Brockett, 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
 
-use super::cell_parameters::CellParameters;
+use super::cell_parameters::{CellParameters, MOST_JOINTS};
 use super::servo::follow;
 use glam::{DQuat, DVec3};
 use nalgebra::DMatrix;
@@ -59,6 +59,8 @@ pub struct CellCourse {
     pub edge_middle: f64,
     /// Radius of the ball [m].
     pub ball_radius: f64,
+    /// Levers of the joints; see [`CellCourse::levers_of`].
+    pub levers: Vec<Levers>,
     /// Mass matrices of every [`INERTIA_EVERY`]th sample, without the moving mass's along the slide [kg m2].
     pub inertia: Vec<DMatrix<f64>>,
     /// Moving mass [kg].
@@ -69,6 +71,17 @@ pub struct CellCourse {
     pub usual_stroke: f64,
     /// Gravity [m/s2].
     pub gravity: DVec3,
+}
+
+/// Levers of the joints in one sample: of the ball at no stroke, and what a stroke adds to them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Levers {
+    /// Along the bisector [m], [1].
+    pub lift: [[f64; MOST_JOINTS]; 2],
+    /// Along the edge [m], [1].
+    pub slip: [[f64; MOST_JOINTS]; 2],
+    /// Along the slide [m].
+    pub axial: [f64; MOST_JOINTS],
 }
 
 /// What the device feels of it, one value per sample.
@@ -102,6 +115,30 @@ impl CellCourse {
     /// Is there no sample?
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
+    }
+
+    /// Levers of a sample, for `levers`.
+    pub fn levers_of(&self, i: usize) -> Levers {
+        let edge = &self.edge[i];
+        let zero = [0.0; MOST_JOINTS];
+        let mut levers = Levers {
+            lift: [zero; 2],
+            slip: [zero; 2],
+            axial: zero,
+        };
+        for (j, joint) in self.joints.iter().enumerate() {
+            let axis = joint.axis[i];
+            let swings = [
+                axis.cross(self.ball[i] - joint.origin[i]),
+                axis.cross(self.slide[i]),
+            ];
+            for (part, swing) in swings.into_iter().enumerate() {
+                levers.lift[part][j] = swing.dot(edge.bisector);
+                levers.slip[part][j] = swing.dot(edge.tangent);
+            }
+            levers.axial[j] = swings[0].dot(self.slide[i]);
+        }
+        levers
     }
 
     /// What the device feels.

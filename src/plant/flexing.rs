@@ -65,18 +65,6 @@ pub(super) struct Swung {
     pub acceleration: f64,
 }
 
-/// Levers of one sample.
-struct Levers {
-    /// Along the bisector [m].
-    lift: Joints,
-    /// Along the edge [m].
-    slip: Joints,
-    /// Along the slide [m].
-    axial: Joints,
-    /// Turning of the slide towards the bisector [1].
-    turn: Joints,
-}
-
 impl<'a> Flexing<'a> {
     /// At rest; none where no joint gives.
     pub fn new(course: &'a CellCourse, cell: &'a CellParameters) -> Option<Self> {
@@ -92,37 +80,25 @@ impl<'a> Flexing<'a> {
         })
     }
 
-    fn levers(&self, i: usize, stroke: f64) -> Levers {
-        let edge = &self.course.edge[i];
-        let slide = self.course.slide[i];
-        let ball = self.course.ball[i] + slide * stroke;
-        let zero = [0.0; MOST_JOINTS];
-        let mut levers = Levers {
-            lift: zero,
-            slip: zero,
-            axial: zero,
-            turn: zero,
-        };
-        for (j, joint) in self.course.joints.iter().enumerate() {
-            let swing = joint.axis[i].cross(ball - joint.origin[i]);
-            levers.lift[j] = swing.dot(edge.bisector);
-            levers.slip[j] = swing.dot(edge.tangent);
-            levers.axial[j] = swing.dot(slide);
-            levers.turn[j] = joint.axis[i].cross(slide).dot(edge.bisector);
-        }
-        levers
+    /// Levers along the bisector at a stroke [m].
+    fn lift(&self, i: usize, stroke: f64) -> Joints {
+        let [fixed, turn] = &self.course.levers[i].lift;
+        std::array::from_fn(|j| fixed[j] + stroke * turn[j])
     }
 
     /// Where the surface is now, and where it goes.
     pub fn now(&self, i: usize, stroke: f64, share: f64) -> Swung {
-        let levers = self.levers(i, stroke);
+        self.swung(i, &self.lift(i, stroke), share)
+    }
+
+    fn swung(&self, i: usize, lift: &Joints, share: f64) -> Swung {
         Swung {
             surface: [
-                dot(&levers.lift, &self.deflection) / share,
-                dot(&levers.lift, &self.speed) / share,
+                dot(lift, &self.deflection) / share,
+                dot(lift, &self.speed) / share,
                 0.0,
             ],
-            turned: dot(&levers.turn, &self.deflection),
+            turned: dot(&self.course.levers[i].lift[1], &self.deflection),
             acceleration: 0.0,
         }
     }
@@ -130,7 +106,11 @@ impl<'a> Flexing<'a> {
     /// Advances over `h` [s] from sample `i` under forces as they are now.
     pub fn advance(&mut self, felt: &Felt, i: usize, h: f64, forces: Bending) -> Swung {
         let share = felt.share[i];
-        let levers = self.levers(i, forces.stroke);
+        let lift = self.lift(i, forces.stroke);
+        let levers = &self.course.levers[i];
+        let [fixed, turn] = &levers.slip;
+        let slip: Joints = std::array::from_fn(|j| fixed[j] + forces.stroke * turn[j]);
+        let axial = &levers.axial;
         let key = Key {
             inertia: i / INERTIA_EVERY,
             touching: forces.contact > 0.0,
@@ -145,15 +125,15 @@ impl<'a> Flexing<'a> {
             [0.0; 2]
         };
         let implicit = 0.25 * h * spring + 0.5 * damper;
-        let lifting = dot(&levers.lift, &self.speed);
+        let lifting = dot(&lift, &self.speed);
         let contact = forces.contact + 0.5 * h * spring * share * forces.speed
             - (0.25 * h * spring - 0.5 * damper) * lifting;
         let mut right = [0.0; MOST_JOINTS];
         for j in 0..self.count {
-            let motor = self.course.joints[j].torque[i] - levers.axial[j] * felt.carried[i];
-            let bent = levers.lift[j] + share * levers.axial[j];
+            let motor = self.course.joints[j].torque[i] - axial[j] * felt.carried[i];
+            let bent = lift[j] + share * axial[j];
             right[j] = bent * contact
-                - levers.axial[j] * forces.push
+                - axial[j] * forces.push
                 - motor
                 - halved[j] * self.speed[j]
                 - stiffness[j] * self.deflection[j];
@@ -164,8 +144,8 @@ impl<'a> Flexing<'a> {
         if self.inverse.as_ref().is_none_or(|(known, _)| *known != key) {
             let matrix = DMatrix::from_fn(self.count, self.count, |j, k| {
                 let own = if j == k { halved[j] } else { 0.0 };
-                let bent = levers.lift[j] + share * levers.axial[j];
-                inertia[(j, k)] / h + own + implicit * bent * levers.lift[k]
+                let bent = lift[j] + share * axial[j];
+                inertia[(j, k)] / h + own + implicit * bent * lift[k]
             });
             // A mass matrix with springs has an inverse.
             let inverse = matrix
@@ -174,21 +154,21 @@ impl<'a> Flexing<'a> {
             self.inverse = Some((key, inverse.as_slice().to_vec()));
         }
         let freely = self.solve(&right);
-        let dragged = self.solve(&levers.slip);
+        let dragged = self.solve(&slip);
         let most = self.cell.friction * forces.contact;
         let grip = most / SLIDING;
-        let speed = felt.speed[i] + dot(&levers.slip, &freely);
-        let give = dot(&levers.slip, &dragged);
+        let speed = felt.speed[i] + dot(&slip, &freely);
+        let give = dot(&slip, &dragged);
         let mut friction = grip * speed / (1.0 + grip * give);
         if friction.abs() > most {
             friction = most * friction.signum();
         }
-        let mut swung = self.now(i, forces.stroke, share);
+        let mut swung = self.swung(i, &lift, share);
         for j in 0..self.count {
             let end = freely[j] - friction * dragged[j];
             let rate = (end - self.speed[j]) / h;
-            swung.surface[2] += 0.5 * levers.lift[j] * rate / share;
-            swung.acceleration += levers.axial[j] * rate;
+            swung.surface[2] += 0.5 * lift[j] * rate / share;
+            swung.acceleration += axial[j] * rate;
             self.deflection[j] += 0.5 * h * (self.speed[j] + end);
             self.speed[j] = end;
         }

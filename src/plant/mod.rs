@@ -19,7 +19,7 @@ mod sensors;
 mod servo;
 mod simulate;
 
-pub use cell_course::{CellCourse, EdgeStation, Felt, INERTIA_EVERY, JointCourse};
+pub use cell_course::{CellCourse, EdgeStation, Felt, INERTIA_EVERY, JointCourse, Levers};
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS};
 pub use contact::{ContactLaw, ContactParameters, Periodic};
 pub use guide::Guide;

@@ -79,6 +79,7 @@ impl ReplayCell {
             edge: commands.edge.to_vec(),
             edge_middle: 0.5 * self.edge_length,
             ball_radius: self.ball_radius,
+            levers: Vec::with_capacity(count),
             inertia: Vec::with_capacity(count / INERTIA_EVERY + 1),
             moving_mass: self.moving_mass,
             mass_behind_ball: self.ball_centre - self.mass_centre,
@@ -126,6 +127,7 @@ impl ReplayCell {
             }
             course.ball.push(ball);
             course.slide.push(slide);
+            course.levers.push(course.levers_of(i));
         }
         course
     }
