@@ -267,7 +267,8 @@ fn what_is_planted_in_a_cell_is_found_placed_and_predicted_with() {
         let mut planted = cell.plant();
         plant(&mut planted);
         let of = |program| record(&cell, &planted, program, &folder);
-        truths.push(PROGRAMS.iter().map(of).next_back().unwrap());
+        let all: Vec<Vec<Vec<f64>>> = PROGRAMS.iter().map(of).collect();
+        truths.push(all[2].clone());
     }
     let outcome = bench.idc(
         &[
@@ -405,9 +406,9 @@ fn the_laboratory_s_nothing_is_nothing() {
     let middle = loaded
         .course(&[0.0, 2e-3], &[0.15; 2], &vec![vec![0.0; 2]; 6], 25.0)
         .edge[0];
-    assert!((middle.point - glam::DVec3::new(0.75, 0.0, -0.10)).length() < 1e-9);
+    assert!((middle.point - glam::DVec3::new(0.75, 0.0, -0.10)).length() < 1e-7);
     let bisector = glam::DVec3::new(-1.0, 0.0, 1.0).normalize();
-    assert!((middle.bisector - bisector).length() < 1e-9);
+    assert!((middle.bisector - bisector).length() < 1e-7);
     // The sixth case is a control.
     let bench = Bench::new("plate_edge");
     let case = shared.join("practice/cases/case-06");

@@ -119,11 +119,7 @@ pub fn choose_edge(
 }
 
 /// The stretch must lie on the edge, up to once round a closed one.
-fn check_stretch(
-    file: &Path,
-    choice: &EdgeChoice,
-    curve: &EdgeCurve,
-) -> Result<(), CellError> {
+fn check_stretch(file: &Path, choice: &EdgeChoice, curve: &EdgeCurve) -> Result<(), CellError> {
     let refuse = |key, value, expected| {
         Err(CellError::EdgeStretch {
             file: file.to_owned(),

@@ -1,7 +1,7 @@
 //! The account: what an engineer can act on.
 
 use super::conclude::IN_TURN;
-use super::diagnose::{Diagnosis, Ranked, names_of};
+use super::diagnose::{Diagnosis, Ranked, names_of, spoken_name};
 use super::localise::{Link, LinkResidual, Misfit, NOISE_ALONE, misfits};
 use super::regime::Regime;
 use super::words::{
@@ -184,7 +184,7 @@ impl Diagnosis {
             let subsystem = effect.subsystem.name().replace('_', " ");
             paragraphs.push(format!(
                 "{} ({subsystem}): {}. {}. Probability {}; the intervals are those of 95 %.",
-                effect.name,
+                spoken_name(effect.name),
                 meaning(effect.name),
                 capital(&listed(&numbers)),
                 probability(self.confidence(effect.name))

@@ -266,10 +266,13 @@ impl Diagnosis {
 /// Names of an explanation's effects.
 pub fn names_of(hypothesis: &Hypothesis) -> Vec<String> {
     let effects = hypothesis.effects.iter();
-    effects
-        .map(|effect| match vocabulary(effect.name) {
-            (name, Some(joint)) => format!("{name} (joint {joint})"),
-            (name, None) => name.to_owned(),
-        })
-        .collect()
+    effects.map(|effect| spoken_name(effect.name)).collect()
+}
+
+/// Name of an effect, with the joint that it is about.
+pub fn spoken_name(effect: &str) -> String {
+    match vocabulary(effect) {
+        (name, Some(joint)) => format!("{name} (joint {joint})"),
+        (name, None) => name.to_owned(),
+    }
 }

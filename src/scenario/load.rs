@@ -127,7 +127,10 @@ fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, Scena
     })
 }
 
-pub(super) fn arm(section: &Section<'_>, keys: &file::ArmKeys) -> Result<ArmScenario, ScenarioError> {
+pub(super) fn arm(
+    section: &Section<'_>,
+    keys: &file::ArmKeys,
+) -> Result<ArmScenario, ScenarioError> {
     let packages = Section::new(section.document(), "arm.packages");
     let folder = |(name, folder): (&String, &std::path::PathBuf)| {
         Ok((name.clone(), packages.directory(name, folder)?))

@@ -34,8 +34,8 @@ pub use bench::BenchScenario;
 pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};
 pub use device::load_device;
 pub use error::ScenarioError;
-pub use recorded_cell::{RecordedCell, load_recorded_cell};
 pub use load::{load, load_any, load_bench};
+pub use recorded_cell::{RecordedCell, load_recorded_cell};
 pub use sensing::largest_set_pressure;
 pub use variation::ScenarioTemplate;
 

@@ -199,7 +199,7 @@ fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free>
     let off = scenario.start_stroke_tolerance;
     if off > 0.0 {
         // Anywhere between the stop and as far from it.
-        let start = number!("start_stroke_m", p => p.cell.start_stroke);
+        let start = number!("slide.start_stroke_m", p => p.cell.start_stroke);
         free.push(about(start, 0.5 * off, 0.5 * off / 3f64.sqrt(), [0.0, off]));
     }
     let [time, deviation] = scenario.joint_damping;

@@ -3,7 +3,9 @@
 use crate::device::DeviceParameters;
 use crate::effects::Quantity;
 use crate::physics::regulator::RegulatorParameters;
-use crate::plant::{CellParameters, ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors};
+use crate::plant::{
+    CellParameters, ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors,
+};
 
 /// A number of the file.
 pub(super) struct Row {
