@@ -20,17 +20,17 @@ pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<f64> {
         let Some(cell) = &measured.inputs.cell else {
             continue;
         };
-        for i in 0..n {
+        for (i, left) in stroke.iter().enumerate() {
             // Where the tool stands still it rests on one place for long.
             let moves = i > 0 && cell.edge[i].station != cell.edge[i - 1].station;
-            if !moves || course.truth.contact_force[i] <= 0.0 || !stroke[i].is_finite() {
+            if !moves || course.truth.contact_force[i] <= 0.0 || !left.is_finite() {
                 continue;
             }
             let index = (cell.edge[i].station / CELL).max(0.0) as usize;
             if sums.len() <= index {
                 sums.resize(index + 1, (0.0, 0.0));
             }
-            sums[index].0 += stroke[i];
+            sums[index].0 += left;
             sums[index].1 += 1.0;
         }
     }

@@ -119,7 +119,7 @@ impl ReplayCell {
                 joint.origin.push(poses[j].translation);
                 joint.torque.push(torques[j]);
             }
-            if i % INERTIA_EVERY == 0 {
+            if i.is_multiple_of(INERTIA_EVERY) {
                 mass_matrix(&loaded, &q, &mut masses);
                 // The slide lets the moving mass go its own way along its axis.
                 let own = &levers * levers.transpose() * self.moving_mass;
