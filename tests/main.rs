@@ -22,6 +22,7 @@ mod planted;
 mod predict;
 mod program;
 mod real_robots;
+mod recorded_cell;
 mod rig_file;
 mod stiff_reference;
 mod stops;

@@ -202,6 +202,9 @@ pub(super) struct DiagnoseArguments {
     /// Folder for diagnosis.json, prediction.csv, improved.toml and account.txt [default: runs/<name of the case's folder>].
     #[arg(long)]
     pub(super) out: Option<PathBuf>,
+    /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
+    #[arg(long)]
+    pub(super) scenario: Option<PathBuf>,
     /// Diagnose every folder in it that holds a rig.toml, each into a folder of its name.
     #[arg(long)]
     pub(super) all: bool,

@@ -1,7 +1,7 @@
 //! The account: what an engineer can act on.
 
 use super::conclude::IN_TURN;
-use super::diagnose::{Diagnosis, Ranked};
+use super::diagnose::{Diagnosis, Ranked, names_of, spoken_name};
 use super::links::{Link, LinkResidual};
 use super::localise::{Misfit, NOISE_ALONE, misfits};
 use super::regime::Regime;
@@ -52,12 +52,7 @@ impl Diagnosis {
     }
 
     fn headline(&self) -> String {
-        let names: Vec<String> = self
-            .best()
-            .effects
-            .iter()
-            .map(|e| e.name.to_owned())
-            .collect();
+        let names = names_of(self.best());
         if names.is_empty() {
             "nothing is missing".to_owned()
         } else {
@@ -190,7 +185,7 @@ impl Diagnosis {
             let subsystem = effect.subsystem.name().replace('_', " ");
             paragraphs.push(format!(
                 "{} ({subsystem}): {}. {}. Probability {}; the intervals are those of 95 %.",
-                effect.name,
+                spoken_name(effect.name),
                 meaning(effect.name),
                 capital(&listed(&numbers)),
                 probability(self.confidence(effect.name))

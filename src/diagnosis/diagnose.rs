@@ -14,6 +14,7 @@ use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
 use super::regime::{Regime, regimes};
 use super::search::{Hypothesis, Search, stands_for};
+use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, PlantParameters, simulate};
 
 /// Odds below which an explanation is no alternative [1].
@@ -107,6 +108,8 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
         evidence: &evidence,
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
+        candidates: case.candidates.clone(),
+        shown: case.shown.clone(),
     };
     let ranked = rank(&search, search.run(say));
     let best = &ranked[0].hypothesis;
@@ -117,7 +120,10 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
         Some((unseen.name.clone(), errors))
     });
     say("comparing experiments");
-    let experiments = ranked.get(1).map_or_else(Vec::new, |rival| {
+    // The experiments known are those of a bench: what an arm can do is in its programs.
+    let of_bench = evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
+    let rival = ranked.get(1).filter(|_| of_bench);
+    let experiments = rival.map_or_else(Vec::new, |rival| {
         separations(&evidence, &best.fit, &rival.hypothesis.fit)
     });
     Diagnosis {
@@ -266,7 +272,15 @@ pub fn names_of(hypothesis: &Hypothesis) -> Vec<String> {
     let effects = hypothesis.effects.iter();
     let unnamed = hypothesis.unlisted().map(|_| UNLISTED.to_owned());
     effects
-        .map(|effect| effect.name.to_owned())
+        .map(|effect| spoken_name(effect.name))
         .chain(unnamed)
         .collect()
+}
+
+/// Name of an effect, with the joint that it is about.
+pub fn spoken_name(effect: &str) -> String {
+    match vocabulary(effect) {
+        (name, Some(joint)) => format!("{name} (joint {joint})"),
+        (name, None) => name.to_owned(),
+    }
 }

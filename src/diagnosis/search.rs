@@ -7,7 +7,7 @@ use super::fit::{
 use super::free::{Free, Prior, free_of};
 use super::latent;
 use super::scale::Scale;
-use crate::effects::{CATALOGUE, Clues, Effect};
+use crate::effects::{Clues, Effect};
 use crate::plant::{Latent, PlantParameters};
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ const HOPELESS: f64 = 300.0;
 /// Share of what a hypothesis leaves unexplained that one more effect must explain, or the search stagnates [1].
 const STAGNATION: f64 = 0.5;
 /// Cost of having looked at so many effects: twice the logarithm of their number [1].
-const LOOK_ELSEWHERE: f64 = 7.0;
+pub const LOOK_ELSEWHERE: f64 = 7.0;
 
 /// A set of effects, fitted together with what is tolerated.
 #[derive(Debug, Clone)]
@@ -72,12 +72,28 @@ pub struct Search<'a> {
     pub believed: PlantParameters,
     /// What is tolerated.
     pub tolerated: Vec<Free>,
+    /// Effects that may be at work.
+    pub candidates: Vec<&'static Effect>,
+    /// Effects that a link of its own has shown, with their numbers.
+    pub shown: Vec<Shown>,
+}
+
+/// An effect that a link of its own has shown, such as a servo's in commands and encoders: what it found is what is believed of its numbers.
+#[derive(Debug, Clone)]
+pub struct Shown {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// All its numbers.
+    pub numbers: Vec<Free>,
 }
 
 impl Search<'_> {
     /// The believed model within its tolerances, roughly.
     pub fn baseline(&self) -> Hypothesis {
-        self.fitted(vec![], &self.believed, &self.tolerated, ROUGH, 15, None)
+        let effects = self.shown.iter().map(|shown| shown.effect).collect();
+        let own = self.shown.iter().flat_map(|shown| &shown.numbers);
+        let free: Vec<Free> = self.tolerated.iter().chain(own).copied().collect();
+        self.fitted(effects, &self.believed, &free, ROUGH, 15, None)
     }
 
     fn fitted(
@@ -122,9 +138,12 @@ impl Search<'_> {
     /// What more each effect could explain, roughly: columns of what is free already are taken as they are. Best first.
     pub fn screen(&self, from: &Hypothesis, stages: &[Stage]) -> Vec<Hypothesis> {
         let periodic = super::spectrum::strongest(self.evidence, &from.fit.prediction);
-        let clues = self.clues(from, &periodic);
-        let starts: Vec<(&'static Effect, Vec<f64>)> = CATALOGUE
+        let bumps = super::bumps::strongest(self.evidence, &from.fit.prediction);
+        let clues = self.clues(from, &periodic, &bumps);
+        let starts: Vec<(&'static Effect, Vec<f64>)> = self
+            .candidates
             .iter()
+            .copied()
             .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
             .flat_map(|effect| {
                 (effect.starts)(&clues)
@@ -428,7 +447,7 @@ impl Search<'_> {
             let Some(effect) = candidate.effects.last() else {
                 continue;
             };
-            for start in (effect.starts)(&self.clues(candidate, &[])) {
+            for start in (effect.starts)(&self.clues(candidate, &[], &[])) {
                 let mut other = candidate.clone();
                 let own = other.fit.values.len() - start.len();
                 other.fit.values[own..].copy_from_slice(&start);
@@ -444,7 +463,7 @@ impl Search<'_> {
     }
 
     /// What an effect may be told when it is asked where to start.
-    fn clues<'b>(&self, from: &'b Hypothesis, periodic: &'b [f64]) -> Clues<'b> {
+    fn clues<'b>(&self, from: &'b Hypothesis, periodic: &'b [f64], bumps: &'b [f64]) -> Clues<'b> {
         let readings = self
             .evidence
             .recordings
@@ -456,16 +475,17 @@ impl Search<'_> {
                 .filter(|f| f.is_finite())
                 .fold(0.0, |a, b| b.max(a)),
             periodic,
+            bumps,
         }
     }
 
     /// Takes effects out of the best hypothesis as long as it scores better without.
     fn eliminate(&self, full: &mut Vec<Hypothesis>, say: &mut dyn FnMut(&str)) {
         while let Some(best) = full.first()
-            && best.effects.len() > 1
+            && best.effects.len() > 1 + self.shown.len()
         {
             let score = self.score(best);
-            let mut fewer: Vec<Hypothesis> = (0..best.effects.len())
+            let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
                 .map(|index| self.without(best, index))
                 .collect();
             fewer.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
@@ -521,7 +541,7 @@ impl Search<'_> {
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.
     fn add_small(&self, full: &mut Vec<Hypothesis>, scale: &Scale, say: &mut dyn FnMut(&str)) {
         while let Some(best) = full.first()
-            && best.effects.len() < MOST_EFFECTS
+            && best.effects.len() < MOST_EFFECTS + self.shown.len()
             && scale.is_adequate(best)
         {
             let score = self.score(best);

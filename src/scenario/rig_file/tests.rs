@@ -346,6 +346,7 @@ fn found() -> Vec<ImprovedEffect> {
         plant: &rig.plant,
         largest_force: 200.0,
         periodic: &periodic,
+        bumps: &[],
     };
     let mut groups = BTreeSet::new();
     crate::effects::CATALOGUE
