@@ -7,16 +7,34 @@ use super::fit::{
 use super::free::{Free, Prior, free_of};
 use super::latent;
 use super::scale::Scale;
-use crate::effects::{Clues, Effect};
+use crate::effects::{Clues, Coordinate, Effect, Quantity, Subsystem};
 use crate::plant::{Latent, PlantParameters};
 use rayon::prelude::*;
 
 /// Iterations of the second look at those that promise most.
 const LOOK: usize = 3;
+/// How many starts are looked at with all their derivatives.
+const GLANCED_AT: usize = 30;
+/// A way from no effect to a start: 1 there.
+const WAY: Free = Free {
+    quantity: Quantity {
+        name: "way",
+        get: |_| 0.0,
+        set: |_, _| {},
+    },
+    start: 0.0,
+    coordinate: Coordinate::Linear(1.0),
+    bounds: [-3.0, 3.0],
+    prior: Prior::Flat,
+};
 /// How many get a second look.
 const LOOKED_AT: usize = 7;
 /// Iterations of a full fit.
 const FULL_ITERATIONS: usize = 40;
+/// Iterations of a rough fit without one of the effects.
+const LIGHTER: usize = 8;
+/// Rough cost over the leading one beyond which a hypothesis is not built upon [1].
+const FAR_BEHIND: f64 = 2.0;
 /// Effects at most.
 const MOST_EFFECTS: usize = 3;
 /// Hypotheses that are carried on from each number of effects.
@@ -151,6 +169,18 @@ impl Search<'_> {
                     .map(move |start| (effect, start))
             })
             .collect();
+        let secants: Vec<f64> = starts
+            .par_iter()
+            .map(|(effect, start)| self.secant(from, effect, start, &stages[0]))
+            .collect();
+        let mut promising: Vec<usize> = (0..starts.len()).collect();
+        promising.sort_by(|a, b| secants[*a].total_cmp(&secants[*b]));
+        promising.truncate(GLANCED_AT);
+        promising.sort_unstable();
+        let starts: Vec<(&'static Effect, Vec<f64>)> = promising
+            .into_iter()
+            .map(|index| starts[index].clone())
+            .collect();
         let glances: Vec<f64> = starts
             .par_iter()
             .map(|(effect, start)| self.glance(from, effect, start, &stages[0]))
@@ -202,6 +232,35 @@ impl Search<'_> {
                 )
             })
             .unzip()
+    }
+
+    /// Cost that a hypothesis with one more effect could come to along the way to a start, from that one simulation; nothing for what is cheap to look
+    /// at properly or has a phase, which no single way shows.
+    fn secant(
+        &self,
+        from: &Hypothesis,
+        effect: &'static Effect,
+        start: &[f64],
+        stage: &Stage,
+    ) -> f64 {
+        let new = free_of(effect, &self.believed, start);
+        let (mut free, mut columns) = self.beside(from, &new);
+        let phase = new.iter().any(|f| f.quantity.name == "sine_m");
+        if phase || effect.subsystem == Subsystem::Sensors {
+            return f64::NEG_INFINITY;
+        }
+        let mut values: Vec<f64> = free.iter().map(|f| f.start).collect();
+        free.extend(new);
+        let all: Vec<f64> = free.iter().map(|f| f.start).collect();
+        let plant = with_values(&from.fit.prediction.plant, &free, &all);
+        let here = &from.fit.prediction;
+        let there = self.evidence.predict(&plant, stage.guided, Some(here));
+        let along = there.residuals.iter().zip(&here.residuals);
+        columns.push(along.map(|(there, here)| there - here).collect());
+        free.truncate(values.len());
+        free.push(WAY);
+        values.push(0.0);
+        foretold(self.evidence, here, &free, &values, &columns, stage)
     }
 
     /// Cost that a hypothesis with one more effect could come to by one step from a start.
@@ -287,7 +346,13 @@ impl Search<'_> {
             } else {
                 PARENTS
             };
-            let children = self.children(&parents[..carried.min(parents.len())], &mut tried, say);
+            let near = FAR_BEHIND * self.rough_score(&parents[0]);
+            let carried: Vec<&Hypothesis> = parents
+                .iter()
+                .take(carried)
+                .filter(|h| self.rough_score(h) <= near)
+                .collect();
+            let children = self.children(&carried, &mut tried, say);
             let Some(best) = children.first() else { break };
             if self.rough_score(best) >= self.rough_score(&parents[0]) {
                 break;
@@ -295,11 +360,11 @@ impl Search<'_> {
             let after = best.fit.rough - noise;
             let stuck = levels.len() > 1 && after > STAGNATION * before;
             if after < scale.rough_spread() {
-                full = self.in_full(&children, say);
+                full = self.in_full(&children, &scale, say);
                 full.retain(|h| scale.is_adequate(h));
             } else if stuck {
                 // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
-                full = self.in_full(parents, say);
+                full = self.in_full(parents, &scale, say);
                 if !full.iter().any(|h| scale.is_adequate(h)) {
                     full = self.anew(parents, &scale, say);
                 }
@@ -310,7 +375,7 @@ impl Search<'_> {
         if full.is_empty() {
             let mut all: Vec<Hypothesis> = levels.into_iter().flatten().collect();
             all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
-            full = self.in_full(&all, say);
+            full = self.in_full(&all, &scale, say);
         }
         self.eliminate(&mut full, say);
         self.add_small(&mut full, &scale, say);
@@ -370,7 +435,7 @@ impl Search<'_> {
     /// Hypotheses of one effect more, those that lead fitted roughly with everything free; best first.
     fn children(
         &self,
-        parents: &[Hypothesis],
+        parents: &[&Hypothesis],
         tried: &mut Vec<Vec<&'static str>>,
         say: &mut dyn FnMut(&str),
     ) -> Vec<Hypothesis> {
@@ -397,7 +462,6 @@ impl Search<'_> {
             if refitted.fit.rough < leading.fit.rough {
                 *leading = refitted;
             }
-            self.choose(leading);
             say(&format!(
                 "  {:?} rough {:.1}",
                 leading.effects,
@@ -405,25 +469,49 @@ impl Search<'_> {
             ));
         }
         children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
+        // What is far behind stays there.
+        let near = FAR_BEHIND * children.first().map_or(0.0, |h| self.rough_score(h));
+        for leading in children.iter_mut().take(REFINED) {
+            if self.rough_score(leading) < near {
+                self.choose(leading);
+            }
+        }
+        children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         children
     }
 
-    /// Full fits of those that are not hopeless, best first.
-    fn in_full(&self, rough: &[Hypothesis], say: &mut dyn FnMut(&str)) -> Vec<Hypothesis> {
+    /// Full fits of those that are not hopeless, best first. Of laws that exclude one another the richer ones are spared where a plain one leaves nothing
+    /// that would be worth a mention.
+    fn in_full(
+        &self,
+        rough: &[Hypothesis],
+        scale: &Scale,
+        say: &mut dyn FnMut(&str),
+    ) -> Vec<Hypothesis> {
         let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
-        let mut full: Vec<Hypothesis> = rough
+        let mut candidates: Vec<&Hypothesis> = rough
             .iter()
             .take(REFINED)
             .take_while(|h| self.rough_score(h) <= leading + HOPELESS)
-            .map(|candidate| self.refine(candidate, FULL, FULL_ITERATIONS))
             .collect();
-        for refined in &full {
+        // The plainest first.
+        candidates.sort_by_key(|h| h.fit.free.len());
+        let mut full: Vec<Hypothesis> = Vec::new();
+        for candidate in candidates {
+            let spared = |done: &Hypothesis| {
+                stands_for(done, candidate) && scale.leaves_nothing_material(done)
+            };
+            if full.iter().any(spared) {
+                continue;
+            }
+            let refined = self.refine(candidate, FULL, FULL_ITERATIONS);
             say(&format!(
                 "  {:?} full {:.1} left {:.0}",
                 refined.effects,
-                self.score(refined),
+                self.score(&refined),
                 refined.fit.cost() - self.evidence.count() as f64
             ));
+            full.push(refined);
         }
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         full
@@ -486,9 +574,12 @@ impl Search<'_> {
         {
             let score = self.score(best);
             let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
-                .map(|index| self.without(best, index))
+                .filter_map(|index| self.without(best, index))
                 .collect();
             fewer.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if fewer.is_empty() {
+                break;
+            }
             let lighter = fewer.swap_remove(0);
             say(&format!(
                 "  without: {:?} {:.1} against {score:.1}",
@@ -504,8 +595,9 @@ impl Search<'_> {
         }
     }
 
-    /// A hypothesis without one of its effects, fitted in full from where it was; what the effect freed is held to its tolerance again.
-    fn without(&self, hypothesis: &Hypothesis, index: usize) -> Hypothesis {
+    /// A hypothesis without one of its effects, fitted in full from where it was; what the effect freed is held to its tolerance again. Nothing where a
+    /// rough fit is hopeless already.
+    fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
         let fit = &hypothesis.fit;
         let plant = &fit.prediction.plant;
         let counts: Vec<usize> = hypothesis
@@ -535,7 +627,15 @@ impl Search<'_> {
         free.extend(others);
         let mut effects = hypothesis.effects.clone();
         effects.remove(index);
-        self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None)
+        let rough = self.fitted(effects, &self.believed, &free, ROUGH, LIGHTER, None);
+        if self.rough_score(&rough) > self.rough_score(hypothesis) + HOPELESS {
+            return None;
+        }
+        for (f, value) in free.iter_mut().zip(&rough.fit.values) {
+            f.start = *value;
+        }
+        let effects = rough.effects;
+        Some(self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None))
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.
