@@ -1,9 +1,15 @@
 //! The physics that a rig's model may lack: each effect an edit of its description, with the numbers that it needs.
 
 mod catalogue;
+mod chambers;
+mod contact;
 mod effect;
+mod force_balance;
 mod meaning;
+mod parts;
 mod quantity;
+mod regulator;
+mod sensors;
 
 pub use catalogue::CATALOGUE;
 pub use effect::{Clues, Effect, Parameter, Subsystem};
