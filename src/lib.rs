@@ -15,6 +15,8 @@
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
 //! - [`design`]: the design study
+//! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
+//! - [`proof`]: a diagnosis scored on the laboratory's cases
 //! - [`metrics`]: the numbers of a run
 //! - [`figure`]: signals as SVG pictures
 //! - [`report`]: tables for people
@@ -32,10 +34,12 @@ pub mod diagnosis;
 pub mod effects;
 pub mod estimation;
 pub mod figure;
+pub mod laboratory;
 pub mod metrics;
 pub mod path;
 pub mod physics;
 pub mod plant;
+pub mod proof;
 pub mod recording;
 pub mod report;
 pub mod rig;

@@ -14,6 +14,7 @@ mod determinism;
 mod diagnose;
 mod equations;
 mod estimator;
+mod laboratory;
 mod layers;
 mod paper_deviation;
 mod paper_page;

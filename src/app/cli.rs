@@ -52,6 +52,14 @@ enum Command {
     /// Find what physics the recordings of a rig contain that its model leaves out.
     #[command(after_help = super::diagnose::EXAMPLES)]
     Diagnose(DiagnoseArguments),
+    /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
+    #[command(after_help = super::prove::PROVE_EXAMPLES)]
+    Prove(ProveArguments),
+    /// Try the diagnosis on every effect, from its largest size down to where it is lost, and on devices with nothing missing.
+    #[command(after_help = super::prove::SWEEP_EXAMPLES)]
+    Sweep(SweepArguments),
+    /// Write the cases that come with the project, with their sealed truth, as the laboratory makes them.
+    Laboratory(LaboratoryArguments),
 }
 
 #[derive(Debug, Args)]
@@ -114,6 +122,80 @@ pub(super) struct PredictArguments {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct ProveArguments {
+    /// Folder of cases, each a folder with rig.toml and recordings.
+    #[arg(long, default_value = "assets/proof/cases")]
+    pub(super) cases: PathBuf,
+    /// Folder of what is sealed, opened only once all is diagnosed [default: the folder `sealed` beside that of the cases].
+    #[arg(long)]
+    pub(super) sealed: Option<PathBuf>,
+    /// Names of the cases to take [default: all].
+    #[arg(long, num_args = 1..)]
+    pub(super) only: Vec<String>,
+    /// Folder for the answers.
+    #[arg(long, default_value = "runs/proof")]
+    pub(super) out: PathBuf,
+    /// Cases at a time [default: as many as there are processors].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) jobs: Option<u16>,
+    /// Print the score as JSON.
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SweepArguments {
+    /// Folder for the outcomes, one file for each case.
+    #[arg(long)]
+    pub(super) out: PathBuf,
+    /// Effects by name, divided by commas [default: all of the vocabulary].
+    #[arg(long, value_delimiter = ',')]
+    pub(super) effects: Vec<String>,
+    /// Devices for each size of each effect.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(0..=1000))]
+    pub(super) seeds: u64,
+    /// Sizes of each effect.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=16))]
+    pub(super) sizes: u16,
+    /// Devices with nothing missing.
+    #[arg(long, default_value_t = 150)]
+    pub(super) empty: u64,
+    /// Length of each recording [s].
+    #[arg(long, default_value_t = 5.0, value_parser = duration)]
+    pub(super) duration_s: f64,
+    /// Cases at a time [default: as many as there are processors].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) jobs: Option<u16>,
+    /// Go on where it was stopped.
+    #[arg(long)]
+    pub(super) resume: bool,
+    /// File for the tables [default: CONFUSION.md in the output folder].
+    #[arg(long)]
+    pub(super) page: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(long)]
+    pub(super) quiet: bool,
+}
+
+/// Length of a recording [s].
+fn duration(text: &str) -> Result<f64, String> {
+    let expected = || format!("`{text}` is no length of a recording, expected 2 to 60 s");
+    let value: f64 = text.parse().map_err(|_| expected())?;
+    if (2.0..=60.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err(expected())
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct LaboratoryArguments {
+    /// Folder for `cases` and `sealed`.
+    #[arg(long)]
+    pub(super) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct DiagnoseArguments {
     /// Folder with rig.toml and the recordings that it names; with --all, a folder of such folders.
     pub(super) case: PathBuf,
@@ -158,6 +240,9 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Edges(arguments) => super::edges::list(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
+        Command::Prove(arguments) => super::prove::run_prove(arguments),
+        Command::Sweep(arguments) => super::prove::run_sweep(arguments),
+        Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),
     }
 }
 

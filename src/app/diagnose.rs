@@ -55,3 +55,12 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
     }
     Ok(ExitCode::Done)
 }
+
+/// Diagnoses a case into a folder, in place of what stands there.
+pub(super) fn answer_case(
+    case: &std::path::Path,
+    out: &std::path::Path,
+) -> Result<crate::diagnosis::answer::Answer, AppError> {
+    let prepared = one::Prepared::new(case, out, one::Standing::Replace)?;
+    Ok(prepared.run(&mut |_| ())?.answer)
+}

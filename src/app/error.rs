@@ -146,6 +146,9 @@ pub enum AppError {
         /// Its value.
         value: f64,
     },
+    /// A proof.
+    #[error(transparent)]
+    Proof(#[from] crate::proof::ProofError),
     /// A picture.
     #[error(transparent)]
     Figure(#[from] crate::figure::FigureError),

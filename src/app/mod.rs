@@ -13,6 +13,7 @@ mod files;
 mod output;
 mod picture;
 mod predict;
+mod prove;
 mod run;
 
 pub use bench::{FinishedBench, run_rig};

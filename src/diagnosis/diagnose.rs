@@ -123,7 +123,7 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     Diagnosis {
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
-        estimates: estimates(&case.believed, best, evidence.count()),
+        estimates: estimates(&case.believed, best, &evidence),
         mismatch: intervals(&evidence, &case.believed, best),
         as_believed: evidence.predict(&case.believed, false, None),
         baseline,

@@ -54,6 +54,11 @@ pub fn robust_sum(residuals: &[f64]) -> f64 {
         .sum()
 }
 
+/// What a residual counts beside one that is not far off [1].
+pub fn robust_weight(residual: f64) -> f64 {
+    (HUBER / residual.abs()).min(1.0)
+}
+
 fn loss(residual: f64, limit: f64) -> f64 {
     let size = residual.abs().min(1e6);
     if size <= limit {

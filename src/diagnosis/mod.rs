@@ -5,6 +5,7 @@ pub mod answer;
 pub mod case;
 pub mod clean;
 pub mod conclude;
+mod covariance;
 pub mod details;
 pub mod diagnose;
 pub mod estimate;

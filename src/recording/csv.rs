@@ -32,6 +32,18 @@ pub struct CsvRecording {
 /// # Errors
 /// File, line and column of what is wrong, what was found and what was expected.
 pub fn read_csv(path: &Path) -> Result<CsvRecording, RecordingError> {
+    read(path, true)
+}
+
+/// Reads what was measured, or predicted, without the inputs that drove the rig; those that are there are read as well.
+///
+/// # Errors
+/// As [`read_csv`].
+pub fn read_readings(path: &Path) -> Result<CsvRecording, RecordingError> {
+    read(path, false)
+}
+
+fn read(path: &Path, with_inputs: bool) -> Result<CsvRecording, RecordingError> {
     let table = table::read(path)?;
     let mut channels = Vec::new();
     for (column, values) in COLUMNS.iter().zip(&table.columns) {
@@ -40,7 +52,7 @@ pub fn read_csv(path: &Path) -> Result<CsvRecording, RecordingError> {
                 check_plausible(path, column, values, &table.lines)?;
                 channels.push(Channel::new(column.quantity, column.unit, values.clone()));
             }
-            None if column.is_input => {
+            None if column.is_input && with_inputs => {
                 return Err(RecordingError::Column {
                     path: path.to_owned(),
                     column: column.name.to_owned(),

@@ -1,0 +1,289 @@
+//! A concealed case: a device, what is at work in it, its recordings and the sealed truth.
+
+use std::collections::BTreeMap;
+
+use super::CHANNELS;
+use super::concealed::Concealed;
+use super::course::{Course, LaboratoryError, run};
+use super::dirt::Dirt;
+use super::draw::{Believed, TOLERANCES, stream, toleranced};
+use super::effects::{LabEffect, Scene, effect};
+use super::programme::Programme;
+use super::rig::Rig;
+use super::sealed::{Known, SealedCase, SealedEffect, SealedInterval};
+use super::sensors::measured;
+use super::shown::intervals;
+use super::visibility::Eye;
+
+/// What a case is made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recipe {
+    /// Name.
+    pub name: String,
+    /// Seed of device, programmes and noise.
+    pub seed: u64,
+    /// Effects by name, each with its share of the largest that is plausible [1].
+    pub effects: Vec<(&'static str, f64)>,
+    /// Length of each recording [s].
+    pub duration: f64,
+    /// Dirt on the recordings.
+    pub dirt: Option<Dirt>,
+}
+
+/// A case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The device as believed.
+    pub believed: Believed,
+    /// What was done; the last one is to be predicted.
+    pub programmes: Vec<Programme>,
+    /// What was measured in each, in the order of [`CHANNELS`].
+    pub measured: Vec<[Vec<f64>; 4]>,
+    /// The truth.
+    pub sealed: SealedCase,
+}
+
+/// The device without what is concealed in it, and with it.
+struct Pair {
+    bare: Rig,
+    real: Rig,
+}
+
+impl Pair {
+    /// Numbers of the rig that are off stand in the real one; without the effect they are what is believed.
+    fn new(believed: &Rig, drawn: Rig, concealed: &Concealed) -> Self {
+        let (mut bare, mut real) = (drawn.clone(), drawn);
+        type Place = fn(&mut Rig) -> &mut f64;
+        let places: [(Option<f64>, Place); 6] = [
+            (concealed.mass, |r| &mut r.mass),
+            (concealed.dead_volume, |r| &mut r.dead_volume),
+            (concealed.supply_orifice, |r| &mut r.supply_orifice),
+            (concealed.exhaust_orifice, |r| &mut r.exhaust_orifice),
+            (concealed.gain, |r| &mut r.gain),
+            (concealed.contact_stiffness, |r| &mut r.contact_stiffness),
+        ];
+        let mut nominal = believed.clone();
+        for (value, place) in places {
+            if let Some(value) = value {
+                *place(&mut real) = value;
+                *place(&mut bare) = *place(&mut nominal);
+            }
+        }
+        Self { bare, real }
+    }
+}
+
+/// What a recipe comes to before anything is measured.
+struct Setting {
+    believed: Believed,
+    programmes: Vec<Programme>,
+    pair: Pair,
+    concealed: Concealed,
+    effects: Vec<SealedEffect>,
+}
+
+impl Setting {
+    /// What really happens in the first recordings.
+    fn run(&self, count: usize) -> Result<Vec<Course>, LaboratoryError> {
+        let programmes = self.programmes[..count].iter();
+        programmes
+            .map(|p| run(&self.pair.real, &self.concealed, p))
+            .collect()
+    }
+}
+
+impl Recipe {
+    /// Makes the case.
+    ///
+    /// # Errors
+    /// The integrator cannot go on.
+    ///
+    /// # Panics
+    /// An effect that does not exist.
+    pub fn make(&self) -> Result<Case, LaboratoryError> {
+        let setting = self.setting()?;
+        let real = setting.run(setting.programmes.len())?;
+        let (mismatch, shows) = self.shown(&setting, &real)?;
+        let Setting {
+            believed,
+            programmes,
+            pair,
+            effects,
+            ..
+        } = setting;
+        let measured = self.measure(&believed.rig, &real);
+        let mut rig = pair.real;
+        let names = TOLERANCES.iter().map(|(name, _)| (*name).to_owned());
+        let values = toleranced(&mut rig).map(|value| *value);
+        let noise = CHANNELS.iter().map(|name| (*name).to_owned());
+        Ok(Case {
+            sealed: SealedCase {
+                case: self.name.clone(),
+                effects,
+                noise: noise.zip(believed.rig.noise).collect(),
+                mismatch,
+                true_parameters: names.zip(values).collect(),
+                shows,
+                seed: self.seed,
+            },
+            believed,
+            programmes,
+            measured,
+        })
+    }
+
+    /// The device as it really is, what is concealed in it, and what is done with it.
+    ///
+    /// # Errors
+    /// The integrator cannot go on.
+    ///
+    /// # Panics
+    /// An effect that does not exist.
+    pub fn reality(&self) -> Result<(Rig, Concealed, Vec<Programme>), LaboratoryError> {
+        let setting = self.setting()?;
+        Ok((setting.pair.real, setting.concealed, setting.programmes))
+    }
+
+    /// How strongly one effect shows at shares of its largest, with what else is in the recipe left out.
+    ///
+    /// # Errors
+    /// The integrator cannot go on.
+    ///
+    /// # Panics
+    /// An effect that does not exist.
+    pub(super) fn visibility(
+        &self,
+        effect: &'static str,
+    ) -> Result<impl FnMut(f64) -> Result<f64, LaboratoryError>, LaboratoryError> {
+        let mut recipe = Self {
+            effects: vec![(effect, 1.0)],
+            ..self.clone()
+        };
+        let setting = recipe.setting()?;
+        let eye = Self::eye(&setting)?;
+        let seen = setting.programmes.len() - 1;
+        Ok(move |share: f64| {
+            recipe.effects[0].1 = share;
+            Ok(eye.visibility(&recipe.setting()?.run(seen)?))
+        })
+    }
+
+    fn setting(&self) -> Result<Setting, LaboratoryError> {
+        let believed = Believed::draw(self.seed);
+        let drawn = believed.real(self.seed);
+        let mut programmes = believed.programmes(self.seed, self.duration).to_vec();
+        if let Some(dirt) = &self.dirt {
+            let rng = &mut stream(self.seed, 4);
+            for programme in &mut programmes {
+                dirt.on_times(programme, rng);
+            }
+        }
+        let peak_force = self.peak_force(&drawn, &programmes)?;
+        let mut concealed = Concealed::default();
+        let rng = &mut stream(self.seed, 5);
+        let mut effects = Vec::new();
+        for (name, share) in &self.effects {
+            let effect = effect(name).expect("an effect of the catalogue");
+            let numbers = (effect.conceal)(&mut Scene {
+                rng,
+                believed: &believed.rig,
+                peak_force,
+                share: *share,
+                concealed: &mut concealed,
+            });
+            effects.push(sealed_effect(effect, numbers));
+        }
+        Ok(Setting {
+            pair: Pair::new(&believed.rig, drawn, &concealed),
+            believed,
+            programmes,
+            concealed,
+            effects,
+        })
+    }
+
+    /// Largest force in the recordings to diagnose from, with nothing concealed [N].
+    fn peak_force(&self, rig: &Rig, programmes: &[Programme]) -> Result<f64, LaboratoryError> {
+        let clips = |(name, _): &(&str, f64)| *name == "force_sensor_saturation";
+        if !self.effects.iter().any(clips) {
+            return Ok(0.0);
+        }
+        let mut all: Vec<f64> = Vec::new();
+        for programme in &programmes[..programmes.len() - 1] {
+            let course = run(rig, &Concealed::default(), programme)?;
+            all.extend(&course.readings[2]);
+        }
+        all.sort_by(f64::total_cmp);
+        // Impacts reach higher for a moment.
+        Ok(all[all.len() * 99 / 100])
+    }
+
+    /// The device without the effects, as its owner sees it in the recordings to diagnose from.
+    fn eye(setting: &Setting) -> Result<Eye, LaboratoryError> {
+        let Believed { rig, tolerances } = &setting.believed;
+        let seen = &setting.programmes[..setting.programmes.len() - 1];
+        Eye::new(&setting.pair.bare, rig, tolerances, seen)
+    }
+
+    /// Where the effects show in the recordings to diagnose from, and how strongly in all.
+    fn shown(
+        &self,
+        setting: &Setting,
+        real: &[Course],
+    ) -> Result<(Vec<SealedInterval>, f64), LaboratoryError> {
+        if self.effects.is_empty() {
+            return Ok((Vec::new(), 0.0));
+        }
+        let eye = Self::eye(setting)?;
+        let mut found = Vec::new();
+        for ((programme, with), without) in setting.programmes.iter().zip(real).zip(eye.courses()) {
+            for (channel, name) in CHANNELS.iter().enumerate() {
+                let noise = setting.pair.real.noise[channel];
+                let readings = [with, without].map(|course| &course.readings[channel]);
+                let runs = intervals(&programme.times, readings[0], readings[1], noise);
+                found.extend(runs.into_iter().map(|[start_s, end_s]| SealedInterval {
+                    recording: programme.name.clone(),
+                    channel: (*name).to_owned(),
+                    start_s,
+                    end_s,
+                }));
+            }
+        }
+        let seen = eye.courses().len();
+        Ok((found, eye.visibility(&real[..seen])))
+    }
+
+    fn measure(&self, rig: &Rig, courses: &[Course]) -> Vec<[Vec<f64>; 4]> {
+        let (noise, spoil) = (&mut stream(self.seed, 6), &mut stream(self.seed, 7));
+        let last = courses.len() - 1;
+        let of = |(index, course): (usize, &Course)| {
+            [0, 1, 2, 3].map(|channel| {
+                let deviation = rig.noise[channel];
+                let mut values = measured(&course.readings[channel], deviation, noise);
+                if let Some(dirt) = self.dirt.filter(|_| index < last) {
+                    dirt.on_values(&mut values, deviation, spoil);
+                }
+                values
+            })
+        };
+        courses.iter().enumerate().map(of).collect()
+    }
+}
+
+fn sealed_effect(effect: &LabEffect, numbers: Vec<(&'static str, f64)>) -> SealedEffect {
+    let numbers = numbers.into_iter();
+    let mut parameters: BTreeMap<String, Known> = numbers
+        .map(|(name, value)| (name.to_owned(), Known::Number(value)))
+        .collect();
+    let unlisted = !effect.depends_on.is_empty();
+    if unlisted {
+        let names = effect.depends_on.iter().map(|name| (*name).to_owned());
+        parameters.insert("depends_on".to_owned(), Known::Names(names.collect()));
+    }
+    SealedEffect {
+        name: if unlisted { "unlisted" } else { effect.name }.to_owned(),
+        truth: effect.name.to_owned(),
+        subsystem: effect.subsystem.to_owned(),
+        parameters,
+    }
+}

@@ -1,0 +1,44 @@
+//! The laboratory: recordings of devices that are not the simulator's own.
+//!
+//! What a diagnosis finds in recordings of the simulator that it fits proves little. Here the device is written out once more, in equations of its
+//! own for another integrator (Dormand and Prince 5(4) with its own step control, crate `differential-equations`), and a real device's parts are richer
+//! than a model's: seals with elastoplastic presliding, a hose of many cells, walls that warm up, orifices without the model's laminar line.
+//! Formulas stand here twice on purpose: nothing here may use `physics`, `device` or `plant`.
+//!
+//!     programme -> device (with something concealed) -> sensors -> recordings + rig file + sealed truth
+
+mod case;
+mod concealed;
+mod course;
+mod dirt;
+mod draw;
+mod effects;
+mod equations;
+mod programme;
+mod recipes;
+mod rig;
+mod sealed;
+mod sensors;
+mod shown;
+mod visibility;
+mod write;
+
+pub use case::{Case, Recipe};
+pub use concealed::{Concealed, Seals, Swing};
+pub use course::{Course, LaboratoryError, run};
+pub use dirt::Dirt;
+pub use draw::{Believed, TOLERANCES};
+pub use effects::{EFFECTS, LabEffect, UNLISTED_EFFECTS};
+pub use programme::{Programme, Surface, Wave};
+pub use recipes::{LOST, shipped, sizes};
+pub use rig::{AIR, Gas, Rig};
+pub use sealed::{Known, SealedCase, SealedEffect, SealedInterval};
+pub use write::write_case;
+
+/// Columns of the measured channels, in the order of all arrays of four here.
+pub const CHANNELS: [&str; 4] = [
+    "regulator_pressure_pa",
+    "stroke_m",
+    "force_n",
+    "acceleration_m_per_s2",
+];

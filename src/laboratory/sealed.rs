@@ -1,0 +1,62 @@
+//! The sealed truth of a case: what only a score may look at.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// The truth of a case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SealedCase {
+    /// Name of the case.
+    pub case: String,
+    /// What is at work.
+    pub effects: Vec<SealedEffect>,
+    /// Standard deviation of each channel's noise, by column.
+    pub noise: BTreeMap<String, f64>,
+    /// Where it shows.
+    pub mismatch: Vec<SealedInterval>,
+    /// The believed numbers as they really are.
+    #[serde(default)]
+    pub true_parameters: BTreeMap<String, f64>,
+    /// How strongly the effects show beside all that is tolerated, in standard deviations [1]; 0 where it is not known.
+    #[serde(default)]
+    pub shows: f64,
+    /// Seed.
+    pub seed: u64,
+}
+
+/// Something at work.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SealedEffect {
+    /// Name that an answer should give.
+    pub name: String,
+    /// What it is.
+    pub truth: String,
+    /// Where it enters.
+    pub subsystem: String,
+    /// Its numbers by name; of an unlisted one `depends_on`.
+    pub parameters: BTreeMap<String, Known>,
+}
+
+/// A number, or names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Known {
+    /// A number.
+    Number(f64),
+    /// Names.
+    Names(Vec<String>),
+}
+
+/// A time in which a channel is moved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SealedInterval {
+    /// Name of the recording, without `.csv`.
+    pub recording: String,
+    /// Column.
+    pub channel: String,
+    /// From [s].
+    pub start_s: f64,
+    /// Until [s].
+    pub end_s: f64,
+}

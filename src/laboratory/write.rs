@@ -1,0 +1,180 @@
+//! A case on disk: the rig file, the recordings, and its truth in another folder.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use super::CHANNELS;
+use super::case::Case;
+use super::draw::Believed;
+use super::programme::Programme;
+use crate::recording::RecordingError;
+use crate::recording::atomic::write_text;
+use crate::recording::csv::write_csv;
+
+/// Grid to which the surface is written [1/m].
+const SURFACE_GRID: f64 = 1e7;
+
+/// Writes a case into `folder` and its truth, if there is a place for it, into `sealed`/NAME.json and `sealed`/NAME.predict.csv.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write_case(case: &Case, folder: &Path, sealed: Option<&Path>) -> Result<(), RecordingError> {
+    let make = |folder: &Path| {
+        fs::create_dir_all(folder).map_err(|cause| RecordingError::write(folder, cause))
+    };
+    make(folder)?;
+    let (unseen, seen) = case.programmes.split_last().expect("a case has recordings");
+    let names: Vec<&str> = seen
+        .iter()
+        .map(|programme| programme.name.as_str())
+        .collect();
+    write_text(
+        &folder.join("rig.toml"),
+        &rig_text(&case.believed, &names, &unseen.name),
+    )?;
+    for (programme, values) in seen.iter().zip(&case.measured) {
+        let inputs = inputs(programme);
+        let mut columns = named(&inputs);
+        columns.extend(
+            CHANNELS
+                .iter()
+                .zip(values)
+                .map(|(name, v)| (*name, v.as_slice())),
+        );
+        let path = folder.join(format!("{}.csv", programme.name));
+        write_csv(&path, &programme.times, &columns)?;
+    }
+    let path = folder.join(format!("{}.csv", unseen.name));
+    write_csv(&path, &unseen.times, &named(&inputs(unseen)))?;
+    let Some(sealed) = sealed else {
+        return Ok(());
+    };
+    make(sealed)?;
+    let name = &case.sealed.case;
+    let text = serde_json::to_string_pretty(&case.sealed).expect("numbers and names alone");
+    write_text(&sealed.join(format!("{name}.json")), &(text + "\n"))?;
+    let measured = case.measured.last().expect("one for each programme");
+    let columns: Vec<(&str, &[f64])> = CHANNELS
+        .iter()
+        .zip(measured)
+        .map(|(name, v)| (*name, v.as_slice()))
+        .collect();
+    write_csv(
+        &sealed.join(format!("{name}.predict.csv")),
+        &unseen.times,
+        &columns,
+    )
+}
+
+fn inputs(programme: &Programme) -> [Vec<f64>; 3] {
+    let times = programme.times.iter();
+    let surface = |t: f64| {
+        let place = programme.surface.as_ref().map_or(f64::NAN, |s| s.at(t)[0]);
+        (place * SURFACE_GRID).round() / SURFACE_GRID
+    };
+    [
+        times.clone().map(|t| programme.set_pressure(*t)).collect(),
+        times
+            .clone()
+            .map(|t| f64::from(u8::from(programme.extends(*t))))
+            .collect(),
+        times.map(|t| surface(*t)).collect(),
+    ]
+}
+
+fn named(inputs: &[Vec<f64>; 3]) -> Vec<(&'static str, &[f64])> {
+    let names = ["set_pressure_pa", "solenoid", "surface_m"];
+    names
+        .into_iter()
+        .zip(inputs.iter().map(Vec::as_slice))
+        .collect()
+}
+
+fn rig_text(believed: &Believed, fit: &[&str], predict: &str) -> String {
+    let rig = &believed.rig;
+    let [volume, mass, gain, lag, supply, exhaust, stiffness, damping] = believed.tolerances;
+    let within =
+        |value: f64, tolerance: f64| format!("{{ value = {value:?}, tolerance = {tolerance:?} }}");
+    let quoted: Vec<String> = fit.iter().map(|name| format!("\"{name}.csv\"")).collect();
+    let mut text = String::from(
+        "# The device as its owner believes it to be. SI units; tolerances are relative.\nschema = 1\n",
+    );
+    let mut table = |name: &str, rows: &[(&str, String)]| {
+        // Writing into a text cannot fail.
+        let _ = writeln!(text, "\n[{name}]");
+        for (key, value) in rows {
+            let _ = writeln!(text, "{key} = {value}");
+        }
+    };
+    let plain = |value: f64| format!("{value:?}");
+    table(
+        "cylinder",
+        &[
+            ("count", rig.count.to_string()),
+            ("bore_m", plain(rig.bore)),
+            ("rod_m", plain(rig.rod)),
+            ("stroke_m", plain(rig.stroke)),
+            ("dead_volume_m3", within(rig.dead_volume, volume)),
+            ("moving_mass_kg", within(rig.mass, mass)),
+            ("gravity_along_axis_m_per_s2", plain(rig.gravity)),
+        ],
+    );
+    table(
+        "end_stop",
+        &[
+            ("stiffness_n_per_m", plain(rig.stop[0])),
+            ("damping_n_s_per_m", plain(rig.stop[1])),
+        ],
+    );
+    table(
+        "regulator",
+        &[
+            ("gain", within(rig.gain, gain)),
+            ("time_constant_s", within(rig.time_constant, lag)),
+        ],
+    );
+    table(
+        "valve",
+        &[
+            ("supply_orifice_m2", within(rig.supply_orifice, supply)),
+            ("exhaust_orifice_m2", within(rig.exhaust_orifice, exhaust)),
+            ("discharge_coefficient", plain(rig.discharge)),
+        ],
+    );
+    table(
+        "gas",
+        &[
+            ("specific_gas_constant_j_per_kg_k", plain(rig.gas.constant)),
+            ("heat_capacity_ratio", plain(rig.gas.ratio)),
+            ("temperature_k", plain(rig.gas.temperature)),
+            ("atmosphere_pa", plain(rig.gas.atmosphere)),
+        ],
+    );
+    table(
+        "contact",
+        &[
+            (
+                "stiffness_n_per_m",
+                within(rig.contact_stiffness, stiffness),
+            ),
+            ("damping_n_s_per_m", within(rig.contact_damping, damping)),
+        ],
+    );
+    let mut sensors = vec![("rate_hz", plain(rig.rate))];
+    sensors.extend(
+        CHANNELS
+            .iter()
+            .zip(rig.noise)
+            .map(|(name, noise)| (*name, plain(noise))),
+    );
+    table("sensors", &sensors);
+    table(
+        "recordings",
+        &[
+            ("fit", format!("[{}]", quoted.join(", "))),
+            ("predict", format!("\"{predict}.csv\"")),
+        ],
+    );
+    text
+}

@@ -1,0 +1,75 @@
+//! What can go wrong with a proof, apart from its score.
+
+use std::path::{Path, PathBuf};
+
+use crate::laboratory::LaboratoryError;
+use crate::recording::RecordingError;
+
+/// A proof that cannot be done.
+#[derive(Debug, thiserror::Error)]
+pub enum ProofError {
+    /// No case.
+    #[error("{}: no case here, expected folders that hold rig.toml{}", folder.display(), besides(only))]
+    NoCases {
+        /// Where they were looked for.
+        folder: PathBuf,
+        /// Names that were asked for.
+        only: Vec<String>,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {}: {cause}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        cause: String,
+    },
+    /// No such effect.
+    #[error("the laboratory has no effect `{name}`; it has {known}")]
+    Effect {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// Outcomes of another sweep stand there.
+    #[error("{} holds outcomes already: --resume goes on with them, another --out starts anew", folder.display())]
+    Standing {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Outcomes were made in another way.
+    #[error("{} was made with {found}, expected {expected}: a sweep goes on only as it began", path.display())]
+    OtherPlan {
+        /// The outcome.
+        path: PathBuf,
+        /// What it says.
+        found: String,
+        /// What was asked for.
+        expected: String,
+    },
+    /// The laboratory.
+    #[error(transparent)]
+    Laboratory(#[from] LaboratoryError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}
+
+fn besides(only: &[String]) -> String {
+    if only.is_empty() {
+        String::new()
+    } else {
+        format!(" and are named {}", only.join(" or "))
+    }
+}
+
+impl ProofError {
+    /// A file cannot be read.
+    pub(super) fn read(path: &Path, cause: impl std::fmt::Display) -> Self {
+        Self::Read {
+            path: path.to_owned(),
+            cause: cause.to_string(),
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! The proof of a diagnosis: cases of the laboratory, whose truth is sealed, diagnosed and scored.
+//!
+//! What is scored is an answer that stands already: the sealed file of a case is opened only after its diagnosis has been written.
+
+mod binomial;
+mod confusion;
+mod error;
+mod outcome;
+mod prove;
+mod queue;
+mod score;
+mod summary;
+mod sweep;
+
+pub use confusion::page;
+pub use error::ProofError;
+pub use outcome::{Made, Outcome};
+pub use prove::{Diagnose, prove};
+pub use score::{CaseScore, judge, overlap, worst_channel};
+pub use summary::{Claims, Summary};
+pub use sweep::{SweepPlan, sweep};

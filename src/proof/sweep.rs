@@ -1,0 +1,285 @@
+//! Every effect at sizes from the largest plausible down to where it is lost, and devices with nothing missing; each a device of its own.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::error::ProofError;
+use super::outcome::{Made, Outcome};
+use super::prove::{Diagnose, score};
+use super::queue;
+use crate::laboratory::{EFFECTS, Known, LabEffect, Recipe, UNLISTED_EFFECTS, sizes, write_case};
+use crate::recording::atomic::write_text;
+
+/// Seed of the first effect's first device; each effect has this many to itself.
+const SEEDS_PER_EFFECT: u64 = 1000;
+/// Seed of the first device with nothing missing.
+const EMPTY_SEED: u64 = 1_000_000;
+/// Folder of the outcomes.
+const OUTCOMES: &str = "outcomes";
+
+/// What a sweep tries.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepPlan {
+    /// Effects by name; none for all of the vocabulary.
+    pub effects: Vec<String>,
+    /// Devices for each effect.
+    pub seeds: u64,
+    /// Sizes of each effect.
+    pub sizes: usize,
+    /// Devices with nothing missing.
+    pub empty: u64,
+    /// Length of each recording [s].
+    pub duration: f64,
+    /// Cases at a time.
+    pub jobs: usize,
+    /// Go on with what is there.
+    pub resume: bool,
+}
+
+struct Task {
+    effect: Option<&'static LabEffect>,
+    size: usize,
+    seed: u64,
+}
+
+impl SweepPlan {
+    fn tasks(&self) -> Result<Vec<Task>, ProofError> {
+        let all = || EFFECTS.iter().chain(&UNLISTED_EFFECTS).enumerate();
+        let mut tasks = Vec::new();
+        let mut chosen: Vec<(usize, &'static LabEffect)> = Vec::new();
+        for name in &self.effects {
+            let found = all().find(|(_, effect)| effect.name == *name);
+            chosen.push(found.ok_or_else(|| ProofError::Effect {
+                name: name.clone(),
+                known: all().map(|(_, e)| e.name).collect::<Vec<_>>().join(", "),
+            })?);
+        }
+        if self.effects.is_empty() {
+            chosen = all().take(EFFECTS.len()).collect();
+        }
+        // Seed by seed: what a sweep that is stopped has done is of all effects.
+        for seed in 0..self.seeds {
+            for (index, effect) in &chosen {
+                for size in 0..self.sizes {
+                    tasks.push(Task {
+                        effect: Some(effect),
+                        size,
+                        seed: SEEDS_PER_EFFECT * (*index as u64 + 1) + seed,
+                    });
+                }
+            }
+        }
+        tasks.extend((0..self.empty).map(|i| Task {
+            effect: None,
+            size: 0,
+            seed: EMPTY_SEED + i,
+        }));
+        Ok(tasks)
+    }
+
+    fn made(&self, task: &Task) -> Made {
+        Made {
+            effect: task.effect.map(|effect| effect.name.to_owned()),
+            size: task.size,
+            sizes: if task.effect.is_some() { self.sizes } else { 1 },
+            seed: task.seed,
+            duration_s: self.duration,
+        }
+    }
+}
+
+impl Task {
+    fn name(&self) -> String {
+        match self.effect {
+            Some(effect) => format!("{}-{}-{}", effect.name, self.size, self.seed),
+            None => format!("empty-{}", self.seed),
+        }
+    }
+}
+
+/// Does what a plan asks for and is not done yet; `say` is told of each case. Outcomes stand in `out`/outcomes, one file each.
+///
+/// # Errors
+/// An effect that there is not, outcomes of another sweep in `out`, a file that cannot be written.
+pub fn sweep(
+    plan: &SweepPlan,
+    out: &Path,
+    diagnose: &Diagnose<'_>,
+    say: &(dyn Fn(&str) + Sync),
+) -> Result<Vec<Outcome>, ProofError> {
+    let tasks = plan.tasks()?;
+    let folder = out.join(OUTCOMES);
+    if !plan.resume && folder.exists() {
+        return Err(ProofError::Standing { folder });
+    }
+    std::fs::create_dir_all(&folder).map_err(|cause| ProofError::read(&folder, cause))?;
+    let done = AtomicUsize::new(0);
+    let finished = queue::all(tasks.len(), plan.jobs, |index| {
+        let task = &tasks[index];
+        let path = folder.join(format!("{}.json", task.name()));
+        let outcome = match standing(&path, &plan.made(task))? {
+            Some(outcome) => outcome,
+            None => {
+                let outcome = attempt(plan, task, out, diagnose)?;
+                let text = serde_json::to_string_pretty(&outcome)
+                    .map_err(|cause| ProofError::read(&path, cause))?;
+                write_text(&path, &(text + "\n"))?;
+                outcome
+            }
+        };
+        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+        say(&format!(
+            "{count} of {}: {}: answered {}",
+            tasks.len(),
+            task.name(),
+            outcome.answered()
+        ));
+        Ok::<Outcome, ProofError>(outcome)
+    });
+    let mut outcomes = Vec::new();
+    for (task, outcome) in tasks.iter().zip(finished) {
+        // A fault of the program in one case is not written: it is tried again by --resume.
+        match outcome {
+            Some(outcome) => outcomes.push(outcome?),
+            None => say(&format!(
+                "{}: a fault of the program, see above",
+                task.name()
+            )),
+        }
+    }
+    Ok(outcomes)
+}
+
+/// The outcome that stands in a file already, if it is of this case.
+fn standing(path: &Path, made: &Made) -> Result<Option<Outcome>, ProofError> {
+    let Ok(text) = std::fs::read_to_string(path) else {
+        return Ok(None);
+    };
+    let Ok(outcome) = serde_json::from_str::<Outcome>(&text) else {
+        return Ok(None);
+    };
+    if outcome.made == *made {
+        return Ok(Some(outcome));
+    }
+    Err(ProofError::OtherPlan {
+        path: path.to_owned(),
+        found: outcome.made.to_string(),
+        expected: made.to_string(),
+    })
+}
+
+/// Makes a case, diagnoses and scores it; nothing of it is left but the outcome.
+fn attempt(
+    plan: &SweepPlan,
+    task: &Task,
+    out: &Path,
+    diagnose: &Diagnose<'_>,
+) -> Result<Outcome, ProofError> {
+    let mut share = 0.0;
+    let mut effects = Vec::new();
+    if let Some(effect) = task.effect {
+        share = sizes(effect.name, task.seed, plan.duration, plan.sizes)?[task.size];
+        effects.push((effect.name, share));
+    }
+    let name = task.name();
+    let recipe = Recipe {
+        name: name.clone(),
+        seed: task.seed,
+        effects,
+        duration: plan.duration,
+        dirt: None,
+    };
+    let case = recipe.make()?;
+    let cannot = |cause: std::io::Error| ProofError::read(out, cause);
+    let room = tempfile::Builder::new()
+        .prefix(".case-")
+        .tempdir_in(out)
+        .map_err(cannot)?;
+    let place = |part: &str| -> PathBuf { room.path().join(part) };
+    write_case(&case, &place("case"), None)?;
+    let answer = diagnose(&place("case"), &place("answer"));
+    // Only now is there a sealed file at all.
+    write_case(&case, &place("again"), Some(&place("sealed")))?;
+    let score = score(&name, answer, &place("answer"), &place("sealed"))?;
+    let numbers = case.sealed.effects.iter().flat_map(|e| &e.parameters);
+    let parameters = numbers.filter_map(|(name, known)| match known {
+        Known::Number(value) => Some((name.clone(), *value)),
+        Known::Names(_) => None,
+    });
+    Ok(Outcome {
+        made: plan.made(task),
+        share,
+        shows: case.sealed.shows,
+        parameters: parameters.collect(),
+        score,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::answer::{Answer, SCHEMA, Verdict};
+
+    #[test]
+    fn a_sweep_goes_on_where_it_was_stopped_and_only_as_it_began() {
+        let room = tempfile::tempdir().unwrap();
+        let out = room.path().join("sweep");
+        let mut plan = SweepPlan {
+            effects: vec!["force_sensor_gain_error".to_owned()],
+            seeds: 1,
+            sizes: 2,
+            empty: 1,
+            duration: 2.0,
+            jobs: 2,
+            resume: false,
+        };
+        let asked = AtomicUsize::new(0);
+        let diagnose = |folder: &Path, _: &Path| {
+            assert!(folder.join("rig.toml").is_file());
+            asked.fetch_add(1, Ordering::Relaxed);
+            Ok(Answer {
+                schema: SCHEMA,
+                verdict: Verdict::NothingMissing,
+                effects: Vec::new(),
+                mismatch: Vec::new(),
+                seconds: 1.0,
+                alternatives: Vec::new(),
+                notes: Vec::new(),
+                details: Default::default(),
+            })
+        };
+        let first = sweep(&plan, &out, &diagnose, &|_| ()).unwrap();
+        assert_eq!((first.len(), asked.load(Ordering::Relaxed)), (3, 3));
+        assert!(
+            first[0].shows > 100.0 && first[1].shows < 6.0,
+            "{} {}",
+            first[0].shows,
+            first[1].shows
+        );
+        assert!(!first[0].score.named_exactly && first[2].score.named_exactly);
+        assert_eq!(
+            std::fs::read_dir(&out).unwrap().count(),
+            1,
+            "no case is left"
+        );
+
+        let standing = sweep(&plan, &out, &diagnose, &|_| ()).unwrap_err();
+        assert!(matches!(standing, ProofError::Standing { .. }));
+        plan.resume = true;
+        std::fs::remove_file(out.join("outcomes/empty-1000000.json")).unwrap();
+        let second = sweep(&plan, &out, &diagnose, &|_| ()).unwrap();
+        let made = |all: &[Outcome]| all.iter().map(|o| o.made.clone()).collect::<Vec<_>>();
+        assert_eq!(made(&second), made(&first));
+        assert_eq!(asked.load(Ordering::Relaxed), 4);
+        plan.duration = 3.0;
+        let other = sweep(&plan, &out, &diagnose, &|_| ()).unwrap_err();
+        assert!(matches!(other, ProofError::OtherPlan { .. }), "{other}");
+        plan.effects = vec!["gremlins".to_owned()];
+        assert!(
+            sweep(&plan, &out, &diagnose, &|_| ())
+                .unwrap_err()
+                .to_string()
+                .contains("gremlins")
+        );
+    }
+}
