@@ -2,6 +2,8 @@
 
 mod all;
 mod one;
+mod progress;
+mod unlisted_picture;
 
 use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};
@@ -42,7 +44,10 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         return Ok(ExitCode::Done);
     }
     let prepared = one::Prepared::new(&arguments.case, &out, standing)?;
-    let finished = prepared.run(&mut |_| ())?;
+    let spinner = progress::spinner(arguments.quiet || arguments.json);
+    let finished = prepared.run(&mut |text| spinner.set_message(text.trim().to_owned()));
+    spinner.finish_and_clear();
+    let finished = finished?;
     if arguments.json {
         say(&finished.document)?;
     } else if !arguments.quiet {

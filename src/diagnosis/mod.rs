@@ -24,4 +24,5 @@ pub mod regime;
 mod scale;
 pub mod search;
 pub mod spectrum;
+pub mod unlisted;
 pub mod words;
