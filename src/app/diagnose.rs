@@ -4,6 +4,8 @@ mod all;
 mod cell;
 mod cell_account;
 mod one;
+mod progress;
+mod unlisted_picture;
 
 use std::path::Path;
 
@@ -56,7 +58,10 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         return Ok(ExitCode::Done);
     }
     let prepared = one::Prepared::new(&arguments.case, cell, &out, standing)?;
-    let finished = prepared.run(&mut |_| ())?;
+    let spinner = progress::spinner(arguments.quiet || arguments.json);
+    let finished = prepared.run(&mut |text| spinner.set_message(text.trim().to_owned()));
+    spinner.finish_and_clear();
+    let finished = finished?;
     if arguments.json {
         say(&finished.document)?;
     } else if !arguments.quiet {

@@ -125,6 +125,14 @@ pub enum AppError {
         /// Rig file.
         file: String,
     },
+    /// A rig file that carries a term without a name already.
+    #[error(
+        "{file} holds [latent], a term that a diagnosis found; expected the rig file as believed, to diagnose from (idc predict takes this one)"
+    )]
+    Latent {
+        /// Rig file.
+        file: String,
+    },
     /// A diagnosis stands where one is to go.
     #[error(
         "{folder} holds a diagnosis already; expected another folder, --force to put a new one in its place, or --resume to keep it"

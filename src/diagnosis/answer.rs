@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::details::Details;
+use super::unlisted::report::UnlistedReport;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
 
@@ -60,6 +61,9 @@ pub struct FoundEffect {
     pub parameters: Vec<(String, Estimate)>,
     /// Variables on which it depends.
     pub depends_on: Vec<String>,
+    /// What is known of physics without a name.
+    #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
+    pub unlisted: Option<Box<UnlistedReport>>,
 }
 
 /// A number with its 95 % interval, in the unit that its name ends with.
@@ -175,6 +179,8 @@ impl Answer {
                 numbers.push((of("low"), estimate.low));
                 numbers.push((of("high"), estimate.high));
             }
+            let unlisted = effect.unlisted.iter().flat_map(|u| u.numbers());
+            numbers.extend(unlisted.map(|(key, value)| (format!("{name}.{key}"), value)));
         }
         for mismatch in &self.mismatch {
             let of = |key: &str| format!("mismatch.{}.{key}", mismatch.recording);
@@ -246,6 +252,7 @@ mod tests {
                     ("coulomb_force_n".to_owned(), estimate(12.1, 11.6, 12.7)),
                 ],
                 depends_on: vec!["velocity_sign".to_owned()],
+                unlisted: None,
             }],
             mismatch: vec![Mismatch {
                 recording: "ride.csv".to_owned(),

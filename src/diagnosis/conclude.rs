@@ -13,6 +13,7 @@ use super::fit::robust_sum;
 use super::links::Link;
 use super::localise::{NOISE_ALONE, misfits, robust_rms};
 use super::recorded::COLUMNS;
+use super::search::Hypothesis;
 use crate::effects::Effect;
 use crate::effects::vocabulary;
 use crate::plant::CHANNELS;
@@ -84,6 +85,7 @@ impl Diagnosis {
             depends_on: (self.best().depends_on.iter())
                 .map(|name| (*name).to_owned())
                 .collect(),
+            unlisted: self.unlisted_report().map(Box::new),
         });
         effects
             .map(|(effect, numbers)| FoundEffect {
@@ -100,6 +102,7 @@ impl Diagnosis {
                     )
                     .collect(),
                 depends_on: Vec::new(),
+                unlisted: None,
             })
             .chain(unlisted)
             .collect()
@@ -123,9 +126,15 @@ impl Diagnosis {
         if self.best().finds_nothing() {
             return None;
         }
+        self.share_explained_by(self.best())
+    }
+
+    /// That of an explanation.
+    #[must_use]
+    pub fn share_explained_by(&self, hypothesis: &Hypothesis) -> Option<f64> {
         let noise = self.evidence.count() as f64;
         let before = robust_sum(&self.baseline.prediction.residuals);
-        let after = self.best().fit.misfit;
+        let after = hypothesis.fit.misfit;
         (before > noise).then(|| ((before - after) / (before - noise)).clamp(0.0, 1.0))
     }
 

@@ -14,6 +14,7 @@ use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
 use super::regime::{Regime, regimes};
 use super::search::{Hypothesis, Search, stands_for};
+use super::unlisted::Shape;
 use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, PlantParameters, simulate};
 
@@ -84,6 +85,8 @@ pub struct Diagnosis {
     pub ranked: Vec<Ranked>,
     /// Numbers of the best.
     pub estimates: Estimates,
+    /// Shape of its term without a name, if it has one.
+    pub shape: Option<Shape>,
     /// Where its effects act.
     pub mismatch: Vec<Interval>,
     /// What the believed model says, as it stands in the rig file.
@@ -130,6 +133,7 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
         estimates: estimates(&case.believed, best, &evidence),
+        shape: Shape::of(&evidence, best),
         mismatch: intervals(&evidence, &case.believed, best),
         as_believed: evidence.predict(&case.believed, false, None),
         baseline,

@@ -4,11 +4,11 @@
 //! that it lacks, the contact and the load cell by the force that they should show where the tool is. What a joint fit of a model that lacks something
 //! would blame on one link for the sake of another does not show here.
 
-use super::evidence::{Evidence, Prediction};
+use super::evidence::{Evidence, Measured, Prediction};
 use super::fit::with_values;
 use super::free::Free;
 use super::localise::{by_channel, robust_rms};
-use crate::plant::{CHANNELS, Channel, PlantParameters};
+use crate::plant::{CHANNELS, Channel, PlantParameters, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -165,26 +165,35 @@ fn at_regulator(evidence: &Evidence, held: &Prediction) -> Vec<f64> {
         .collect()
 }
 
-/// The force that the piston lacks: M (a_m - g) + F_m - P, P that of the chambers, seals and end stops along the measured motion.
-fn on_the_piston(evidence: &Evidence, held: &Prediction, deviation: f64) -> Vec<f64> {
-    let plant = &held.plant;
+/// The force that the piston lacks at a sample [N]: M (a_m - g) + F_m - P, P that of the chambers, seals and end stops along the measured motion.
+pub(super) fn lacking(
+    measured: &Measured,
+    held: &Trajectory,
+    plant: &PlantParameters,
+    i: usize,
+) -> f64 {
     let mass = plant.device.moving_mass;
     let weight = mass * plant.gravity_along_extension;
+    let outside = weight + held.hold_force[i] - held.contact_force[i];
+    let inside = mass * held.acceleration[i] - outside;
+    let force = if measured.free {
+        0.0
+    } else {
+        measured.readings[2][i]
+    };
+    mass * measured.readings[3][i] - weight + force - inside
+}
+
+/// The same at all samples, in standard deviations.
+fn on_the_piston(evidence: &Evidence, held: &Prediction, deviation: f64) -> Vec<f64> {
+    let plant = &held.plant;
     let shares = evidence.shares(ROUGH_TIME, false);
     let mut all = Vec::new();
     let mut first = 0;
     for (measured, course) in evidence.recordings.iter().zip(&held.courses) {
         let count = measured.inputs.time.len();
-        let truth = &course.truth;
         for i in 0..count {
-            let outside = weight + truth.hold_force[i] - truth.contact_force[i];
-            let inside = mass * truth.acceleration[i] - outside;
-            let force = if measured.free {
-                0.0
-            } else {
-                measured.readings[2][i]
-            };
-            let lacking = mass * measured.readings[3][i] - weight + force - inside;
+            let lacking = lacking(measured, &course.truth, plant, i);
             let share = shares[first + 2 * count + i].min(shares[first + 3 * count + i]);
             all.push(share * lacking / deviation);
         }

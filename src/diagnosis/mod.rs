@@ -26,4 +26,5 @@ mod scale;
 pub mod search;
 pub mod servo;
 pub mod spectrum;
+pub mod unlisted;
 pub mod words;

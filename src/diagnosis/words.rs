@@ -149,6 +149,25 @@ pub fn wrapped(first: &str, text: &str) -> String {
     lines.replace('\u{a0}', " ")
 }
 
+/// A text that begins with a capital.
+#[must_use]
+pub fn capital(text: &str) -> String {
+    changed(text, |c| c.to_uppercase().collect())
+}
+
+/// A text that begins with a small letter.
+#[must_use]
+pub fn lower(text: &str) -> String {
+    changed(text, |c| c.to_lowercase().collect())
+}
+
+fn changed(text: &str, change: fn(char) -> String) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| change(first) + letters.as_str())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,9 +2,15 @@
 
 mod catalogue;
 mod cell;
+mod chambers;
+mod contact;
 mod effect;
+mod force_balance;
 mod meaning;
+mod parts;
 mod quantity;
+mod regulator;
+mod sensors;
 
 pub use catalogue::CATALOGUE;
 pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, SERVO_LAG, vocabulary};

@@ -67,6 +67,10 @@ impl Canvas<'_> {
         self.0.draw(&Circle::new(place, radius, style.filled()))
     }
 
+    pub fn polygon(&self, corners: &[Place], style: ShapeStyle) -> Drawn {
+        self.0.draw(&Polygon::new(corners, style.filled()))
+    }
+
     pub fn area(&self, corners: [Place; 2], colour: RGBAColor) -> Drawn {
         self.0.draw(&Rectangle::new(corners, colour.filled()))
     }

@@ -130,6 +130,12 @@ impl Layout<'_> {
             if let Some(series) = series {
                 let line = match series.stroke {
                     Stroke::Points => vec![((left + right) / 2, y)],
+                    Stroke::Area => vec![
+                        (left, y - SPACE),
+                        (right, y - SPACE),
+                        (right, y + SPACE),
+                        (left, y + SPACE),
+                    ],
                     _ => vec![(left, y), (right, y)],
                 };
                 // Thin lines are hard to tell apart alone.
@@ -153,6 +159,7 @@ impl Series<'_> {
             Stroke::Raw => (10, 0.65),
             Stroke::Truth => (32, 1.0),
             Stroke::Points => (0, 0.8),
+            Stroke::Area => (0, 0.25),
         };
         self.role.colour().mix(opacity).stroke_width(width)
     }
@@ -168,6 +175,7 @@ impl Series<'_> {
         lines.iter().try_for_each(|line| match line[..] {
             // As a line it would be invisible.
             [alone] => canvas.dot(alone, style.stroke_width.max(15), style),
+            _ if self.stroke == Stroke::Area => canvas.polygon(line, style),
             _ if self.stroke == Stroke::Dashed => canvas.dashed(line, style),
             _ => canvas.line(line, style),
         })

@@ -106,6 +106,8 @@ pub enum Stroke {
     Truth,
     /// Dots without a line.
     Points,
+    /// What the line encloses, filled: of a band whose edges are curves, one edge there and the other back.
+    Area,
 }
 
 /// A horizontal band, such as a tolerance.

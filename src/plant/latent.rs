@@ -35,6 +35,42 @@ pub enum Port {
 }
 
 impl Port {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::PistonForce,
+        Self::OutletPressure,
+        Self::FirstChamberFlow,
+        Self::SecondChamberFlow,
+        Self::Surface,
+        Self::ForceReading,
+        Self::StrokeReading,
+        Self::PressureReading,
+    ];
+
+    /// Name in files and answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PistonForce => "piston_force",
+            Self::OutletPressure => "outlet_pressure",
+            Self::FirstChamberFlow => "first_chamber_flow",
+            Self::SecondChamberFlow => "second_chamber_flow",
+            Self::Surface => "surface",
+            Self::ForceReading => "force_reading",
+            Self::StrokeReading => "stroke_reading",
+            Self::PressureReading => "pressure_reading",
+        }
+    }
+
+    /// Its unit as a key ends with it.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::PistonForce | Self::ForceReading => "n",
+            Self::OutletPressure | Self::PressureReading => "pa",
+            Self::FirstChamberFlow | Self::SecondChamberFlow => "kg_per_s",
+            Self::Surface | Self::StrokeReading => "m",
+        }
+    }
+
     /// Part of the chain that it belongs to, as in an answer.
     pub fn subsystem(self) -> &'static str {
         match self {
@@ -71,6 +107,31 @@ pub enum Variable {
 }
 
 impl Variable {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Time,
+        Self::Stroke,
+        Self::Velocity,
+        Self::ChamberPressure,
+        Self::PressureDifference,
+        Self::MassFlow,
+        Self::SetPressure,
+        Self::Surface,
+        Self::ContactForce,
+    ];
+
+    /// Its unit as a key ends with it.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Time => "s",
+            Self::Stroke | Self::Surface => "m",
+            Self::Velocity => "m_per_s",
+            Self::ChamberPressure | Self::PressureDifference | Self::SetPressure => "pa",
+            Self::MassFlow => "kg_per_s",
+            Self::ContactForce => "n",
+        }
+    }
+
     /// Name in an answer.
     pub fn name(self) -> &'static str {
         match self {

@@ -258,6 +258,7 @@ mod tests {
                 confidence: 1.0,
                 parameters: vec![("gain".to_owned(), Estimate { value, low, high })],
                 depends_on: Vec::new(),
+                unlisted: None,
             }],
             mismatch: vec![Mismatch {
                 recording: "ride.csv".to_owned(),

@@ -9,7 +9,7 @@ use super::error::ScenarioError;
 use super::file::{DeviceKeys, SCHEMA};
 use super::load::device;
 use super::rig_file::load_rig;
-use crate::plant::{ContactLaw, ContactParameters, Periodic, SensorErrors};
+use crate::plant::{ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors};
 
 /// What a device brings to a bench.
 pub(super) struct BenchDevice {
@@ -57,7 +57,7 @@ pub(super) fn bench_device(
         return Err(overrides.misplaced(key, reason));
     }
     let rig = load_rig(&model)?;
-    refuse_memory(section, &rig.plant.sensors)?;
+    refuse_without_counterpart(section, &rig.plant)?;
     Ok(BenchDevice {
         device: DeviceScenario {
             parameters: rig.plant.device,
@@ -74,8 +74,19 @@ pub(super) fn bench_device(
     })
 }
 
-/// Refuses what the sensing chain of a bench has no counterpart of.
-fn refuse_memory(section: &Section<'_>, sensors: &SensorErrors) -> Result<(), ScenarioError> {
+/// Refuses what a bench has no counterpart of.
+fn refuse_without_counterpart(
+    section: &Section<'_>,
+    plant: &PlantParameters,
+) -> Result<(), ScenarioError> {
+    if let Some(latent) = &plant.latent {
+        let reason = format!(
+            "it has [latent], a term without a name over {}, which a bench does not have; idc predict takes it",
+            latent.variable.name()
+        );
+        return Err(section.misplaced("model", reason));
+    }
+    let sensors = &plant.sensors;
     let without_counterpart = [
         ("force_sensor_lag", sensors.force_lag != 0.0),
         ("channel_time_offset", sensors.force_delay != 0.0),

@@ -4,6 +4,7 @@
 //!     key = { value = 5.09, tolerance = 0.01 }     believed to lie within 1 % of it
 //!     key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
 //!     [effect.coulomb_viscous_friction]            physics beyond the believed model, with all its numbers
+//!     [latent]                                     physics that no known effect explains (`latent`)
 
 use std::path::{Path, PathBuf};
 
@@ -15,8 +16,10 @@ use keys::{RigKeys, sections};
 use values::{check_together, recordings, sensors};
 
 mod effect;
+mod entry;
 mod improved;
 mod keys;
+mod latent;
 mod number;
 mod quantities;
 #[cfg(test)]
@@ -37,7 +40,7 @@ pub struct RigFile {
     pub path: PathBuf,
     /// Its text.
     text: String,
-    /// The rig, with the effects that the file names.
+    /// The rig, with the effects and the term without a name that the file holds.
     pub plant: PlantParameters,
     /// Numbers that are not exactly known, in the order of the format.
     pub tolerances: Vec<Tolerance>,
@@ -75,7 +78,10 @@ pub fn load_rig(path: &Path) -> Result<RigFile, ScenarioError> {
 }
 
 /// As [`load_rig`], of a text that stands, or could stand, in the file at `path`.
-fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
+///
+/// # Errors
+/// As [`load_rig`].
+pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     let document = Document::new(path, text, SCHEMA)?;
     let keys: RigKeys = document.parse(&sections())?;
     debug_assert_eq!(keys.schema, SCHEMA, "others are refused by Document::new");
@@ -86,6 +92,7 @@ fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     for (effect, values) in &effects {
         effect::apply(effect, values, &mut plant);
     }
+    plant.latent = latent::latent(&document, keys.latent.as_ref())?;
     let (rate, noise) = sensors(&document, &keys)?;
     let (fit, predict) = recordings(&document, keys.recordings)?;
     Ok(RigFile {

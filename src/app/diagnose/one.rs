@@ -1,4 +1,4 @@
-//! One case: rig.toml and recordings in, diagnosis.json, prediction.csv, improved.toml and account.txt out.
+//! One case: rig.toml and recordings in, diagnosis.json, prediction.csv, improved.toml, account.txt and unlisted.svg out.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -7,6 +7,7 @@ use super::super::error::AppError;
 use super::super::files::OutputFolder;
 use super::cell;
 use super::cell_account::cell_account;
+use super::unlisted_picture::picture;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
 use crate::diagnosis::diagnose::{Diagnosis, diagnose};
@@ -14,12 +15,12 @@ use crate::diagnosis::estimate::Number;
 use crate::diagnosis::recorded::{COLUMNS, recorded};
 use crate::diagnosis::servo::ServoLink;
 use crate::effects::CATALOGUE;
-use crate::plant::{CHANNELS, simulate};
+use crate::plant::{CHANNELS, PlantParameters, simulate};
 use crate::recording::csv::{columns_text, read_csv};
 use crate::replay::LoadedCell;
 use crate::scenario::RecordedCell;
 use crate::scenario::recorded_cell::{FoundNumbers, improved_cell_text};
-use crate::scenario::rig_file::{ImprovedEffect, RigFile, improved_text, load_rig};
+use crate::scenario::rig_file::{ImprovedEffect, RigFile, from_text, improved_text, load_rig};
 
 const RIG: &str = "rig.toml";
 const ACCOUNT: &str = "account.txt";
@@ -27,7 +28,9 @@ const IMPROVED: &str = "improved.toml";
 const PREDICTION: &str = "prediction.csv";
 /// Written last: where it stands, the others do.
 const DIAGNOSIS: &str = "diagnosis.json";
-const NAMES: [&str; 4] = [ACCOUNT, IMPROVED, PREDICTION, DIAGNOSIS];
+/// Shape of physics without a name, where there is such.
+const PICTURE: &str = "unlisted.svg";
+const NAMES: [&str; 5] = [ACCOUNT, IMPROVED, PREDICTION, PICTURE, DIAGNOSIS];
 
 /// What becomes of a diagnosis that stands where a new one is to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,11 +127,20 @@ impl Prepared {
         // An old diagnosis beside new files would pass for theirs.
         self.folder.discard(DIAGNOSIS)?;
         let diagnosis = diagnose(&self.case, self.recordings, say);
-        let improved = match &self.model {
-            Model::Rig(rig) => improved(rig, &diagnosis),
-            Model::Cell { cell, .. } => improved_cell(&cell.scenario, &diagnosis)?,
+        let (improved, plant) = match &self.model {
+            Model::Rig(rig) => {
+                let improved = improved(rig, &diagnosis);
+                // As the file says it, so that whoever takes the file gets the same.
+                let plant = from_text(Path::new(IMPROVED), &improved)?.plant;
+                (improved, plant)
+            }
+            Model::Cell { cell, .. } => (
+                improved_cell(&cell.scenario, &diagnosis)?,
+                diagnosis.best().fit.prediction.plant.clone(),
+            ),
         };
-        let prediction = prediction(&self.case, &diagnosis)?;
+        let prediction = prediction(&self.case, &plant)?;
+        let picture = picture(&diagnosis)?;
         let answer = diagnosis.answer(start.elapsed().as_secs_f64());
         let document = answer.text()?;
         let mut account = diagnosis.account(&self.name);
@@ -136,10 +148,12 @@ impl Prepared {
             account += &cell_account(cell, servo.as_ref(), &diagnosis);
         }
         let mut files = vec![(ACCOUNT, account.as_str()), (IMPROVED, improved.as_str())];
-        match &prediction {
-            Some(text) => files.push((PREDICTION, text.as_str())),
-            // That of another rig file would pass for one of this.
-            None => self.folder.discard(PREDICTION)?,
+        for (name, text) in [(PREDICTION, &prediction), (PICTURE, &picture)] {
+            match text {
+                Some(text) => files.push((name, text.as_str())),
+                // That of another diagnosis would pass for one of this.
+                None => self.folder.discard(name)?,
+            }
         }
         files.push((DIAGNOSIS, document.as_str()));
         let names = self.folder.write_texts(&files)?;
@@ -153,12 +167,11 @@ impl Prepared {
 }
 
 /// prediction.csv: what the improved model says of the recording that is to be predicted.
-fn prediction(case: &Case, diagnosis: &Diagnosis) -> Result<Option<String>, AppError> {
+fn prediction(case: &Case, plant: &PlantParameters) -> Result<Option<String>, AppError> {
     let Some(unseen) = &case.unseen else {
         return Ok(None);
     };
     let inputs = &unseen.recorded.inputs;
-    let plant = &diagnosis.best().fit.prediction.plant;
     let predicted = simulate(plant, inputs).readings;
     for (column, values) in COLUMNS.into_iter().zip(&predicted) {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
@@ -186,6 +199,11 @@ fn rig_case(folder: &Path) -> Result<(Model, Case), AppError> {
     let rig = load_rig(&folder.join(RIG))?;
     if rig.fit.is_empty() {
         return Err(AppError::NoRecordings {
+            file: rig.path.display().to_string(),
+        });
+    }
+    if rig.plant.latent.is_some() {
+        return Err(AppError::Latent {
             file: rig.path.display().to_string(),
         });
     }
@@ -285,7 +303,7 @@ fn improved(rig: &RigFile, diagnosis: &Diagnosis) -> String {
                 .collect(),
         });
     }
-    improved_text(rig, &tolerated, &effects)
+    improved_text(rig, &tolerated, &effects, diagnosis.best().unlisted())
 }
 
 fn same_folder(one: &Path, other: &Path) -> bool {

@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
-use super::RigFile;
 use super::values::plain;
+use super::{RigFile, latent};
 use crate::effects::{Effect, meaning};
+use crate::plant::Latent;
 
 /// An effect with all its numbers, reported or not, as [`Effect::parameters`] lists them.
 #[derive(Debug, Clone)]
@@ -24,12 +25,13 @@ pub fn as_written(value: f64) -> f64 {
 }
 
 /// Text of the improved file. `tolerated` are key (as in [`super::Tolerance`]), value, low and high of what was moved; what is not among them stands as it did.
-/// `effects` are all that the improved rig has.
+/// `effects` and `unnamed` are all that the improved rig has.
 #[must_use]
 pub fn improved_text(
     rig: &RigFile,
     tolerated: &[(&str, f64, f64, f64)],
     effects: &[ImprovedEffect],
+    unnamed: Option<&Latent>,
 ) -> String {
     let mut document: DocumentMut = rig
         .text
@@ -41,12 +43,16 @@ pub fn improved_text(
         }
     }
     document.remove("effect");
+    document.remove(latent::TABLE);
     let mut text = document.to_string();
     if !text.ends_with('\n') {
         text.push('\n');
     }
     for improved in effects {
         append(&mut text, improved);
+    }
+    if let Some(unnamed) = unnamed {
+        text.push_str(&latent::text(unnamed));
     }
     text
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::super::sections::keys;
+use super::entry::Entry;
 use super::number::{Number, NumberKeys};
 
 /// Numbers of a table, by key.
@@ -26,6 +27,7 @@ pub(super) struct RigKeys {
     pub recordings: RecordingsKeys,
     #[serde(default)]
     pub effect: BTreeMap<String, Numbers>,
+    pub latent: Option<BTreeMap<String, Entry>>,
 }
 
 /// `[recordings]`.

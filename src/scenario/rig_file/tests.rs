@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::*;
-use crate::plant::{ContactLaw, SensorErrors};
+use crate::plant::{Basis, ContactLaw, Latent, Port, SensorErrors, Variable};
 
 /// A rig file as its owner writes it.
 pub(crate) const RIG: &str = r#"# The device as its owner believes it to be.
@@ -390,7 +390,7 @@ fn an_improved_file_reads_back_as_the_rig_that_was_found() {
             .collect();
         effect::apply(improved.effect, &values, &mut expected);
     }
-    let text = improved_text(&rig, &tolerated, &found);
+    let text = improved_text(&rig, &tolerated, &found, None);
     let improved = read(&text);
     assert_eq!(improved.plant, expected);
     assert_ne!(improved.plant, rig.plant);
@@ -400,7 +400,7 @@ fn an_improved_file_reads_back_as_the_rig_that_was_found() {
     assert_eq!(mass.key, "cylinder.moving_mass_kg");
     assert!((mass.tolerance - 0.0122).abs() < 1e-4, "{}", mass.tolerance);
     // Once more, with nothing found: the effects go, what else was found stays.
-    let again = read(&improved_text(&read(&text), &[], &[]));
+    let again = read(&improved_text(&read(&text), &[], &[], None));
     assert!(again.effects.is_empty());
     assert_eq!(again.tolerances[1].value, mass.value);
 }
@@ -430,6 +430,141 @@ coulomb_force_n = { value = 13.2, low = 12.8, high = 13.6 }
 viscous_coefficient_n_s_per_m = 90.1235
 presliding_displacement_m = 4.12346e-5
 ";
-    assert_eq!(improved_text(&rig, &moved, &[friction]), expected);
-    assert_eq!(improved_text(&rig, &[], &[]), RIG);
+    assert_eq!(improved_text(&rig, &moved, &[friction], None), expected);
+    assert_eq!(improved_text(&rig, &[], &[], None), RIG);
+}
+
+/// Terms of either kind, in numbers as a file holds them.
+fn terms() -> [Latent; 3] {
+    let hats = Latent {
+        port: Port::PistonForce,
+        variable: Variable::Stroke,
+        directed: true,
+        basis: Basis::Hats {
+            ends: [0.0123457, 0.0234568],
+        },
+        coefficients: vec![0.0, -31.2346, 4.0, 1.5e-7],
+    };
+    let flow = Latent {
+        port: Port::FirstChamberFlow,
+        variable: Variable::PressureDifference,
+        directed: false,
+        basis: Basis::Hats {
+            ends: [-412000.0, 588123.0],
+        },
+        coefficients: vec![1.25e-5; 24],
+    };
+    let waves = Latent {
+        port: Port::OutletPressure,
+        variable: Variable::Time,
+        directed: false,
+        basis: Basis::Waves { frequency: 6.40123 },
+        coefficients: vec![4100.0, -800.25, 120.0, 95.5],
+    };
+    [hats, flow, waves]
+}
+
+#[test]
+fn a_term_without_a_name_reads_back_as_it_was_found() {
+    let rig = read(RIG);
+    for term in terms() {
+        let text = improved_text(&rig, &[], &[], Some(&term));
+        let mut expected = rig.plant.clone();
+        expected.latent = Some(term);
+        assert_eq!(read(&text).plant, expected, "{text}");
+        // A file with a term in place of which another is found has that one alone.
+        let none = improved_text(&read(&text), &[], &[], None);
+        assert_eq!(read(&none).plant, rig.plant);
+    }
+    let mut ragged = terms()[0].clone();
+    ragged.coefficients[1] = -31.234_567_89;
+    let text = improved_text(&rig, &[], &[], Some(&ragged));
+    assert_eq!(read(&text).plant.latent, Some(terms()[0].clone()));
+    assert!(text.ends_with(
+        "[latent]\nport = \"piston_force\"\nvariable = \"stroke_m\"\ndirected = true\nfrom_m = 0.0123457\nto_m = 0.0234568\nvalue_n = [0.0, -31.2346, 4.0, 1.5e-7]\n"
+    ), "{text}");
+}
+
+#[test]
+fn a_term_that_is_not_right_is_refused_by_its_key() {
+    let [hats, _, waves] = terms().map(|term| improved_text(&read(RIG), &[], &[], Some(&term)));
+    let says = |text: &str, right: &str, wrong: &str, expected: &str| {
+        assert!(text.contains(right), "{text}");
+        let text = text.replace(right, wrong);
+        let message = from_text(Path::new("rig.toml"), &text)
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains(expected), "{message}");
+    };
+    for (right, wrong, expected) in [
+        (
+            "\"piston_force\"",
+            "\"piston\"",
+            "`latent.port` is \"piston\", expected one of \"piston_force\", \"outlet_pressure\"",
+        ),
+        (
+            "\"stroke_m\"",
+            "3",
+            "`latent.variable` is 3, expected one of \"time\"",
+        ),
+        (
+            "directed = true",
+            "directed = 1",
+            "`latent.directed` is 1, expected true or false",
+        ),
+        (
+            "directed = true\n",
+            "",
+            "`latent.directed` is missing, expected true or false",
+        ),
+        (
+            "to_m = 0.0234568",
+            "to_m = 0.01",
+            "`latent.to_m` is 0.01, expected more than from_m, 0.0123457",
+        ),
+        (
+            "to_m =",
+            "to_mm =",
+            "unknown key `latent.to_mm`; did you mean `to_m`?",
+        ),
+        (
+            "value_n = [",
+            "value_pa = [",
+            "unknown key `latent.value_pa`",
+        ),
+        (
+            "[0.0, -31.2346, 4.0, 1.5e-7]",
+            "[0.0]",
+            "`latent.value_n` is a list of 1, expected a list of 2 to 24 numbers",
+        ),
+        (
+            "-31.2346",
+            "nan",
+            "`latent.value_n[1]` is NaN, expected a number from",
+        ),
+        (
+            "from_m = 0.0123457",
+            "from_m = \"low\"",
+            "`latent.from_m` is \"low\", expected a number from",
+        ),
+        (
+            "from_m =",
+            "frequency_hz = 3\nfrom_m =",
+            "`latent.frequency_hz` cannot stand here: a periodic term is one over time",
+        ),
+    ] {
+        says(&hats, right, wrong, expected);
+    }
+    says(
+        &waves,
+        "frequency_hz = 6.40123",
+        "frequency_hz = 0",
+        "`latent.frequency_hz` is 0, expected a number from 1e-3 to 10000",
+    );
+    says(
+        &waves,
+        "cosine_pa = [-800.25, 95.5]",
+        "cosine_pa = [95.5]",
+        "`latent.cosine_pa` is a list of 1, expected a list of 2",
+    );
 }

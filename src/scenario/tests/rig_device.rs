@@ -104,6 +104,13 @@ fn what_has_no_counterpart_is_refused_by_name() {
         free,
         "bench.toml:5:1: `device.model` cannot stand here: it has effect.channel_time_offset, which a bench's sensing does not have",
     );
+    let term = "\n[latent]\nport = \"piston_force\"\nvariable = \"stroke_m\"\ndirected = false\nfrom_m = 0.01\nto_m = 0.02\nvalue_n = [0.0, 9.0, 0.0]\n";
+    refused(
+        &(RIG.to_owned() + term),
+        free,
+        free,
+        "`device.model` cannot stand here: it has [latent], a term without a name over stroke_m, which a bench does not have",
+    );
     let lag = "\n[effect.force_sensor_lag]\ntime_constant_s = 0.01\n";
     refused(
         &(RIG.to_owned() + lag),

@@ -1,0 +1,80 @@
+//! unlisted.svg: a term without a name against its variable, with its 95 % band, and what the recordings say is needed there.
+
+use super::super::error::AppError;
+use crate::diagnosis::diagnose::Diagnosis;
+use crate::diagnosis::unlisted::words::{self, Shown};
+use crate::diagnosis::unlisted::{Row, Shape};
+use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+
+/// Half widths beyond so many times what the term moves through are not drawn: nothing was recorded there [1].
+const UNKNOWN: f64 = 1.0;
+
+/// The picture, if there is such a term.
+pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError> {
+    let Some(shape) = &diagnosis.shape else {
+        return Ok(None);
+    };
+    Ok(Some(svg(&figure(shape))?))
+}
+
+fn figure(shape: &Shape) -> Figure<'static> {
+    let latent = &shape.latent;
+    let port = words::port(latent.port);
+    let variable = words::variable(latent.variable);
+    let turns = if latent.directed {
+        ", turning with the motion"
+    } else {
+        ""
+    };
+    let over = match shape.period {
+        Some([period, _]) => format!("time within one period of {period:.4} s [s]"),
+        None => format!("{} [{}]", variable.words, variable.unit),
+    };
+    Figure {
+        title: format!("No known effect: a {}{turns}", port.words),
+        panels: vec![Panel {
+            vertical_label: format!("{} [{}]", port.words, port.unit),
+            horizontal: Horizontal::Quantity(over),
+            series: series(shape, port, variable),
+            ..Panel::default()
+        }],
+    }
+}
+
+fn series(shape: &Shape, port: Shown, variable: Shown) -> Vec<Series<'static>> {
+    let at = |value: f64| value * variable.factor;
+    let places: Vec<f64> = shape.curve.iter().map(|row| at(row.at)).collect();
+    let most = UNKNOWN * shape.peak_to_peak;
+    let known = |row: &Row| row.half_width < most;
+    let runs = shape.curve.chunk_by(|a, b| known(a) == known(b));
+    let runs = runs.filter(|run| run.len() > 1 && known(&run[0]));
+    let band = |(index, run): (usize, &[Row])| {
+        let edge = |row: &Row, side: f64| (row.value + side * row.half_width) * port.factor;
+        let there = run.iter().map(|row| (at(row.at), edge(row, -1.0)));
+        let back = run.iter().rev().map(|row| (at(row.at), edge(row, 1.0)));
+        let (places, values): (Vec<f64>, Vec<f64>) = there.chain(back).unzip();
+        let label = if index == 0 { "95 % band" } else { "" };
+        Series::new(label, places, values, Role::Band, Stroke::Area)
+    };
+    let mut series: Vec<Series<'static>> = runs.enumerate().map(band).collect();
+    if !shape.needed.is_empty() {
+        let needed = shape.needed.iter();
+        series.push(Series::new(
+            "needed by the recordings, medians",
+            needed.clone().map(|n| at(n.at)).collect::<Vec<f64>>(),
+            needed.map(|n| n.value * port.factor).collect::<Vec<f64>>(),
+            Role::Measured,
+            Stroke::Points,
+        ));
+    }
+    let values: Vec<f64> = shape.curve.iter().map(|r| r.value * port.factor).collect();
+    let found = Series::new(
+        "fitted in the simulator",
+        places,
+        values,
+        Role::Estimate,
+        Stroke::Truth,
+    );
+    series.push(found);
+    series
+}

@@ -1,0 +1,102 @@
+//! Where recordings and believed model part.
+
+use super::super::diagnose::Diagnosis;
+use super::super::localise::{Misfit, NOISE_ALONE, misfits};
+use super::super::words::{CHANNEL_UNITS, CHANNEL_WORDS, figures, listed};
+use super::MOST_OTHERS;
+use crate::plant::Channel;
+
+impl Diagnosis {
+    /// Channels in the order of their misfit, the largest first.
+    pub(super) fn by_misfit(&self, residuals: &[f64]) -> Vec<Misfit> {
+        let mut all = misfits(&self.evidence, residuals);
+        all.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
+        all
+    }
+
+    /// A size in standard deviations of a channel, in its unit.
+    fn in_unit(&self, channel: Channel, sigmas: f64) -> String {
+        let (unit, factor) = CHANNEL_UNITS[channel as usize];
+        let size = sigmas * self.evidence.noise[channel as usize] * factor;
+        format!("{} {unit}", figures(size, 2))
+    }
+
+    pub(super) fn where_it_parts(&self) -> Vec<String> {
+        if self.best().finds_nothing() {
+            let count = self.evidence.recordings.len();
+            let recordings = if count == 1 {
+                "the recording".to_owned()
+            } else {
+                format!("all {count} recordings")
+            };
+            let worst = self.by_misfit(&self.best().fit.prediction.residuals);
+            let to = worst.first().map_or_else(String::new, |worst| {
+                format!(
+                    ": the worst channel, the {} of {}, departs by {} times its noise",
+                    CHANNEL_WORDS[worst.channel as usize],
+                    self.name(worst.recording),
+                    figures(worst.sigmas, 3)
+                )
+            });
+            return vec![format!(
+                "Nowhere. The believed model, moved within its tolerances, explains {recordings}{to}."
+            )];
+        }
+        let all = self.by_misfit(&self.baseline.prediction.residuals);
+        let parting: Vec<&Misfit> = all.iter().filter(|m| self.span(m).is_some()).collect();
+        let Some((worst, others)) = parting.split_first() else {
+            return vec![
+                "No short time stands out: the mismatch is spread over the recordings.".to_owned(),
+            ];
+        };
+        let mut paragraphs = vec![self.worst_parting(worst)];
+        let others: Vec<String> = others
+            .iter()
+            .filter(|m| m.sigmas > NOISE_ALONE)
+            .take(MOST_OTHERS)
+            .filter_map(|m| {
+                let [from, to] = self.span(m)?;
+                Some(format!(
+                    "the {} of {} from {from:.2} to {to:.2} s ({} RMS)",
+                    CHANNEL_WORDS[m.channel as usize],
+                    self.name(m.recording),
+                    self.in_unit(m.channel, m.sigmas)
+                ))
+            })
+            .collect();
+        if !others.is_empty() {
+            paragraphs.push(format!("So do {}.", listed(&others)));
+        }
+        paragraphs
+    }
+
+    /// From the first to the last time in which a channel parts from the baseline [s].
+    fn span(&self, misfit: &Misfit) -> Option<[f64; 2]> {
+        let spans = self.spans(misfit);
+        Some([spans.first()?[0], spans.last()?[1]])
+    }
+
+    fn spans(&self, misfit: &Misfit) -> Vec<[f64; 2]> {
+        let partings = self.baseline.partings.iter();
+        let own =
+            partings.filter(|p| p.recording == misfit.recording && p.channel == misfit.channel);
+        own.map(|p| p.span).collect()
+    }
+
+    fn worst_parting(&self, worst: &Misfit) -> String {
+        let spans = self.spans(worst);
+        let [from, to] = self.span(worst).unwrap_or_default();
+        let long: f64 = spans.iter().map(|span| span[1] - span[0]).sum();
+        let times = match spans.len() {
+            1 => String::new(),
+            count => format!(", in {count} stretches that make {long:.1} s"),
+        };
+        format!(
+            "Between {from:.2} and {to:.2} s of {} the {} parts from the believed model, whatever its tolerances allow{times}: by {} RMS, where the sensor's noise is {}.",
+            self.name(worst.recording),
+            CHANNEL_WORDS[worst.channel as usize],
+            self.in_unit(worst.channel, worst.sigmas),
+            self.in_unit(worst.channel, 1.0),
+        )
+    }
+}

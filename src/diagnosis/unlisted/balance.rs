@@ -1,0 +1,117 @@
+//! What would close the balance at a term's port, straight from the recordings, with the term taken out of the improved model.
+//!
+//!     force on the piston:   M a_m - W + F_m - P,   the piston held to its measured motion
+//!     reading or outlet:     measured less predicted
+//!
+//! a_m acceleration and F_m force as measured, M mass, W weight, P force of chambers, seals and stops. Medians over narrow ranges of the variable: dots
+//! beside the curve that was fitted.
+
+use super::super::evidence::{Evidence, Prediction};
+use super::super::links::lacking;
+use super::super::search::Hypothesis;
+use crate::plant::{Basis, Latent, Port};
+
+/// Ranges of the variable.
+const RANGES: usize = 60;
+/// Samples in a range from which their median is shown.
+const LEAST: usize = 5;
+/// Speed from which the direction of motion is clear [m/s].
+const MOVING: f64 = 6e-3;
+
+/// A median of what would close the balance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Needed {
+    /// Value of the variable, or time within a period [SI].
+    pub at: f64,
+    /// What is needed there [SI].
+    pub value: f64,
+}
+
+/// From the least to the largest value that the variable has in the recordings.
+#[must_use]
+pub fn visited(evidence: &Evidence, hypothesis: &Hypothesis, latent: &Latent) -> Option<[f64; 2]> {
+    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+    let courses = &hypothesis.fit.prediction.courses;
+    for (measured, course) in evidence.recordings.iter().zip(courses) {
+        for i in 0..measured.inputs.time.len() {
+            let at = course.truth.moment(&measured.inputs, i).of(latent.variable);
+            if at.is_finite() {
+                ends = [ends[0].min(at), ends[1].max(at)];
+            }
+        }
+    }
+    (ends[0] < ends[1]).then_some(ends)
+}
+
+/// What would close the balance over a range of the variable; nothing where no reading shows it.
+#[must_use]
+pub fn needed(
+    evidence: &Evidence,
+    hypothesis: &Hypothesis,
+    latent: &Latent,
+    [from, to]: [f64; 2],
+) -> Vec<Needed> {
+    let channel = match latent.port {
+        Port::PistonForce => None,
+        Port::OutletPressure | Port::PressureReading => Some(0),
+        Port::StrokeReading => Some(1),
+        Port::ForceReading => Some(2),
+        Port::FirstChamberFlow | Port::SecondChamberFlow | Port::Surface => return Vec::new(),
+    };
+    let mut plant = hypothesis.fit.prediction.plant.clone();
+    plant.latent = None;
+    let without = evidence.predict(&plant, channel.is_none(), None);
+    let mut ranges: Vec<Vec<f64>> = vec![Vec::new(); RANGES];
+    for (at, value) in samples(evidence, &without, latent, channel) {
+        let share = (at - from) / (to - from);
+        if value.is_finite() && (0.0..1.0).contains(&share) {
+            ranges[(share * RANGES as f64) as usize].push(value);
+        }
+    }
+    let width = (to - from) / RANGES as f64;
+    let ranges = ranges.iter_mut().enumerate();
+    ranges
+        .filter(|(_, values)| values.len() >= LEAST)
+        .map(|(index, values)| Needed {
+            at: from + width * (index as f64 + 0.5),
+            value: median(values),
+        })
+        .collect()
+}
+
+/// Value of the variable and what is needed, sample by sample.
+fn samples(
+    evidence: &Evidence,
+    without: &Prediction,
+    latent: &Latent,
+    channel: Option<usize>,
+) -> Vec<(f64, f64)> {
+    let mut all = Vec::new();
+    for (measured, course) in evidence.recordings.iter().zip(&without.courses) {
+        for i in 0..measured.inputs.time.len() {
+            let moment = course.truth.moment(&measured.inputs, i);
+            let mut value = match channel {
+                None => lacking(measured, &course.truth, &without.plant, i),
+                Some(channel) => measured.readings[channel][i] - course.readings[channel][i],
+            };
+            if latent.directed {
+                if moment.speed.abs() < MOVING {
+                    continue;
+                }
+                value *= moment.speed.signum();
+            }
+            let at = moment.of(latent.variable);
+            let at = match latent.basis {
+                Basis::Hats { .. } => at,
+                Basis::Waves { frequency } => at.rem_euclid(1.0 / frequency),
+            };
+            all.push((at, value));
+        }
+    }
+    all
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}

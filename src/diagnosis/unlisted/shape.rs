@@ -1,0 +1,164 @@
+//! The shape of a term without a name: its value against its variable, with how sure it is.
+//!
+//!     y(x) = sum c_k phi_k(x),   half width = 1.96 sqrt(phi^T V phi)
+//!
+//! c coefficients in the port's unit, V their covariance (`super::super::covariance`).
+
+use nalgebra::DVector;
+
+use super::super::covariance::covariance;
+use super::super::evidence::Evidence;
+use super::super::latent;
+use super::super::search::Hypothesis;
+use super::balance::{self, Needed};
+use super::form::{Form, form};
+use crate::effects::Coordinate;
+use crate::plant::{Basis, Latent};
+
+/// Standard deviations to either side in a 95 % interval [1].
+const INTERVAL: f64 = 1.96;
+/// Places of the curve.
+const PLACES: usize = 161;
+/// Share of the width of what is shown beyond the knots at either side [1].
+const BESIDE: f64 = 0.25;
+
+/// A value of the term.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Value of the variable, or time within a period [SI].
+    pub at: f64,
+    /// The term [SI].
+    pub value: f64,
+    /// Half the width of its 95 % interval [SI].
+    pub half_width: f64,
+}
+
+/// The shape of a term.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shape {
+    /// The term.
+    pub latent: Latent,
+    /// What kind of curve it is.
+    pub form: Form,
+    /// One period with the half width of its 95 % interval [s], of a periodic term.
+    pub period: Option<[f64; 2]>,
+    /// Values at the knots, or over a period.
+    pub knots: Vec<Row>,
+    /// The same, finely and a little beyond.
+    pub curve: Vec<Row>,
+    /// What would close the balance, by the recordings; empty where no reading shows it.
+    pub needed: Vec<Needed>,
+    /// Largest less smallest value [SI].
+    pub peak_to_peak: f64,
+}
+
+impl Shape {
+    /// The shape of a hypothesis' term, if it has one.
+    #[must_use]
+    pub fn of(evidence: &Evidence, hypothesis: &Hypothesis) -> Option<Self> {
+        let latent = hypothesis.unlisted()?.clone();
+        let visited = balance::visited(evidence, hypothesis, &latent)?;
+        let spread = Spread::of(evidence, hypothesis, &latent);
+        let period = period(hypothesis, &spread, &latent);
+        let row = |at: f64| Row {
+            at,
+            value: latent.shape(at),
+            half_width: spread.half_width(&latent, at),
+        };
+        let [from, to] = match latent.basis {
+            Basis::Hats { ends } => ends,
+            Basis::Waves { frequency } => [0.0, 1.0 / frequency],
+        };
+        let steps = match latent.basis {
+            Basis::Hats { .. } => latent.coefficients.len() - 1,
+            Basis::Waves { .. } => 24,
+        };
+        let beside = match latent.basis {
+            Basis::Hats { .. } => BESIDE * (to - from),
+            Basis::Waves { .. } => 0.0,
+        };
+        let shown = if beside > 0.0 {
+            [
+                (from - beside).max(visited[0].min(from)),
+                (to + beside).min(visited[1].max(to)),
+            ]
+        } else {
+            [from, to]
+        };
+        let curve: Vec<Row> = even(shown, PLACES - 1).map(row).collect();
+        let values = || curve.iter().map(|row| row.value);
+        let peak_to_peak =
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+        Some(Self {
+            form: form(&latent, visited),
+            period,
+            knots: even([from, to], steps).map(row).collect(),
+            needed: balance::needed(evidence, hypothesis, &latent, shown),
+            curve,
+            latent,
+            peak_to_peak,
+        })
+    }
+}
+
+/// Evenly spaced places, both ends among them.
+fn even([from, to]: [f64; 2], steps: usize) -> impl Iterator<Item = f64> {
+    (0..=steps).map(move |step| from + (to - from) * step as f64 / steps as f64)
+}
+
+/// Covariance of the coefficients, and that of the frequency, in SI.
+struct Spread {
+    covariance: nalgebra::DMatrix<f64>,
+    frequency: f64,
+}
+
+impl Spread {
+    fn of(evidence: &Evidence, hypothesis: &Hypothesis, latent: &Latent) -> Self {
+        let fit = &hypothesis.fit;
+        let own = latent::count(&fit.prediction.plant);
+        let first = fit.free.len() - own;
+        let all = covariance(evidence, fit);
+        let scale = |index: usize| match fit.free[first + index].coordinate {
+            Coordinate::Linear(scale) => scale,
+            Coordinate::Logarithmic => fit.values[first + index],
+        };
+        let count = latent.coefficients.len();
+        let covariance = nalgebra::DMatrix::from_fn(count, count, |i, j| {
+            scale(i) * scale(j) * all[(first + i, first + j)]
+        });
+        let frequency = if own > count {
+            scale(count).powi(2) * all[(first + count, first + count)]
+        } else {
+            0.0
+        };
+        Self {
+            covariance,
+            frequency,
+        }
+    }
+
+    fn half_width(&self, latent: &Latent, at: f64) -> f64 {
+        let count = latent.coefficients.len();
+        let mut unit = latent.clone();
+        let functions = DVector::from_fn(count, |k, _| {
+            unit.coefficients.fill(0.0);
+            unit.coefficients[k] = 1.0;
+            unit.shape(at)
+        });
+        INTERVAL
+            * functions
+                .dot(&(&self.covariance * &functions))
+                .max(0.0)
+                .sqrt()
+    }
+}
+
+/// One period with the half width of its interval [s].
+fn period(hypothesis: &Hypothesis, spread: &Spread, latent: &Latent) -> Option<[f64; 2]> {
+    let Basis::Waves { frequency } = hypothesis.unlisted()?.basis else {
+        return None;
+    };
+    debug_assert!(latent.coefficients.len() % 2 == 0, "sines and cosines");
+    let half = INTERVAL * spread.frequency.max(0.0).sqrt();
+    Some([1.0 / frequency, half / (frequency * frequency)])
+}

@@ -1,0 +1,26 @@
+//! Air leaks past the piston from chamber to chamber: a worn seal, a scratched bore.
+//!
+//!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
+//!
+//! m_dot flow from the higher to the lower pressure [kg/s], A equivalent area [m2], C discharge coefficient [1], p_u and p_d upstream and downstream
+//! pressure [Pa], R specific gas constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//!
+//! Signature: chamber 2 stands above the atmosphere and chamber 1 below the regulator while nothing moves; the force sags in proportion to the pressure.
+//! Confused with: external_leakage (chamber 1 alone), supply_restriction (a delay, no loss at rest), regulator_gain_error.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "cross_piston_leakage",
+    subsystem: Subsystem::Chambers,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("orifice_area_m2", p => p.device.leakage.cross_piston),
+            Logarithmic,
+            [1e-10, 1e-4],
+        )]
+    },
+    starts: |c| shares(&[0.01, 0.05, 0.2], c.plant.device.supply_orifice),
+};

@@ -1,0 +1,33 @@
+//! Air leaves through another orifice than believed: a clogged or missing silencer.
+//!
+//!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
+//!
+//! m_dot flow [kg/s], A area of the orifice [m2], C discharge coefficient [1], p_u and p_d upstream and downstream pressure [Pa], R specific gas constant
+//! [J/(kg K)], T temperature [K], f the choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//!
+//! Signature: the vented chamber stays under pressure while the piston moves, and brakes or lets it run; nothing at rest.
+//! Confused with: coulomb_viscous_friction (brakes with no pressure behind it), extra_dead_volume (of both chambers), supply_restriction (of the other
+//! side of the piston).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "exhaust_restriction",
+    subsystem: Subsystem::Chambers,
+    group: None,
+    parameters: |p| {
+        let a = p.device.exhaust_orifice;
+        vec![reported(
+            quantity!("orifice_area_m2", p => p.device.exhaust_orifice),
+            Logarithmic,
+            [0.05 * a, 20.0 * a],
+        )]
+    },
+    starts: |c| {
+        shares(
+            &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],
+            c.plant.device.exhaust_orifice,
+        )
+    },
+};

@@ -1,0 +1,32 @@
+//! The chambers' dead volume is another one than believed: fittings, ports and short lines behind the valve.
+//!
+//!     V_1 = A_1 x + V_d,   V_2 = A_2 (L - x) + V_d
+//!
+//! V_1 and V_2 volumes [m3], V_d dead volume of each [m3], A_1 and A_2 piston areas [m2], x stroke [m], L full stroke [m]. Geometry; source paper eq. (4).
+//!
+//! Signature: chambers fill and vent slower, most where they are smallest: chamber 1 near the retracted end, chamber 2 near the other; the trapped air is a
+//! softer spring.
+//! Confused with: supply_restriction (the same at every stroke), hose_volume (before the valve: one side at a time), heat_transfer.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "extra_dead_volume",
+    subsystem: Subsystem::Chambers,
+    group: None,
+    parameters: |p| {
+        let a = p.device.dead_volume;
+        vec![reported(
+            quantity!("dead_volume_m3", p => p.device.dead_volume),
+            Logarithmic,
+            [0.1 * a, 20.0 * a],
+        )]
+    },
+    starts: |c| {
+        shares(
+            &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],
+            c.plant.device.dead_volume,
+        )
+    },
+};

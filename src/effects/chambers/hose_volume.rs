@@ -1,0 +1,70 @@
+//! A line that holds air and resists its flow stands between regulator and valve.
+//!
+//!     p_i V / n = m_i R T,   dm_i/dt = n (p_(i-1) - p_i) / R_h - n (p_i - p_(i+1)) / R_h      in n segments
+//!
+//! V volume of the line [m3], R_h its resistance, pressure drop over mass flow [Pa s/kg], p_i and m_i pressure [Pa] and air [kg] of a segment, R specific
+//! gas constant [J/(kg K)], T temperature [K]. Lumped line of Richer and Hurmuzlu 2000, in as many segments as fit best.
+//!
+//! Signature: the chamber follows the outlet in second order, with a dead time of its own where the line is long; a valve that switches empties the line
+//! into the chamber first.
+//! Confused with: extra_dead_volume (behind the valve), supply_restriction (of first order), transport_delay (moves the outlet itself),
+//! solenoid_switching_delay.
+
+use super::*;
+use crate::physics::hose::Hose;
+use crate::plant::PlantParameters;
+
+const VOLUME: Quantity = Quantity {
+    name: "volume_m3",
+    get: |p| p.device.hose.map_or(0.0, |h| h.volume),
+    set: |p, v| set_line(p, (v, line(p).1, line(p).2)),
+};
+const RESISTANCE: Quantity = Quantity {
+    name: "resistance_pa_s_per_kg",
+    get: |p| p.device.hose.map_or(0.0, |_| line(p).1),
+    set: |p, v| set_line(p, (line(p).0, v, line(p).2)),
+};
+const SEGMENTS: Quantity = Quantity {
+    name: "segments",
+    get: |p| p.device.hose.map_or(0.0, |h| h.segments() as f64),
+    set: |p, v| set_line(p, (line(p).0, line(p).1, v.round() as usize)),
+};
+
+/// Volume [m3], resistance [Pa s/kg] at its smallest flows, and segments of the line; where there is none, of one to begin with.
+fn line(p: &PlantParameters) -> (f64, f64, usize) {
+    p.device.hose.map_or((1e-5, 1e8, 2), |h| {
+        let resistance = h.resistance_at_rest(p.device.gas.atmosphere);
+        (h.volume, resistance, h.segments())
+    })
+}
+
+fn set_line(p: &mut PlantParameters, (volume, resistance, segments): (f64, f64, usize)) {
+    p.device.hose = Some(Hose::in_segments(volume, resistance, segments));
+}
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "hose_volume",
+    subsystem: Subsystem::Chambers,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(VOLUME, Logarithmic, [1e-6, 2e-3]),
+            reported(RESISTANCE, Logarithmic, [1e6, 5e9]),
+            Parameter {
+                choices: &[1.0, 2.0, 3.0, 4.0, 8.0],
+                ..hidden(SEGMENTS, Linear(1.0), [1.0, 8.0])
+            },
+        ]
+    },
+    starts: |_| {
+        vec![
+            vec![2e-5, 3e7, 2.0],
+            vec![5e-5, 5e7, 2.0],
+            vec![5e-5, 3e8, 2.0],
+            vec![1.5e-4, 5e7, 2.0],
+            vec![1.5e-4, 3e8, 2.0],
+            vec![4e-4, 1e8, 2.0],
+        ]
+    },
+};

@@ -1,0 +1,33 @@
+//! Air enters through another orifice than believed: a pinched hose, a half open valve, another fitting.
+//!
+//!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
+//!
+//! m_dot flow [kg/s], A area of the orifice [m2], C discharge coefficient [1], p_u and p_d upstream and downstream pressure [Pa], R specific gas constant
+//! [J/(kg K)], T temperature [K], f the choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//!
+//! Signature: the force follows the regulator's outlet later or earlier, in both directions; nothing at rest.
+//! Confused with: extra_dead_volume (the product of both sets the filling time: told apart where a stroke changes the volume), hose_volume (of second
+//! order), heat_transfer.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "supply_restriction",
+    subsystem: Subsystem::Chambers,
+    group: None,
+    parameters: |p| {
+        let a = p.device.supply_orifice;
+        vec![reported(
+            quantity!("orifice_area_m2", p => p.device.supply_orifice),
+            Logarithmic,
+            [0.05 * a, 20.0 * a],
+        )]
+    },
+    starts: |c| {
+        shares(
+            &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],
+            c.plant.device.supply_orifice,
+        )
+    },
+};

@@ -1,0 +1,25 @@
+//! Tool, part or fixture is softer or stiffer than believed.
+//!
+//!     F = max(0, k d + c d')
+//!
+//! F contact force [N], k stiffness [N/m], d penetration [m], c damping [N s/m]. Kelvin and Voigt's spring and damper.
+//!
+//! Signature: at a given force the piston stands deeper or less deep, in proportion to the force; contact rings at another frequency.
+//! Confused with: hertzian_contact (the stiffness grows with the force), surface_offset (the same at every force), stroke_sensor_gain_error.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "contact_stiffness_error",
+    subsystem: Subsystem::Contact,
+    group: Some("contact_law"),
+    parameters: |p| {
+        let k = (STIFFNESS.get)(p);
+        vec![reported(STIFFNESS, Logarithmic, [0.01 * k, 50.0 * k])]
+    },
+    starts: |c| {
+        let k = (STIFFNESS.get)(c.plant);
+        shares(&[0.1, 0.25, 0.5, 0.8, 1.25, 2.5], k)
+    },
+};

@@ -1,0 +1,34 @@
+//! Contact stiffens as it is pressed, as a ball on a flat does.
+//!
+//!     F = max(0, k d^(3/2) + c d')
+//!
+//! F contact force [N], k stiffness [N/m^1.5], d penetration [m], c damping [N s/m]. Hertz 1882; Johnson, Contact Mechanics, 1985, eq. (4.23).
+//!
+//! Signature: soft at first touch, stiffer under load: penetration goes with the 2/3 power of the force.
+//! Confused with: contact_stiffness_error (in proportion: recordings at one force alone cannot tell), surface_offset.
+
+use super::*;
+
+const HERTZ: Quantity = Quantity {
+    name: "stiffness_n_per_m15",
+    get: |p| match p.contact.law {
+        ContactLaw::Hertz { stiffness } => stiffness,
+        ContactLaw::Linear { .. } => 0.0,
+    },
+    set: |p, v| p.contact.law = ContactLaw::Hertz { stiffness: v },
+};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "hertzian_contact",
+    subsystem: Subsystem::Contact,
+    group: Some("contact_law"),
+    parameters: |_| vec![reported(HERTZ, Logarithmic, [1e5, 1e10])],
+    starts: |c| {
+        // As stiff as what is believed at a force that such a device is used at [N].
+        let k = (STIFFNESS.get)(c.plant);
+        let d = 120.0 / k;
+        let a = 120.0 / d.powf(1.5);
+        shares(&[0.2, 0.5, 1.0, 2.5], a)
+    },
+};

@@ -1,0 +1,25 @@
+//! The surface is not where the robot has it.
+//!
+//!     x_s = x_robot + o
+//!
+//! x_s where the surface is met along the stroke [m], o offset, positive along extension [m]. Kinematics.
+//!
+//! Signature: contact begins early or late, and the stroke is off by the same length wherever it touches.
+//! Confused with: stroke_sensor_gain_error (in proportion to the stroke, in the air too), contact_stiffness_error (in proportion to the force).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "surface_offset",
+    subsystem: Subsystem::Contact,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("offset_m", p => p.contact.surface_offset),
+            Linear(5e-4),
+            [-0.02, 0.02],
+        )]
+    },
+    starts: |_| each(&[-2e-3, -6e-4, 6e-4, 2e-3]),
+};

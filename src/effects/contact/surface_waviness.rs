@@ -1,0 +1,38 @@
+//! The surface goes up and down about where the robot has it, slower than a tool turns.
+//!
+//!     x_s = x_robot + s sin(2 pi f t) + c cos(2 pi f t)
+//!
+//! x_s where the surface is met along the stroke [m], s and c amplitudes of sine and cosine [m], f frequency [Hz], t time since the start of the recording
+//! [s]. Kinematics: a sine of the way at a steady feed.
+//!
+//! Signature: stroke and force go up and down together while touching, below 11 Hz; nothing in the air.
+//! Confused with: tool_runout (faster), regulator or supply pulses (in the outlet, touching or not).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "surface_waviness",
+    subsystem: Subsystem::Contact,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                quantity!("frequency_hz", p => p.contact.waviness.frequency),
+                Linear(0.02),
+                [0.3, SLOWEST_TOOL],
+            ),
+            hidden(
+                quantity!("sine_m", p => p.contact.waviness.sine),
+                Linear(2e-5),
+                [-0.02, 0.02],
+            ),
+            hidden(
+                quantity!("cosine_m", p => p.contact.waviness.cosine),
+                Linear(2e-5),
+                [-0.02, 0.02],
+            ),
+        ]
+    },
+    starts: |c| waves(c, |f| f < SLOWEST_TOOL),
+};

@@ -1,0 +1,38 @@
+//! The tool turns off its axis, and lifts and presses in turn.
+//!
+//!     x_s = x_robot + s sin(2 pi f t) + c cos(2 pi f t)
+//!
+//! x_s where the surface is met along the stroke [m], s and c amplitudes of sine and cosine [m], f frequency of the spindle [Hz], t time since the start of
+//! the recording [s]. Kinematics of an eccentric.
+//!
+//! Signature: a line in the spectrum of force and acceleration while touching, above 11 Hz; nothing in the air.
+//! Confused with: surface_waviness (the same below 11 Hz), a compressor's or regulator's pulses (in the outlet, touching or not).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "tool_runout",
+    subsystem: Subsystem::Contact,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                quantity!("frequency_hz", p => p.contact.runout.frequency),
+                Linear(0.02),
+                [SLOWEST_TOOL, 200.0],
+            ),
+            hidden(
+                quantity!("sine_m", p => p.contact.runout.sine),
+                Linear(2e-5),
+                [-0.01, 0.01],
+            ),
+            hidden(
+                quantity!("cosine_m", p => p.contact.runout.cosine),
+                Linear(2e-5),
+                [-0.01, 0.01],
+            ),
+        ]
+    },
+    starts: |c| waves(c, |f| f >= SLOWEST_TOOL),
+};

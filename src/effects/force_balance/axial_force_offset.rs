@@ -1,0 +1,26 @@
+//! A constant force acts along the axis: a weight that hangs on, a wrong tilt.
+//!
+//!     F = F_0
+//!
+//! F force along extension [N], F_0 its value [N]. Statics.
+//!
+//! Signature: the pressure at which the piston leaves its stop, and the contact force at any pressure, are off by the same force.
+//! Confused with: force_sensor_bias_drift (shows with nothing touched, and the piston moves as believed), regulator_gain_error (grows with the pressure),
+//! moving_mass_error (its weight, but with inertia: told apart while accelerating).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "axial_force_offset",
+    subsystem: Subsystem::ForceBalance,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("force_n", p => p.device.axial_load.force),
+            Linear(2.0),
+            [-500.0, 500.0],
+        )]
+    },
+    starts: |_| vec![vec![0.0]],
+};

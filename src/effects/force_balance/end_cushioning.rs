@@ -1,0 +1,41 @@
+//! The piston is damped as it comes near an end of its stroke: a pneumatic cushion traps air that leaves through a needle valve.
+//!
+//!     F = -c (1 - d / l) v     for d < l and towards the end,     0 otherwise
+//!
+//! F force along extension [N], c damping at the very end [N s/m], l length [m], d distance from the end [m], v speed of extension [m/s]. Cushioned
+//! cylinders of ISO 15552; the linear taper is the simplest that ends at l.
+//!
+//! Signature: strokes to an end slow down over its last millimetres; leaving it is free.
+//! Confused with: end stops of another damping (act within micrometres of the end), exhaust_restriction (brakes all along the stroke),
+//! coulomb_viscous_friction.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "end_cushioning",
+    subsystem: Subsystem::ForceBalance,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                quantity!("damping_n_s_per_m", p => p.device.end_cushioning.damping),
+                Logarithmic,
+                [5.0, 1e5],
+            ),
+            reported(
+                quantity!("length_m", p => p.device.end_cushioning.length),
+                Logarithmic,
+                [2e-4, 0.025],
+            ),
+        ]
+    },
+    starts: |_| {
+        vec![
+            vec![300.0, 0.004],
+            vec![300.0, 0.01],
+            vec![1500.0, 0.004],
+            vec![1500.0, 0.01],
+        ]
+    },
+};

@@ -1,0 +1,31 @@
+//! The moving mass is another one than believed: another tool, a part left off, a hose that hangs on.
+//!
+//!     m a = F
+//!
+//! m moving mass [kg], a acceleration along extension [m/s2], F sum of the forces, weight included [N]. Newton's second law.
+//!
+//! Signature: accelerations are off in proportion, and where the axis is not level the weight is too.
+//! Confused with: inertial_crosstalk (the load cell alone sees it), axial_force_offset (weight without inertia).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "moving_mass_error",
+    subsystem: Subsystem::ForceBalance,
+    group: None,
+    parameters: |p| {
+        let m = p.device.moving_mass;
+        vec![reported(
+            quantity!("mass_kg", p => p.device.moving_mass),
+            Logarithmic,
+            [0.2 * m, 5.0 * m],
+        )]
+    },
+    starts: |c| {
+        shares(
+            &[0.6, 0.8, 0.92, 1.08, 1.25, 1.7],
+            c.plant.device.moving_mass,
+        )
+    },
+};

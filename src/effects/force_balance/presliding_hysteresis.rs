@@ -1,0 +1,33 @@
+//! Seals bend before they slide, over a displacement that shows: a soft lip, or a soft mount of the piston.
+//!
+//!     F = -s z - b v,   dz/dx = 1 - sign(v) s z / F_c,   s = F_c / z_p
+//!
+//! F force along extension [N], z deflection [m], s its stiffness [N/m], F_c Coulomb friction [N], z_p presliding displacement [m], b viscous coefficient
+//! [N s/m], v speed of extension [m/s], x stroke [m]. Dahl 1968; Canudas de Wit, Olsson, Astrom and Lischinsky 1995.
+//!
+//! Signature: after a reversal the force follows the displacement in a loop, and is complete only after some z_p; small motions see a spring.
+//! Confused with: coulomb_viscous_friction (complete within micrometres: z_p below 0.1 mm), return_spring_load (no loop), contact_stiffness_error.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "presliding_hysteresis",
+    subsystem: Subsystem::ForceBalance,
+    group: Some("friction"),
+    parameters: |_| {
+        vec![
+            reported(COULOMB, Logarithmic, [0.05, 500.0]),
+            reported(PRESLIDING, Logarithmic, [1e-4, 1e-2]),
+            hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
+        ]
+    },
+    starts: |_| {
+        vec![
+            vec![8.0, 5e-4, 30.0],
+            vec![20.0, 5e-4, 40.0],
+            vec![8.0, 2e-3, 30.0],
+            vec![20.0, 2e-3, 40.0],
+        ]
+    },
+};

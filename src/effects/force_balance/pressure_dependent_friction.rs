@@ -1,0 +1,31 @@
+//! Seals rub the harder, the more the pressures of the two chambers differ: pressure presses the lip against the bore.
+//!
+//!     F = -(F_c + c |p_1 - p_2|) sign(v) - b v
+//!
+//! F force along extension [N], c growth of friction with pressure [N/Pa], p_1 and p_2 chamber pressures [Pa], F_c Coulomb friction [N], b viscous
+//! coefficient [N s/m], v speed of extension [m/s]. Raparelli, Manuello Bertetto and Mazza 1997; Belforte, Raparelli and Mazza 1993.
+//!
+//! Signature: steps at reversals, higher at higher set pressures.
+//! Confused with: coulomb_viscous_friction (the same step at every pressure: recordings at one pressure alone cannot tell), force_sensor_gain_error
+//! (no step at reversals).
+
+use super::*;
+
+const GROWTH: Quantity =
+    quantity!("friction_per_pressure_n_per_pa", p => p.device.seal_friction.pressure_coefficient);
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "pressure_dependent_friction",
+    subsystem: Subsystem::ForceBalance,
+    group: Some("friction"),
+    parameters: |_| {
+        vec![
+            reported(GROWTH, Logarithmic, [1e-7, 1e-2]),
+            hidden(COULOMB, Linear(3.0), [0.0, 500.0]),
+            hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
+            hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
+        ]
+    },
+    starts: |_| vec![vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]],
+};

@@ -1,0 +1,26 @@
+//! Something elastic pulls the piston back: a return spring, a cable, a hose that is dragged along.
+//!
+//!     F = -k x
+//!
+//! F force along extension [N], k stiffness [N/m], x stroke from the retracted end, where the spring is relaxed [m]. Hooke's law.
+//!
+//! Signature: a lack of force that grows with the stroke, standing still or moving.
+//! Confused with: axial_force_offset (the same at every stroke), stroke_sensor_gain_error (moves the stroke, not the force),
+//! contact_stiffness_error (acts in contact alone), surface_offset.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "return_spring_load",
+    subsystem: Subsystem::ForceBalance,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("stiffness_n_per_m", p => p.device.axial_load.return_stiffness),
+            Linear(100.0),
+            [-5e4, 5e4],
+        )]
+    },
+    starts: |_| vec![vec![0.0]],
+};

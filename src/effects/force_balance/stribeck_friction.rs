@@ -1,0 +1,45 @@
+//! Seals stick: breaking loose takes more force than sliding on, for their lubricant film only builds up with speed.
+//!
+//!     F = -(F_c + (F_s - F_c) exp(-(v / v_s)^2)) sign(v) - b v
+//!
+//! F force along extension [N], F_c Coulomb and F_s static friction [N], v_s Stribeck velocity [m/s], b viscous coefficient [N s/m], v speed of extension
+//! [m/s]. Stribeck 1902 for bearings; the exponential after Bo and Pavelescu 1982; Armstrong-Helouvry, Dupont and Canudas de Wit 1994 for the whole.
+//!
+//! Signature: the force overshoots as sliding starts and sags within a few v_s; stick and slip at slow motion.
+//! Confused with: coulomb_viscous_friction (no overshoot at the start of sliding; F_s = F_c), presliding_hysteresis (builds up, does not sag).
+
+use super::*;
+
+const STATIC: Quantity = Quantity {
+    name: "static_force_n",
+    get: |p| p.device.seal_friction.static_force,
+    set: |p, v| {
+        let s = &mut p.device.seal_friction;
+        s.static_force = v.max(s.coulomb);
+    },
+};
+const STRIBECK: Quantity =
+    quantity!("stribeck_velocity_m_per_s", p => p.device.seal_friction.stribeck_velocity);
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "stribeck_friction",
+    subsystem: Subsystem::ForceBalance,
+    group: Some("friction"),
+    parameters: |_| {
+        vec![
+            reported(COULOMB, Logarithmic, [0.05, 500.0]),
+            reported(STATIC, Linear(5.0), [0.05, 1000.0]),
+            reported(STRIBECK, Logarithmic, [5e-4, 0.2]),
+            hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
+            hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
+        ]
+    },
+    starts: |_| {
+        vec![
+            vec![4.0, 8.0, 0.008, 30.0, 5e-5],
+            vec![8.0, 16.0, 0.008, 40.0, 5e-5],
+            vec![8.0, 16.0, 0.03, 40.0, 5e-5],
+        ]
+    },
+};

@@ -1,0 +1,42 @@
+//! What an effect is written with.
+
+pub use super::effect::{Clues, Effect, Parameter, Subsystem};
+pub use super::quantity::Coordinate::{self, Linear, Logarithmic};
+pub use super::quantity::Quantity;
+
+/// A quantity that is one place of the description: `quantity!("name_unit", p => p.device.bore)`.
+macro_rules! quantity {
+    ($name:literal, $p:ident => $($place:tt)+) => {
+        Quantity { name: $name, get: |$p| $($place)+, set: |$p, value| $($place)+ = value }
+    };
+}
+pub(super) use quantity;
+
+/// A number that is a part of the answer.
+pub fn reported(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Parameter {
+    Parameter {
+        quantity,
+        coordinate,
+        bounds,
+        reported: true,
+        choices: &[],
+    }
+}
+
+/// A number that the model needs and the answer does not name.
+pub fn hidden(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Parameter {
+    Parameter {
+        reported: false,
+        ..reported(quantity, coordinate, bounds)
+    }
+}
+
+/// Starts of an effect of one number.
+pub fn each(values: &[f64]) -> Vec<Vec<f64>> {
+    values.iter().map(|value| vec![*value]).collect()
+}
+
+/// The same as shares of a value.
+pub fn shares(shares: &[f64], of: f64) -> Vec<Vec<f64>> {
+    shares.iter().map(|share| vec![share * of]).collect()
+}

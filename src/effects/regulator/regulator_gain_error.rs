@@ -1,0 +1,29 @@
+//! The regulator holds another share of its set pressure than believed: its set value's scale is off, or it droops.
+//!
+//!     p = K p_set        at rest
+//!
+//! p outlet and p_set set pressure [Pa gauge], K gain [1]. Definition of a static gain.
+//!
+//! Signature: the outlet is off in proportion to the set pressure, at rest too.
+//! Confused with: force_sensor_gain_error (the outlet reads as set), regulator_hysteresis (either side of the set pressure), axial_force_offset.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "regulator_gain_error",
+    subsystem: Subsystem::Regulator,
+    group: None,
+    parameters: |p| {
+        let g = p.device.regulator.gain;
+        vec![reported(
+            quantity!("gain", p => p.device.regulator.gain),
+            Logarithmic,
+            [0.3 * g, 3.0 * g],
+        )]
+    },
+    starts: |c| {
+        let g = c.plant.device.regulator.gain;
+        vec![vec![0.97 * g], vec![1.03 * g]]
+    },
+};

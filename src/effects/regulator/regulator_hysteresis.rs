@@ -1,0 +1,25 @@
+//! The regulator has play: friction of its pilot's spool lets small changes of the set pressure go by.
+//!
+//!     p_a = min(max(p_a, p_set - r), p_set + r)
+//!
+//! p_a pressure acted on [Pa gauge], p_set set pressure [Pa gauge], r half the width of the play [Pa]. Play operator, Krasnosel'skii and Pokrovskii 1989.
+//!
+//! Signature: coming from below the outlet stands r short, from above r over; the first steps after a reversal do nothing.
+//! Confused with: regulator_gain_error (does not know where it came from), coulomb_viscous_friction (in the force, not in the outlet).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "regulator_hysteresis",
+    subsystem: Subsystem::Regulator,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("half_width_pa", p => p.device.regulator.hysteresis),
+            Logarithmic,
+            [10.0, 2e5],
+        )]
+    },
+    starts: |_| each(&[2e3, 6e3, 15e3]),
+};

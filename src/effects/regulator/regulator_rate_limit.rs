@@ -1,0 +1,33 @@
+//! The regulator's outlet cannot rise or fall faster than so much: its own valve is as small as that.
+//!
+//!     dp/dt = min(max((K p_set - p) / tau, -fall), rise)
+//!
+//! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], tau time constant [s], rise and fall the largest rates [Pa/s]. Slew limit; Zorlu, Ozsoy
+//! and Kuzucu 2003 for the flow of a proportional regulator's own valve.
+//!
+//! Signature: large steps of the set pressure become ramps, small ones do not.
+//! Confused with: a longer time constant (small steps too), supply_droop (depends on what was drawn before), regulator_second_order.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "regulator_rate_limit",
+    subsystem: Subsystem::Regulator,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                quantity!("rise_pa_per_s", p => p.device.regulator.rate_limit.rise),
+                Logarithmic,
+                [1e3, 1e8],
+            ),
+            reported(
+                quantity!("fall_pa_per_s", p => p.device.regulator.rate_limit.fall),
+                Logarithmic,
+                [1e3, 1e8],
+            ),
+        ]
+    },
+    starts: |_| vec![vec![4e5, 4e5], vec![1.2e6, 4e5], vec![4e5, 1.2e6]],
+};

@@ -1,0 +1,58 @@
+//! The regulator overshoots and swings: its diaphragm and pilot are an oscillator.
+//!
+//!     p'' + 2 zeta w p' + w^2 p = w^2 K p_set        in place of the first-order lag
+//!
+//! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], w natural frequency [rad/s], zeta damping ratio [1]. Linear oscillator (Ogata,
+//! Modern Control Engineering, 5.3).
+//!
+//! Signature: the outlet starts flat after a step, and for zeta below 0.7 overshoots it.
+//! Confused with: transport_delay (the outlet starts at once after it), regulator_rate_limit (for large steps alone).
+
+use super::*;
+use crate::physics::regulator::SecondOrder;
+use crate::plant::PlantParameters;
+
+fn oscillator(p: &PlantParameters) -> SecondOrder {
+    p.device.regulator.second_order.unwrap_or(SecondOrder {
+        natural_frequency: 1.0 / p.device.regulator.time_constant,
+        damping_ratio: 1.0,
+    })
+}
+
+const FREQUENCY: Quantity = Quantity {
+    name: "natural_frequency_rad_per_s",
+    get: |p| oscillator(p).natural_frequency,
+    set: |p, v| {
+        p.device.regulator.second_order = Some(SecondOrder {
+            natural_frequency: v,
+            ..oscillator(p)
+        })
+    },
+};
+const DAMPING_RATIO: Quantity = Quantity {
+    name: "damping_ratio",
+    get: |p| oscillator(p).damping_ratio,
+    set: |p, v| {
+        p.device.regulator.second_order = Some(SecondOrder {
+            damping_ratio: v,
+            ..oscillator(p)
+        })
+    },
+};
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "regulator_second_order",
+    subsystem: Subsystem::Regulator,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(FREQUENCY, Logarithmic, [0.5, 500.0]),
+            reported(DAMPING_RATIO, Logarithmic, [0.02, 5.0]),
+        ]
+    },
+    starts: |c| {
+        let w = 1.0 / c.plant.device.regulator.time_constant;
+        vec![vec![1.5 * w, 0.6], vec![1.5 * w, 0.3], vec![4.0 * w, 0.4]]
+    },
+};

@@ -1,0 +1,25 @@
+//! The regulator answers its set pressure only after a dead time: a bus, a PWM filter, its own electronics.
+//!
+//!     p_acted(t) = p_set(t - theta)
+//!
+//! p_set set pressure, p_acted that acted on [Pa gauge], theta dead time [s]. Dead time of process control (Smith 1957).
+//!
+//! Signature: the outlet does nothing for theta after each change, then answers as believed.
+//! Confused with: regulator_second_order (starts flat, but at once), channel_time_offset (of the force alone), solenoid_switching_delay.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "transport_delay",
+    subsystem: Subsystem::Regulator,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("delay_s", p => p.device.regulator.dead_time),
+            Logarithmic,
+            [5e-4, 2.0],
+        )]
+    },
+    starts: |_| each(&[0.01, 0.03, 0.1, 0.25]),
+};

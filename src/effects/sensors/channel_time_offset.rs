@@ -1,0 +1,25 @@
+//! The load cell's samples are stamped late: another clock, a buffer.
+//!
+//!     F_m(t) = F(t - delta)
+//!
+//! F_m reading and F contact force [N], delta how late it is stamped [s]. Definition of a delay.
+//!
+//! Signature: every edge of the force comes late by the same time, undistorted, while stroke and acceleration are in time.
+//! Confused with: force_sensor_lag (rounds edges), transport_delay (everything is late).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "channel_time_offset",
+    subsystem: Subsystem::Sensors,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("offset_s", p => p.sensors.force_delay),
+            Linear(0.005),
+            [-0.5, 0.5],
+        )]
+    },
+    starts: |_| each(&[4e-3, 0.015, 0.04, -0.01]),
+};

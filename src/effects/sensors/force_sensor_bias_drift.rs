@@ -1,0 +1,35 @@
+//! The load cell does not read zero at no force, and drifts: temperature, creep, a wrong tare.
+//!
+//!     F_m = F + b + d t
+//!
+//! F_m reading and F contact force [N], b bias at the start of each recording [N], d drift [N/s], t time since then [s]. Doebelin, Measurement Systems.
+//!
+//! Signature: the reading in the air is not zero and moves with time, whatever stroke, pressures and motion do.
+//! Confused with: axial_force_offset (nothing in the air), force_sensor_gain_error (in proportion to the force).
+
+use super::*;
+
+/// Beyond any load cell here [N], [N/s].
+const FAR: f64 = 1e3;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "force_sensor_bias_drift",
+    subsystem: Subsystem::Sensors,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                quantity!("bias_n", p => p.sensors.force_bias),
+                Linear(1.0),
+                [-FAR, FAR],
+            ),
+            reported(
+                quantity!("drift_n_per_s", p => p.sensors.force_drift),
+                Linear(0.1),
+                [-FAR, FAR],
+            ),
+        ]
+    },
+    starts: |_| vec![vec![0.0, 0.0]],
+};

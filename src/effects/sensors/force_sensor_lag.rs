@@ -1,0 +1,25 @@
+//! The load cell's signal is smoothed, and late by it: its amplifier's filter.
+//!
+//!     T dF_m/dt + F_m = F
+//!
+//! F_m reading and F contact force [N], T time constant [s]. First-order low pass.
+//!
+//! Signature: edges of the force are rounded and late by T, those of stroke and acceleration are not.
+//! Confused with: channel_time_offset (late but not rounded), inertial_crosstalk, hose_volume (the piston is late too).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "force_sensor_lag",
+    subsystem: Subsystem::Sensors,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("time_constant_s", p => p.sensors.force_lag),
+            Logarithmic,
+            [1e-4, 2.0],
+        )]
+    },
+    starts: |_| each(&[3e-3, 0.01, 0.03, 0.1]),
+};

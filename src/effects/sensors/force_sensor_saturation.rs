@@ -1,0 +1,25 @@
+//! The load cell's signal ends at a limit: its amplifier or its converter is at its end.
+//!
+//!     F_m = min(max(F, -l), l)
+//!
+//! F_m reading and F contact force [N], l limit [N].
+//!
+//! Signature: peaks are cut flat at the same reading, and everything below it is right.
+//! Confused with: supply_droop (the outlet and the stroke show it), force_sensor_gain_error (small forces too).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "force_sensor_saturation",
+    subsystem: Subsystem::Sensors,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("limit_n", p => p.sensors.force_limit),
+            Linear(2.0),
+            [5.0, 5000.0],
+        )]
+    },
+    starts: |c| vec![vec![c.largest_force]],
+};

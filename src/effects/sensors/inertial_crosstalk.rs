@@ -1,0 +1,25 @@
+//! The load cell feels the mass in front of it being accelerated.
+//!
+//!     F_m = F + m_x a
+//!
+//! F_m reading and F contact force [N], m_x mass beyond the load cell [kg], a acceleration along extension [m/s2]. Newton's second law.
+//!
+//! Signature: the reading in the air is a copy of the accelerometer's.
+//! Confused with: moving_mass_error (the motion itself is another), force_sensor_lag.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "inertial_crosstalk",
+    subsystem: Subsystem::Sensors,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("mass_kg", p => p.sensors.crosstalk_mass),
+            Linear(0.1),
+            [-20.0, 20.0],
+        )]
+    },
+    starts: |_| vec![vec![0.0]],
+};

@@ -1,0 +1,25 @@
+//! The position sensor reads too much or too little in proportion: wrong scale, a magnet that stands off.
+//!
+//!     x_m = g x
+//!
+//! x_m reading and x stroke [m], g gain [1]. Doebelin, Measurement Systems.
+//!
+//! Signature: the reading is off in proportion to the stroke, at the far stop most, while force and accelerations are as believed.
+//! Confused with: surface_offset (in contact alone, and the same at every stroke), contact_stiffness_error (with the force).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "stroke_sensor_gain_error",
+    subsystem: Subsystem::Sensors,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("gain", p => p.sensors.stroke_gain),
+            Linear(0.01),
+            [0.2, 5.0],
+        )]
+    },
+    starts: |_| vec![vec![1.0]],
+};
