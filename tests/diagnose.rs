@@ -409,7 +409,7 @@ fn a_practice_case_with_nothing_concealed_is_answered_so() {
     };
     let folder = shared.join("cases/case-01");
     if !folder.is_dir() {
-        eprintln!("skipped: {} is absent", folder.display());
+        eprintln!("skipped without {}", folder.display());
         return;
     }
     let bench = Bench::new("plate_edge");

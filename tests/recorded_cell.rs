@@ -397,7 +397,7 @@ fn a_recorded_cell_is_nothing_to_run_and_its_file_says_what_is_believed_alone() 
 fn the_laboratory_s_nothing_is_nothing() {
     let shared = project("../shared/cell");
     if !shared.is_dir() {
-        eprintln!("skipped: there is no ../shared/cell");
+        eprintln!("skipped without ../shared/cell");
         return;
     }
     let scenario = project("tests/lab_cell.toml");

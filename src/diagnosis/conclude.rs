@@ -112,9 +112,9 @@ impl Diagnosis {
     #[must_use]
     pub fn confidence(&self, name: &str) -> f64 {
         let has = |r: &&super::diagnose::Ranked| {
-            let own = |e: &&'static Effect| e.name == name;
+            let own = |e: &Effect| e.name == name;
             let unnamed = name == UNLISTED && r.hypothesis.unlisted().is_some();
-            unnamed || r.hypothesis.effects.iter().any(|e| own(&e))
+            unnamed || r.hypothesis.effects.iter().any(|e| own(e))
         };
         let with = self.ranked.iter().filter(has);
         with.map(|r| r.probability).sum::<f64>().min(1.0)

@@ -25,9 +25,12 @@ const NARROW: f64 = 0.1;
 /// Share of the gain of the best term within which another variable is not told apart [1].
 const ALIKE: f64 = 0.05;
 
+/// A row of [`TERMS`].
+type Entry = (Port, f64, &'static [(Variable, bool)]);
+
 /// Ports, with the size of what is looked for, and variables on which something there may depend, with whether it may act with the motion.
 #[rustfmt::skip]
-const TERMS: &[(Port, f64, &[(Variable, bool)])] = &[
+const TERMS: &[Entry] = &[
     (Port::PistonForce, 10.0, &[
         (Variable::Time, false), (Variable::Time, true), (Variable::Stroke, false), (Variable::Stroke, true), (Variable::Velocity, false),
         (Variable::ChamberPressure, false), (Variable::ChamberPressure, true), (Variable::PressureDifference, false),

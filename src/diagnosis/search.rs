@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// Iterations of the second look at those that promise most.
 const LOOK: usize = 3;
 /// How many starts are looked at with all their derivatives.
-const GLANCED_AT: usize = 30;
+const GLANCED_AT: usize = 24;
 /// A way from no effect to a start: 1 there.
 const WAY: Free = Free {
     quantity: Quantity {
@@ -175,7 +175,9 @@ impl Search<'_> {
             .collect();
         let mut promising: Vec<usize> = (0..starts.len()).collect();
         promising.sort_by(|a, b| secants[*a].total_cmp(&secants[*b]));
-        promising.truncate(GLANCED_AT);
+        // Those without a secant are looked at in any case.
+        let without = secants.iter().filter(|s| **s == f64::NEG_INFINITY).count();
+        promising.truncate(without + GLANCED_AT);
         promising.sort_unstable();
         let starts: Vec<(&'static Effect, Vec<f64>)> = promising
             .into_iter()

@@ -61,11 +61,12 @@ impl LineChain {
     fn offsets(&self, before: f64) -> [f64; UPSTREAM] {
         let mut offsets = [0.0; UPSTREAM];
         let (mut last, mut share) = (before, 0.0);
-        for j in 0..self.count {
+        let segments = offsets.iter_mut().zip(&self.held).zip(&self.shares);
+        for ((offset, held), own) in segments.take(self.count) {
             let divisor = 1.0 + self.exchange * (2.0 - share);
-            last = (self.held[j] + self.exchange * last) / divisor;
-            share = self.shares[j];
-            offsets[j] = last;
+            last = (held + self.exchange * last) / divisor;
+            share = *own;
+            *offset = last;
         }
         offsets
     }

@@ -158,7 +158,10 @@ fn period(hypothesis: &Hypothesis, spread: &Spread, latent: &Latent) -> Option<[
     let Basis::Waves { frequency } = hypothesis.unlisted()?.basis else {
         return None;
     };
-    debug_assert!(latent.coefficients.len() % 2 == 0, "sines and cosines");
+    debug_assert!(
+        latent.coefficients.len().is_multiple_of(2),
+        "sines and cosines"
+    );
     let half = INTERVAL * spread.frequency.max(0.0).sqrt();
     Some([1.0 / frequency, half / (frequency * frequency)])
 }
