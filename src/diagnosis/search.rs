@@ -7,26 +7,12 @@ use super::fit::{
 use super::free::{Free, Prior, free_of};
 use super::latent;
 use super::scale::Scale;
-use crate::effects::{Clues, Coordinate, Effect, Quantity, Subsystem};
+use crate::effects::{Clues, Effect};
 use crate::plant::{Latent, PlantParameters};
 use rayon::prelude::*;
 
 /// Iterations of the second look at those that promise most.
 const LOOK: usize = 3;
-/// How many starts are looked at with all their derivatives.
-const GLANCED_AT: usize = 24;
-/// A way from no effect to a start: 1 there.
-const WAY: Free = Free {
-    quantity: Quantity {
-        name: "way",
-        get: |_| 0.0,
-        set: |_, _| {},
-    },
-    start: 0.0,
-    coordinate: Coordinate::Linear(1.0),
-    bounds: [-3.0, 3.0],
-    prior: Prior::Flat,
-};
 /// How many get a second look.
 const LOOKED_AT: usize = 7;
 /// Iterations of a full fit.
@@ -169,20 +155,6 @@ impl Search<'_> {
                     .map(move |start| (effect, start))
             })
             .collect();
-        let secants: Vec<f64> = starts
-            .par_iter()
-            .map(|(effect, start)| self.secant(from, effect, start, &stages[0]))
-            .collect();
-        let mut promising: Vec<usize> = (0..starts.len()).collect();
-        promising.sort_by(|a, b| secants[*a].total_cmp(&secants[*b]));
-        // Those without a secant are looked at in any case.
-        let without = secants.iter().filter(|s| **s == f64::NEG_INFINITY).count();
-        promising.truncate(without + GLANCED_AT);
-        promising.sort_unstable();
-        let starts: Vec<(&'static Effect, Vec<f64>)> = promising
-            .into_iter()
-            .map(|index| starts[index].clone())
-            .collect();
         let glances: Vec<f64> = starts
             .par_iter()
             .map(|(effect, start)| self.glance(from, effect, start, &stages[0]))
@@ -234,35 +206,6 @@ impl Search<'_> {
                 )
             })
             .unzip()
-    }
-
-    /// Cost that a hypothesis with one more effect could come to along the way to a start, from that one simulation; nothing for what is cheap to look
-    /// at properly or has a phase, which no single way shows.
-    fn secant(
-        &self,
-        from: &Hypothesis,
-        effect: &'static Effect,
-        start: &[f64],
-        stage: &Stage,
-    ) -> f64 {
-        let new = free_of(effect, &self.believed, start);
-        let (mut free, mut columns) = self.beside(from, &new);
-        let phase = new.iter().any(|f| f.quantity.name == "sine_m");
-        if phase || effect.subsystem == Subsystem::Sensors {
-            return f64::NEG_INFINITY;
-        }
-        let mut values: Vec<f64> = free.iter().map(|f| f.start).collect();
-        free.extend(new);
-        let all: Vec<f64> = free.iter().map(|f| f.start).collect();
-        let plant = with_values(&from.fit.prediction.plant, &free, &all);
-        let here = &from.fit.prediction;
-        let there = self.evidence.predict(&plant, stage.guided, Some(here));
-        let along = there.residuals.iter().zip(&here.residuals);
-        columns.push(along.map(|(there, here)| there - here).collect());
-        free.truncate(values.len());
-        free.push(WAY);
-        values.push(0.0);
-        foretold(self.evidence, here, &free, &values, &columns, stage)
     }
 
     /// Cost that a hypothesis with one more effect could come to by one step from a start.
