@@ -41,6 +41,7 @@ pub mod physics;
 pub mod plant;
 pub mod proof;
 pub mod recording;
+pub mod replay;
 pub mod report;
 pub mod rig;
 pub mod scenario;

@@ -57,12 +57,15 @@ fn plant_of(rig: &Rig) -> PlantParameters {
             waviness: Periodic::NONE,
         },
         sensors: SensorErrors::NONE,
+        latent: None,
+        cell: idc_cell::plant::CellParameters::RIGID,
     }
 }
 
 fn inputs_of(programme: &Programme) -> PlantInputs {
     let time = programme.times.clone();
     PlantInputs {
+        cell: None,
         set_pressure: time.iter().map(|t| programme.set_pressure(*t)).collect(),
         extends: time.iter().map(|t| programme.extends(*t)).collect(),
         surface: time

@@ -202,6 +202,9 @@ pub(super) struct DiagnoseArguments {
     /// Folder for diagnosis.json, prediction.csv, improved.toml and account.txt [default: runs/<name of the case's folder>].
     #[arg(long)]
     pub(super) out: Option<PathBuf>,
+    /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
+    #[arg(long)]
+    pub(super) scenario: Option<PathBuf>,
     /// Diagnose every folder in it that holds a rig.toml, each into a folder of its name.
     #[arg(long)]
     pub(super) all: bool,
@@ -211,7 +214,7 @@ pub(super) struct DiagnoseArguments {
     /// Put new diagnoses in place of old ones.
     #[arg(long)]
     pub(super) force: bool,
-    /// Cases at a time with --all [default: as many as there are processors]; the processors are shared among them, and results do not depend on it.
+    /// Cases at a time with --all [default: 1, on all processors]; the processors are shared among them, and results do not depend on it.
     #[arg(long, requires = "all", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) jobs: Option<u16>,
     /// Print nothing but errors.

@@ -1,13 +1,19 @@
 //! `idc diagnose`: from a folder with a rig file and recordings to what the model lacks, for one case or many.
 
 mod all;
+mod cell;
+mod cell_account;
 mod one;
 mod progress;
 mod unlisted_picture;
 
+use std::path::Path;
+
 use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};
 use super::output::say;
+use crate::replay::LoadedCell;
+use crate::scenario::load_recorded_cell;
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "Examples:
@@ -17,10 +23,16 @@ pub(super) const EXAMPLES: &str = "Examples:
   idc diagnose rigs --all --out runs/rigs                 every case below rigs/
   idc diagnose rigs --all --out runs/rigs --quiet         the same, saying nothing but what failed
   idc diagnose rigs --all --out runs/rigs --resume        go on where it was stopped
+  idc diagnose recordings --all --scenario cell.toml --out runs/cell
+                                                          every case of a robot cell below recordings/
   idc diagnose rigs --all --out runs/rigs --jobs 4        four cases at a time, each on its share of the processors
 
 diagnosis.json is written last: where it stands, the others are complete. \
 Exit codes: 0 done, 2 bad input (with --all: of any case; the others are done all the same).";
+
+fn load_cell(path: &Path) -> Result<LoadedCell, AppError> {
+    Ok(LoadedCell::new(load_recorded_cell(path)?)?)
+}
 
 /// Diagnoses and writes.
 pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
@@ -30,8 +42,10 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         (_, true) => one::Standing::Replace,
         _ => one::Standing::Refuse,
     };
+    let cell = arguments.scenario.as_deref().map(load_cell).transpose()?;
+    let cell = cell.as_ref();
     if arguments.all {
-        return all::run(arguments, &out, standing);
+        return all::run(arguments, cell, &out, standing);
     }
     if standing == one::Standing::Keep
         && let Some(answer) = one::complete(&out)
@@ -43,7 +57,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         }
         return Ok(ExitCode::Done);
     }
-    let prepared = one::Prepared::new(&arguments.case, &out, standing)?;
+    let prepared = one::Prepared::new(&arguments.case, cell, &out, standing)?;
     let spinner = progress::spinner(arguments.quiet || arguments.json);
     let finished = prepared.run(&mut |text| spinner.set_message(text.trim().to_owned()));
     spinner.finish_and_clear();
@@ -66,6 +80,6 @@ pub(super) fn answer_case(
     case: &std::path::Path,
     out: &std::path::Path,
 ) -> Result<crate::diagnosis::answer::Answer, AppError> {
-    let prepared = one::Prepared::new(case, out, one::Standing::Replace)?;
+    let prepared = one::Prepared::new(case, None, out, one::Standing::Replace)?;
     Ok(prepared.run(&mut |_| ())?.answer)
 }

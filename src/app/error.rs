@@ -40,6 +40,24 @@ pub enum AppError {
     /// A mesh.
     #[error(transparent)]
     Workpiece(#[from] WorkpieceError),
+    /// A case of a cell without a recording to diagnose from.
+    #[error(
+        "{folder}: no recording in it has a measured column, expected at least one to diagnose from"
+    )]
+    NothingMeasured {
+        /// The case's folder.
+        folder: String,
+    },
+    /// Two recordings of a cell's case that were not measured.
+    #[error(
+        "{file}: it has no measured column, nor has {first}; expected one recording at most that is to be predicted"
+    )]
+    TwoUnseen {
+        /// The second.
+        file: String,
+        /// The first.
+        first: String,
+    },
     /// A bound on a metric.
     #[error("{file}: {source}")]
     Metrics {

@@ -19,6 +19,24 @@ pub enum CellError {
     /// The part, its edge or its burr.
     #[error(transparent)]
     Workpiece(#[from] WorkpieceError),
+    /// Another number of springs than of joints.
+    #[error("{}: `joints.stiffness_n_m_per_rad` has {found} values, expected {axes}, one for each of the arm's joints", file.display())]
+    JointStiffness {
+        /// Scenario file.
+        file: PathBuf,
+        /// How many it gives.
+        found: usize,
+        /// How many joints the arm has.
+        axes: usize,
+    },
+    /// A joint that slides in an arm that is to be replayed.
+    #[error("{}: joint `{joint}` slides, expected joints that turn: recordings of a cell are replayed for such arms alone", file.display())]
+    SlidingJoint {
+        /// URDF file.
+        file: PathBuf,
+        /// The joint.
+        joint: String,
+    },
     /// The chosen edge is not there.
     #[error("{}: `workpiece.edge` is {chosen}, which does not exist; the part has edges 0 to {} and loops 0 to {} (list them with `idc edges {}`)",
         file.display(), *edges as isize - 1, *loops as isize - 1, mesh.display())]

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use glamx::DPose3;
 
 pub use error::CellError;
-pub use part::Part;
+pub use part::{Part, choose_edge};
 
 use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
@@ -17,7 +17,7 @@ use crate::path::plan::PlanRequest;
 use crate::path::profile::MotionLimits;
 use crate::path::{Plan, ToolPath};
 use crate::physics::push_only::PushOnly;
-use crate::scenario::{Scenario, ScenarioError, attainable_set_pressure};
+use crate::scenario::{ArmScenario, Scenario, ScenarioError, attainable_set_pressure};
 
 /// A cell, ready to run.
 pub struct Cell {
@@ -47,7 +47,7 @@ impl Cell {
     /// # Errors
     /// What is missing, refused or out of reach, by file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
-        let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario))?;
+        let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         check_seed_posture(&scenario, &arm.chain)?;
         let arm_with_slide = with_slide(&arm.chain, &scenario);
         let part = Part::load(&scenario)?;
@@ -92,8 +92,8 @@ impl Cell {
     }
 }
 
-fn arm_options(scenario: &Scenario) -> ArmOptions {
-    let arm = &scenario.arm;
+/// What of its file a scenario's arm takes.
+pub fn arm_options(arm: &ArmScenario) -> ArmOptions {
     ArmOptions {
         base_link: arm.base_link.clone(),
         tip_link: arm.flange_link.clone(),

@@ -1,5 +1,7 @@
 //! The part in the cell: where it is believed to be, where it really is, the followed edge and the burr on it.
 
+use std::path::Path;
+
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
@@ -37,7 +39,7 @@ impl Part {
     pub fn load(scenario: &Scenario) -> Result<Self, CellError> {
         let workpiece = &scenario.workpiece;
         let mesh = load_mesh(&workpiece.mesh, workpiece.mesh_scale)?;
-        let edge = choose_edge(scenario, &mesh)?;
+        let edge = choose_edge(&scenario.path, workpiece, &mesh)?;
         let world_from_part = real_pose(workpiece, &edge);
         let vertices = mesh
             .vertices()
@@ -63,8 +65,15 @@ impl Part {
     }
 }
 
-fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, CellError> {
-    let workpiece = &scenario.workpiece;
+/// The edge that a scenario file chooses of a mesh.
+///
+/// # Errors
+/// There is no such edge, it is an inside one, or shorter than the stretch chosen.
+pub fn choose_edge(
+    file: &Path,
+    workpiece: &WorkpieceScenario,
+    mesh: &TriangleMesh,
+) -> Result<EdgeCurve, CellError> {
     let choice = &workpiece.edge;
     let search = EdgeSearch {
         sharp_angle: choice.sharp_angle,
@@ -76,7 +85,7 @@ fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, Ce
         EdgeSelection::Loop(number) => (format!("loop {number}"), list.loops.get(number)),
     };
     let curve = found.ok_or_else(|| CellError::EdgeUnknown {
-        file: scenario.path.clone(),
+        file: file.to_owned(),
         mesh: workpiece.mesh.clone(),
         chosen: chosen.clone(),
         edges: list.edges.len(),
@@ -88,7 +97,7 @@ fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, Ce
         Convexity::Mixed => Some("an inside edge in places"),
     };
     if let Some(convexity) = convexity {
-        let file = scenario.path.clone();
+        let file = file.to_owned();
         return Err(CellError::EdgeNotConvex {
             file,
             mesh: workpiece.mesh.clone(),
@@ -101,7 +110,7 @@ fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, Ce
     } else {
         curve.clone()
     };
-    check_stretch(scenario, choice, &curve)?;
+    check_stretch(file, choice, &curve)?;
     match (choice.start, choice.end) {
         (0.0, None) => Ok(curve),
         (start, None) if curve.closed => Ok(curve.started_at(start)?),
@@ -110,14 +119,10 @@ fn choose_edge(scenario: &Scenario, mesh: &TriangleMesh) -> Result<EdgeCurve, Ce
 }
 
 /// The stretch must lie on the edge, up to once round a closed one.
-fn check_stretch(
-    scenario: &Scenario,
-    choice: &EdgeChoice,
-    curve: &EdgeCurve,
-) -> Result<(), CellError> {
+fn check_stretch(file: &Path, choice: &EdgeChoice, curve: &EdgeCurve) -> Result<(), CellError> {
     let refuse = |key, value, expected| {
         Err(CellError::EdgeStretch {
-            file: scenario.path.clone(),
+            file: file.to_owned(),
             key,
             value,
             expected,

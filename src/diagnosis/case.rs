@@ -4,7 +4,8 @@ use super::clean::{Cleaning, clean};
 use super::evidence::{Evidence, Measured};
 use super::free::{Free, Prior};
 use super::recorded::{COLUMNS, Recorded, RecordedError};
-use crate::effects::{Coordinate, Quantity};
+use super::search::Shown;
+use crate::effects::{Coordinate, Effect, Quantity};
 use crate::plant::{CHANNELS, PlantParameters};
 
 /// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
@@ -34,6 +35,10 @@ pub struct Case {
     pub recordings: Vec<NamedRecording>,
     /// Recording to be predicted.
     pub unseen: Option<NamedRecording>,
+    /// Effects that may be at work.
+    pub candidates: Vec<&'static Effect>,
+    /// Effects that a link of its own has shown.
+    pub shown: Vec<Shown>,
 }
 
 /// A number that is believed to lie within a relative tolerance of a value, any part of it being as likely: the normal distribution of that spread.

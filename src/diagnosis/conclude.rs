@@ -14,6 +14,8 @@ use super::links::Link;
 use super::localise::{NOISE_ALONE, misfits, robust_rms};
 use super::recorded::COLUMNS;
 use super::search::Hypothesis;
+use crate::effects::Effect;
+use crate::effects::vocabulary;
 use crate::plant::CHANNELS;
 
 /// Variables named at most for a link.
@@ -87,13 +89,17 @@ impl Diagnosis {
         });
         effects
             .map(|(effect, numbers)| FoundEffect {
-                name: effect.name.to_owned(),
+                name: vocabulary(effect.name).0.to_owned(),
                 subsystem: effect.subsystem.name().to_owned(),
                 confidence: self.confidence(effect.name),
-                parameters: numbers
-                    .iter()
-                    .filter(|number| number.reported)
-                    .map(|number| (number.name.to_owned(), estimate(number)))
+                parameters: joint_of(effect.name)
+                    .into_iter()
+                    .chain(
+                        numbers
+                            .iter()
+                            .filter(|number| number.reported)
+                            .map(|number| (number.name.to_owned(), estimate(number))),
+                    )
                     .collect(),
                 depends_on: Vec::new(),
                 unlisted: None,
@@ -105,9 +111,12 @@ impl Diagnosis {
     /// Probability that an effect is at work, by its name.
     #[must_use]
     pub fn confidence(&self, name: &str) -> f64 {
-        let names =
-            |r: &&super::diagnose::Ranked| names_of(&r.hypothesis).iter().any(|n| n == name);
-        let with = self.ranked.iter().filter(names);
+        let has = |r: &&super::diagnose::Ranked| {
+            let own = |e: &&'static Effect| e.name == name;
+            let unnamed = name == UNLISTED && r.hypothesis.unlisted().is_some();
+            unnamed || r.hypothesis.effects.iter().any(|e| own(&e))
+        };
+        let with = self.ranked.iter().filter(has);
         with.map(|r| r.probability).sum::<f64>().min(1.0)
     }
 
@@ -292,6 +301,17 @@ impl Diagnosis {
                 .collect(),
         })
     }
+}
+
+/// The joint that an effect is about, as one of its numbers.
+fn joint_of(name: &str) -> Option<(String, Estimate)> {
+    let joint = vocabulary(name).1? as f64;
+    let certain = Estimate {
+        value: joint,
+        low: joint,
+        high: joint,
+    };
+    Some(("joint".to_owned(), certain))
 }
 
 fn estimate(number: &Number) -> Estimate {

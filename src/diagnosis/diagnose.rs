@@ -13,8 +13,9 @@ use super::localise::{Parting, partings, robust_rms};
 use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
 use super::regime::{Regime, regimes};
-use super::search::{Hypothesis, Search};
+use super::search::{Hypothesis, Search, stands_for};
 use super::unlisted::Shape;
+use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, PlantParameters, simulate};
 
 /// Odds below which an explanation is no alternative [1].
@@ -110,6 +111,8 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
         evidence: &evidence,
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
+        candidates: case.candidates.clone(),
+        shown: case.shown.clone(),
     };
     let ranked = rank(&search, search.run(say));
     let best = &ranked[0].hypothesis;
@@ -120,7 +123,10 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
         Some((unseen.name.clone(), errors))
     });
     say("comparing experiments");
-    let experiments = ranked.get(1).map_or_else(Vec::new, |rival| {
+    // The experiments known are those of a bench: what an arm can do is in its programs.
+    let of_bench = evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
+    let rival = ranked.get(1).filter(|_| of_bench);
+    let experiments = rival.map_or_else(Vec::new, |rival| {
         separations(&evidence, &best.fit, &rival.hypothesis.fit)
     });
     Diagnosis {
@@ -161,6 +167,9 @@ fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
     let sums: Vec<Option<f64>> = ranked[..near].iter().map(Ranked::left_out_sum).collect();
     if let Some(first) = sums[0] {
         let others = sums.iter().enumerate().skip(1);
+        // A richer law in place of a plain one predicts a little better whether or not it is at work: the search has weighed them.
+        let others =
+            others.filter(|(i, _)| !stands_for(&ranked[*i].hypothesis, &ranked[0].hypothesis));
         let predicts = others.filter_map(|(i, sum)| Some((i, (*sum)?)));
         let better = predicts.min_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((index, sum)) = better
@@ -267,7 +276,15 @@ pub fn names_of(hypothesis: &Hypothesis) -> Vec<String> {
     let effects = hypothesis.effects.iter();
     let unnamed = hypothesis.unlisted().map(|_| UNLISTED.to_owned());
     effects
-        .map(|effect| effect.name.to_owned())
+        .map(|effect| spoken_name(effect.name))
         .chain(unnamed)
         .collect()
+}
+
+/// Name of an effect, with the joint that it is about.
+pub fn spoken_name(effect: &str) -> String {
+    match vocabulary(effect) {
+        (name, Some(joint)) => format!("{name} (joint {joint})"),
+        (name, None) => name.to_owned(),
+    }
 }

@@ -60,6 +60,7 @@ impl Limits {
             set_pressure: values.iter().map(|v| v.0).collect(),
             extends: values.iter().map(|v| v.1).collect(),
             surface: values.iter().map(|v| v.2).collect(),
+            cell: None,
             time,
         }
     }

@@ -2,6 +2,7 @@
 
 pub mod account;
 pub mod answer;
+pub mod bumps;
 pub mod case;
 pub mod clean;
 pub mod conclude;
@@ -23,6 +24,7 @@ pub mod recorded;
 pub mod regime;
 mod scale;
 pub mod search;
+pub mod servo;
 pub mod spectrum;
 pub mod unlisted;
 pub mod words;

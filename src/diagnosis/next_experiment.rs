@@ -122,6 +122,7 @@ mod tests {
             },
             sensors: SensorErrors::NONE,
             latent: None,
+            cell: crate::plant::CellParameters::RIGID,
         }
     }
 
@@ -130,6 +131,7 @@ mod tests {
         let time: Vec<f64> = (0..126).map(|i| 0.004 * f64::from(i)).collect();
         let count = time.len();
         let inputs = PlantInputs {
+            cell: None,
             set_pressure: vec![2e5; count],
             extends: vec![true; count],
             surface: vec![0.02; count],

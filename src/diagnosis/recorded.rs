@@ -111,6 +111,7 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
         set_pressure,
         extends: valve.iter().map(|position| *position > 0.5).collect(),
         surface,
+        cell: None,
     };
     inputs.check().map_err(|source| RecordedError::Inputs {
         file: file.to_owned(),
@@ -171,7 +172,7 @@ impl Recorded {
 }
 
 /// Puts the value before it in place of each lost one, and counts them.
-fn hold(values: &mut [f64]) -> usize {
+pub fn hold(values: &mut [f64]) -> usize {
     let mut filled = 0;
     for index in 1..values.len() {
         if values[index].is_nan() {

@@ -71,6 +71,12 @@ impl Scale {
         (hypothesis.fit.rough - self.noise) < 0.5 * (self.rough - self.noise)
     }
 
+    /// Could one more effect, or a richer law, gain nothing that would be worth a mention?
+    pub fn leaves_nothing_material(&self, hypothesis: &Hypothesis) -> bool {
+        let left = hypothesis.fit.cost() - self.count;
+        left < self.material_in_full(hypothesis.fit.cost())
+    }
+
     /// What one more effect must gain beside a hypothesis of a cost [1].
     pub fn material_in_full(&self, cost: f64) -> f64 {
         IMMATERIAL * (self.full - cost).max(0.0)

@@ -7,16 +7,34 @@ use super::fit::{
 use super::free::{Free, Prior, free_of};
 use super::latent;
 use super::scale::Scale;
-use crate::effects::{CATALOGUE, Clues, Effect};
+use crate::effects::{Clues, Coordinate, Effect, Quantity, Subsystem};
 use crate::plant::{Latent, PlantParameters};
 use rayon::prelude::*;
 
 /// Iterations of the second look at those that promise most.
 const LOOK: usize = 3;
+/// How many starts are looked at with all their derivatives.
+const GLANCED_AT: usize = 30;
+/// A way from no effect to a start: 1 there.
+const WAY: Free = Free {
+    quantity: Quantity {
+        name: "way",
+        get: |_| 0.0,
+        set: |_, _| {},
+    },
+    start: 0.0,
+    coordinate: Coordinate::Linear(1.0),
+    bounds: [-3.0, 3.0],
+    prior: Prior::Flat,
+};
 /// How many get a second look.
 const LOOKED_AT: usize = 7;
 /// Iterations of a full fit.
 const FULL_ITERATIONS: usize = 40;
+/// Iterations of a rough fit without one of the effects.
+const LIGHTER: usize = 8;
+/// Rough cost over the leading one beyond which a hypothesis is not built upon [1].
+const FAR_BEHIND: f64 = 2.0;
 /// Effects at most.
 const MOST_EFFECTS: usize = 3;
 /// Hypotheses that are carried on from each number of effects.
@@ -28,7 +46,7 @@ const HOPELESS: f64 = 300.0;
 /// Share of what a hypothesis leaves unexplained that one more effect must explain, or the search stagnates [1].
 const STAGNATION: f64 = 0.5;
 /// Cost of having looked at so many effects: twice the logarithm of their number [1].
-const LOOK_ELSEWHERE: f64 = 7.0;
+pub const LOOK_ELSEWHERE: f64 = 7.0;
 
 /// A set of effects, fitted together with what is tolerated.
 #[derive(Debug, Clone)]
@@ -72,12 +90,28 @@ pub struct Search<'a> {
     pub believed: PlantParameters,
     /// What is tolerated.
     pub tolerated: Vec<Free>,
+    /// Effects that may be at work.
+    pub candidates: Vec<&'static Effect>,
+    /// Effects that a link of its own has shown, with their numbers.
+    pub shown: Vec<Shown>,
+}
+
+/// An effect that a link of its own has shown, such as a servo's in commands and encoders: what it found is what is believed of its numbers.
+#[derive(Debug, Clone)]
+pub struct Shown {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// All its numbers.
+    pub numbers: Vec<Free>,
 }
 
 impl Search<'_> {
     /// The believed model within its tolerances, roughly.
     pub fn baseline(&self) -> Hypothesis {
-        self.fitted(vec![], &self.believed, &self.tolerated, ROUGH, 15, None)
+        let effects = self.shown.iter().map(|shown| shown.effect).collect();
+        let own = self.shown.iter().flat_map(|shown| &shown.numbers);
+        let free: Vec<Free> = self.tolerated.iter().chain(own).copied().collect();
+        self.fitted(effects, &self.believed, &free, ROUGH, 15, None)
     }
 
     fn fitted(
@@ -122,15 +156,30 @@ impl Search<'_> {
     /// What more each effect could explain, roughly: columns of what is free already are taken as they are. Best first.
     pub fn screen(&self, from: &Hypothesis, stages: &[Stage]) -> Vec<Hypothesis> {
         let periodic = super::spectrum::strongest(self.evidence, &from.fit.prediction);
-        let clues = self.clues(from, &periodic);
-        let starts: Vec<(&'static Effect, Vec<f64>)> = CATALOGUE
+        let bumps = super::bumps::strongest(self.evidence, &from.fit.prediction);
+        let clues = self.clues(from, &periodic, &bumps);
+        let starts: Vec<(&'static Effect, Vec<f64>)> = self
+            .candidates
             .iter()
+            .copied()
             .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
             .flat_map(|effect| {
                 (effect.starts)(&clues)
                     .into_iter()
                     .map(move |start| (effect, start))
             })
+            .collect();
+        let secants: Vec<f64> = starts
+            .par_iter()
+            .map(|(effect, start)| self.secant(from, effect, start, &stages[0]))
+            .collect();
+        let mut promising: Vec<usize> = (0..starts.len()).collect();
+        promising.sort_by(|a, b| secants[*a].total_cmp(&secants[*b]));
+        promising.truncate(GLANCED_AT);
+        promising.sort_unstable();
+        let starts: Vec<(&'static Effect, Vec<f64>)> = promising
+            .into_iter()
+            .map(|index| starts[index].clone())
             .collect();
         let glances: Vec<f64> = starts
             .par_iter()
@@ -183,6 +232,35 @@ impl Search<'_> {
                 )
             })
             .unzip()
+    }
+
+    /// Cost that a hypothesis with one more effect could come to along the way to a start, from that one simulation; nothing for what is cheap to look
+    /// at properly or has a phase, which no single way shows.
+    fn secant(
+        &self,
+        from: &Hypothesis,
+        effect: &'static Effect,
+        start: &[f64],
+        stage: &Stage,
+    ) -> f64 {
+        let new = free_of(effect, &self.believed, start);
+        let (mut free, mut columns) = self.beside(from, &new);
+        let phase = new.iter().any(|f| f.quantity.name == "sine_m");
+        if phase || effect.subsystem == Subsystem::Sensors {
+            return f64::NEG_INFINITY;
+        }
+        let mut values: Vec<f64> = free.iter().map(|f| f.start).collect();
+        free.extend(new);
+        let all: Vec<f64> = free.iter().map(|f| f.start).collect();
+        let plant = with_values(&from.fit.prediction.plant, &free, &all);
+        let here = &from.fit.prediction;
+        let there = self.evidence.predict(&plant, stage.guided, Some(here));
+        let along = there.residuals.iter().zip(&here.residuals);
+        columns.push(along.map(|(there, here)| there - here).collect());
+        free.truncate(values.len());
+        free.push(WAY);
+        values.push(0.0);
+        foretold(self.evidence, here, &free, &values, &columns, stage)
     }
 
     /// Cost that a hypothesis with one more effect could come to by one step from a start.
@@ -268,7 +346,13 @@ impl Search<'_> {
             } else {
                 PARENTS
             };
-            let children = self.children(&parents[..carried.min(parents.len())], &mut tried, say);
+            let near = FAR_BEHIND * self.rough_score(&parents[0]);
+            let carried: Vec<&Hypothesis> = parents
+                .iter()
+                .take(carried)
+                .filter(|h| self.rough_score(h) <= near)
+                .collect();
+            let children = self.children(&carried, &mut tried, say);
             let Some(best) = children.first() else { break };
             if self.rough_score(best) >= self.rough_score(&parents[0]) {
                 break;
@@ -276,11 +360,11 @@ impl Search<'_> {
             let after = best.fit.rough - noise;
             let stuck = levels.len() > 1 && after > STAGNATION * before;
             if after < scale.rough_spread() {
-                full = self.in_full(&children, say);
+                full = self.in_full(&children, &scale, say);
                 full.retain(|h| scale.is_adequate(h));
             } else if stuck {
                 // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
-                full = self.in_full(parents, say);
+                full = self.in_full(parents, &scale, say);
                 if !full.iter().any(|h| scale.is_adequate(h)) {
                     full = self.anew(parents, &scale, say);
                 }
@@ -291,13 +375,33 @@ impl Search<'_> {
         if full.is_empty() {
             let mut all: Vec<Hypothesis> = levels.into_iter().flatten().collect();
             all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
-            full = self.in_full(&all, say);
+            full = self.in_full(&all, &scale, say);
         }
         self.eliminate(&mut full, say);
         self.add_small(&mut full, &scale, say);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        self.prefer_plain(&mut full, &scale);
         self.add_unlisted(&mut full, &unexplained, &scale, say);
         full
+    }
+
+    /// Of laws that exclude one another puts the plainest first that explains as much but for what idealisation leaves: a richer law bends to the errors
+    /// of a plain one.
+    fn prefer_plain(&self, full: &mut Vec<Hypothesis>, scale: &Scale) {
+        let Some(best) = full.first() else { return };
+        let allowed = scale.material_in_full(best.fit.cost());
+        let plainer = |h: &&Hypothesis| {
+            h.fit.free.len() < best.fit.free.len()
+                && h.fit.cost() - best.fit.cost() < allowed
+                && stands_for(h, best)
+        };
+        let plainest = (full.iter().enumerate())
+            .filter(|(_, h)| plainer(h))
+            .min_by_key(|(_, h)| h.fit.free.len());
+        if let Some((index, _)) = plainest {
+            let chosen = full.remove(index);
+            full.insert(0, chosen);
+        }
     }
 
     /// Where no known effect explains the mismatch, puts a term without a name first if it explains more.
@@ -331,7 +435,7 @@ impl Search<'_> {
     /// Hypotheses of one effect more, those that lead fitted roughly with everything free; best first.
     fn children(
         &self,
-        parents: &[Hypothesis],
+        parents: &[&Hypothesis],
         tried: &mut Vec<Vec<&'static str>>,
         say: &mut dyn FnMut(&str),
     ) -> Vec<Hypothesis> {
@@ -358,7 +462,6 @@ impl Search<'_> {
             if refitted.fit.rough < leading.fit.rough {
                 *leading = refitted;
             }
-            self.choose(leading);
             say(&format!(
                 "  {:?} rough {:.1}",
                 leading.effects,
@@ -366,25 +469,49 @@ impl Search<'_> {
             ));
         }
         children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
+        // What is far behind stays there.
+        let near = FAR_BEHIND * children.first().map_or(0.0, |h| self.rough_score(h));
+        for leading in children.iter_mut().take(REFINED) {
+            if self.rough_score(leading) < near {
+                self.choose(leading);
+            }
+        }
+        children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         children
     }
 
-    /// Full fits of those that are not hopeless, best first.
-    fn in_full(&self, rough: &[Hypothesis], say: &mut dyn FnMut(&str)) -> Vec<Hypothesis> {
+    /// Full fits of those that are not hopeless, best first. Of laws that exclude one another the richer ones are spared where a plain one leaves nothing
+    /// that would be worth a mention.
+    fn in_full(
+        &self,
+        rough: &[Hypothesis],
+        scale: &Scale,
+        say: &mut dyn FnMut(&str),
+    ) -> Vec<Hypothesis> {
         let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
-        let mut full: Vec<Hypothesis> = rough
+        let mut candidates: Vec<&Hypothesis> = rough
             .iter()
             .take(REFINED)
             .take_while(|h| self.rough_score(h) <= leading + HOPELESS)
-            .map(|candidate| self.refine(candidate, FULL, FULL_ITERATIONS))
             .collect();
-        for refined in &full {
+        // The plainest first.
+        candidates.sort_by_key(|h| h.fit.free.len());
+        let mut full: Vec<Hypothesis> = Vec::new();
+        for candidate in candidates {
+            let spared = |done: &Hypothesis| {
+                stands_for(done, candidate) && scale.leaves_nothing_material(done)
+            };
+            if full.iter().any(spared) {
+                continue;
+            }
+            let refined = self.refine(candidate, FULL, FULL_ITERATIONS);
             say(&format!(
                 "  {:?} full {:.1} left {:.0}",
                 refined.effects,
-                self.score(refined),
+                self.score(&refined),
                 refined.fit.cost() - self.evidence.count() as f64
             ));
+            full.push(refined);
         }
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         full
@@ -408,7 +535,7 @@ impl Search<'_> {
             let Some(effect) = candidate.effects.last() else {
                 continue;
             };
-            for start in (effect.starts)(&self.clues(candidate, &[])) {
+            for start in (effect.starts)(&self.clues(candidate, &[], &[])) {
                 let mut other = candidate.clone();
                 let own = other.fit.values.len() - start.len();
                 other.fit.values[own..].copy_from_slice(&start);
@@ -424,7 +551,7 @@ impl Search<'_> {
     }
 
     /// What an effect may be told when it is asked where to start.
-    fn clues<'b>(&self, from: &'b Hypothesis, periodic: &'b [f64]) -> Clues<'b> {
+    fn clues<'b>(&self, from: &'b Hypothesis, periodic: &'b [f64], bumps: &'b [f64]) -> Clues<'b> {
         let readings = self
             .evidence
             .recordings
@@ -436,19 +563,23 @@ impl Search<'_> {
                 .filter(|f| f.is_finite())
                 .fold(0.0, |a, b| b.max(a)),
             periodic,
+            bumps,
         }
     }
 
     /// Takes effects out of the best hypothesis as long as it scores better without.
     fn eliminate(&self, full: &mut Vec<Hypothesis>, say: &mut dyn FnMut(&str)) {
         while let Some(best) = full.first()
-            && best.effects.len() > 1
+            && best.effects.len() > 1 + self.shown.len()
         {
             let score = self.score(best);
-            let mut fewer: Vec<Hypothesis> = (0..best.effects.len())
-                .map(|index| self.without(best, index))
+            let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
+                .filter_map(|index| self.without(best, index))
                 .collect();
             fewer.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if fewer.is_empty() {
+                break;
+            }
             let lighter = fewer.swap_remove(0);
             say(&format!(
                 "  without: {:?} {:.1} against {score:.1}",
@@ -464,8 +595,9 @@ impl Search<'_> {
         }
     }
 
-    /// A hypothesis without one of its effects, fitted in full from where it was; what the effect freed is held to its tolerance again.
-    fn without(&self, hypothesis: &Hypothesis, index: usize) -> Hypothesis {
+    /// A hypothesis without one of its effects, fitted in full from where it was; what the effect freed is held to its tolerance again. Nothing where a
+    /// rough fit is hopeless already.
+    fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
         let fit = &hypothesis.fit;
         let plant = &fit.prediction.plant;
         let counts: Vec<usize> = hypothesis
@@ -495,13 +627,21 @@ impl Search<'_> {
         free.extend(others);
         let mut effects = hypothesis.effects.clone();
         effects.remove(index);
-        self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None)
+        let rough = self.fitted(effects, &self.believed, &free, ROUGH, LIGHTER, None);
+        if self.rough_score(&rough) > self.rough_score(hypothesis) + HOPELESS {
+            return None;
+        }
+        for (f, value) in free.iter_mut().zip(&rough.fit.values) {
+            f.start = *value;
+        }
+        let effects = rough.effects;
+        Some(self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None))
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.
     fn add_small(&self, full: &mut Vec<Hypothesis>, scale: &Scale, say: &mut dyn FnMut(&str)) {
         while let Some(best) = full.first()
-            && best.effects.len() < MOST_EFFECTS
+            && best.effects.len() < MOST_EFFECTS + self.shown.len()
             && scale.is_adequate(best)
         {
             let score = self.score(best);
@@ -582,6 +722,16 @@ impl Search<'_> {
             Some(&fitted.prediction),
         )
     }
+}
+
+/// Are the effects of two hypotheses the same but for laws that exclude one another?
+pub(super) fn stands_for(one: &Hypothesis, other: &Hypothesis) -> bool {
+    let covered = |a: &Hypothesis, b: &Hypothesis| {
+        a.effects
+            .iter()
+            .all(|effect| b.effects.iter().any(|known| known.excludes(effect)))
+    };
+    one.effects.len() == other.effects.len() && covered(one, other) && covered(other, one)
 }
 
 fn names(hypothesis: &Hypothesis) -> Vec<&'static str> {

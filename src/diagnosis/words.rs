@@ -10,12 +10,14 @@ type Shown = (&'static str, &'static str, f64);
 
 /// Units by the end of a name, longer ends first.
 #[rustfmt::skip] // A table: one unit a line.
-const UNITS: [Shown; 25] = [
+const UNITS: [Shown; 28] = [
     ("_j_per_kg_k", "J/(kg K)", 1.0),
     ("_pa_s_per_kg", "bar s/kg", 1e-5),
     ("_n_s_per_m", "N s/m", 1.0),
     ("_n_per_m15", "N/mm^1.5", 3.162_277_660_168_379e-5),
     ("_m_per_s2", "m/s2", 1.0),
+    ("_n_m_per_rad", "N m/rad", 1.0),
+    ("_m_per_m", "mm/m", 1e3),
     ("_rad_per_s", "rad/s", 1.0),
     ("_kg_per_s", "g/s", 1e3),
     ("_pa_per_s", "bar/s", 1e-5),
@@ -24,6 +26,7 @@ const UNITS: [Shown; 25] = [
     ("_n_per_s", "N/s", 1.0),
     ("_w_per_k", "W/K", 1.0),
     ("_m_per_s", "mm/s", 1e3),
+    ("_rad", "mrad", 1e3),
     ("_m2", "mm2", 1e6),
     ("_m3", "cm3", 1e6),
     ("_pa", "bar", 1e-5),

@@ -16,6 +16,10 @@ pub enum Subsystem {
     Contact,
     /// Sensors.
     Sensors,
+    /// The arm that carries the device.
+    Arm,
+    /// The part.
+    Workpiece,
 }
 
 impl Subsystem {
@@ -27,6 +31,8 @@ impl Subsystem {
             Self::Regulator => "regulator",
             Self::Contact => "contact",
             Self::Sensors => "sensors",
+            Self::Arm => "arm",
+            Self::Workpiece => "workpiece",
         }
     }
 }
@@ -54,6 +60,8 @@ pub struct Clues<'a> {
     pub largest_force: f64,
     /// Strongest periodic parts of what is left in the force while touching: frequency [Hz], strongest first.
     pub periodic: &'a [f64],
+    /// Places along a cell's edge where what is left in the stroke looks like a bump, strongest first [m].
+    pub bumps: &'a [f64],
 }
 
 /// An effect.

@@ -4,7 +4,7 @@
 #[must_use]
 #[rustfmt::skip] // A table: one effect a line.
 pub fn meaning(effect: &str) -> &'static str {
-    match effect {
+    match super::vocabulary(effect).0 {
         "coulomb_viscous_friction" => "seals and guides rub: a dry part and one that grows with speed",
         "stribeck_friction" => "seals stick: breaking loose takes more force than sliding on",
         "presliding_hysteresis" => "seals bend before they slide, over a displacement that shows",
@@ -39,6 +39,11 @@ pub fn meaning(effect: &str) -> &'static str {
         "inertial_crosstalk" => "the load cell feels the mass in front of it being accelerated",
         "stroke_sensor_gain_error" => "the position sensor reads too much or too little in proportion",
         "channel_time_offset" => "the load cell's samples are stamped late",
+        "part_misplaced" => "the part stands out, or back, along the bisector of its edge, and slopes along it",
+        "burr" => "a burr stands on the edge",
+        "compliant_joint" => "a joint gives way between its motor and its link, more than believed",
+        "joint_encoder_offset" => "a joint's encoder reads too much, so that the arm stands off by it",
+        "servo_lag" => "the joints' servos follow their commands at another bandwidth than believed",
         _ => "physics beyond the believed model",
     }
 }

@@ -1,6 +1,7 @@
 //! The physics that a rig's model may lack: each effect an edit of its description, with the numbers that it needs.
 
 mod catalogue;
+mod cell;
 mod chambers;
 mod contact;
 mod effect;
@@ -12,6 +13,7 @@ mod regulator;
 mod sensors;
 
 pub use catalogue::CATALOGUE;
+pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, SERVO_LAG, vocabulary};
 pub use effect::{Clues, Effect, Parameter, Subsystem};
 pub use meaning::meaning;
 pub use quantity::{Coordinate, Quantity};

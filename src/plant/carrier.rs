@@ -1,8 +1,9 @@
 //! What acts on the piston of a recorded rig between two samples: weight and contact.
 //!
-//!     M dv/dt = F_device + M g_a - F_contact
+//!     M dv/dt = F_device + M g_a - c F_contact,   c the share of the contact's direction that lies along the stroke
 
 use super::contact::ContactParameters;
+use super::flexing::Swung;
 use super::latent::{Latent, Variable};
 use crate::device::{Carrier, PistonMotion};
 
@@ -12,14 +13,20 @@ pub(super) struct ReplayCarrier<'a> {
     pub contact: &'a ContactParameters,
     /// Is there a workpiece?
     pub present: bool,
-    /// Weight along extension [N].
-    pub weight: f64,
+    /// Weight along extension and its rate [N], [N/s].
+    pub weight: [f64; 2],
     /// Time at the start of the step [s].
     pub start: f64,
     /// Surface over the step: coefficients of 1, t, t2, t3.
     pub surface: [f64; 4],
+    /// Share of a motion along the stroke that goes into the surface [1].
+    pub share: f64,
     /// Fastest rate of the contact [1/s].
     pub rate: f64,
+    /// A burr on the edge and its rate: of a cell [m], [m/s]; none on a bench.
+    pub burr: Option<[f64; 2]>,
+    /// What swinging links do.
+    pub swung: Swung,
     /// What the piston is held to, if it is.
     pub hold: Option<Hold>,
     /// A force without a name, with the value of its variable at the start of the sample.
@@ -60,10 +67,29 @@ pub(super) fn hermite(h: f64, values: [f64; 2], slopes: [f64; 2]) -> [f64; 4] {
 impl ReplayCarrier<'_> {
     fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
         let [a, b, c, d] = self.surface;
-        let (deviation, rate) = self.contact.deviation(self.start + time);
-        let surface = a + time * (b + time * (c + time * d)) + deviation;
-        let speed = b + time * (2.0 * c + 3.0 * time * d) + rate;
-        (motion.stroke - surface, motion.speed - speed)
+        let (mut deviation, mut rate) = self.contact.deviation(self.start + time);
+        if let Some([height, rise]) = self.burr {
+            // The ball's own motion is damped, whatever the shape that it meets.
+            deviation -= height + time * rise;
+            rate = 0.0;
+        }
+        let [lift, lifting, more] = self.swung.surface;
+        let surface = a + lift + time * (b + lifting + time * (c + more + time * d));
+        let speed = b + lifting + time * (2.0 * (c + more) + 3.0 * time * d);
+        (
+            self.share * (motion.stroke - surface) - deviation,
+            self.share * (motion.speed - speed) - rate,
+        )
+    }
+
+    /// Share of the contact force along the stroke [1].
+    pub fn axial_share(&self) -> f64 {
+        self.share - self.swung.turned
+    }
+
+    /// Weight along extension [N].
+    pub fn weight_at(&self, time: f64) -> f64 {
+        self.weight[0] + time * self.weight[1]
     }
 
     /// The force without a name [N].
@@ -98,14 +124,14 @@ impl Carrier for ReplayCarrier<'_> {
     const MOVES: bool = true;
 
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
-        let mut force = self.weight;
+        let mut force = self.weight_at(time);
         if let Some(hold) = &self.hold {
             force += hold.force(time, motion);
         }
         force += self.latent_force(time, motion);
         if touching {
             let (penetration, rate) = self.penetration(time, motion);
-            force -= self.contact.pushing(penetration, rate);
+            force -= self.axial_share() * self.contact.pushing(penetration, rate);
         }
         force
     }
@@ -125,8 +151,11 @@ impl Carrier for ReplayCarrier<'_> {
     fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
         // What the cubic can move by in the step.
         let [a, b, c, d] = self.surface;
-        let nearest =
-            a + self.contact.least_deviation() - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
+        let burr = self.burr.map_or(0.0, |[height, _]| height.abs());
+        let nearest = a - burr / self.share + self.swung.surface[0]
+            - dt * self.swung.surface[1].abs()
+            + self.contact.least_deviation() / self.share
+            - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
         if motion.stroke + reach < nearest {
             0.0
         } else {
@@ -149,6 +178,10 @@ impl ReplayCarrier<'_> {
         self.surface = later(self.surface);
         if let Some(hold) = &mut self.hold {
             hold.stroke = later(hold.stroke);
+        }
+        self.weight[0] = self.weight_at(time);
+        if let Some([height, rise]) = &mut self.burr {
+            *height += time * *rise;
         }
         self.start += time;
     }

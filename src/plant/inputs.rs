@@ -1,6 +1,8 @@
 //! What drives a rig in a recording: set pressure, valve, surface.
 
+use super::cell_course::CellCourse;
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 /// Inputs, one of each per sample time.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +15,8 @@ pub struct PlantInputs {
     pub extends: Vec<bool>,
     /// Where the surface stands along the stroke [m], a smooth motion; NaN where there is no workpiece.
     pub surface: Vec<f64>,
+    /// The arm that carries the device, if it is one of a cell: it says where the surface stands, and how the device is carried.
+    pub cell: Option<Arc<CellCourse>>,
 }
 
 /// Inputs that do not fit together.
@@ -80,21 +84,17 @@ impl PlantInputs {
         }
     }
 
-    /// Slope of the surface at a sample, from its neighbours [m/s].
-    pub(super) fn surface_slope(&self, index: usize) -> f64 {
+    /// Slope at a sample of what is known at each [1/s], from its neighbours.
+    pub(super) fn slope(&self, values: &[f64], index: usize) -> f64 {
         let before = index.saturating_sub(1);
         let after = (index + 1).min(self.time.len() - 1);
         let usable = |i: usize| {
-            if self.surface[i].is_finite() {
-                i
-            } else {
-                index
-            }
+            if values[i].is_finite() { i } else { index }
         };
         let (before, after) = (usable(before), usable(after));
         if before == after {
             return 0.0;
         }
-        (self.surface[after] - self.surface[before]) / (self.time[after] - self.time[before])
+        (values[after] - values[before]) / (self.time[after] - self.time[before])
     }
 }

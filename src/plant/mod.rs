@@ -8,18 +8,25 @@
 //! only through each other.
 
 mod carrier;
+mod cell_course;
+mod cell_parameters;
 mod contact;
+mod flexing;
 mod guide;
 mod inputs;
 mod latent;
 mod parameters;
 mod sensors;
+mod servo;
 mod simulate;
 
+pub use cell_course::{CellCourse, EdgeStation, Felt, INERTIA_EVERY, JointCourse, Levers};
+pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS};
 pub use contact::{ContactLaw, ContactParameters, Periodic};
 pub use guide::Guide;
 pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
 pub use parameters::PlantParameters;
 pub use sensors::SensorErrors;
+pub use servo::{Followed, follow};
 pub use simulate::{CHANNELS, Channel, PlantCourse, Trajectory, readings, simulate, trajectory};

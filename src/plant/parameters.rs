@@ -1,11 +1,12 @@
 //! What does not change in a rig while it is recorded.
 
+use super::cell_parameters::CellParameters;
 use super::contact::ContactParameters;
 use super::latent::{Latent, Port};
 use super::sensors::SensorErrors;
 use crate::device::DeviceParameters;
 
-/// A rig: device, contact, sensors.
+/// A rig: device, contact, sensors; of a cell its arm and part too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlantParameters {
     /// The device.
@@ -14,6 +15,8 @@ pub struct PlantParameters {
     pub gravity_along_extension: f64,
     /// Tool on workpiece.
     pub contact: ContactParameters,
+    /// Arm and part of a cell.
+    pub cell: CellParameters,
     /// What the sensors do to what they measure.
     pub sensors: SensorErrors,
     /// A term without a name.
@@ -25,6 +28,7 @@ impl PlantParameters {
     pub fn moves_freely_as(&self, other: &Self) -> bool {
         self.device == other.device
             && self.gravity_along_extension == other.gravity_along_extension
+            && self.cell == other.cell
             && self.moving_latent() == other.moving_latent()
     }
 

@@ -1,6 +1,8 @@
 //! A rig run on the inputs of a recording.
 
 use super::carrier::{Hold, ReplayCarrier, hermite};
+use super::cell_course::Felt;
+use super::flexing::{Bending, Flexing, Swung};
 use super::guide::Guide;
 use super::inputs::PlantInputs;
 use super::latent::{Moment, Port};
@@ -105,16 +107,27 @@ pub fn trajectory(
     guide: Option<&Guide>,
 ) -> Trajectory {
     let device = Device::new(plant.device.clone());
-    let weight = plant.device.moving_mass * plant.gravity_along_extension;
+    let mass = plant.device.moving_mass;
+    let felt = inputs.cell.as_ref().map(|course| course.felt(&plant.cell));
+    let moved = felt.as_ref().map(Felt::surface);
+    let surface = moved.as_ref().unwrap_or(&inputs.surface);
+    let pull = |i: usize| {
+        let felt = felt.as_ref().map(|felt| felt.pull[i]);
+        mass * felt.unwrap_or(plant.gravity_along_extension)
+    };
     let mut motion = PistonMotion {
-        stroke: weight.min(0.0) / plant.device.end_stop.stiffness,
+        stroke: plant.cell.start_stroke + pull(0).min(0.0) / plant.device.end_stop.stiffness,
         speed: 0.0,
     };
     let mut state = device.at_rest(motion.stroke, 0.0);
+    let mut flexing = inputs
+        .cell
+        .as_ref()
+        .and_then(|course| Flexing::new(course, &plant.cell));
     let count = inputs.time.len();
     let mut truth = Trajectory::default();
     let mut entered = 0.0;
-    let rate = plant.contact.rate(plant.device.moving_mass);
+    let rate = plant.contact.rate(mass);
     let usual = usual_step(&inputs.time);
     for i in 0..count {
         state.valve = if inputs.extends[i] {
@@ -129,19 +142,27 @@ pub fn trajectory(
             inputs.time[i + 1] - inputs.time[i]
         };
         let next = if last { i } else { i + 1 };
-        let present = inputs.surface[i].is_finite() && inputs.surface[next].is_finite();
+        let present = surface[i].is_finite() && surface[next].is_finite();
         let mut carrier = ReplayCarrier {
             contact: &plant.contact,
             present,
-            weight,
+            weight: [pull(i), (pull(next) - pull(i)) / h],
+            share: 1.0,
+            burr: None,
+            swung: Swung::default(),
             start: inputs.time[i],
             surface: [0.0; 4],
             rate: if present { rate } else { 0.0 },
             hold: None,
             latent: None,
         };
+        if let Some(felt) = &felt {
+            carrier.share = felt.share[i];
+            let rise = (felt.burr[next] - felt.burr[i]) / h;
+            carrier.burr = Some([felt.burr[i], rise]);
+        }
         if let Some(guide) = guide {
-            let (stiffness, damping) = Guide::hold(plant.device.moving_mass);
+            let (stiffness, damping) = Guide::hold(mass);
             let gain = plant.sensors.stroke_gain;
             let pair = |values: &[f64]| [values[i] / gain, values[next] / gain];
             carrier.hold = Some(Hold {
@@ -153,8 +174,8 @@ pub fn trajectory(
         if present {
             carrier.surface = hermite(
                 h,
-                [inputs.surface[i], inputs.surface[next]],
-                [inputs.surface_slope(i), inputs.surface_slope(next)],
+                [surface[i], surface[next]],
+                [inputs.slope(surface, i), inputs.slope(surface, next)],
             );
         }
         if let Some(latent) = &plant.latent {
@@ -185,6 +206,9 @@ pub fn trajectory(
                 }
             }
         }
+        if let Some(flexing) = &flexing {
+            carrier.swung = flexing.now(i, motion.stroke, carrier.share);
+        }
         truth.note(&device, &state, motion, &carrier);
         truth.mass_flow.push((state.air.entered - entered) / usual);
         entered = state.air.entered;
@@ -192,11 +216,31 @@ pub fn trajectory(
             break;
         }
         // Over a gap in the recording the inputs are held, in steps of the usual length.
-        let parts = (h / usual - 0.01).ceil().max(1.0);
+        let least = if flexing.is_some() {
+            FLEXING_PARTS
+        } else {
+            1.0
+        };
+        let parts = (h / usual - 0.01).ceil().max(1.0) * least;
         for part in 0..parts as usize {
             let mut leg = carrier;
             if part > 0 {
                 leg.move_start(h * part as f64 / parts);
+            }
+            if let (Some(flexing), Some(felt)) = (&mut flexing, &felt) {
+                leg.swung = flexing.now(i, motion.stroke, leg.share);
+                let contact = leg.contact_force(0.0, motion);
+                let forces = Bending {
+                    contact,
+                    stiffness: plant.contact.stiffness_at(contact),
+                    damping: plant.contact.damping,
+                    push: device.piston_force(&state, motion) + leg.weight[0] + felt.carried[i],
+                    stroke: motion.stroke,
+                    speed: motion.speed,
+                };
+                let swung = flexing.advance(felt, i, h / parts, forces);
+                leg.swung = swung;
+                leg.weight[0] -= mass * swung.acceleration;
             }
             device.advance_carried_unaudited(
                 &mut state,
@@ -210,6 +254,9 @@ pub fn trajectory(
     }
     truth
 }
+
+/// Steps into which a sample is cut where links swing.
+const FLEXING_PARTS: f64 = 2.0;
 
 /// The median distance of samples [s].
 fn usual_step(time: &[f64]) -> f64 {
@@ -245,7 +292,8 @@ impl Trajectory {
         let contact_force = carrier.contact_force(0.0, motion);
         let hold_force = carrier.hold_force(0.0, motion);
         let latent_force = carrier.latent_force(0.0, motion);
-        let outside = carrier.weight + hold_force + latent_force - contact_force;
+        let outside = carrier.weight_at(0.0) + hold_force + latent_force
+            - carrier.axial_share() * contact_force;
         let force = device.piston_force(state, motion) + outside;
         self.outlet
             .push(state.regulator.outlet + state.disturbance.outlet);

@@ -9,11 +9,13 @@ use super::atomic::write_atomic;
 use super::{Channel, Recording, RecordingError};
 use columns::{COLUMNS, Column, TIME};
 
+mod cell;
 mod columns;
 mod table;
 #[cfg(test)]
 mod tests;
 
+pub use cell::{CellRecording, read_cell_csv};
 pub use columns::{median_step, plausible_range};
 
 /// A recording with what its file holds besides.
@@ -44,7 +46,7 @@ pub fn read_readings(path: &Path) -> Result<CsvRecording, RecordingError> {
 }
 
 fn read(path: &Path, with_inputs: bool) -> Result<CsvRecording, RecordingError> {
-    let table = table::read(path)?;
+    let table = table::read(path, &COLUMNS)?;
     let mut channels = Vec::new();
     for (column, values) in COLUMNS.iter().zip(&table.columns) {
         match values {

@@ -18,6 +18,19 @@ pub(super) enum Kind {
     Cell,
     /// The device alone.
     Bench,
+    /// Arm, device and workpiece of which there are recordings.
+    RecordedCell,
+}
+
+impl Kind {
+    /// As a file names it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cell => "cell",
+            Self::Bench => "bench",
+            Self::RecordedCell => "recorded_cell",
+        }
+    }
 }
 
 /// The one key that is read before a file's kind is known.

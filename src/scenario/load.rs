@@ -37,6 +37,11 @@ pub(super) fn from_text(path: &Path, text: &str) -> Result<AnyScenario, Scenario
         Kind::Cell => from_document(path, &document)
             .map(|cell| AnyScenario::Cell(Box::new(cell)))
             .map_err(|error| name_kind(error, "bench", &bench_sections())),
+        Kind::RecordedCell => Err(ScenarioError::OtherKind {
+            file: path.to_owned(),
+            found: kind.name(),
+            expected: "cell or bench",
+        }),
         Kind::Bench => bench::from_document(path, &document)
             .map(|bench| AnyScenario::Bench(Box::new(bench)))
             .map_err(|error| name_kind(error, "cell", &scenario_sections())),
@@ -122,7 +127,10 @@ fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, Scena
     })
 }
 
-fn arm(section: &Section<'_>, keys: &file::ArmKeys) -> Result<ArmScenario, ScenarioError> {
+pub(super) fn arm(
+    section: &Section<'_>,
+    keys: &file::ArmKeys,
+) -> Result<ArmScenario, ScenarioError> {
     let packages = Section::new(section.document(), "arm.packages");
     let folder = |(name, folder): (&String, &std::path::PathBuf)| {
         Ok((name.clone(), packages.directory(name, folder)?))
@@ -207,7 +215,7 @@ pub(super) fn device(
 }
 
 #[rustfmt::skip] // A table: one key a line.
-fn contact(section: &Section<'_>, keys: &file::ContactKeys) -> Result<ContactScenario, ScenarioError> {
+pub(super) fn contact(section: &Section<'_>, keys: &file::ContactKeys) -> Result<ContactScenario, ScenarioError> {
     Ok(ContactScenario {
         stiffness: section.number("stiffness_n_per_m", keys.stiffness_n_per_m.unwrap_or(1.5e5), 1e3..=1e8)?,
         damping: section.number("damping_n_s_per_m", keys.damping_n_s_per_m.unwrap_or(4e2), 0.0..=1e6)?,

@@ -18,6 +18,7 @@ pub mod error;
 mod estimator;
 mod file;
 mod load;
+pub mod recorded_cell;
 mod rig_device;
 pub mod rig_file;
 pub(crate) mod sections;
@@ -34,6 +35,7 @@ pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};
 pub use device::load_device;
 pub use error::ScenarioError;
 pub use load::{load, load_any, load_bench};
+pub use recorded_cell::{RecordedCell, load_recorded_cell};
 pub use sensing::largest_set_pressure;
 pub use variation::ScenarioTemplate;
 

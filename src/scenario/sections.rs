@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
 use super::sensing::keys as sensing;
-use super::{bench_file, controller, estimator, file};
+use super::{bench_file, controller, estimator, file, recorded_cell};
 
 /// A table and its keys.
 type Table = (&'static str, &'static [&'static str]);
@@ -29,6 +29,29 @@ pub(crate) fn scenario_sections() -> Vec<Table> {
         ("expect.*", keys::<file::BoundKeys>()),
     ];
     sections.extend(sensing_sections());
+    sections
+}
+
+/// Tables of a recorded cell's scenario file with their keys.
+pub(crate) fn recorded_cell_sections() -> Vec<Table> {
+    let own = [
+        "arm",
+        "device",
+        "device.override",
+        "workpiece",
+        "workpiece.edge",
+        "contact",
+    ];
+    let mut sections: Vec<Table> = scenario_sections()
+        .into_iter()
+        .filter(|(table, _)| own.contains(table))
+        .collect();
+    sections.extend([
+        ("", keys::<recorded_cell::RecordedCellFile>()),
+        ("joints", keys::<recorded_cell::JointsKeys>()),
+        ("sensors", keys::<recorded_cell::SensorsKeys>()),
+        ("belief", keys::<recorded_cell::BeliefKeys>()),
+    ]);
     sections
 }
 

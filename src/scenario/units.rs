@@ -23,9 +23,10 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 41] = [
+const UNITS: [Unit; 43] = [
     unit("_mv_per_v", "mV/V", Divide(1e3)),
     unit("_pa_s_per_kg", "Pa s/kg", Divide(1.0)),
+    unit("_n_m_per_rad", "N m/rad", Divide(1.0)),
     unit("_rad_per_s", "rad/s", Divide(1.0)),
     unit("_pa_per_s", "Pa/s", Divide(1.0)),
     unit("_kg_per_s", "kg/s", Divide(1.0)),
@@ -55,6 +56,7 @@ const UNITS: [Unit; 41] = [
     unit("_uf", "uF", Divide(1e6)),
     unit("_pa", "Pa", Divide(1.0)),
     unit("_mm", "mm", Divide(1e3)),
+    unit("_rad", "rad", Divide(1.0)),
     unit("_deg", "deg", Multiply(PI / 180.0)),
     unit("_hz", "Hz", Divide(1.0)),
     unit("_kg", "kg", Divide(1.0)),

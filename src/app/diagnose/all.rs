@@ -8,8 +8,10 @@ use std::sync::{Mutex, PoisonError};
 use super::super::cli::DiagnoseArguments;
 use super::super::error::{AppError, ExitCode};
 use super::super::output::say;
+use super::cell;
 use super::one::{Prepared, Standing, complete, is_case};
 use crate::diagnosis::answer::{Answer, Verdict};
+use crate::replay::LoadedCell;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// What became of a case.
@@ -27,10 +29,11 @@ struct Done {
 /// Diagnoses all cases below a folder.
 pub(super) fn run(
     arguments: &DiagnoseArguments,
+    cell: Option<&LoadedCell>,
     out: &Path,
     standing: Standing,
 ) -> Result<ExitCode, AppError> {
-    let names = cases(&arguments.case)?;
+    let names = cases(&arguments.case, cell.is_some())?;
     let silent = arguments.quiet || arguments.json;
     let bar = bar(names.len(), silent);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
@@ -44,7 +47,7 @@ pub(super) fn run(
         let next = || locked(&waiting).pop_front();
         while let Some((index, name)) = next() {
             let case = arguments.case.join(&name);
-            let result = caught(|| one(&case, &out.join(&name), standing));
+            let result = caught(|| one(&case, cell, &out.join(&name), standing));
             locked(&outcomes).push((index, Outcome { name, result }));
             bar.inc(1);
         }
@@ -82,13 +85,18 @@ fn caught(work: impl FnOnce() -> Result<Done, AppError>) -> Result<Done, String>
     }
 }
 
-fn one(case: &Path, out: &Path, standing: Standing) -> Result<Done, AppError> {
+fn one(
+    case: &Path,
+    cell: Option<&LoadedCell>,
+    out: &Path,
+    standing: Standing,
+) -> Result<Done, AppError> {
     if standing == Standing::Keep
         && let Some(answer) = complete(out)
     {
         return Ok(Done { answer, kept: true });
     }
-    let finished = Prepared::new(case, out, standing)?.run(&mut |_| ())?;
+    let finished = Prepared::new(case, cell, out, standing)?.run(&mut |_| ())?;
     Ok(Done {
         answer: finished.answer,
         kept: false,
@@ -96,7 +104,7 @@ fn one(case: &Path, out: &Path, standing: Standing) -> Result<Done, AppError> {
 }
 
 /// Names of the folders that hold a case, `case-2` before `case-10`.
-fn cases(folder: &Path) -> Result<Vec<String>, AppError> {
+fn cases(folder: &Path, of_cell: bool) -> Result<Vec<String>, AppError> {
     let refuse = |reason: String| AppError::NoCases {
         folder: folder.display().to_string(),
         reason,
@@ -105,11 +113,22 @@ fn cases(folder: &Path) -> Result<Vec<String>, AppError> {
     let paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
     let mut names: Vec<String> = paths
         .iter()
-        .filter(|path| is_case(path))
+        .filter(|path| {
+            if of_cell {
+                cell::is_case(path)
+            } else {
+                is_case(path)
+            }
+        })
         .filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()))
         .collect();
     if names.is_empty() {
-        return Err(refuse("none in it has a rig.toml".to_owned()));
+        let reason = if of_cell {
+            "none in it has recordings"
+        } else {
+            "none in it has a rig.toml"
+        };
+        return Err(refuse(reason.to_owned()));
     }
     names.sort_by(|a, b| natural(a).cmp(&natural(b)).then_with(|| a.cmp(b)));
     Ok(names)

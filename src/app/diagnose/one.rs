@@ -5,14 +5,21 @@ use std::time::Instant;
 
 use super::super::error::AppError;
 use super::super::files::OutputFolder;
+use super::cell;
+use super::cell_account::cell_account;
 use super::unlisted_picture::picture;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
 use crate::diagnosis::diagnose::{Diagnosis, diagnose};
 use crate::diagnosis::estimate::Number;
 use crate::diagnosis::recorded::{COLUMNS, recorded};
+use crate::diagnosis::servo::ServoLink;
+use crate::effects::CATALOGUE;
 use crate::plant::{CHANNELS, PlantParameters, simulate};
 use crate::recording::csv::{columns_text, read_csv};
+use crate::replay::LoadedCell;
+use crate::scenario::RecordedCell;
+use crate::scenario::recorded_cell::{FoundNumbers, improved_cell_text};
 use crate::scenario::rig_file::{ImprovedEffect, RigFile, from_text, improved_text, load_rig};
 
 const RIG: &str = "rig.toml";
@@ -36,10 +43,19 @@ pub(super) enum Standing {
     Replace,
 }
 
+/// Where the believed model stands.
+enum Model {
+    Rig(Box<RigFile>),
+    Cell {
+        cell: Box<LoadedCell>,
+        servo: Option<ServoLink>,
+    },
+}
+
 /// A case that can be diagnosed, and a folder that its files can go to.
 pub(super) struct Prepared {
     name: String,
-    rig: RigFile,
+    model: Model,
     case: Case,
     recordings: case::Prepared,
     folder: OutputFolder,
@@ -73,24 +89,16 @@ pub(super) fn complete(folder: &Path) -> Option<Answer> {
 
 impl Prepared {
     /// Reads rig and recordings, then makes the folder: bad input leaves nothing behind.
-    pub(super) fn new(folder: &Path, out: &Path, standing: Standing) -> Result<Self, AppError> {
-        if !is_case(folder) {
-            return Err(AppError::NoCase {
-                folder: folder.display().to_string(),
-            });
-        }
-        let rig = load_rig(&folder.join(RIG))?;
-        if rig.fit.is_empty() {
-            return Err(AppError::NoRecordings {
-                file: rig.path.display().to_string(),
-            });
-        }
-        if rig.plant.latent.is_some() {
-            return Err(AppError::Latent {
-                file: rig.path.display().to_string(),
-            });
-        }
-        let case = case_of(&rig, folder)?;
+    pub(super) fn new(
+        folder: &Path,
+        cell: Option<&LoadedCell>,
+        out: &Path,
+        standing: Standing,
+    ) -> Result<Self, AppError> {
+        let (model, case) = match cell {
+            Some(cell) => cell_case(folder, cell)?,
+            None => rig_case(folder)?,
+        };
         let recordings = case::prepare(&case)?;
         if standing == Standing::Refuse && out.join(DIAGNOSIS).exists() {
             return Err(AppError::Diagnosed {
@@ -107,7 +115,7 @@ impl Prepared {
         Ok(Self {
             name: own.file_name().unwrap_or_default().display().to_string(),
             folder: OutputFolder::prepare(out, &NAMES)?,
-            rig,
+            model,
             case,
             recordings,
         })
@@ -119,14 +127,27 @@ impl Prepared {
         // An old diagnosis beside new files would pass for theirs.
         self.folder.discard(DIAGNOSIS)?;
         let diagnosis = diagnose(&self.case, self.recordings, say);
-        let improved = improved(&self.rig, &diagnosis);
-        // As the file says it, so that whoever takes the file gets the same.
-        let plant = from_text(Path::new(IMPROVED), &improved)?.plant;
+        let found = &diagnosis.best().fit.prediction.plant;
+        let (improved, plant) = match &self.model {
+            Model::Rig(rig) => {
+                let text = improved(rig, &diagnosis);
+                // As the file says it, so that whoever takes the file gets the same.
+                let plant = from_text(Path::new(IMPROVED), &text)?.plant;
+                (text, plant)
+            }
+            Model::Cell { cell, .. } => (improved_cell(&cell.scenario, &diagnosis)?, found.clone()),
+        };
         let prediction = prediction(&self.case, &plant)?;
         let picture = picture(&diagnosis)?;
         let answer = diagnosis.answer(start.elapsed().as_secs_f64());
         let document = answer.text()?;
-        let account = diagnosis.account(&self.name);
+        let mut account = diagnosis.account(&self.name);
+        if let Model::Cell { cell, servo } = &self.model {
+            account += &cell_account(cell, servo.as_ref(), &diagnosis);
+            if diagnosis.shape.is_some() {
+                account += "\nA cell's improved.toml has no place for a term without a name: it stands in prediction.csv alone.\n";
+            }
+        }
         let mut files = vec![(ACCOUNT, account.as_str()), (IMPROVED, improved.as_str())];
         for (name, text) in [(PREDICTION, &prediction), (PICTURE, &picture)] {
             match text {
@@ -169,6 +190,57 @@ fn prediction(case: &Case, plant: &PlantParameters) -> Result<Option<String>, Ap
     Ok(Some(columns_text(&inputs.time, &columns)?))
 }
 
+/// A rig file and the recordings that it names.
+fn rig_case(folder: &Path) -> Result<(Model, Case), AppError> {
+    if !is_case(folder) {
+        return Err(AppError::NoCase {
+            folder: folder.display().to_string(),
+        });
+    }
+    let rig = load_rig(&folder.join(RIG))?;
+    if rig.fit.is_empty() {
+        return Err(AppError::NoRecordings {
+            file: rig.path.display().to_string(),
+        });
+    }
+    if rig.plant.latent.is_some() {
+        return Err(AppError::Latent {
+            file: rig.path.display().to_string(),
+        });
+    }
+    let case = case_of(&rig, folder)?;
+    Ok((Model::Rig(Box::new(rig)), case))
+}
+
+/// A cell's recordings.
+fn cell_case(folder: &Path, cell: &LoadedCell) -> Result<(Model, Case), AppError> {
+    let read = cell::read(cell, folder)?;
+    let model = Model::Cell {
+        cell: Box::new(cell.clone()),
+        servo: read.servo,
+    };
+    Ok((model, read.case))
+}
+
+/// improved.toml of a cell: its scenario file with what was found.
+fn improved_cell(scenario: &RecordedCell, diagnosis: &Diagnosis) -> Result<String, AppError> {
+    let effects: Vec<FoundNumbers> = diagnosis
+        .estimates
+        .effects
+        .iter()
+        .map(|(effect, numbers)| {
+            let own = (effect.parameters)(&diagnosis.believed);
+            let own = |n: &&Number| own.iter().any(|p| p.quantity.name == n.name);
+            let numbers = numbers.iter().filter(own);
+            (
+                effect.name,
+                numbers.map(|n| (n.name, n.value, n.interval)).collect(),
+            )
+        })
+        .collect();
+    Ok(improved_cell_text(scenario, &effects)?)
+}
+
 fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
     let read = |name: &String| -> Result<NamedRecording, AppError> {
         let path = folder.join(name);
@@ -189,6 +261,8 @@ fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
         noise: rig.noise,
         recordings: rig.fit.iter().map(read).collect::<Result<_, _>>()?,
         unseen: rig.predict.as_ref().map(read).transpose()?,
+        candidates: CATALOGUE.iter().collect(),
+        shown: Vec::new(),
     })
 }
 

@@ -1,7 +1,7 @@
 //! What is missing, how much of the mismatch it explains, and what is left.
 
 use super::super::conclude::IN_TURN;
-use super::super::diagnose::Diagnosis;
+use super::super::diagnose::{Diagnosis, spoken_name};
 use super::super::localise::NOISE_ALONE;
 use super::super::recorded::COLUMNS;
 use super::super::words::{
@@ -29,7 +29,7 @@ impl Diagnosis {
             let subsystem = effect.subsystem.name().replace('_', " ");
             paragraphs.push(format!(
                 "{} ({subsystem}): {}. {}. Probability {}; the intervals are those of 95 %.",
-                effect.name,
+                spoken_name(effect.name),
                 meaning(effect.name),
                 capital(&listed(&numbers)),
                 probability(self.confidence(effect.name))

@@ -35,6 +35,7 @@ fn plant() -> PlantParameters {
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         },
+        cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
         latent: None,
     }
@@ -52,6 +53,7 @@ fn recording(contact: bool, seed: u64) -> (Vec<f64>, [Vec<f64>; 4]) {
         extends: time.iter().map(|t| contact || t % 3.0 < 1.5).collect(),
         surface: vec![if contact { 0.02 } else { f64::NAN }; time.len()],
         time: time.clone(),
+        cell: None,
     };
     let mut readings = simulate(&plant(), &inputs).readings;
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);

@@ -7,6 +7,7 @@ use super::super::unit::Unit;
 pub(super) const TIME: &str = "time_s";
 
 /// A column besides the time.
+#[derive(Clone)]
 pub(super) struct Column {
     /// Its name.
     pub name: &'static str,
@@ -16,6 +17,8 @@ pub(super) struct Column {
     pub unit: Unit,
     /// Does it drive the rig? It cannot be absent then.
     pub is_input: bool,
+    /// Is it held from its sample to the next? Then it cannot be empty at the start.
+    pub is_held: bool,
     /// Least and largest plausible value.
     pub range: [f64; 2],
     /// Unit of which a column outside the range may be.
@@ -37,6 +40,7 @@ const fn column(
         quantity,
         unit,
         is_input,
+        is_held: false,
         range,
         larger_than_si,
         least_maximum: 0.0,
@@ -47,8 +51,8 @@ const fn column(
 #[rustfmt::skip] // A table: one column a line.
 pub(super) static COLUMNS: [Column; 7] = [
     // 2000 Pa would not move a seal.
-    Column { least_maximum: 2000.0, ..column("set_pressure_pa", schema::SET_PRESSURE_GAUGE, Unit::Pascal, true, [-1e3, 2e6], None) },
-    column("solenoid", schema::VALVE_EXTENDS, Unit::One, true, [0.0, 1.0], None),
+    Column { is_held: true, least_maximum: 2000.0, ..column("set_pressure_pa", schema::SET_PRESSURE_GAUGE, Unit::Pascal, true, [-1e3, 2e6], None) },
+    Column { is_held: true, ..column("solenoid", schema::VALVE_EXTENDS, Unit::One, true, [0.0, 1.0], None) },
     column("surface_m", schema::SURFACE_POSITION, Unit::Metre, true, [-2.0, 2.0], Some("mm")),
     // Noise alone reaches above 50 Pa.
     Column { least_maximum: 50.0, ..column("regulator_pressure_pa", schema::MEASURED_REGULATOR_PRESSURE_GAUGE, Unit::Pascal, false, [-1.1e5, 2e6], None) },

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use super::super::RecordingError;
-use super::columns::{COLUMNS, TIME};
+use super::columns::{Column, TIME};
 
 /// What a file holds.
 pub(super) struct Table {
     /// Sample times [s], increasing.
     pub time: Vec<f64>,
-    /// Values in the order of `COLUMNS`, NaN for an empty field; none for a column that the file lacks.
-    pub columns: [Option<Vec<f64>>; COLUMNS.len()],
+    /// Values in the order of the columns asked for, NaN for an empty field; none for a column that the file lacks.
+    pub columns: Vec<Option<Vec<f64>>>,
     /// Line of each sample, from 1.
     pub lines: Vec<u64>,
     /// Lines that repeat the one before.
@@ -22,21 +22,25 @@ pub(super) struct Table {
 /// Where the columns stand in a line.
 struct Places {
     time: usize,
-    columns: [Option<usize>; COLUMNS.len()],
+    columns: Vec<Option<usize>>,
     ignored: Vec<String>,
 }
 
 /// Reads a file's fields.
-pub(super) fn read(path: &Path) -> Result<Table, RecordingError> {
+pub(super) fn read(path: &Path, columns: &[Column]) -> Result<Table, RecordingError> {
     let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
     let header = reader.headers().map_err(|e| fault(path, &e))?.clone();
-    let places = places(path, &header)?;
+    let places = places(path, &header, columns)?;
     let mut table = Table {
         time: Vec::new(),
-        columns: places.columns.map(|place| place.map(|_| Vec::new())),
+        columns: places
+            .columns
+            .iter()
+            .map(|place| place.map(|_| Vec::new()))
+            .collect(),
         lines: Vec::new(),
         repeated: Vec::new(),
         ignored: places.ignored,
@@ -54,13 +58,13 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordingError> {
         table.lines.push(line);
         for (index, values) in table.columns.iter_mut().enumerate() {
             if let (Some(values), Some(place)) = (values, places.columns[index]) {
-                let name = COLUMNS[index].name;
+                let name = columns[index].name;
                 values.push(value(path, line, name, &record[place])?);
             }
         }
         before = record;
     }
-    check_held(path, &table)?;
+    check_held(path, &table, columns)?;
     if table.time.len() < 2 {
         return Err(RecordingError::read(
             path,
@@ -86,14 +90,18 @@ fn fault(path: &Path, error: &csv::Error) -> RecordingError {
 }
 
 /// Finds the columns by their names.
-fn places(path: &Path, header: &csv::StringRecord) -> Result<Places, RecordingError> {
+fn places(
+    path: &Path,
+    header: &csv::StringRecord,
+    columns: &[Column],
+) -> Result<Places, RecordingError> {
     let refuse = |column: &str, found: String, expected: String| RecordingError::Column {
         path: path.to_owned(),
         column: column.to_owned(),
         found,
         expected,
     };
-    let known = || std::iter::once(TIME).chain(COLUMNS.iter().map(|column| column.name));
+    let known = || std::iter::once(TIME).chain(columns.iter().map(|column| column.name));
     let mut ignored = Vec::new();
     for (index, name) in header.iter().enumerate() {
         if header.iter().take(index).any(|other| other == name) {
@@ -116,7 +124,7 @@ fn places(path: &Path, header: &csv::StringRecord) -> Result<Places, RecordingEr
     })?;
     Ok(Places {
         time,
-        columns: std::array::from_fn(|index| place(COLUMNS[index].name)),
+        columns: columns.iter().map(|column| place(column.name)).collect(),
         ignored,
     })
 }
@@ -185,9 +193,11 @@ fn value(path: &Path, line: u64, column: &str, text: &str) -> Result<f64, Record
 }
 
 /// Commands are held, so one that is lost is known by the one before it; the valve has two positions.
-fn check_held(path: &Path, table: &Table) -> Result<(), RecordingError> {
-    for (column, values) in COLUMNS.iter().zip(&table.columns).take(2) {
-        let Some(values) = values else { continue };
+fn check_held(path: &Path, table: &Table, columns: &[Column]) -> Result<(), RecordingError> {
+    for (column, values) in columns.iter().zip(&table.columns) {
+        let Some(values) = values.as_ref().filter(|_| column.is_held) else {
+            continue;
+        };
         let refuse = |line: u64, found: String, expected: &str| RecordingError::Line {
             path: path.to_owned(),
             line,

@@ -3,7 +3,9 @@
 use crate::device::DeviceParameters;
 use crate::effects::Quantity;
 use crate::physics::regulator::RegulatorParameters;
-use crate::plant::{ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors};
+use crate::plant::{
+    CellParameters, ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors,
+};
 
 /// A number of the file.
 pub(super) struct Row {
@@ -75,7 +77,7 @@ pub(super) const SENSOR_KEYS: [(&str, [f64; 2]); 5] = [
 const AMPLE_SUPPLY: f64 = 16e5;
 
 /// The believed model with all that a file does not say: no friction, no leaks, isothermal chambers, ideal sensors. Its numbers are for the file to set.
-pub(super) fn blank() -> PlantParameters {
+pub(in super::super) fn blank() -> PlantParameters {
     PlantParameters {
         device: DeviceParameters {
             regulator: RegulatorParameters {
@@ -93,6 +95,7 @@ pub(super) fn blank() -> PlantParameters {
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         },
+        cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
         latent: None,
     }

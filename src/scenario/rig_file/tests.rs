@@ -346,6 +346,7 @@ fn found() -> Vec<ImprovedEffect> {
         plant: &rig.plant,
         largest_force: 200.0,
         periodic: &periodic,
+        bumps: &[],
     };
     let mut groups = BTreeSet::new();
     crate::effects::CATALOGUE
@@ -558,7 +559,7 @@ fn a_term_that_is_not_right_is_refused_by_its_key() {
         &waves,
         "frequency_hz = 6.40123",
         "frequency_hz = 0",
-        "`latent.frequency_hz` is 0, expected a number from 1e-3 to 10000",
+        "`latent.frequency_hz` is 0, expected a number from 0.001 to 10000",
     );
     says(
         &waves,

@@ -272,7 +272,7 @@ fn what_a_bench_does_not_have_is_refused_by_name() {
             "\"bench\"",
             "\"benhc\"",
             "2:8",
-            "`kind` is \"benhc\", expected one of `cell`, `bench`",
+            "`kind` is \"benhc\", expected one of `cell`, `bench`, `recorded_cell`",
         ),
         (
             "[load]",

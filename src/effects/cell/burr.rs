@@ -1,0 +1,52 @@
+//! A burr on the edge: a smooth bump.
+//!
+//!     l(s) = h exp(-((s - p)/w)^2 / 2)
+//!
+//! Signature: the stroke gives way at one place of the path, in every recording at the same, and the force kicks as it climbs and leaves.
+//! Confused with: nothing that is spread along the path; a disturbance at one time is at another place in another recording.
+
+use super::*;
+use Coordinate::{Linear, Logarithmic};
+
+pub(super) const EFFECT: Effect = Effect {
+    name: "burr",
+    subsystem: super::super::Subsystem::Workpiece,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                Quantity {
+                    name: "position_m",
+                    get: |p| p.cell.burr.position,
+                    set: |p, v| p.cell.burr.position = v,
+                },
+                Linear(1e-3),
+                [0.0, 100.0],
+            ),
+            reported(
+                Quantity {
+                    name: "height_m",
+                    get: |p| p.cell.burr.height,
+                    set: |p, v| p.cell.burr.height = v,
+                },
+                Linear(1e-4),
+                [0.0, 0.02],
+            ),
+            Parameter {
+                quantity: Quantity {
+                    name: "width_m",
+                    get: |p| p.cell.burr.width,
+                    set: |p, v| p.cell.burr.width = v,
+                },
+                coordinate: Logarithmic,
+                bounds: [2e-4, 0.02],
+                reported: false,
+                choices: &[],
+            },
+        ]
+    },
+    starts: |clues: &Clues<'_>| {
+        let places = clues.bumps.iter();
+        places.map(|place| vec![*place, 1e-4, 2e-3]).collect()
+    },
+};

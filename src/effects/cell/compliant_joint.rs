@@ -1,0 +1,49 @@
+//! A joint is softer than believed between its motor, where the encoder is, and its link.
+//!
+//!     theta_link = theta_motor + (J^T F - M(q) q'')/K      (Spong, J. Dyn. Syst. Meas. Control 109, 1987, quasi-static)
+//!
+//! Signature: the stroke is off by J^2 F/K, in proportion to the contact force, with the joint's lever along the path; nothing where nothing touches.
+//! Confused with: contact stiffness (the same in every posture), the other joints (told apart by their levers: those of several leans and places).
+
+use super::*;
+use Coordinate::Logarithmic;
+
+/// Name in the vocabulary.
+pub(super) const NAME: &str = "compliant_joint";
+
+pub(super) const fn effect<const J: usize>() -> Effect {
+    Effect {
+        name: numbered(
+            [
+                "compliant_joint_1",
+                "compliant_joint_2",
+                "compliant_joint_3",
+                "compliant_joint_4",
+                "compliant_joint_5",
+                "compliant_joint_6",
+                "compliant_joint_7",
+                "compliant_joint_8",
+            ],
+            J,
+        ),
+        subsystem: super::super::Subsystem::Arm,
+        group: None,
+        parameters: |p| {
+            let believed = p.cell.joint_stiffness[J];
+            vec![reported(
+                Quantity {
+                    name: "stiffness_n_m_per_rad",
+                    get: |p| p.cell.joint_stiffness[J],
+                    set: |p, v| p.cell.joint_stiffness[J] = v,
+                },
+                Logarithmic,
+                [1e-4 * believed, 100.0 * believed],
+            )]
+        },
+        starts: |clues: &Clues<'_>| {
+            let believed = clues.plant.cell.joint_stiffness[J];
+            let shares = [0.02, 0.1, 0.4].iter();
+            shares.map(|share| vec![share * believed]).collect()
+        },
+    }
+}

@@ -1,0 +1,41 @@
+//! The part does not lie where the cell believes: it stands out by a shift along the bisector, and by a slope along the edge.
+//!
+//!     l(s) = shift + tilt (s - L/2)
+//!
+//! Small displacements of a rigid body (Siciliano et al., Robotics, 2009, sec. 2.4); what it does across the bisector a ball on the edge does not feel.
+//!
+//! Signature: the stroke is off by l/c all along the ride, whatever the force and the speed; the tool touches earlier or later.
+//! Confused with: an encoder that is off (which moves the ball by a lever that changes along the path and with the lean), a soft joint (whose part grows
+//! with the force), a position sensor's gain (which is off where nothing touches, too).
+
+use super::*;
+use Coordinate::Linear;
+
+pub(super) const EFFECT: Effect = Effect {
+    name: "part_misplaced",
+    subsystem: super::super::Subsystem::Workpiece,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                Quantity {
+                    name: "shift_m",
+                    get: |p| p.cell.part_shift,
+                    set: |p, v| p.cell.part_shift = v,
+                },
+                Linear(2e-4),
+                [-0.02, 0.02],
+            ),
+            reported(
+                Quantity {
+                    name: "tilt_m_per_m",
+                    get: |p| p.cell.part_tilt,
+                    set: |p, v| p.cell.part_tilt = v,
+                },
+                Linear(2e-3),
+                [-0.2, 0.2],
+            ),
+        ]
+    },
+    starts: |_| vec![vec![0.0, 0.0], vec![1e-3, 0.0], vec![-1e-3, 0.0]],
+};

@@ -1,0 +1,28 @@
+//! The joints' servos are slower, or faster, than believed, all of them alike.
+//!
+//!     q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
+//!
+//! Signature: the encoders trail their commands by 2 q'/w; tool and surface hardly show it.
+//! Confused with: nothing, for it is seen in a link of its own, from the commands to the encoders, before the device is looked at.
+
+use super::*;
+use Coordinate::Logarithmic;
+
+/// The effect; it is fitted on the encoders alone.
+pub static SERVO_LAG: Effect = Effect {
+    name: "servo_lag",
+    subsystem: super::super::Subsystem::Arm,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            Quantity {
+                name: "bandwidth_hz",
+                get: |p| p.cell.servo_bandwidth,
+                set: |p, v| p.cell.servo_bandwidth = v,
+            },
+            Logarithmic,
+            [0.1, 1e3],
+        )]
+    },
+    starts: |clues: &Clues<'_>| vec![vec![clues.plant.cell.servo_bandwidth]],
+};

@@ -1,0 +1,259 @@
+//! A cell's arm over a recording, reduced to what the device at its end feels.
+//!
+//!     d = x c - s                  penetration along the bisector n of the edge, the links' swing aside (`flexing`)
+//!     s = n . (b - e) - r - l      standoff at no stroke
+//!     c = -n . a                   share of the stroke that goes into the part
+//!
+//! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out (a burr is met by the ball alone, `carrier`), x stroke. Joints that are off turn all behind them about their axes, from the last
+//! one to the first: the product of exponentials (Brockett, 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
+
+use super::cell_parameters::{CellParameters, MOST_JOINTS};
+use super::servo::follow;
+use glam::{DQuat, DVec3};
+use nalgebra::DMatrix;
+
+/// One joint over a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointCourse {
+    /// Commanded angle [rad].
+    pub command: Vec<f64>,
+    /// Angle of the motor that everything else in the course goes with [rad].
+    pub angle: Vec<f64>,
+    /// Its axis in the base frame [1].
+    pub axis: Vec<DVec3>,
+    /// A point on its axis in the base frame [m].
+    pub origin: Vec<DVec3>,
+    /// Torque that accelerates what is behind it [N m].
+    pub torque: Vec<f64>,
+}
+
+/// A point of the followed edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeStation {
+    /// Where it is [m].
+    pub point: DVec3,
+    /// Direction of the edge [1].
+    pub tangent: DVec3,
+    /// Outward bisector of the faces [1].
+    pub bisector: DVec3,
+    /// Distance along the edge from its start [m].
+    pub station: f64,
+}
+
+/// A cell's arm over a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellCourse {
+    /// Sample times [s].
+    pub time: Vec<f64>,
+    /// The joints, base first.
+    pub joints: Vec<JointCourse>,
+    /// Bandwidth of the servos that gave `angle` [Hz].
+    pub bandwidth: f64,
+    /// Centre of the ball at no stroke [m].
+    pub ball: Vec<DVec3>,
+    /// Direction of the slide [1].
+    pub slide: Vec<DVec3>,
+    /// The edge beside the ball.
+    pub edge: Vec<EdgeStation>,
+    /// Where its middle is, from its start [m].
+    pub edge_middle: f64,
+    /// Radius of the ball [m].
+    pub ball_radius: f64,
+    /// Levers of the joints; see [`CellCourse::levers_of`].
+    pub levers: Vec<Levers>,
+    /// Mass matrices of every [`INERTIA_EVERY`]th sample, without the moving mass's along the slide [kg m2].
+    pub inertia: Vec<DMatrix<f64>>,
+    /// Moving mass [kg].
+    pub moving_mass: f64,
+    /// Distance of the moving mass's centre behind the ball's [m].
+    pub mass_behind_ball: f64,
+    /// Stroke at which the moving mass's centre is taken to be accelerated [m].
+    pub usual_stroke: f64,
+    /// Gravity [m/s2].
+    pub gravity: DVec3,
+}
+
+/// Levers of the joints in one sample: of the ball at no stroke, and what a stroke adds to them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Levers {
+    /// Along the bisector [m], [1].
+    pub lift: [[f64; MOST_JOINTS]; 2],
+    /// Along the edge [m], [1].
+    pub slip: [[f64; MOST_JOINTS]; 2],
+    /// Along the slide [m].
+    pub axial: [f64; MOST_JOINTS],
+}
+
+/// What the device feels of it, one value per sample.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Felt {
+    /// Standoff s [m].
+    pub standoff: Vec<f64>,
+    /// Share c [1].
+    pub share: Vec<f64>,
+    /// Gravity less the flange's acceleration, along the slide [m/s2].
+    pub pull: Vec<f64>,
+    /// Height of the burr under the ball [m].
+    pub burr: Vec<f64>,
+    /// Speed of the ball along the edge [m/s].
+    pub speed: Vec<f64>,
+    /// Force that accelerates the moving mass with the flange, along the slide [N].
+    pub carried: Vec<f64>,
+}
+
+/// Samples to a mass matrix: an arm hardly changes its posture in so many.
+pub const INERTIA_EVERY: usize = 16;
+/// Speed along the edge at which friction is felt in full [m/s].
+pub(super) const SLIDING: f64 = 1e-3;
+
+impl CellCourse {
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Is there no sample?
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Levers of a sample, for `levers`.
+    pub fn levers_of(&self, i: usize) -> Levers {
+        let edge = &self.edge[i];
+        let zero = [0.0; MOST_JOINTS];
+        let mut levers = Levers {
+            lift: [zero; 2],
+            slip: [zero; 2],
+            axial: zero,
+        };
+        for (j, joint) in self.joints.iter().enumerate() {
+            let axis = joint.axis[i];
+            let swings = [
+                axis.cross(self.ball[i] - joint.origin[i]),
+                axis.cross(self.slide[i]),
+            ];
+            for (part, swing) in swings.into_iter().enumerate() {
+                levers.lift[part][j] = swing.dot(edge.bisector);
+                levers.slip[part][j] = swing.dot(edge.tangent);
+            }
+            levers.axial[j] = swings[0].dot(self.slide[i]);
+        }
+        levers
+    }
+
+    /// What the device feels.
+    pub fn felt(&self, cell: &CellParameters) -> Felt {
+        let turns = self.turns(cell);
+        let count = self.len();
+        let mut balls = Vec::with_capacity(count);
+        let mut slides = Vec::with_capacity(count);
+        for i in 0..count {
+            let (mut ball, mut slide) = (self.ball[i], self.slide[i]);
+            for (joint, turn) in self.joints.iter().zip(&turns).rev() {
+                let angle = turn.at(i);
+                if angle != 0.0 {
+                    let turned = DQuat::from_axis_angle(joint.axis[i], angle);
+                    ball = joint.origin[i] + turned * (ball - joint.origin[i]);
+                    slide = turned * slide;
+                }
+            }
+            balls.push(ball);
+            slides.push(slide);
+        }
+        let mut felt = Felt::default();
+        for i in 0..count {
+            self.note(&mut felt, cell, i, &balls, &slides);
+        }
+        felt
+    }
+
+    /// How far each joint is from where the course has it.
+    fn turns(&self, cell: &CellParameters) -> Vec<Turn> {
+        let moved = cell.servo_bandwidth != self.bandwidth;
+        let turn = |(joint, offset): (&JointCourse, f64)| {
+            // The servo closes on the encoder: the arm stands off by what it reads too much.
+            if moved {
+                let angle = follow(&self.time, &joint.command, cell.servo_bandwidth).angle;
+                let away = angle.iter().zip(&joint.angle);
+                Turn::Course(away.map(|(there, here)| there - here - offset).collect())
+            } else {
+                Turn::Constant(-offset)
+            }
+        };
+        self.joints
+            .iter()
+            .zip(cell.encoder_offset)
+            .map(turn)
+            .collect()
+    }
+
+    fn note(
+        &self,
+        felt: &mut Felt,
+        cell: &CellParameters,
+        i: usize,
+        balls: &[DVec3],
+        slides: &[DVec3],
+    ) {
+        let edge = &self.edge[i];
+        let n = edge.bisector;
+        let (ball, slide) = (balls[i], slides[i]);
+        let along = (ball + slide * self.usual_stroke - edge.point).dot(edge.tangent);
+        let station = edge.station + along;
+        let lift = cell.part_shift + cell.part_tilt * (station - self.edge_middle);
+        let standoff = n.dot(ball - edge.point) - self.ball_radius - lift;
+        let share = -n.dot(slide);
+        let speed = self.slope(i, |j| balls[j]).dot(edge.tangent);
+        let mass_at = |j: usize| balls[j] + slides[j] * (self.usual_stroke - self.mass_behind_ball);
+        let acceleration = self.curvature(i, mass_at);
+        felt.standoff.push(standoff);
+        felt.share.push(share);
+        felt.burr.push(cell.burr.at(station));
+        felt.speed.push(speed);
+        felt.carried
+            .push(self.moving_mass * acceleration.dot(slide));
+        felt.pull.push((self.gravity - acceleration).dot(slide));
+    }
+
+    /// Rate of a point that is known at the samples [m/s].
+    fn slope(&self, i: usize, at: impl Fn(usize) -> DVec3) -> DVec3 {
+        let (before, after) = (i.saturating_sub(1), (i + 1).min(self.len() - 1));
+        (at(after) - at(before)) / (self.time[after] - self.time[before])
+    }
+
+    /// Acceleration of such a point [m/s2]; none at the ends, where everything rests.
+    fn curvature(&self, i: usize, at: impl Fn(usize) -> DVec3) -> DVec3 {
+        if i == 0 || i + 1 == self.len() {
+            return DVec3::ZERO;
+        }
+        let [before, after] = [
+            self.time[i] - self.time[i - 1],
+            self.time[i + 1] - self.time[i],
+        ];
+        let rise = (at(i + 1) - at(i)) / after - (at(i) - at(i - 1)) / before;
+        rise * 2.0 / (before + after)
+    }
+}
+
+/// How far a joint is from where a course has it [rad].
+enum Turn {
+    Constant(f64),
+    Course(Vec<f64>),
+}
+
+impl Turn {
+    fn at(&self, i: usize) -> f64 {
+        match self {
+            Self::Constant(angle) => *angle,
+            Self::Course(angles) => angles[i],
+        }
+    }
+}
+
+impl Felt {
+    /// Where the edge stands along the slide [m].
+    pub fn surface(&self) -> Vec<f64> {
+        let pairs = self.standoff.iter().zip(&self.share);
+        pairs.map(|(standoff, share)| standoff / share).collect()
+    }
+}

@@ -1,0 +1,71 @@
+//! What a cell's arm and part are like: springs in the joints, encoders that are off, a servo that lags, a part that is not where it is believed.
+
+/// Most joints that an arm may have.
+pub const MOST_JOINTS: usize = 8;
+
+/// Arm and part of a cell, beside its device; [`CellParameters::RIGID`] where there is none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellParameters {
+    /// Bandwidth of the joints' servos, critically damped [Hz].
+    pub servo_bandwidth: f64,
+    /// Stiffness of the spring between the motor and the link of each joint [N m/rad].
+    pub joint_stiffness: [f64; MOST_JOINTS],
+    /// Damping over stiffness of each joint, a time [s].
+    pub joint_damping: f64,
+    /// What each joint's encoder reads beyond the truth [rad].
+    pub encoder_offset: [f64; MOST_JOINTS],
+    /// Friction of the tool along the edge [1].
+    pub friction: f64,
+    /// Stroke at which a recording starts [m].
+    pub start_stroke: f64,
+    /// How far the part stands out along the bisector at the middle of its edge [m].
+    pub part_shift: f64,
+    /// Slope of that along the edge [m/m].
+    pub part_tilt: f64,
+    /// A burr on the edge.
+    pub burr: Burr,
+}
+
+/// A smooth bump on an edge: h exp(-((s - p)/w)^2 / 2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Burr {
+    /// Its height along the bisector [m].
+    pub height: f64,
+    /// Its middle, from the start of the edge [m].
+    pub position: f64,
+    /// Its standard width [m].
+    pub width: f64,
+}
+
+impl Burr {
+    /// No burr.
+    pub const NONE: Self = Self {
+        height: 0.0,
+        position: 0.0,
+        width: 2e-3,
+    };
+
+    /// Height [m] at a distance from the start of the edge [m].
+    pub fn at(&self, station: f64) -> f64 {
+        if self.height == 0.0 {
+            return 0.0;
+        }
+        let away = (station - self.position) / self.width;
+        self.height * (-0.5 * away * away).exp()
+    }
+}
+
+impl CellParameters {
+    /// Nothing gives, nothing is off.
+    pub const RIGID: Self = Self {
+        servo_bandwidth: f64::INFINITY,
+        joint_stiffness: [f64::INFINITY; MOST_JOINTS],
+        joint_damping: 3e-3,
+        encoder_offset: [0.0; MOST_JOINTS],
+        friction: 0.0,
+        start_stroke: 0.0,
+        part_shift: 0.0,
+        part_tilt: 0.0,
+        burr: Burr::NONE,
+    };
+}

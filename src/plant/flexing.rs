@@ -1,0 +1,203 @@
+//! Links that swing on the springs of their joints.
+//!
+//!     M d'' + D d' + K d = J_n F + J_t T + J_a (c F - G) - tau           links against motors
+//!     T = -mu F sat(v / v_s),   v = v_motors + J_t . d'
+//!
+//! d deflections [rad], M mass matrix without the moving mass's along the slide, which there goes its own way [kg m2], D = b K (Kelvin and Voigt), J_n, J_t,
+//! J_a levers of the ball along bisector, edge and slide [m], F contact force, c its share along the slide, G what the device pushes the moving mass with, T
+//! friction along the edge, regularised so that there is none at rest, tau what the motors' acceleration takes. (Spong, J. Dyn. Syst. Meas. Control 109,
+//! 1987; gravity and Coriolis torques are taken to be compensated.)
+//!
+//! Trapezoidal in springs and contact, implicit in friction, all in the speeds at the end of a step.
+
+use super::cell_course::{CellCourse, Felt, INERTIA_EVERY, SLIDING};
+use super::cell_parameters::{CellParameters, MOST_JOINTS};
+use nalgebra::DMatrix;
+
+/// One number a joint.
+type Joints = [f64; MOST_JOINTS];
+
+/// Links on their springs.
+#[derive(Debug, Clone)]
+pub(super) struct Flexing<'a> {
+    course: &'a CellCourse,
+    cell: &'a CellParameters,
+    count: usize,
+    deflection: Joints,
+    speed: Joints,
+    /// Inverse of what multiplies the speeds, and what it goes with.
+    inverse: Option<(Key, Vec<f64>)>,
+}
+
+/// What an inverse goes with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Key {
+    inertia: usize,
+    touching: bool,
+    step: f64,
+}
+
+/// Forces that bend the arm.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bending {
+    /// Contact force [N].
+    pub contact: f64,
+    /// Stiffness of the contact [N/m].
+    pub stiffness: f64,
+    /// Its damping [N s/m].
+    pub damping: f64,
+    /// What the device pushes the moving mass with, its weight included [N].
+    pub push: f64,
+    /// Stroke [m].
+    pub stroke: f64,
+    /// Its rate [m/s].
+    pub speed: f64,
+}
+
+/// What swinging does over a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Swung {
+    /// Where the surface goes, seen along the slide: coefficients of 1, t, t2 [m].
+    pub surface: [f64; 3],
+    /// What the share of the contact force along the slide loses by the slide's turning [1].
+    pub turned: f64,
+    /// Acceleration of the slide along its axis [m/s2].
+    pub acceleration: f64,
+}
+
+impl<'a> Flexing<'a> {
+    /// At rest; none where no joint gives.
+    pub fn new(course: &'a CellCourse, cell: &'a CellParameters) -> Option<Self> {
+        let count = course.joints.len();
+        let gives = cell.joint_stiffness[..count].iter().all(|k| k.is_finite());
+        (gives && count > 0).then_some(Self {
+            course,
+            cell,
+            count,
+            deflection: [0.0; MOST_JOINTS],
+            speed: [0.0; MOST_JOINTS],
+            inverse: None,
+        })
+    }
+
+    /// Levers along the bisector at a stroke [m].
+    fn lift(&self, i: usize, stroke: f64) -> Joints {
+        let [fixed, turn] = &self.course.levers[i].lift;
+        std::array::from_fn(|j| fixed[j] + stroke * turn[j])
+    }
+
+    /// Where the surface is now, and where it goes.
+    pub fn now(&self, i: usize, stroke: f64, share: f64) -> Swung {
+        self.swung(i, &self.lift(i, stroke), share)
+    }
+
+    fn swung(&self, i: usize, lift: &Joints, share: f64) -> Swung {
+        Swung {
+            surface: [
+                dot(lift, &self.deflection) / share,
+                dot(lift, &self.speed) / share,
+                0.0,
+            ],
+            turned: dot(&self.course.levers[i].lift[1], &self.deflection),
+            acceleration: 0.0,
+        }
+    }
+
+    /// Advances over `h` [s] from sample `i` under forces as they are now.
+    pub fn advance(&mut self, felt: &Felt, i: usize, h: f64, forces: Bending) -> Swung {
+        let share = felt.share[i];
+        let lift = self.lift(i, forces.stroke);
+        let levers = &self.course.levers[i];
+        let [fixed, turn] = &levers.slip;
+        let slip: Joints = std::array::from_fn(|j| fixed[j] + forces.stroke * turn[j]);
+        let axial = &levers.axial;
+        let key = Key {
+            inertia: i / INERTIA_EVERY,
+            touching: forces.contact > 0.0,
+            step: h,
+        };
+        let inertia = &self.course.inertia[key.inertia];
+        let (stiffness, halved) = self.springs(h);
+        // The contact over the step: as it is, with what the piston and the swing do to it by its middle.
+        let [spring, damper] = if key.touching {
+            [forces.stiffness, forces.damping]
+        } else {
+            [0.0; 2]
+        };
+        let implicit = 0.25 * h * spring + 0.5 * damper;
+        let lifting = dot(&lift, &self.speed);
+        let contact = forces.contact + 0.5 * h * spring * share * forces.speed
+            - (0.25 * h * spring - 0.5 * damper) * lifting;
+        let mut right = [0.0; MOST_JOINTS];
+        for j in 0..self.count {
+            let motor = self.course.joints[j].torque[i] - axial[j] * felt.carried[i];
+            let bent = lift[j] + share * axial[j];
+            right[j] = bent * contact
+                - axial[j] * forces.push
+                - motor
+                - halved[j] * self.speed[j]
+                - stiffness[j] * self.deflection[j];
+            for k in 0..self.count {
+                right[j] += inertia[(j, k)] / h * self.speed[k];
+            }
+        }
+        if self.inverse.as_ref().is_none_or(|(known, _)| *known != key) {
+            let matrix = DMatrix::from_fn(self.count, self.count, |j, k| {
+                let own = if j == k { halved[j] } else { 0.0 };
+                let bent = lift[j] + share * axial[j];
+                inertia[(j, k)] / h + own + implicit * bent * lift[k]
+            });
+            // A mass matrix with springs has an inverse.
+            let inverse = matrix
+                .try_inverse()
+                .unwrap_or_else(|| DMatrix::zeros(self.count, self.count));
+            self.inverse = Some((key, inverse.as_slice().to_vec()));
+        }
+        let freely = self.solve(&right);
+        let dragged = self.solve(&slip);
+        let most = self.cell.friction * forces.contact;
+        let grip = most / SLIDING;
+        let speed = felt.speed[i] + dot(&slip, &freely);
+        let give = dot(&slip, &dragged);
+        let mut friction = grip * speed / (1.0 + grip * give);
+        if friction.abs() > most {
+            friction = most * friction.signum();
+        }
+        let mut swung = self.swung(i, &lift, share);
+        for j in 0..self.count {
+            let end = freely[j] - friction * dragged[j];
+            let rate = (end - self.speed[j]) / h;
+            swung.surface[2] += 0.5 * lift[j] * rate / share;
+            swung.acceleration += axial[j] * rate;
+            self.deflection[j] += 0.5 * h * (self.speed[j] + end);
+            self.speed[j] = end;
+        }
+        swung
+    }
+
+    /// Stiffness [N m/rad] and half of what damping and springs take over a step [N m s/rad], of each joint.
+    fn springs(&self, h: f64) -> (Joints, Joints) {
+        let stiffness = self.cell.joint_stiffness;
+        let mut halved = [0.0; MOST_JOINTS];
+        for j in 0..self.count {
+            halved[j] = (0.5 * self.cell.joint_damping + 0.25 * h) * stiffness[j];
+        }
+        (stiffness, halved)
+    }
+
+    fn solve(&self, right: &Joints) -> Joints {
+        let mut out = [0.0; MOST_JOINTS];
+        if let Some((_, inverse)) = &self.inverse {
+            for k in 0..self.count {
+                for j in 0..self.count {
+                    out[j] += inverse[k * self.count + j] * right[k];
+                }
+            }
+        }
+        out
+    }
+}
+
+fn dot(a: &Joints, b: &Joints) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

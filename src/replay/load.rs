@@ -1,0 +1,134 @@
+//! From the scenario file of a recorded cell to what does not change between its recordings.
+
+use super::{Commands, ReplayCell};
+use crate::arm::chain::JointKind;
+use crate::arm::load_arm;
+use crate::cell::{CellError, arm_options, choose_edge};
+use crate::plant::{
+    CellCourse, CellParameters, ContactLaw, ContactParameters, EdgeStation, MOST_JOINTS, Periodic,
+    PlantParameters, SensorErrors,
+};
+use crate::scenario::RecordedCell;
+use crate::scenario::recorded_cell::apply;
+use crate::workpiece::{EdgeCurve, load_mesh};
+use glam::DVec3;
+
+/// A recorded cell with its arm and its edge.
+#[derive(Debug, Clone)]
+pub struct LoadedCell {
+    /// The file.
+    pub scenario: RecordedCell,
+    /// Arm, device and tool.
+    pub cell: ReplayCell,
+    /// Names of the arm's joints, base first.
+    pub joints: Vec<String>,
+    /// The edge in the part's frame.
+    edge: EdgeCurve,
+}
+
+impl LoadedCell {
+    /// Loads what the file names.
+    ///
+    /// # Errors
+    /// What is wrong with the arm, the mesh or the choice of the edge; joints that are not served alike.
+    pub fn new(scenario: RecordedCell) -> Result<Self, CellError> {
+        let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
+        let joints: Vec<String> = arm.chain.joints.iter().map(|j| j.name.clone()).collect();
+        let axes = arm.chain.len();
+        if scenario.joint_stiffness.len() != axes {
+            return Err(CellError::JointStiffness {
+                file: scenario.path.clone(),
+                found: scenario.joint_stiffness.len(),
+                axes,
+            });
+        }
+        let slides = |joint: &&crate::arm::chain::Joint| joint.kind == JointKind::Prismatic;
+        if let Some(joint) = arm.chain.joints.iter().find(slides) {
+            return Err(CellError::SlidingJoint {
+                file: scenario.arm.urdf.clone(),
+                joint: joint.name.clone(),
+            });
+        }
+        let mesh = load_mesh(&scenario.workpiece.mesh, scenario.workpiece.mesh_scale)?;
+        let edge = choose_edge(&scenario.path, &scenario.workpiece, &mesh)?;
+        let device = &scenario.device;
+        let cell = ReplayCell {
+            chain: arm.chain,
+            world_from_base: scenario.arm.world_from_base,
+            gravity: scenario.gravity,
+            moving_mass: device.parameters.moving_mass,
+            mass_centre: device.moving_centre_of_mass,
+            ball_centre: device.tool_centre,
+            ball_radius: device.tool_radius,
+            full_stroke: device.parameters.full_stroke,
+            edge_length: edge.length,
+        };
+        Ok(Self {
+            scenario,
+            cell,
+            joints,
+            edge,
+        })
+    }
+
+    /// The cell as believed.
+    pub fn plant(&self) -> PlantParameters {
+        let scenario = &self.scenario;
+        let mut joint_stiffness = [f64::INFINITY; MOST_JOINTS];
+        for (own, stiffness) in joint_stiffness.iter_mut().zip(&scenario.joint_stiffness) {
+            *own = *stiffness;
+        }
+        let mut plant = PlantParameters {
+            device: scenario.device.parameters.clone(),
+            // The course of the flange says it, sample by sample.
+            gravity_along_extension: 0.0,
+            contact: ContactParameters {
+                law: ContactLaw::Linear {
+                    stiffness: scenario.contact.stiffness,
+                },
+                damping: scenario.contact.damping,
+                surface_offset: 0.0,
+                runout: Periodic::NONE,
+                waviness: Periodic::NONE,
+            },
+            cell: CellParameters {
+                servo_bandwidth: scenario.servo_bandwidth,
+                joint_stiffness,
+                joint_damping: scenario.joint_damping[0],
+                friction: scenario.contact.friction,
+                ..CellParameters::RIGID
+            },
+            latent: None,
+            sensors: SensorErrors::NONE,
+        };
+        apply(&scenario.effects, &mut plant);
+        plant
+    }
+
+    /// The arm's course in a recording: times [s], commanded places along the edge [m] and angles of the joints [rad], servos of a bandwidth [Hz].
+    pub fn course(
+        &self,
+        time: &[f64],
+        path: &[f64],
+        joints: &[Vec<f64>],
+        bandwidth: f64,
+    ) -> CellCourse {
+        let world_from_part = self.scenario.workpiece.world_from_part;
+        let station = |place: &f64| {
+            let point = self.edge.at(place.clamp(0.0, self.edge.length));
+            EdgeStation {
+                point: world_from_part.transform_point(point.point),
+                tangent: world_from_part.rotation * point.tangent,
+                bisector: (world_from_part.rotation * point.bisector).normalize_or(DVec3::Z),
+                station: place.clamp(0.0, self.edge.length),
+            }
+        };
+        let edge: Vec<EdgeStation> = path.iter().map(station).collect();
+        let commands = Commands {
+            time,
+            joints,
+            edge: &edge,
+        };
+        self.cell.course(commands, bandwidth)
+    }
+}

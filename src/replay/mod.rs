@@ -1,0 +1,149 @@
+//! From the commands of a recorded cell to what its device feels: the arm's course along the part's edge.
+
+mod load;
+
+pub use load::LoadedCell;
+
+use crate::arm::chain::{BodyInertia, Chain, MAX_JOINTS};
+use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
+use crate::arm::kinematics::link_poses;
+use crate::plant::{CellCourse, EdgeStation, INERTIA_EVERY, JointCourse, MOST_JOINTS, follow};
+use glam::{DMat3, DQuat, DVec3};
+use glamx::DPose3;
+use nalgebra::{DMatrix, DVector};
+
+const _: () = assert!(MAX_JOINTS == MOST_JOINTS);
+
+/// What does not change between the recordings of a cell.
+#[derive(Debug, Clone)]
+pub struct ReplayCell {
+    /// The arm up to its flange.
+    pub chain: Chain,
+    /// Pose of its base.
+    pub world_from_base: DPose3,
+    /// Gravity [m/s2].
+    pub gravity: DVec3,
+    /// The device's moving mass [kg].
+    pub moving_mass: f64,
+    /// Its centre from the flange at no stroke [m].
+    pub mass_centre: f64,
+    /// The ball's centre from the flange at no stroke [m].
+    pub ball_centre: f64,
+    /// Radius of the ball [m].
+    pub ball_radius: f64,
+    /// The device's stroke [m].
+    pub full_stroke: f64,
+    /// Length of the edge [m].
+    pub edge_length: f64,
+}
+
+/// Commands of one recording.
+#[derive(Debug, Clone, Copy)]
+pub struct Commands<'a> {
+    /// Sample times [s].
+    pub time: &'a [f64],
+    /// Commanded angles of each joint [rad].
+    pub joints: &'a [Vec<f64>],
+    /// The edge where the commands have the ball.
+    pub edge: &'a [EdgeStation],
+}
+
+impl ReplayCell {
+    /// The arm's course on commands, its servos of a bandwidth [Hz].
+    pub fn course(&self, commands: Commands<'_>, bandwidth: f64) -> CellCourse {
+        let count = commands.time.len();
+        let followed: Vec<_> = commands
+            .joints
+            .iter()
+            .map(|command| follow(commands.time, command, bandwidth))
+            .collect();
+        let usual_stroke = 0.5 * self.full_stroke;
+        let loaded = self.loaded(usual_stroke);
+        let joints = self.chain.len();
+        let mut course = CellCourse {
+            time: commands.time.to_vec(),
+            joints: followed
+                .iter()
+                .zip(commands.joints)
+                .map(|(followed, command)| JointCourse {
+                    command: command.clone(),
+                    angle: followed.angle.clone(),
+                    axis: Vec::with_capacity(count),
+                    origin: Vec::with_capacity(count),
+                    torque: Vec::with_capacity(count),
+                })
+                .collect(),
+            bandwidth,
+            ball: Vec::with_capacity(count),
+            slide: Vec::with_capacity(count),
+            edge: commands.edge.to_vec(),
+            edge_middle: 0.5 * self.edge_length,
+            ball_radius: self.ball_radius,
+            levers: Vec::with_capacity(count),
+            inertia: Vec::with_capacity(count / INERTIA_EVERY + 1),
+            moving_mass: self.moving_mass,
+            mass_behind_ball: self.ball_centre - self.mass_centre,
+            usual_stroke,
+            gravity: self.gravity,
+        };
+        let mut poses = vec![DPose3::IDENTITY; joints];
+        let (mut q, mut qdd) = (vec![0.0; joints], vec![0.0; joints]);
+        let still = vec![0.0; joints];
+        let mut torques = vec![0.0; joints];
+        let mut masses = DMatrix::zeros(joints, joints);
+        let mut levers = DVector::zeros(joints);
+        for i in 0..count {
+            for (j, followed) in followed.iter().enumerate() {
+                q[j] = followed.angle[i];
+                qdd[j] = followed.acceleration[i];
+            }
+            link_poses(&self.chain, self.world_from_base, &q, &mut poses);
+            // Gravity and Coriolis torques are compensated: only what accelerates bends the springs.
+            inverse_dynamics(
+                &loaded,
+                DQuat::IDENTITY,
+                DVec3::ZERO,
+                &q,
+                &still,
+                &qdd,
+                &mut torques,
+            );
+            let last = poses.last().copied().unwrap_or(self.world_from_base);
+            let flange = last * self.chain.tip_from_last;
+            let slide = flange.rotation * DVec3::Z;
+            let ball = flange.translation + slide * self.ball_centre;
+            for (j, joint) in course.joints.iter_mut().enumerate() {
+                let axis = poses[j].rotation * self.chain.joints[j].axis;
+                levers[j] = axis.cross(ball - poses[j].translation).dot(slide);
+                joint.axis.push(axis);
+                joint.origin.push(poses[j].translation);
+                joint.torque.push(torques[j]);
+            }
+            if i.is_multiple_of(INERTIA_EVERY) {
+                mass_matrix(&loaded, &q, &mut masses);
+                // The slide lets the moving mass go its own way along its axis.
+                let own = &levers * levers.transpose() * self.moving_mass;
+                course.inertia.push(&masses - own);
+            }
+            course.ball.push(ball);
+            course.slide.push(slide);
+            course.levers.push(course.levers_of(i));
+        }
+        course
+    }
+
+    /// The arm with the device's moving mass fixed at a stroke [m].
+    fn loaded(&self, stroke: f64) -> Chain {
+        let mut chain = self.chain.clone();
+        let device = BodyInertia {
+            mass: self.moving_mass,
+            centre_of_mass: DVec3::Z * (self.mass_centre + stroke),
+            inertia: DMat3::ZERO,
+        };
+        let tip = chain.tip_from_last;
+        if let Some(last) = chain.joints.last_mut() {
+            last.body = last.body.welded_to(&device.seen_from(&tip));
+        }
+        chain
+    }
+}

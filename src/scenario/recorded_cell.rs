@@ -1,0 +1,221 @@
+//! The scenario file of a recorded cell, `kind = "recorded_cell"`: arm, device, part and contact as their owner believes them to be, and the sensors of
+//! recordings of it. It has no job: that is in the recordings' commands.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use serde::Deserialize;
+
+use super::bench_file::Kind;
+use super::check::Section;
+use super::document::{Document, read_text};
+use super::error::ScenarioError;
+use super::file::{self, ArmKeys, ContactKeys, DeviceKeys, WorkpieceKeys};
+use super::load;
+use super::sections::recorded_cell_sections;
+use super::workpiece::workpiece;
+use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, WorkpieceScenario};
+use crate::effects::Effect;
+
+mod effects;
+
+pub use effects::{FoundNumbers, apply, improved_cell_text};
+
+/// The file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RecordedCellFile {
+    #[expect(dead_code, reason = "checked by Document::new")]
+    pub schema: u32,
+    pub kind: Kind,
+    pub title: String,
+    pub arm: ArmKeys,
+    pub joints: JointsKeys,
+    pub device: DeviceKeys,
+    pub workpiece: WorkpieceKeys,
+    #[serde(default)]
+    pub contact: ContactKeys,
+    pub sensors: SensorsKeys,
+    #[serde(default)]
+    pub belief: BeliefKeys,
+    #[serde(default)]
+    pub effect: effects::EffectKeys,
+}
+
+/// `[joints]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct JointsKeys {
+    pub servo_bandwidth_hz: f64,
+    pub stiffness_n_m_per_rad: Vec<f64>,
+    pub damping_time_ms: Option<f64>,
+    pub damping_time_tolerance_ms: Option<f64>,
+}
+
+/// `[sensors]`: standard deviations of their noise.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SensorsKeys {
+    pub joints_rad: f64,
+    pub regulator_pressure_pa: f64,
+    pub stroke_um: f64,
+    pub force_n: f64,
+}
+
+/// `[belief]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BeliefKeys {
+    pub tolerance: Option<f64>,
+    pub start_stroke_tolerance_mm: Option<f64>,
+    pub gravity_m_per_s2: Option<Vec<f64>>,
+}
+
+/// A cell of which there are recordings.
+#[derive(Debug, Clone)]
+pub struct RecordedCell {
+    /// File that it was read from.
+    pub path: PathBuf,
+    /// Its text.
+    text: String,
+    /// Effects that the file names, in the order of the catalogue, with all their numbers.
+    pub effects: Vec<(&'static Effect, Vec<f64>)>,
+    /// Name for people.
+    pub title: String,
+    /// The robot arm; its servo is in `servo_bandwidth`.
+    pub arm: ArmScenario,
+    /// The device between flange and tool.
+    pub device: DeviceScenario,
+    /// The workpiece and the edge that the tool rides.
+    pub workpiece: WorkpieceScenario,
+    /// Contact between tool and workpiece.
+    pub contact: ContactScenario,
+    /// Gravity in the world [m/s2].
+    pub gravity: DVec3,
+    /// Bandwidth of the joints' servos, critically damped [Hz].
+    pub servo_bandwidth: f64,
+    /// Stiffness of the spring between motor and link of each joint, base first [N m/rad].
+    pub joint_stiffness: Vec<f64>,
+    /// Damping over stiffness of each joint [s] and the standard deviation of what is believed of it [s].
+    pub joint_damping: [f64; 2],
+    /// Standard deviation of the encoders' noise [rad].
+    pub joint_noise: f64,
+    /// Standard deviations of the noise of regulator outlet [Pa], stroke [m] and force [N].
+    pub noise: [f64; 3],
+    /// Relative tolerance of the device's and the contact's numbers [1].
+    pub tolerance: f64,
+    /// How far off its retracted stop the slide may start [m].
+    pub start_stroke_tolerance: f64,
+}
+
+/// Reads and checks the scenario file of a recorded cell and the device model file that it names.
+///
+/// # Errors
+/// File, line, column and key of what is wrong, what was found and what was expected.
+pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
+    let text = read_text(path)?;
+    let document = Document::new(path, &text, file::SCHEMA)?;
+    let file: RecordedCellFile = document.parse(&recorded_cell_sections())?;
+    if file.kind != Kind::RecordedCell {
+        return Err(ScenarioError::OtherKind {
+            file: path.to_owned(),
+            found: file.kind.name(),
+            expected: Kind::RecordedCell.name(),
+        });
+    }
+    let section = |table: &str| Section::new(&document, table);
+    let device = load::device(&section("device"), &file.device)?;
+    if device.locked {
+        let reason = "a locked device moves nowhere, and tells nothing".to_owned();
+        return Err(section("device").misplaced("locked", reason));
+    }
+    let part = workpiece(&section("workpiece"), &file.workpiece)?;
+    refuse_what_is_sought(&document, &part)?;
+    refuse_what_commands_say(&document)?;
+    let (joints, sensors, belief) = (section("joints"), section("sensors"), section("belief"));
+    let (drives, noise) = (&file.joints, &file.sensors);
+    let keys = &file.belief;
+    let gravity = keys.gravity_m_per_s2.as_deref();
+    let standard = DVec3::new(0.0, 0.0, -9.81);
+    Ok(RecordedCell {
+        path: path.to_owned(),
+        effects: effects::effects(&document, &file.effect)?,
+        text: text.clone(),
+        title: section("").text("title", &file.title)?,
+        arm: load::arm(&section("arm"), &file.arm)?,
+        workpiece: part,
+        contact: load::contact(&section("contact"), &file.contact)?,
+        gravity: belief.vector("gravity_m_per_s2", gravity, standard, -30.0..=30.0)?,
+        tolerance: belief.number("tolerance", keys.tolerance.unwrap_or(0.005), 0.0..=0.5)?,
+        start_stroke_tolerance: belief.number(
+            "start_stroke_tolerance_mm",
+            keys.start_stroke_tolerance_mm.unwrap_or(0.2),
+            0.0..=10.0,
+        )?,
+        device,
+        servo_bandwidth: joints.number(
+            "servo_bandwidth_hz",
+            drives.servo_bandwidth_hz,
+            0.5..=500.0,
+        )?,
+        joint_stiffness: joints.numbers(
+            "stiffness_n_m_per_rad",
+            &drives.stiffness_n_m_per_rad,
+            1e2..=1e9,
+        )?,
+        joint_damping: [
+            joints.number(
+                "damping_time_ms",
+                drives.damping_time_ms.unwrap_or(2.5),
+                0.1..=50.0,
+            )?,
+            joints.number(
+                "damping_time_tolerance_ms",
+                drives.damping_time_tolerance_ms.unwrap_or(1.0),
+                0.0..=50.0,
+            )?,
+        ],
+        joint_noise: sensors.number("joints_rad", noise.joints_rad, 1e-9..=0.01)?,
+        noise: [
+            sensors.number(
+                "regulator_pressure_pa",
+                noise.regulator_pressure_pa,
+                1.0..=1e5,
+            )?,
+            sensors.number("stroke_um", noise.stroke_um, 0.01..=5e3)?,
+            sensors.number("force_n", noise.force_n, 1e-4..=1e3)?,
+        ],
+    })
+}
+
+fn refuse_what_is_sought(
+    document: &Document<'_>,
+    part: &WorkpieceScenario,
+) -> Result<(), ScenarioError> {
+    let section = Section::new(document, "workpiece");
+    let reason = |what: &str| format!("a diagnosis finds {what}, the file says what is believed");
+    if section.given().any(|key| key == "misplacement") {
+        return Err(section.misplaced("misplacement", reason("how the part lies")));
+    }
+    if part.burr != BurrScenario::None {
+        return Err(section.misplaced("burr", reason("a burr")));
+    }
+    Ok(())
+}
+
+fn refuse_what_commands_say(document: &Document<'_>) -> Result<(), ScenarioError> {
+    let arm = Section::new(document, "arm");
+    let given = |key: &&str| arm.given().any(|given| given == *key);
+    let refused = ["servo", "seed_posture_deg", "limit_overrides"];
+    match refused.into_iter().find(given) {
+        None => Ok(()),
+        Some("servo") => {
+            let reason = "a recorded cell's servos stand in [joints]".to_owned();
+            Err(arm.misplaced("servo", reason))
+        }
+        Some(key) => {
+            let reason = "the recordings' commands say how the arm moved".to_owned();
+            Err(arm.misplaced(key, reason))
+        }
+    }
+}
