@@ -235,7 +235,7 @@ impl Search<'_> {
     }
 
     /// Cost that a hypothesis with one more effect could come to along the way to a start, from that one simulation; nothing for what is cheap to look
-    /// at properly or has a phase, which no single way shows.
+    /// at properly, has a phase, which no single way shows, or starts where it does nothing.
     fn secant(
         &self,
         from: &Hypothesis,
@@ -256,7 +256,12 @@ impl Search<'_> {
         let here = &from.fit.prediction;
         let there = self.evidence.predict(&plant, stage.guided, Some(here));
         let along = there.residuals.iter().zip(&here.residuals);
-        columns.push(along.map(|(there, here)| there - here).collect());
+        let way: Vec<f64> = along.map(|(there, here)| there - here).collect();
+        // A start that changes nothing, such as a force of zero, is where derivatives alone can tell.
+        if !way.iter().any(|change| change.abs() > 1e-6) {
+            return f64::NEG_INFINITY;
+        }
+        columns.push(way);
         free.truncate(values.len());
         free.push(WAY);
         values.push(0.0);
