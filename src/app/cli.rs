@@ -214,7 +214,7 @@ pub(super) struct DiagnoseArguments {
     /// Put new diagnoses in place of old ones.
     #[arg(long)]
     pub(super) force: bool,
-    /// Cases at a time with --all [default: as many as there are processors]; the processors are shared among them, and results do not depend on it.
+    /// Cases at a time with --all [default: 1, on all processors]; the processors are shared among them, and results do not depend on it.
     #[arg(long, requires = "all", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) jobs: Option<u16>,
     /// Print nothing but errors.

@@ -25,7 +25,7 @@ pub(super) const EXAMPLES: &str = "Examples:
   idc diagnose rigs --all --out runs/rigs --resume        go on where it was stopped
   idc diagnose recordings --all --scenario cell.toml --out runs/cell
                                                           every case of a robot cell below recordings/
-  idc diagnose rigs --all --out runs/rigs --jobs 1        one case at a time, each on all processors
+  idc diagnose rigs --all --out runs/rigs --jobs 4        four cases at a time, each on its share of the processors
 
 diagnosis.json is written last: where it stands, the others are complete. \
 Exit codes: 0 done, 2 bad input (with --all: of any case; the others are done all the same).";

@@ -37,7 +37,8 @@ pub(super) fn run(
     let silent = arguments.quiet || arguments.json;
     let bar = bar(names.len(), silent);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
-    let jobs = arguments.jobs.map_or(processors, usize::from);
+    // One at a time on all processors is no slower in all, and each is done sooner.
+    let jobs = arguments.jobs.map_or(1, usize::from);
     let jobs = jobs.min(names.len());
     let waiting: Mutex<VecDeque<(usize, String)>> =
         Mutex::new(names.iter().cloned().enumerate().collect());

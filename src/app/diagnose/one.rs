@@ -127,17 +127,15 @@ impl Prepared {
         // An old diagnosis beside new files would pass for theirs.
         self.folder.discard(DIAGNOSIS)?;
         let diagnosis = diagnose(&self.case, self.recordings, say);
+        let found = &diagnosis.best().fit.prediction.plant;
         let (improved, plant) = match &self.model {
             Model::Rig(rig) => {
-                let improved = improved(rig, &diagnosis);
+                let text = improved(rig, &diagnosis);
                 // As the file says it, so that whoever takes the file gets the same.
-                let plant = from_text(Path::new(IMPROVED), &improved)?.plant;
-                (improved, plant)
+                let plant = from_text(Path::new(IMPROVED), &text)?.plant;
+                (text, plant)
             }
-            Model::Cell { cell, .. } => (
-                improved_cell(&cell.scenario, &diagnosis)?,
-                diagnosis.best().fit.prediction.plant.clone(),
-            ),
+            Model::Cell { cell, .. } => (improved_cell(&cell.scenario, &diagnosis)?, found.clone()),
         };
         let prediction = prediction(&self.case, &plant)?;
         let picture = picture(&diagnosis)?;
@@ -146,6 +144,9 @@ impl Prepared {
         let mut account = diagnosis.account(&self.name);
         if let Model::Cell { cell, servo } = &self.model {
             account += &cell_account(cell, servo.as_ref(), &diagnosis);
+            if diagnosis.shape.is_some() {
+                account += "\nA cell's improved.toml has no place for a term without a name: it stands in prediction.csv alone.\n";
+            }
         }
         let mut files = vec![(ACCOUNT, account.as_str()), (IMPROVED, improved.as_str())];
         for (name, text) in [(PREDICTION, &prediction), (PICTURE, &picture)] {

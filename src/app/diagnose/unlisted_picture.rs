@@ -27,11 +27,11 @@ fn figure(shape: &Shape) -> Figure<'static> {
         ""
     };
     let over = match shape.period {
-        Some([period, _]) => format!("time within one period of {period:.4} s [s]"),
+        Some([period, _]) => format!("time within the period of {:.4} ms [ms]", 1e3 * period),
         None => format!("{} [{}]", variable.words, variable.unit),
     };
     Figure {
-        title: format!("No known effect: a {}{turns}", port.words),
+        title: format!("Explained by no known effect: {}{turns}", port.words),
         panels: vec![Panel {
             vertical_label: format!("{} [{}]", port.words, port.unit),
             horizontal: Horizontal::Quantity(over),
@@ -42,7 +42,10 @@ fn figure(shape: &Shape) -> Figure<'static> {
 }
 
 fn series(shape: &Shape, port: Shown, variable: Shown) -> Vec<Series<'static>> {
-    let at = |value: f64| value * variable.factor;
+    let at = |value: f64| match shape.period {
+        None => value * variable.factor,
+        Some(_) => 1e3 * value,
+    };
     let places: Vec<f64> = shape.curve.iter().map(|row| at(row.at)).collect();
     let most = UNKNOWN * shape.peak_to_peak;
     let known = |row: &Row| row.half_width < most;

@@ -92,7 +92,12 @@ impl Diagnosis {
             )
         };
         format!(
-            "; {what} falls from {} to {} in the {}, where the sensor's noise is {}",
+            "; {what} {} from {} to {} in the {}, where the sensor's noise is {}",
+            if worst.after < worst.before {
+                "falls"
+            } else {
+                "goes"
+            },
             said(worst.before),
             said(worst.after),
             CHANNEL_WORDS[index.unwrap_or(0)],

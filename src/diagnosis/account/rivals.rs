@@ -40,6 +40,9 @@ impl Diagnosis {
 
     pub(super) fn what_next(&self) -> String {
         let near = self.rivals().next().is_some();
+        if !near && self.shape.is_some() {
+            return self.what_to_check();
+        }
         let (Some(best), Some(rival)) = (self.experiments.first(), self.ranked.get(1)) else {
             return if near {
                 String::new()
@@ -47,10 +50,6 @@ impl Diagnosis {
                 "Nothing need be: no other explanation that was tried comes near.".to_owned()
             };
         };
-        // A rival of a shape without a name is one by name: what the account says to check settles more.
-        if !near && self.shape.is_some() {
-            return String::new();
-        }
         if best.square < TELLS {
             return if near {
                 format!(

@@ -5,14 +5,12 @@ use std::fmt::Write as _;
 use super::super::diagnose::Diagnosis;
 use super::super::unlisted::known::known;
 use super::super::unlisted::report::NearEffects;
-use super::super::unlisted::words::{Shown, port, variable};
-use super::super::unlisted::{Form, Row, Shape};
-use super::super::words::{figures, listed, percent};
+use super::super::unlisted::words::{port, variable};
+use super::super::unlisted::{Form, Shape};
+use super::super::words::{figures, listed, percent, with_interval};
 use super::missing::probability;
-use crate::plant::Basis;
+use crate::plant::Variable;
 
-/// Rows of the table.
-const ROWS: usize = 12;
 /// Letters of a bar from one side to the other.
 const BAR: usize = 32;
 
@@ -28,10 +26,9 @@ impl Diagnosis {
         vec![
             format!("{}. Probability {confidence}.", self.where_and_what(shape)),
             format!(
-                "{} Known physics of that kind: {}. To find it: {}.",
-                near(&self.nearest_known()),
+                "{} Known physics of that kind: {}. The shape stands below with its 95 % interval, and drawn in unlisted.svg.",
+                near(&self.nearest_known(), self.explained_share()),
                 known.resembles,
-                known.check
             ),
         ]
     }
@@ -41,70 +38,88 @@ impl Diagnosis {
         let latent = &shape.latent;
         let (at, over) = (port(latent.port), variable(latent.variable));
         let subsystem = latent.port.subsystem().replace('_', " ");
+        let depends = match latent.variable {
+            Variable::Time => "varies with time".to_owned(),
+            _ => format!("depends on the {}", over.words),
+        };
         let turns = if latent.directed {
-            ", and turns with the direction of motion"
+            " and turns with the direction of motion"
         } else {
             ""
         };
         let size = figures(shape.peak_to_peak * at.factor, 3);
         let mut text = format!(
-            "Physics that no known effect explains ({subsystem}): {} {} that depends on the {}{turns}, {size} {} from its least to its largest value",
+            "Physics that no known effect explains ({subsystem}): {} {} that {depends}{turns}, {size} {} from peak to peak",
             article(at.words),
             at.words,
-            over.words,
             at.unit
         );
         text += &match (shape.form, shape.period) {
             (_, Some([period, half])) => format!(
-                ", with a period of {} s ({} Hz) to {} ms",
-                figures(period, 5),
+                ", with a period of {} ({} Hz)",
+                with_interval(
+                    1e3 * period,
+                    [period - half, period + half].map(|t| 1e3 * t),
+                    "ms"
+                ),
                 figures(1.0 / period, 4),
-                figures(1e3 * half, 2)
             ),
-            (Form::Localised, None) => acting(shape, over),
+            (Form::Localised, None) => {
+                let [from, to] = shape.acts.map(|end| figures(end * over.factor, 3));
+                format!(", between {from} and {to} {} alone", over.unit)
+            }
             (Form::Odd, None) => ", opposite in sign for opposite signs of it".to_owned(),
             (Form::Even, None) => ", the same for either sign of it".to_owned(),
             _ => String::new(),
         };
-        let others: Vec<String> = (self.best().depends_on.iter())
-            .filter(|name| **name != latent.variable.name() && **name != "velocity_sign")
-            .map(|name| name.trim_end_matches("_m").replace('_', " "))
+        let names = self.best().depends_on.iter();
+        let others = Variable::ALL.into_iter().filter(|other| {
+            *other != latent.variable && names.clone().any(|name| *name == other.name())
+        });
+        let others: Vec<String> = others
+            .map(|v| format!("the {}", variable(v).words))
             .collect();
         if !others.is_empty() {
             text += &format!(
-                "; the recordings would as well have it depend on {}",
+                "; {} would do nearly as well for a variable",
                 listed(&others)
             );
         }
         text
     }
 
-    /// The shape as a table with bars, and where its picture stands; none where there is no such term.
+    /// What to look at to find what a term is; nothing where there is none.
+    pub(super) fn what_to_check(&self) -> String {
+        self.shape.as_ref().map_or_else(String::new, |shape| {
+            let check = known(&shape.latent, shape.form).check;
+            format!("To find what it is: {check}.")
+        })
+    }
+
+    /// The shape as a table with bars; none where there is no such term.
     pub(super) fn shape_table(&self) -> Option<String> {
         let shape = self.shape.as_ref()?;
         let latent = &shape.latent;
         let (of, over) = (port(latent.port), variable(latent.variable));
-        let place = match latent.basis {
-            Basis::Hats { .. } => format!("{} [{}]", over.words, over.unit),
-            Basis::Waves { .. } => "time within a period [s]".to_owned(),
+        let (place, place_factor) = match shape.period {
+            None => (format!("{} [{}]", over.words, over.unit), over.factor),
+            Some(_) => ("within the period [ms]".to_owned(), 1e3),
         };
-        let last = shape.curve.len() - 1;
-        let rows: Vec<&Row> = (0..=ROWS).map(|k| &shape.curve[k * last / ROWS]).collect();
+        let rows = &shape.table;
         let largest = rows.iter().fold(0.0f64, |most, r| most.max(r.value.abs()));
         let wide = place.chars().count();
-        let head = format!("{} [{}]", of.words, of.unit);
-        let mut text =
-            format!("\n  {place}   {head}, with its 95 % interval (picture: unlisted.svg)\n");
+        let digits = decimals(largest * of.factor);
+        let span = rows[rows.len() - 1].at - rows[0].at;
+        let place_digits = decimals(span * place_factor);
+        let mut text = format!("\n  {place}   {} [{}]\n", of.words, of.unit);
         for row in rows {
-            let scale = |value: f64| value * of.factor;
-            let digits = decimals(scale(largest));
             // Writing into a text cannot fail.
             let _ = writeln!(
                 text,
                 "  {:>wide$}   {:>9} +- {:<9} {}",
-                figures(row.at * over.factor, 4),
-                format!("{:.digits$}", scale(row.value)),
-                half_width(scale(row.half_width), scale(largest), digits),
+                fixed(row.at * place_factor, place_digits),
+                fixed(row.value * of.factor, digits),
+                half_width(row.half_width * of.factor, largest * of.factor, digits),
                 bar(row.value / largest)
             );
         }
@@ -112,35 +127,41 @@ impl Diagnosis {
     }
 }
 
-/// Between which values of its variable a localised term acts.
-fn acting(shape: &Shape, over: Shown) -> String {
-    let c = &shape.knots;
-    let largest = c.iter().fold(0.0f64, |most, row| most.max(row.value.abs()));
-    let mut acts = c.iter().filter(|row| row.value.abs() > 0.1 * largest);
-    let Some(first) = acts.next() else {
-        return String::new();
-    };
-    let last = acts.next_back().unwrap_or(first);
-    format!(
-        ", between {} and {} {} alone",
-        figures(first.at * over.factor, 3),
-        figures(last.at * over.factor, 3),
-        over.unit
-    )
+/// A number with so many decimals; zero has no sign.
+fn fixed(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|letter| matches!(letter, '0' | '.')) => rest.to_owned(),
+        _ => text,
+    }
 }
 
-/// What the known effects come to.
-fn near(effects: &[NearEffects]) -> String {
+/// What the known effects come to, beside the term's share.
+fn near(effects: &[NearEffects], term: Option<f64>) -> String {
     let Some(best) = effects.first() else {
         return "No known effect explains a part of it.".to_owned();
     };
-    let share = best.share_explained.map_or_else(String::new, |share| {
-        format!(", which explains {} of the mismatch", percent(share))
+    let verb = if best.effects.len() > 1 {
+        "together explain"
+    } else {
+        "explains"
+    };
+    let shares = best.share_explained.zip(term);
+    let said = shares.map_or_else(String::new, |(share, term)| {
+        let (share, term) = (percent(share), percent(term));
+        format!(
+            ": {} {verb} {share} of the mismatch, the term {term}",
+            listed(&best.effects)
+        )
     });
-    format!(
-        "The nearest known explanation is {}{share}.",
-        listed(&best.effects)
-    )
+    if said.is_empty() {
+        format!(
+            "The nearest known explanation is {}.",
+            listed(&best.effects)
+        )
+    } else {
+        format!("No known explanation comes near{said}.")
+    }
 }
 
 /// A half width, or that nothing is known.
@@ -200,5 +221,7 @@ mod tests {
     fn numbers_show_a_hundredth_of_the_largest() {
         assert_eq!((decimals(42.0), decimals(0.31), decimals(812.0)), (1, 3, 0));
         assert_eq!(half_width(500.0, 10.0, 1), "unknown");
+        assert_eq!(fixed(-0.04, 1), "0.0");
+        assert_eq!(fixed(-0.06, 1), "-0.1");
     }
 }

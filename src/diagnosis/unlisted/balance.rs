@@ -9,12 +9,17 @@
 use super::super::evidence::{Evidence, Prediction};
 use super::super::links::lacking;
 use super::super::search::Hypothesis;
-use crate::plant::{Basis, Latent, Port};
+use crate::plant::{Basis, CHANNELS, Latent, Port};
 
 /// Ranges of the variable.
 const RANGES: usize = 60;
 /// Samples in a range from which their median is shown.
-const LEAST: usize = 5;
+const LEAST: usize = 8;
+/// Standard error of a median from which it is not shown, as a share of the term from its least to its largest value [1].
+const UNSURE: f64 = 0.1;
+/// Error in time that is forgiven [s], and what a sample must count beside it to be taken: others are near an impact [1].
+const FORGIVEN: f64 = 0.006;
+const COUNTS: f64 = 0.5;
 /// Speed from which the direction of motion is clear [m/s].
 const MOVING: f64 = 6e-3;
 
@@ -50,6 +55,7 @@ pub fn needed(
     hypothesis: &Hypothesis,
     latent: &Latent,
     [from, to]: [f64; 2],
+    peak_to_peak: f64,
 ) -> Vec<Needed> {
     let channel = match latent.port {
         Port::PistonForce => None,
@@ -72,9 +78,12 @@ pub fn needed(
     let ranges = ranges.iter_mut().enumerate();
     ranges
         .filter(|(_, values)| values.len() >= LEAST)
-        .map(|(index, values)| Needed {
-            at: from + width * (index as f64 + 0.5),
-            value: median(values),
+        .filter_map(|(index, values)| {
+            let (value, error) = median(values);
+            (error < UNSURE * peak_to_peak).then_some(Needed {
+                at: from + width * (index as f64 + 0.5),
+                value,
+            })
         })
         .collect()
 }
@@ -86,9 +95,20 @@ fn samples(
     latent: &Latent,
     channel: Option<usize>,
 ) -> Vec<(f64, f64)> {
+    let shares = evidence.shares(FORGIVEN, false);
+    // A force is seen by load cell and accelerometer.
+    let seen = channel.map_or(&[2, 3][..], |_| &[]);
+    let mut first = 0;
     let mut all = Vec::new();
     for (measured, course) in evidence.recordings.iter().zip(&without.courses) {
-        for i in 0..measured.inputs.time.len() {
+        let count = measured.inputs.time.len();
+        let start = first;
+        first += CHANNELS.len() * count;
+        for i in 0..count {
+            let counts = |channel: &usize| shares[start + channel * count + i] > COUNTS;
+            if !seen.iter().chain(&channel).all(counts) {
+                continue;
+            }
             let moment = course.truth.moment(&measured.inputs, i);
             let mut value = match channel {
                 None => lacking(measured, &course.truth, &without.plant, i),
@@ -111,7 +131,10 @@ fn samples(
     all
 }
 
-fn median(values: &mut [f64]) -> f64 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+/// Median with its standard error, from the quartiles as of a normal distribution.
+fn median(values: &mut [f64]) -> (f64, f64) {
+    values.sort_by(f64::total_cmp);
+    let count = values.len();
+    let deviation = (values[3 * count / 4] - values[count / 4]) / 1.349;
+    (values[count / 2], 1.253 * deviation / (count as f64).sqrt())
 }

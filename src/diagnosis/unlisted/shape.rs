@@ -19,8 +19,12 @@ use crate::plant::{Basis, Latent};
 const INTERVAL: f64 = 1.96;
 /// Places of the curve.
 const PLACES: usize = 161;
-/// Share of the width of what is shown beyond the knots at either side [1].
-const BESIDE: f64 = 0.25;
+/// Rows of the table.
+const ROWS: usize = 12;
+/// Share of its largest value below which a term does not act [1].
+const ACTS: f64 = 0.1;
+/// Share of the width in which a localised term acts that is shown at either side of it [1].
+const BESIDE: f64 = 0.5;
 
 /// A value of the term.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,8 +48,12 @@ pub struct Shape {
     pub period: Option<[f64; 2]>,
     /// Values at the knots, or over a period.
     pub knots: Vec<Row>,
-    /// The same, finely and a little beyond.
+    /// The same, finely, where it acts.
     pub curve: Vec<Row>,
+    /// The same as a table for people.
+    pub table: Vec<Row>,
+    /// Between which values of its variable it acts.
+    pub acts: [f64; 2],
     /// What would close the balance, by the recordings; empty where no reading shows it.
     pub needed: Vec<Needed>,
     /// Largest less smallest value [SI].
@@ -73,32 +81,49 @@ impl Shape {
             Basis::Hats { .. } => latent.coefficients.len() - 1,
             Basis::Waves { .. } => 24,
         };
-        let beside = match latent.basis {
-            Basis::Hats { .. } => BESIDE * (to - from),
-            Basis::Waves { .. } => 0.0,
-        };
-        let shown = if beside > 0.0 {
+        let knots: Vec<Row> = even([from, to], steps).map(row).collect();
+        let form = form(&latent, visited);
+        let acts = acting(&knots);
+        let shown = if form == Form::Localised {
+            let beside = BESIDE * (acts[1] - acts[0]).max((to - from) / steps as f64);
             [
-                (from - beside).max(visited[0].min(from)),
-                (to + beside).min(visited[1].max(to)),
+                (acts[0] - beside).max(visited[0].min(acts[0])),
+                (acts[1] + beside).min(visited[1].max(acts[1])),
             ]
         } else {
             [from, to]
         };
-        let curve: Vec<Row> = even(shown, PLACES - 1).map(row).collect();
+        // A kink is shown where it is.
+        let kinks = knots.iter().map(|row| row.at);
+        let kinks = kinks.filter(|at| (shown[0]..=shown[1]).contains(at));
+        let mut places: Vec<f64> = even(shown, PLACES - 1).chain(kinks).collect();
+        places.sort_by(f64::total_cmp);
+        let curve: Vec<Row> = places.into_iter().map(row).collect();
         let values = || curve.iter().map(|row| row.value);
         let peak_to_peak =
             values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
         Some(Self {
-            form: form(&latent, visited),
+            form,
             period,
-            knots: even([from, to], steps).map(row).collect(),
-            needed: balance::needed(evidence, hypothesis, &latent, shown),
+            acts,
+            knots,
+            table: even(shown, ROWS).map(row).collect(),
+            needed: balance::needed(evidence, hypothesis, &latent, shown, peak_to_peak),
             curve,
             latent,
             peak_to_peak,
         })
     }
+}
+
+/// From the first to the last knot at which a term acts.
+fn acting(knots: &[Row]) -> [f64; 2] {
+    let largest = knots
+        .iter()
+        .fold(0.0f64, |most, row| most.max(row.value.abs()));
+    let mut acts = knots.iter().filter(|row| row.value.abs() > ACTS * largest);
+    let first = acts.next().map_or(knots[0].at, |row| row.at);
+    [first, acts.next_back().map_or(first, |row| row.at)]
 }
 
 /// Evenly spaced places, both ends among them.
