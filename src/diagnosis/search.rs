@@ -116,6 +116,7 @@ impl Search<'_> {
         let mut levels = vec![vec![baseline]];
         let mut full: Vec<Hypothesis> = Vec::new();
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
+        let mut done = Vec::new();
         while levels.len() <= MOST_EFFECTS && full.is_empty() {
             let parents = &levels[levels.len() - 1];
             let before = parents[0].fit.rough - noise;
@@ -139,11 +140,11 @@ impl Search<'_> {
             let after = best.fit.rough - noise;
             let stuck = levels.len() > 1 && after > STAGNATION * before;
             if after < scale.rough_spread() {
-                full = self.in_full(&children, &scale, say);
+                full = self.in_full(&children, &scale, &mut done, say);
                 full.retain(|h| scale.is_adequate(h));
             } else if stuck {
                 // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
-                full = self.in_full(parents, &scale, say);
+                full = self.in_full(parents, &scale, &mut done, say);
                 if !full.iter().any(|h| scale.is_adequate(h)) {
                     full = self.anew(parents, &scale, say);
                 }
@@ -154,7 +155,7 @@ impl Search<'_> {
         if full.is_empty() {
             let mut all: Vec<Hypothesis> = levels.into_iter().flatten().collect();
             all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
-            full = self.in_full(&all, &scale, say);
+            full = self.in_full(&all, &scale, &mut done, say);
         }
         self.eliminate(&mut full, say);
         self.add_small(&mut full, &scale, say);
@@ -218,6 +219,7 @@ impl Search<'_> {
         &self,
         rough: &[Hypothesis],
         scale: &Scale,
+        done: &mut Vec<Refined>,
         say: &mut dyn FnMut(&str),
     ) -> Vec<Hypothesis> {
         let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
@@ -230,10 +232,17 @@ impl Search<'_> {
         candidates.sort_by_key(|h| h.fit.free.len());
         let mut full: Vec<Hypothesis> = Vec::new();
         for candidate in candidates {
-            let spared = |done: &Hypothesis| {
-                stands_for(done, candidate) && scale.leaves_nothing_material(done)
+            let spared = |plain: &Hypothesis| {
+                stands_for(plain, candidate) && scale.leaves_nothing_material(plain)
             };
             if full.iter().any(spared) {
+                continue;
+            }
+            let before = |known: &&Refined| {
+                known.rough == candidate.fit.rough && known.full.names() == candidate.names()
+            };
+            if let Some(known) = done.iter().find(before) {
+                full.push(known.full.clone());
                 continue;
             }
             let refined = self.refine(candidate, FULL, FULL_ITERATIONS);
@@ -243,6 +252,10 @@ impl Search<'_> {
                 self.score(&refined),
                 refined.fit.cost() - self.evidence.count() as f64
             ));
+            done.push(Refined {
+                rough: candidate.fit.rough,
+                full: refined.clone(),
+            });
             full.push(refined);
         }
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
@@ -341,6 +354,13 @@ impl Search<'_> {
             Some(&fitted.prediction),
         )
     }
+}
+
+/// A full fit made before.
+struct Refined {
+    /// Cost of the rough fit that it began with [1].
+    rough: f64,
+    full: Hypothesis,
 }
 
 /// Do two free quantities change the same number?
