@@ -37,6 +37,22 @@ impl OutletCourse {
         }
     }
 
+    /// Outlet pressure at its start, gauge [Pa].
+    #[inline]
+    pub fn start(&self) -> f64 {
+        self.start.clamp(0.0, self.supply)
+    }
+
+    /// How far the outlet moves in its first time [s] [Pa]; of a lag and a ramp as fast as it begins, which costs no exponential.
+    #[inline]
+    pub fn travel(&self, time: f64) -> f64 {
+        match self.law {
+            Law::Lag { rate } => (self.target - self.start).abs() * (rate * time).min(1.0),
+            Law::Ramp { rate } => rate.abs() * time,
+            Law::Oscillation { .. } => (self.at(time) - self.at(0.0)).abs(),
+        }
+    }
+
     /// Pressure [Pa gauge], nothing cut off, and its rate [Pa/s] at a time since its start [s]; a lag needs no rate and tells none.
     pub(super) fn state_at(&self, time: f64) -> (f64, f64) {
         match self.law {
