@@ -85,8 +85,8 @@ pub(super) fn longest(parameters: &DeviceParameters, valve_rate: f64) -> f64 {
     let gas = &parameters.gas;
     let rt = gas.specific_gas_constant * gas.temperature;
     let through = rt / hose.resistance_at_rest(gas.atmosphere);
-    let within = hose.segments() as f64 * through;
-    let mut rate = (valve_rate + within) / hose.last_volume();
+    // As a whole: what segments exchange faster than that follows, and is implicit.
+    let mut rate = (valve_rate + through) / hose.volume;
     if let Some(reservoir) = &parameters.supply_reservoir {
         rate += reservoir.rate(gas) + through / reservoir.volume;
     }
