@@ -1,5 +1,8 @@
 //! Who carries the piston.
 
+/// Largest sub-step times the fastest rate of stops and load at which a swing is followed closely, its phase to 6e-7 rad a sub-step [rad].
+pub const FINE_SWING: f64 = 0.15;
+
 /// Motion of the piston.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PistonMotion {
@@ -23,6 +26,11 @@ pub trait Carrier {
 
     /// The fastest rate [1/s] of whatever hangs on the piston, for the choice of sub-steps.
     fn rate(&self) -> f64;
+
+    /// Largest sub-step times that rate [rad].
+    fn swing(&self) -> f64 {
+        FINE_SWING
+    }
 
     /// As `rate`, of what the piston can meet over a step of `dt` [s] in which it moves no further than `reach` [m].
     fn rate_within(&self, _motion: PistonMotion, _reach: f64, _dt: f64) -> f64 {

@@ -15,9 +15,8 @@ use crate::physics::valve::ValvePosition;
 
 /// Largest sub-step times the fastest rate of the pneumatics [1]; the method is stable to 2.78 and damps to a third here.
 const AIR_LIMIT: f64 = 1.2;
-/// Largest sub-step times the fastest rate of stops and load [rad].
-const MECHANICAL_LIMIT: f64 = 0.15;
-/// The same for a piston that hardly moves [rad]: its error, in proportion to its swing and to the fourth power of this, is as small.
+/// Largest sub-step times the fastest rate of stops and load, of a piston that hardly moves [rad]: its error, in proportion to its swing and to the
+/// fourth power of this, is as small.
 const SLOW_LIMIT: f64 = 0.6;
 /// Speed from which on a piston is no longer slow [m/s].
 const SWIFT: f64 = 0.03;
@@ -161,7 +160,8 @@ impl Device {
         let outlet = self.parameters.gas.atmosphere + state.regulator.outlet;
         let spring = self.spring_rate(&state.air, volumes, outlet);
         let fastest = spring.max(self.piston_rates.within(carrier, motion, dt));
-        let mechanical = MECHANICAL_LIMIT / fastest;
+        let swing = carrier.swing();
+        let mechanical = swing / fastest;
         let allowed = air.min(dt);
         if mechanical >= allowed {
             return allowed;
@@ -171,7 +171,7 @@ impl Device {
         let acceleration = force / self.parameters.moving_mass;
         let speed = motion.speed.abs() + acceleration.abs() * dt;
         let ease = (SWIFT / speed).sqrt().sqrt();
-        allowed.min(mechanical * ease.clamp(1.0, SLOW_LIMIT / MECHANICAL_LIMIT))
+        allowed.min(mechanical * ease.clamp(1.0, (SLOW_LIMIT / swing).max(1.0)))
     }
 }
 

@@ -15,7 +15,7 @@ mod pressure_map;
 mod rates;
 mod state;
 
-pub use carrier::{Carrier, PistonMotion};
+pub use carrier::{Carrier, FINE_SWING, PistonMotion};
 pub use parameters::DeviceParameters;
 pub use pneumatics::{Device, DeviceForce};
 pub use pressure_map::PressureMap;

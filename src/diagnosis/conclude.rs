@@ -10,10 +10,10 @@ use super::details::{
 use super::diagnose::{Diagnosis, names_of};
 use super::estimate::Number;
 use super::fit::robust_sum;
+use super::hypothesis::Hypothesis;
 use super::links::Link;
 use super::localise::{NOISE_ALONE, misfits, robust_rms};
 use super::recorded::COLUMNS;
-use super::search::Hypothesis;
 use crate::effects::Effect;
 use crate::effects::vocabulary;
 use crate::plant::CHANNELS;

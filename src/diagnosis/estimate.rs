@@ -10,7 +10,7 @@
 use super::covariance::covariance;
 use super::evidence::Evidence;
 use super::free::Free;
-use super::search::Hypothesis;
+use super::hypothesis::Hypothesis;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
 use nalgebra::DMatrix;

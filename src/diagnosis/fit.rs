@@ -406,7 +406,7 @@ pub fn fit(
     }
 }
 
-/// Cost that a description could come to in a stage if what was free before were adjusted, by the derivatives known, without a simulation more.
+/// Cost that a description could come to in a stage by one step, and where, by the derivatives known, without a simulation more.
 pub fn foretold(
     evidence: &Evidence,
     there: &Prediction,
@@ -414,7 +414,7 @@ pub fn foretold(
     values: &[f64],
     columns: &[Vec<f64>],
     stage: &Stage,
-) -> f64 {
+) -> (f64, Vec<f64>) {
     let shares = evidence.shares(stage.forgiven, stage.guided);
     let weighing = |limit| Weighing {
         shares: &shares,
@@ -424,6 +424,7 @@ pub fn foretold(
     let wide = weighing(limit_for(&there.residuals, &shares));
     let (normal, gradient) = normal_equations(columns, &there.residuals, &wide, free, values);
     let mut adjusted = there.residuals.clone();
+    let mut reached = values.to_vec();
     if let Some((tried, _)) = step(free, values, &normal, &gradient, 1e-4, 3.0) {
         for ((f, (from, to)), column) in free.iter().zip(values.iter().zip(&tried)).zip(columns) {
             let moved = f.coordinate.of(*to) - f.coordinate.of(*from);
@@ -431,8 +432,9 @@ pub fn foretold(
                 *residual += moved * slope;
             }
         }
+        reached = tried;
     }
-    weighing(HUBER).sum(&adjusted)
+    (weighing(HUBER).sum(&adjusted), reached)
 }
 
 /// Damped step to where the quadratic model is least within the bounds, by an active set: values tried and the gain promised.

@@ -4,7 +4,8 @@
 use super::evidence::{Evidence, Prediction};
 use super::fit::{Effort, FULL, ROUGH, fit, foretold, jacobian};
 use super::free::{Free, Prior};
-use super::search::{Hypothesis, Search};
+use super::hypothesis::Hypothesis;
+use super::search::Search;
 use super::spectrum;
 use crate::effects::{Coordinate, Quantity};
 use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, PlantParameters, Port, Variable};
@@ -309,8 +310,8 @@ impl Search<'_> {
             fit.free.len(),
         ));
         let numbers = (free.len() - fit.free.len()) as f64;
-        foretold(self.evidence, &there, &free, &values, &columns, &ROUGH[0])
-            + numbers * (self.evidence.count() as f64).ln()
+        let (cost, _) = foretold(self.evidence, &there, &free, &values, &columns, &ROUGH[0]);
+        cost + numbers * (self.evidence.count() as f64).ln()
     }
 
     fn with_latent(

@@ -3,7 +3,7 @@
 
 use super::evidence::Evidence;
 use super::fit::with_values;
-use super::search::Hypothesis;
+use super::hypothesis::Hypothesis;
 use crate::plant::{CHANNELS, Channel, PlantParameters, simulate};
 
 /// Standard deviations of its sensor by which a channel must move [1].

@@ -5,7 +5,7 @@
 
 use super::evidence::Evidence;
 use super::fit::robust_sum;
-use super::search::Hypothesis;
+use super::hypothesis::Hypothesis;
 
 /// Standard deviations of the sum of squares that noise alone may come to [1].
 const SPREAD: f64 = 6.0;

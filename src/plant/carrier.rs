@@ -5,7 +5,10 @@
 use super::contact::ContactParameters;
 use super::flexing::Swung;
 use super::latent::{Latent, Variable};
-use crate::device::{Carrier, PistonMotion};
+use crate::device::{Carrier, FINE_SWING, PistonMotion};
+
+/// Largest sub-step times the fastest rate of a piston that is held to its measured motion [rad]: what it does then is compared roughly.
+const HELD_SWING: f64 = 0.6;
 
 /// Weight and contact over one step, in which the robot's surface follows a cubic.
 #[derive(Debug, Clone, Copy)]
@@ -146,6 +149,14 @@ impl Carrier for ReplayCarrier<'_> {
 
     fn rate(&self) -> f64 {
         self.rate
+    }
+
+    fn swing(&self) -> f64 {
+        if self.hold.is_some() {
+            HELD_SWING
+        } else {
+            FINE_SWING
+        }
     }
 
     fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {

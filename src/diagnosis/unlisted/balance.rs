@@ -7,8 +7,8 @@
 //! beside the curve that was fitted.
 
 use super::super::evidence::{Evidence, Prediction};
+use super::super::hypothesis::Hypothesis;
 use super::super::links::lacking;
-use super::super::search::Hypothesis;
 use crate::plant::{Basis, CHANNELS, Latent, Port};
 
 /// Ranges of the variable.

@@ -8,8 +8,8 @@ use nalgebra::DVector;
 
 use super::super::covariance::covariance;
 use super::super::evidence::Evidence;
+use super::super::hypothesis::Hypothesis;
 use super::super::latent;
-use super::super::search::Hypothesis;
 use super::balance::{self, Needed};
 use super::form::{Form, form};
 use crate::effects::Coordinate;

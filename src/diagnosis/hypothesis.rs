@@ -1,0 +1,57 @@
+//! A set of effects with its fit.
+
+use super::fit::Fit;
+use super::latent;
+use crate::effects::Effect;
+use crate::plant::{Latent, PlantParameters};
+
+/// A set of effects, fitted together with what is tolerated.
+#[derive(Debug, Clone)]
+pub struct Hypothesis {
+    /// The effects.
+    pub effects: Vec<&'static Effect>,
+    /// The fit: tolerated quantities first, then the effects' in order.
+    pub fit: Fit,
+    /// Variables on which a term without a name depends, the surest first; empty where there is none. The term is in the description, its
+    /// coefficients come last among what is free.
+    pub depends_on: Vec<&'static str>,
+}
+
+impl Hypothesis {
+    /// The term without a name, if there is one.
+    pub fn unlisted(&self) -> Option<&Latent> {
+        self.fit.prediction.plant.latent.as_ref()
+    }
+
+    /// Names of the effects, sorted.
+    pub fn names(&self) -> Vec<&'static str> {
+        let mut names: Vec<&'static str> = self.effects.iter().map(|e| e.name).collect();
+        names.sort_unstable();
+        names
+    }
+
+    /// Is the believed model all that it takes?
+    pub fn finds_nothing(&self) -> bool {
+        self.effects.is_empty() && self.unlisted().is_none()
+    }
+
+    /// How many of the free quantities are tolerated ones; the effects' and those of a term without a name follow.
+    pub fn tolerated(&self, believed: &PlantParameters) -> usize {
+        let own: usize = self
+            .effects
+            .iter()
+            .map(|effect| (effect.parameters)(believed).len())
+            .sum();
+        self.fit.free.len() - own - latent::count(&self.fit.prediction.plant)
+    }
+}
+
+/// Are the effects of two hypotheses the same but for laws that exclude one another?
+pub(super) fn stands_for(one: &Hypothesis, other: &Hypothesis) -> bool {
+    let covered = |a: &Hypothesis, b: &Hypothesis| {
+        a.effects
+            .iter()
+            .all(|effect| b.effects.iter().any(|known| known.excludes(effect)))
+    };
+    one.effects.len() == other.effects.len() && covered(one, other) && covered(other, one)
+}

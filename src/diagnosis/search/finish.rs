@@ -1,0 +1,163 @@
+//! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
+
+use super::super::fit::{FULL, ROUGH};
+use super::super::free::Free;
+use super::super::hypothesis::{Hypothesis, stands_for};
+use super::super::scale::Scale;
+use super::{FULL_ITERATIONS, HOPELESS, LOOK_ELSEWHERE, MOST_EFFECTS, Search, same};
+
+/// Iterations of a rough fit without one of the effects.
+const LIGHTER: usize = 8;
+
+impl Search<'_> {
+    /// Of laws that exclude one another puts the plainest first that explains as much but for what idealisation leaves: a richer law bends to the errors
+    /// of a plain one.
+    pub(super) fn prefer_plain(&self, full: &mut Vec<Hypothesis>, scale: &Scale) {
+        let Some(best) = full.first() else { return };
+        let allowed = scale.material_in_full(best.fit.cost());
+        let plainer = |h: &&Hypothesis| {
+            h.fit.free.len() < best.fit.free.len()
+                && h.fit.cost() - best.fit.cost() < allowed
+                && stands_for(h, best)
+        };
+        let plainest = (full.iter().enumerate())
+            .filter(|(_, h)| plainer(h))
+            .min_by_key(|(_, h)| h.fit.free.len());
+        if let Some((index, _)) = plainest {
+            let chosen = full.remove(index);
+            full.insert(0, chosen);
+        }
+    }
+
+    /// Where no known effect explains the mismatch, puts a term without a name first if it explains more.
+    pub(super) fn add_unlisted(
+        &self,
+        full: &mut Vec<Hypothesis>,
+        baseline: &Hypothesis,
+        scale: &Scale,
+        say: &mut dyn FnMut(&str),
+    ) {
+        let Some(best) = full.first() else { return };
+        if scale.is_explained(best) {
+            return;
+        }
+        let mut bases = vec![baseline.clone()];
+        if scale.is_half_explained(best) {
+            bases.push(best.clone());
+        }
+        let mut found: Vec<Hypothesis> = bases
+            .iter()
+            .filter_map(|base| self.latent(base, say))
+            .collect();
+        found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        if let Some(first) = found.into_iter().next()
+            && self.score(&first) < self.score(&full[0])
+        {
+            full.insert(0, first);
+        }
+    }
+
+    /// Takes effects out of the best hypothesis as long as it scores better without.
+    pub(super) fn eliminate(&self, full: &mut Vec<Hypothesis>, say: &mut dyn FnMut(&str)) {
+        while let Some(best) = full.first()
+            && best.effects.len() > 1 + self.shown.len()
+        {
+            let score = self.score(best);
+            let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
+                .filter_map(|index| self.without(best, index))
+                .collect();
+            fewer.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if fewer.is_empty() {
+                break;
+            }
+            let lighter = fewer.swap_remove(0);
+            say(&format!(
+                "  without: {:?} {:.1} against {score:.1}",
+                lighter.effects,
+                self.score(&lighter)
+            ));
+            let better = self.score(&lighter) < score;
+            full.push(lighter);
+            full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if !better {
+                break;
+            }
+        }
+    }
+
+    /// A hypothesis without one of its effects, fitted in full from where it was; what the effect freed is held to its tolerance again. Nothing where a
+    /// rough fit is hopeless already.
+    fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
+        let fit = &hypothesis.fit;
+        let plant = &fit.prediction.plant;
+        let counts: Vec<usize> = hypothesis
+            .effects
+            .iter()
+            .map(|e| (e.parameters)(&self.believed).len())
+            .collect();
+        let own = fit.free.len() - counts.iter().sum::<usize>();
+        let start = own + counts[..index].iter().sum::<usize>();
+        let kept = fit.free.iter().zip(&fit.values).enumerate();
+        let others: Vec<Free> = kept
+            .filter(|(i, _)| *i >= own && !(start..start + counts[index]).contains(i))
+            .map(|(_, (f, value))| Free {
+                start: *value,
+                ..*f
+            })
+            .collect();
+        let mut free: Vec<Free> = self
+            .tolerated
+            .iter()
+            .filter(|f| !others.iter().any(|o| same(o, f, &self.believed)))
+            .map(|f| Free {
+                start: f.clamp((f.quantity.get)(plant)),
+                ..*f
+            })
+            .collect();
+        free.extend(others);
+        let mut effects = hypothesis.effects.clone();
+        effects.remove(index);
+        let rough = self.fitted(effects, &self.believed, &free, ROUGH, LIGHTER, None);
+        if self.rough_score(&rough) > self.rough_score(hypothesis) + HOPELESS {
+            return None;
+        }
+        for (f, value) in free.iter_mut().zip(&rough.fit.values) {
+            f.start = *value;
+        }
+        let effects = rough.effects;
+        Some(self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None))
+    }
+
+    /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.
+    pub(super) fn add_small(
+        &self,
+        full: &mut Vec<Hypothesis>,
+        scale: &Scale,
+        say: &mut dyn FnMut(&str),
+    ) {
+        while let Some(best) = full.first()
+            && best.effects.len() < MOST_EFFECTS + self.shown.len()
+            && scale.is_adequate(best)
+        {
+            let score = self.score(best);
+            let least = scale.material_in_full(best.fit.cost());
+            let precise = &FULL[FULL.len() - 1..];
+            // What derivatives promise is not exact: half of what is needed is worth a look.
+            let needed = least + LOOK_ELSEWHERE + (self.evidence.count() as f64).ln();
+            let most = best.fit.misfit - 0.5 * needed;
+            let Some(more) = self.screen(best, precise, most).into_iter().next() else {
+                return;
+            };
+            if score - self.score(&more) <= least {
+                return;
+            }
+            let more = self.refine(&more, precise, FULL_ITERATIONS);
+            let gain = score - self.score(&more);
+            say(&format!("  small: {:?} gain {gain:.1}", more.effects));
+            if gain <= least {
+                return;
+            }
+            full.insert(0, more);
+        }
+    }
+}

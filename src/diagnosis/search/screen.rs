@@ -1,0 +1,299 @@
+//! Which effects promise to explain what a hypothesis leaves: one simulation a start, derivatives of those that promise, a short fit of the best.
+
+use super::super::evidence::Prediction;
+use super::super::fit::{Effort, Stage, fit, foretold, jacobian, with_values};
+use super::super::free::{Free, Prior, free_of};
+use super::super::hypothesis::Hypothesis;
+use super::super::{bumps, spectrum};
+use super::{Search, same};
+use crate::effects::{Clues, Coordinate, Effect, Quantity, Subsystem};
+use rayon::prelude::*;
+
+/// Iterations of the second look at those that promise most.
+const LOOK: usize = 3;
+/// Effects whose starts are looked at with all their derivatives, beside those that have no secant.
+const GLANCED_AT: usize = 14;
+/// Cost over the least beyond which they are not [1].
+const GLANCED_BEHIND: f64 = 10.0;
+/// Starts of each.
+const STARTS_OF_EACH: usize = 2;
+/// Change of a residual that is none [1].
+const UNCHANGED: f64 = 1e-6;
+/// A quantity of what is periodic.
+const PHASE: &str = "sine_m";
+/// The way from no effect to a start: 1 there.
+const WAY: Free = Free {
+    quantity: Quantity {
+        name: "way",
+        get: |_| 0.0,
+        set: |_, _| {},
+    },
+    start: 0.0,
+    coordinate: Coordinate::Linear(1.0),
+    bounds: [-3.0, 3.0],
+    prior: Prior::Flat,
+};
+/// How many get a second look.
+const LOOKED_AT: usize = 7;
+/// Cost over the least beyond which they get none [1].
+const LOOKED_BEHIND: f64 = 10.0;
+
+/// An effect and where it may start.
+type Start = (&'static Effect, Vec<f64>);
+
+/// What an effect promises.
+#[derive(Debug, Clone)]
+struct Promise {
+    effect: &'static Effect,
+    /// Where it may start.
+    start: Vec<f64>,
+    /// Cost that a hypothesis with it could come to [1].
+    cost: f64,
+}
+
+impl Search<'_> {
+    /// What more each effect could explain, roughly: columns of what is free already are taken as they are. Best first; without those that by their
+    /// derivatives cost more than `most`.
+    pub fn screen(&self, from: &Hypothesis, stages: &[Stage], most: f64) -> Vec<Hypothesis> {
+        let periodic = spectrum::strongest(self.evidence, &from.fit.prediction);
+        let bumps = bumps::strongest(self.evidence, &from.fit.prediction);
+        let clues = self.clues(from, &periodic, &bumps);
+        let starts: Vec<Start> = self
+            .candidates
+            .iter()
+            .copied()
+            .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
+            .flat_map(|effect| {
+                (effect.starts)(&clues)
+                    .into_iter()
+                    .map(move |start| (effect, start))
+            })
+            .collect();
+        let stage = &stages[0];
+        let there: Vec<Prediction> = starts
+            .par_iter()
+            .map(|start| self.started(from, start, stage))
+            .collect();
+        let secants: Vec<Option<Promise>> = (starts.par_iter().zip(&there))
+            .map(|(start, there)| self.secant(from, start, there, stage))
+            .collect();
+        let glanced = worth_a_glance(&starts, &secants);
+        let promises: Vec<Promise> = glanced
+            .par_iter()
+            .map(|&index| {
+                let glance = self.glance(from, &starts[index], &there[index], stage);
+                match &secants[index] {
+                    Some(secant) if secant.cost < glance.cost => secant.clone(),
+                    _ => glance,
+                }
+            })
+            .collect();
+        let mut best = best_of_each(promises);
+        best.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let near = LOOKED_BEHIND * best.first().map_or(0.0, |promise| promise.cost);
+        best.retain(|promise| promise.cost <= near && promise.cost <= most);
+        best.truncate(LOOKED_AT);
+        let mut looked: Vec<Hypothesis> = best
+            .par_iter()
+            .map(|promise| self.add(from, promise.effect, &promise.start, stages, LOOK))
+            .collect();
+        let score = |hypothesis: &Hypothesis| match stages[0].guided {
+            true => self.rough_score(hypothesis),
+            false => self.score(hypothesis),
+        };
+        looked.sort_by(|a, b| score(a).total_cmp(&score(b)));
+        looked
+    }
+
+    /// What was free and still is beside an effect, with its columns.
+    fn beside(&self, from: &Hypothesis, new: &[Free]) -> (Vec<Free>, Vec<Vec<f64>>) {
+        let fitted = from
+            .fit
+            .free
+            .iter()
+            .zip(&from.fit.values)
+            .zip(&from.fit.columns);
+        fitted
+            // What an effect frees is no longer held to its tolerance.
+            .filter(|((f, _), _)| !new.iter().any(|n| same(n, f, &self.believed)))
+            .map(|((f, value), column)| {
+                (
+                    Free {
+                        start: *value,
+                        ..*f
+                    },
+                    column.clone(),
+                )
+            })
+            .unzip()
+    }
+
+    /// What a hypothesis gives with one more effect at a start.
+    fn started(&self, from: &Hypothesis, (effect, start): &Start, stage: &Stage) -> Prediction {
+        let new = free_of(effect, &self.believed, start);
+        let known = &from.fit.prediction;
+        let plant = with_values(&known.plant, &new, start);
+        self.evidence.predict(&plant, stage.guided, Some(known))
+    }
+
+    /// What one more effect promises on the straight way to a start and beyond, without a simulation more; none where only derivatives tell: of what has
+    /// a phase, of a start that changes nothing, such as a force of zero, and of sensors, whose derivatives are cheap.
+    fn secant(
+        &self,
+        from: &Hypothesis,
+        (effect, start): &Start,
+        there: &Prediction,
+        stage: &Stage,
+    ) -> Option<Promise> {
+        let new = free_of(effect, &self.believed, start);
+        if effect.subsystem == Subsystem::Sensors || new.iter().any(|f| f.quantity.name == PHASE) {
+            return None;
+        }
+        let here = &from.fit.prediction;
+        let along = there.residuals.iter().zip(&here.residuals);
+        let way: Vec<f64> = along.map(|(there, here)| there - here).collect();
+        if !way.iter().any(|change| change.abs() > UNCHANGED) {
+            return None;
+        }
+        let (mut free, mut columns) = self.beside(from, &new);
+        let mut values: Vec<f64> = free.iter().map(|f| f.start).collect();
+        columns.push(way);
+        free.push(WAY);
+        values.push(0.0);
+        let (cost, reached) = foretold(self.evidence, here, &free, &values, &columns, stage);
+        let mut start = start.clone();
+        if let [size] = &new[..] {
+            let none = (size.quantity.get)(&here.plant);
+            let way = reached[values.len() - 1];
+            if none.is_finite() {
+                start[0] = size.clamp(none + way * (size.start - none));
+            }
+        }
+        Some(Promise {
+            effect,
+            start,
+            cost,
+        })
+    }
+
+    /// What one more effect promises by one step from a start.
+    fn glance(
+        &self,
+        from: &Hypothesis,
+        (effect, start): &Start,
+        there: &Prediction,
+        stage: &Stage,
+    ) -> Promise {
+        let new = free_of(effect, &self.believed, start);
+        let (mut free, mut columns) = self.beside(from, &new);
+        let own = free.len();
+        free.extend(new);
+        let values: Vec<f64> = free.iter().map(|f| f.start).collect();
+        columns.extend(jacobian(self.evidence, there, &free, &values, own));
+        let (cost, _) = foretold(self.evidence, there, &free, &values, &columns, stage);
+        Promise {
+            effect,
+            start: start.clone(),
+            cost,
+        }
+    }
+
+    /// A hypothesis with one more effect from a start, fitted roughly.
+    fn add(
+        &self,
+        from: &Hypothesis,
+        effect: &'static Effect,
+        start: &[f64],
+        stages: &[Stage],
+        iterations: usize,
+    ) -> Hypothesis {
+        let new = free_of(effect, &self.believed, start);
+        let (mut free, frozen) = self.beside(from, &new);
+        free.extend(new);
+        let mut plant = from.fit.prediction.plant.clone();
+        for f in &free {
+            (f.quantity.set)(&mut plant, f.start);
+        }
+        let effort = Effort {
+            iterations,
+            stages,
+            frozen: &frozen,
+            longest_step: 3.0,
+        };
+        let mut effects = from.effects.clone();
+        effects.push(effect);
+        Hypothesis {
+            effects,
+            fit: fit(
+                self.evidence,
+                &plant,
+                &free,
+                effort,
+                Some(&from.fit.prediction),
+            ),
+            depends_on: Vec::new(),
+        }
+    }
+
+    /// What an effect may be told when it is asked where to start.
+    pub(super) fn clues<'b>(
+        &self,
+        from: &'b Hypothesis,
+        periodic: &'b [f64],
+        bumps: &'b [f64],
+    ) -> Clues<'b> {
+        let readings = self
+            .evidence
+            .recordings
+            .iter()
+            .flat_map(|m| m.readings[2].iter());
+        Clues {
+            plant: &from.fit.prediction.plant,
+            largest_force: readings
+                .filter(|f| f.is_finite())
+                .fold(0.0, |a, b| b.max(a)),
+            periodic,
+            bumps,
+        }
+    }
+}
+
+/// Starts that are worth their derivatives: those without a secant, and of those with one the best of the effects that promise most.
+fn worth_a_glance(starts: &[Start], secants: &[Option<Promise>]) -> Vec<usize> {
+    let mut chosen: Vec<usize> = Vec::new();
+    let mut with: Vec<(usize, f64)> = Vec::new();
+    for (index, secant) in secants.iter().enumerate() {
+        match secant {
+            None => chosen.push(index),
+            Some(secant) => with.push((index, secant.cost)),
+        }
+    }
+    with.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let near = GLANCED_BEHIND * with.first().map_or(0.0, |(_, cost)| *cost);
+    let mut effects: Vec<(&str, usize)> = Vec::new();
+    for (index, _) in with.into_iter().filter(|(_, cost)| *cost <= near) {
+        let name = starts[index].0.name;
+        match effects.iter().position(|(known, _)| *known == name) {
+            Some(at) if effects[at].1 < STARTS_OF_EACH => effects[at].1 += 1,
+            None if effects.len() < GLANCED_AT => effects.push((name, 1)),
+            _ => continue,
+        }
+        chosen.push(index);
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
+/// Of each effect what promises most.
+fn best_of_each(promises: Vec<Promise>) -> Vec<Promise> {
+    let mut best: Vec<Promise> = Vec::new();
+    for promise in promises {
+        let same = |known: &&mut Promise| known.effect.name == promise.effect.name;
+        match best.iter_mut().find(same) {
+            Some(known) if known.cost <= promise.cost => {}
+            Some(known) => *known = promise,
+            None => best.push(promise),
+        }
+    }
+    best
+}
