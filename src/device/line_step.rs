@@ -85,8 +85,8 @@ pub(super) fn longest(parameters: &DeviceParameters, valve_rate: f64) -> f64 {
     let gas = &parameters.gas;
     let rt = gas.specific_gas_constant * gas.temperature;
     let through = rt / hose.resistance_at_rest(gas.atmosphere);
-    let within = hose.segments() as f64 * through;
-    let mut rate = (valve_rate + within) / hose.segment_volume();
+    // As a whole: what segments exchange faster than that follows, and is implicit.
+    let mut rate = (valve_rate + through) / hose.volume;
     if let Some(reservoir) = &parameters.supply_reservoir {
         rate += reservoir.rate(gas) + through / reservoir.volume;
     }
@@ -207,10 +207,11 @@ impl Device {
             }
         };
         let capacity = gas.mass(1.0, hose.segment_volume());
-        let stored = (capacity / share, held.line / capacity);
+        let last_capacity = gas.mass(1.0, hose.last_volume());
+        let stored = (last_capacity / share, held.line / last_capacity);
         let chain = hose.segment_resistance().map(|resistance| {
             let kept = held.upstream.map(|mass| mass / capacity);
-            LineChain::new(resistance, stored.0, &kept[..hose.segments() - 1])
+            LineChain::new(resistance, capacity / share, &kept[..hose.segments() - 1])
         });
         // What the last segment sees of the line before it.
         let (last, gain) = match &chain {
@@ -223,7 +224,7 @@ impl Device {
             let within = within(before);
             let pressures = chain.map(|chain| chain.pressures(before, within));
             Feed {
-                line: capacity * within,
+                line: last_capacity * within,
                 upstream: pressures.map_or(held.upstream, |p| p.map(|p| capacity * p)),
                 reservoir,
             }

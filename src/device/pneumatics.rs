@@ -105,7 +105,7 @@ impl Device {
         let air = AirState {
             masses,
             energies: masses.map(|mass| mass * gas.specific_heat_volume() * gas.temperature),
-            hose_mass: segment,
+            hose_mass: hose.map_or(0.0, |h| gas.mass(pressures[0], h.last_volume())),
             upstream,
             reservoir_mass: self
                 .parameters
@@ -328,7 +328,7 @@ impl Device {
         let outlet = outlet.min(stored);
         let before = match &self.parameters.hose {
             None => outlet,
-            Some(hose) => gas.pressure(air.hose_mass, hose.segment_volume()),
+            Some(hose) => gas.pressure(air.hose_mass, hose.last_volume()),
         };
         let mut flows = [0.0; 2];
         flows[supplied] =

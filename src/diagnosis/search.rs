@@ -295,7 +295,8 @@ impl Search<'_> {
         Vec::new()
     }
 
-    /// Where an effect has a number without values between, takes the one that fits best roughly, from where the fit is.
+    /// Where an effect has a number without values between, takes the one that fits best roughly, from where the fit is: what is tolerated too, which is
+    /// bent by the other effects no more than before.
     fn choose(&self, hypothesis: &mut Hypothesis) {
         let parameters = hypothesis
             .effects
@@ -310,9 +311,14 @@ impl Search<'_> {
                 .par_iter()
                 .filter(|choice| **choice != present)
                 .map(|choice| {
-                    let mut other = hypothesis.clone();
-                    other.fit.values[own + index] = *choice;
-                    self.refine(&other, ROUGH, 6)
+                    let fit = &hypothesis.fit;
+                    let mut free = fit.free.clone();
+                    for (f, value) in free.iter_mut().zip(&fit.values) {
+                        f.start = *value;
+                    }
+                    free[own + index].start = *choice;
+                    let (plant, effects) = (&fit.prediction.plant, hypothesis.effects.clone());
+                    self.fitted(effects, plant, &free, ROUGH, 6, Some(&fit.prediction))
                 })
                 .collect();
             tried.sort_by(|a, b| a.fit.rough.total_cmp(&b.fit.rough));

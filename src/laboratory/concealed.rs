@@ -63,8 +63,6 @@ pub struct Concealed {
     pub wall_conductance: Option<f64>,
     /// Line between regulator and valve: volume [m3], resistance [Pa s/kg].
     pub hose: Option<[f64; 2]>,
-    /// Share of the line's resistance in the fitting before it [1]; the rest lies along its air.
-    pub fitting_share: f64,
     /// Reservoir before the regulator [m3] and its compressor [kg/s].
     pub reservoir: Option<[f64; 2]>,
 
@@ -130,8 +128,6 @@ impl Default for Concealed {
             external_leak: 0.0,
             wall_conductance: None,
             hose: None,
-            // A hose's own resistance is small beside what makes a line slow.
-            fitting_share: 0.8,
             reservoir: None,
             dead_time: 0.0,
             play: 0.0,

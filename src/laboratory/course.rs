@@ -241,7 +241,7 @@ fn course(concealed: &Concealed, programme: &Programme, readings: &[Reading]) ->
 }
 
 const _: () = assert!(
-    STATES == 24,
+    STATES == 30,
     "the scaled norm of a step is over this many states"
 );
 

@@ -2,7 +2,7 @@
 //!
 //!     regulator    T p' = K u - p, or p'' + 2 z w p' + w^2 p = w^2 K u, rates limited; outlet = min(max(p, 0), reservoir) + ripple - droop
 //!     reservoir    m' = m_c s(p) - drawn
-//!     line         a fitting, then N cells with equal resistances between, of the first and the last one half (Watton, Fluid Power Systems, ch. 4)
+//!     line         evenly spread: N equal resistances, a cell behind each, the last one half: the half before the first is the outlet's (trapezoidal rule)
 //!     orifice      m' = A C p_u / sqrt(R T_u) f(u),  f = y / (y^2 + e^2)^(1/4),  y = 2k/(k-1) (u^(2/k) - u^((k+1)/k)),  u held at the critical ratio
 //!     chamber      E' = cp (T_in m'_in - T m'_out) - p V' + G (T_w - T),  p V = m R T;   C_w T_w' = -G (T_w - T) - G_a (T_w - T_a)
 //!     piston       M x'' = p1 A1 - p2 A2 - pa (A1 - A2) + M g + F_0 - k_s x - F_seal - F_cushion + stops - contact
@@ -17,11 +17,11 @@ use super::programme::Surface;
 use super::rig::Rig;
 
 /// States, all scaled to the order of 1.
-pub(super) const STATES: usize = 24;
+pub(super) const STATES: usize = 30;
 /// A state.
 pub(super) type State = [f64; STATES];
 /// Most cells of a line.
-const CELLS: usize = 8;
+const CELLS: usize = 16;
 
 /// Places in the state.
 pub(super) mod at {
@@ -217,11 +217,9 @@ impl<'a> Equations<'a> {
             };
         };
         let rt = self.rig.gas.constant * self.rig.gas.temperature;
-        let parts = (self.cells - 1) as f64;
         let cell = |i: usize| state[at::LINE + i] * UNIT;
-        let fitting = self.concealed.fitting_share;
-        let along = (1.0 - fitting) * resistance / parts;
-        let drawn = (outlet - cell(0)) / (fitting * resistance);
+        let along = resistance / self.cells as f64;
+        let drawn = (outlet - cell(0)) / along;
         let mut inward = drawn;
         for (i, rate) in rates.iter_mut().enumerate().take(self.cells) {
             let out = if i + 1 == self.cells {
@@ -241,9 +239,8 @@ impl<'a> Equations<'a> {
 
     /// Share of the line's volume in a cell [1].
     fn share_of_line(&self, cell: usize) -> f64 {
-        let parts = (self.cells - 1) as f64;
-        let half = cell == 0 || cell + 1 == self.cells;
-        if half { 0.5 / parts } else { 1.0 / parts }
+        let size = if cell + 1 == self.cells { 0.5 } else { 1.0 };
+        size / self.cells as f64
     }
 
     /// Rates of the state.
@@ -460,10 +457,9 @@ fn cells(rig: &Rig, concealed: &Concealed) -> usize {
     let Some([volume, resistance]) = concealed.hose else {
         return 1;
     };
-    let slow = rig.gas.constant * rig.gas.temperature
-        / (volume * (1.0 - concealed.fitting_share) * resistance);
+    let slow = rig.gas.constant * rig.gas.temperature / (volume * resistance);
     let most = (FASTEST_CELL / (4.0 * slow)).sqrt();
-    (most as usize).clamp(3, CELLS)
+    (most as usize).clamp(4, CELLS)
 }
 
 /// Friction [N] of seals at a deflection, over that at which they slide [1], a speed [m/s] and a pressure difference [Pa]; and the deflection's rate.

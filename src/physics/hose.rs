@@ -11,7 +11,8 @@
 //! slopes of both: the flow has no kink and never falls as the pressure difference grows.
 //!
 //! Instead of a tube's law a line can have a constant resistance R_h = (p_in - p_h) / m_dot [Pa s/kg]: one that stands for fittings, or for an
-//! effect to be told apart. Such a line can be distributed (`super::line_chain`): resistance and volume in segments, one behind the other.
+//! effect to be told apart. Such a line can be distributed (`super::line_chain`): resistance and volume in segments, one behind the other; or spread evenly,
+//! with half a segment's volume at either end, of which the first is the regulator's outlet: its error falls with the square of their number.
 //! Leaves out: roughness (a plastic hose is smooth); the losses at both ends and the air's acceleration, together 1.5 + 2 ln(p_in/p_h) beside f l/d, as
 //! much as 60 to 100 diameters of hose, and with them choking; the wave's delay of l over the speed of sound, 3 ms/m.
 
@@ -46,6 +47,8 @@ enum LineLaw {
         resistance: f64,
         /// Segments one behind the other.
         segments: usize,
+        /// Volume of the last one over that of the others [1].
+        last: f64,
     },
     /// As a tube's, laminar and turbulent.
     Tube {
@@ -82,6 +85,19 @@ impl Hose {
             law: LineLaw::Constant {
                 resistance: resistance / segments as f64,
                 segments,
+                last: 1.0,
+            },
+        }
+    }
+
+    /// A volume [m3] and a constant resistance [Pa s/kg] spread evenly along the line.
+    pub fn evenly_spread(volume: f64, resistance: f64) -> Self {
+        Self {
+            volume,
+            law: LineLaw::Constant {
+                resistance: resistance / MOST_SEGMENTS as f64,
+                segments: MOST_SEGMENTS,
+                last: 0.5,
             },
         }
     }
@@ -94,14 +110,22 @@ impl Hose {
         }
     }
 
-    /// Volume of each segment [m3].
+    /// Volume of each segment but the last [m3].
     pub fn segment_volume(&self) -> f64 {
         self.volume / self.segments() as f64
     }
 
+    /// Volume of the last segment [m3].
+    pub fn last_volume(&self) -> f64 {
+        match self.law {
+            LineLaw::Constant { last, .. } => last * self.segment_volume(),
+            LineLaw::Tube { .. } => self.volume,
+        }
+    }
+
     /// The last segment with another constant resistance before it [Pa s/kg].
     pub fn last_behind(&self, resistance: f64) -> Self {
-        Self::lumped(self.segment_volume(), resistance)
+        Self::lumped(self.last_volume(), resistance)
     }
 
     /// Resistance of a segment [Pa s/kg] of a line whose resistance is constant.
@@ -142,6 +166,7 @@ impl Hose {
             LineLaw::Constant {
                 resistance,
                 segments,
+                ..
             } => resistance * segments as f64,
             LineLaw::Tube { .. } => -1.0 / self.flow_slope(pressure, pressure).slope,
         }
@@ -153,6 +178,7 @@ impl Hose {
             LineLaw::Constant {
                 resistance,
                 segments,
+                ..
             } => within + resistance * segments as f64 * mass_flow,
             LineLaw::Tube { flow, drive } => {
                 let k = drive_of(mass_flow.abs() / flow).copysign(mass_flow);

@@ -84,7 +84,7 @@ impl PlantInputs {
         }
     }
 
-    /// Slope at a sample of what is known at each [1/s], from its neighbours.
+    /// Slope at a sample of what is known at each [1/s]: of the parabola through it and its neighbours, which may be at unlike distances, as at a gap.
     pub(super) fn slope(&self, values: &[f64], index: usize) -> f64 {
         let before = index.saturating_sub(1);
         let after = (index + 1).min(self.time.len() - 1);
@@ -92,9 +92,43 @@ impl PlantInputs {
             if values[i].is_finite() { i } else { index }
         };
         let (before, after) = (usable(before), usable(after));
-        if before == after {
-            return 0.0;
+        let chord = |from: usize, to: usize| {
+            (values[to] - values[from]) / (self.time[to] - self.time[from])
+        };
+        match (before == index, after == index) {
+            (true, true) => 0.0,
+            (true, false) | (false, true) => chord(before, after),
+            (false, false) => {
+                let [back, on] = [(before, index), (index, after)]
+                    .map(|(from, to)| self.time[to] - self.time[from]);
+                (on * chord(before, index) + back * chord(index, after)) / (back + on)
+            }
         }
-        (values[after] - values[before]) / (self.time[after] - self.time[before])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PlantInputs;
+
+    #[test]
+    fn a_parabola_has_its_slope_at_every_distance_of_samples() {
+        let time = vec![0.0, 0.004, 0.068, 0.071, 0.076];
+        let values: Vec<f64> = time.iter().map(|t| 3.0 - 2.0 * t + 5.0 * t * t).collect();
+        let inputs = PlantInputs {
+            set_pressure: vec![0.0; 5],
+            extends: vec![true; 5],
+            surface: values.clone(),
+            time: time.clone(),
+            cell: None,
+        };
+        for i in 1..4 {
+            let slope = inputs.slope(&values, i);
+            assert!((slope - (10.0 * time[i] - 2.0)).abs() < 1e-12, "{slope}");
+        }
+        let mut open = values;
+        open[2] = f64::NAN;
+        let chord = (open[1] - open[0]) / 0.004;
+        assert!((inputs.slope(&open, 1) - chord).abs() < 1e-12);
     }
 }

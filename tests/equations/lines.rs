@@ -127,8 +127,12 @@ fn a_line_in_segments_keeps_its_air_and_many_are_one_tube_of_evenly_spread_resis
         hose: Some(Hose::in_segments(1.2e-4, 8e7, segments)),
         ..usual()
     };
-    let (coarse, _) = course(&in_segments(8), 2);
-    let (fine, _) = course(&in_segments(8), 40);
+    let even = DeviceParameters {
+        hose: Some(Hose::evenly_spread(1.2e-4, 8e7)),
+        ..usual()
+    };
+    let (coarse, _) = course(&even, 2);
+    let (fine, _) = course(&even, 40);
     let apart = |a: &[[f64; 3]], b: &[[f64; 3]]| {
         let pairs = a.iter().zip(b);
         pairs.map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max)

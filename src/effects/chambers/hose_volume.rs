@@ -3,7 +3,8 @@
 //!     p_i V / n = m_i R T,   dm_i/dt = n (p_(i-1) - p_i) / R_h - n (p_i - p_(i+1)) / R_h      in n segments
 //!
 //! V volume of the line [m3], R_h its resistance, pressure drop over mass flow [Pa s/kg], p_i and m_i pressure [Pa] and air [kg] of a segment, R specific
-//! gas constant [J/(kg K)], T temperature [K]. Lumped line of Richer and Hurmuzlu 2000, in as many segments as fit best.
+//! gas constant [J/(kg K)], T temperature [K]. Lumped line of Richer and Hurmuzlu 2000, in as many segments as fit best: up to four, or eight with the last one
+//! halved, which are a line of evenly spread resistance.
 //!
 //! Signature: the chamber follows the outlet in second order, with a dead time of its own where the line is long; a valve that switches empties the line
 //! into the chamber first.
@@ -12,6 +13,7 @@
 
 use super::*;
 use crate::physics::hose::Hose;
+use crate::physics::line_chain::MOST_SEGMENTS;
 use crate::plant::PlantParameters;
 
 const VOLUME: Quantity = Quantity {
@@ -39,7 +41,10 @@ fn line(p: &PlantParameters) -> (f64, f64, usize) {
 }
 
 fn set_line(p: &mut PlantParameters, (volume, resistance, segments): (f64, f64, usize)) {
-    p.device.hose = Some(Hose::in_segments(volume, resistance, segments));
+    p.device.hose = Some(match segments {
+        MOST_SEGMENTS => Hose::evenly_spread(volume, resistance),
+        _ => Hose::in_segments(volume, resistance, segments),
+    });
 }
 
 /// The effect.
