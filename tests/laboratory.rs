@@ -188,7 +188,7 @@ fn with_effect(rig: &Rig, concealed: &Concealed, name: &str) -> PlantParameters 
     plant
 }
 
-/// Each effect means the same in both hands. What parts them is what the laboratory does richer: seals and lines.
+/// Each effect means the same in both hands. What parts them is what the laboratory does richer: seals, and lines in more segments.
 #[test]
 fn effects_mean_the_same_in_the_laboratory_and_in_the_simulator() {
     for effect in &EFFECTS {
@@ -213,7 +213,8 @@ fn effects_mean_the_same_in_the_laboratory_and_in_the_simulator() {
             }
         }
         let allowed = match effect.name {
-            "hose_volume" => 6.0,
+            // Sixteen segments here, eight there.
+            "hose_volume" => 1.5,
             "presliding_hysteresis" => 1.5,
             // Seals that are elastic at first, and damped while they bend.
             name if name.contains("friction") => 20.0,

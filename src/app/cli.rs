@@ -161,7 +161,7 @@ pub(super) struct SweepArguments {
     #[arg(long, default_value_t = 150)]
     pub(super) empty: u64,
     /// Length of each recording [s].
-    #[arg(long, default_value_t = 5.0, value_parser = duration)]
+    #[arg(long, default_value_t = 4.0, value_parser = duration)]
     pub(super) duration_s: f64,
     /// Cases at a time [default: as many as there are processors].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]

@@ -120,6 +120,44 @@ fn a_line_of_any_size_is_accurate_in_few_substeps() {
     reached("sub-steps of a millisecond", dearest, 6.0);
 }
 
+// Catches: half a segment at the wrong end, or a whole one: the end of the line would be late by an eighth.
+#[test]
+fn a_closed_line_of_evenly_spread_resistance_fills_as_the_heat_equation_says() {
+    use std::f64::consts::PI;
+    let hose = Hose::evenly_spread(1.2e-4, 8e7);
+    let parameters = DeviceParameters {
+        hose: Some(hose),
+        supply_orifice: 1e-15,
+        ..usual()
+    };
+    let device = Device::new(parameters);
+    let gas = device.parameters().gas;
+    let (before, start) = (5e5 + ATMOSPHERE, 2e5);
+    let mut state = device.at_rest(0.02, 5e5);
+    state.air.hose_mass = gas.mass(start, hose.last_volume());
+    let upstream = hose.segments() - 1;
+    state.air.upstream[..upstream].fill(gas.mass(start, hose.segment_volume()));
+    // p = p_0 - (p_0 - p_s) 4/pi sum (-1)^k/(2k + 1) exp(-(2k + 1)^2 pi^2 t/(4 T)),  T = V R_h/(R T_gas)      (Carslaw and Jaeger, 3.3)
+    let constant = 1.2e-4 * 8e7 / rt();
+    let closed = |time: f64| {
+        let term = |k: i32| {
+            let odd = f64::from(2 * k + 1);
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            sign / odd * (-(odd * PI).powi(2) * time / (4.0 * constant)).exp()
+        };
+        let sum: f64 = (0..50).map(term).sum();
+        before - (before - start) * 4.0 / PI * sum
+    };
+    let mut largest = 0.0f64;
+    for ms in 1..=300 {
+        device.advance(&mut state, 5e5, still(0.02), 1e-3, 2);
+        let end = gas.pressure(state.air.hose_mass, hose.last_volume());
+        let off = (end - closed(f64::from(ms) * 1e-3)).abs() / (before - start);
+        largest = largest.max(off);
+    }
+    reached("eight segments against the heat equation", largest, 5e-3);
+}
+
 // Catches: air lost between segments; segments that exchange it faster than a sub-step and swing; a step of no length that a segment divides by.
 #[test]
 fn a_line_in_segments_keeps_its_air_and_many_are_one_tube_of_evenly_spread_resistance() {

@@ -53,7 +53,15 @@ impl Search<'_> {
         if let Some(first) = found.into_iter().next()
             && self.score(&first) < self.score(&full[0])
         {
-            full.insert(0, first);
+            let own = |base: &&Hypothesis| base.names() == first.names();
+            let without = (bases.iter().find(own)).map(|base| self.from_where(base, &first));
+            match without.filter(|h| scale.is_adequate(h) || self.score(h) <= self.score(&first)) {
+                Some(without) => {
+                    say(&format!("  without a term {:.1}", self.score(&without)));
+                    full.insert(0, without);
+                }
+                None => full.insert(0, first),
+            }
         }
     }
 
@@ -117,6 +125,12 @@ impl Search<'_> {
         free.extend(others);
         let mut effects = hypothesis.effects.clone();
         effects.remove(index);
+        // What was not needed is missed at no sample.
+        let last = &FULL[FULL.len() - 2..];
+        let near = self.fitted(effects.clone(), &self.believed, &free, last, LIGHTER, None);
+        if self.score(&near) < self.score(hypothesis) {
+            return Some(near);
+        }
         let rough = self.fitted(effects, &self.believed, &free, ROUGH, LIGHTER, None);
         if self.rough_score(&rough) > self.rough_score(hypothesis) + HOPELESS {
             return None;
@@ -126,6 +140,22 @@ impl Search<'_> {
         }
         let effects = rough.effects;
         Some(self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None))
+    }
+
+    /// A hypothesis fitted again from where a richer one stands. Impacts make many dips, and a fit comes to rest in one of them: what another gains by
+    /// having come to a better one is not what it has more.
+    fn from_where(&self, hypothesis: &Hypothesis, richer: &Hypothesis) -> Hypothesis {
+        let there = &richer.fit.prediction.plant;
+        let free: Vec<Free> = (hypothesis.fit.free.iter())
+            .map(|f| Free {
+                start: f.clamp((f.quantity.get)(there)),
+                ..*f
+            })
+            .collect();
+        let plant = &hypothesis.fit.prediction.plant;
+        let stages = &FULL[FULL.len() - 2..];
+        let effects = hypothesis.effects.clone();
+        self.fitted(effects, plant, &free, stages, FULL_ITERATIONS, None)
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.
@@ -154,6 +184,15 @@ impl Search<'_> {
             let more = self.refine(&more, precise, FULL_ITERATIONS);
             let gain = score - self.score(&more);
             say(&format!("  small: {:?} gain {gain:.1}", more.effects));
+            if gain <= least {
+                return;
+            }
+            let again = self.from_where(best, &more);
+            let gain = self.score(&again) - self.score(&more);
+            say(&format!("  of which its own {gain:.1}"));
+            if self.score(&again) < score {
+                full[0] = again;
+            }
             if gain <= least {
                 return;
             }
