@@ -14,6 +14,7 @@ pub mod evidence;
 pub mod experiment;
 pub mod fit;
 pub mod free;
+pub mod joint_friction;
 pub mod latent;
 pub mod left_out;
 pub mod links;
