@@ -40,7 +40,7 @@ impl Riding {
         let touch = sharp.touch(middle, course.edge[i].station);
         let normal = touch.normal;
         let share = -normal.dot(0.5 * (felt.slides[i] + felt.slides[next]));
-        let from = middle - away - normal * touch.distance;
+        let from = middle - normal * touch.distance;
         let at = |j: usize| stroke + (normal.dot(centre(j) - from) - course.ball_radius) / share;
         let slope = |j: usize| {
             let (before, after) = (j.saturating_sub(1), (j + 1).min(last));

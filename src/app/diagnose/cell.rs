@@ -20,6 +20,7 @@ use crate::recording::csv::{CellRecording, read_cell_csv};
 use crate::recording::parquet::read_parquet;
 use crate::recording::samples::cell_recording;
 use crate::replay::{Drive, LoadedCell};
+use crate::scenario::RecordedCell;
 
 /// The samples of a run.
 const SAMPLES: &str = "samples.parquet";
@@ -274,7 +275,7 @@ fn recorded(
         found.map_or_else(|| nothing.clone(), |(_, values)| values.clone())
     });
     if scenario.own {
-        forget_what_friction_holds(&mut readings, &inputs);
+        forget_what_friction_holds(&mut readings, &inputs, scenario);
     }
     Ok(Recorded {
         inputs,
@@ -283,17 +284,30 @@ fn recorded(
     })
 }
 
-/// A tool that rests on the edge holds on to it, across too, by as much as friction lets it: where it stands then is no matter of the model.
-fn forget_what_friction_holds(readings: &mut [Vec<f64>; CHANNELS.len()], inputs: &PlantInputs) {
+/// A tool that rests on the edge holds on to it, across too, by as much as friction lets it: where it stands then is no matter of the model, and what a
+/// leaned device carries of it neither.
+fn forget_what_friction_holds(
+    readings: &mut [Vec<f64>; CHANNELS.len()],
+    inputs: &PlantInputs,
+    scenario: &RecordedCell,
+) {
     let Some(course) = &inputs.cell else { return };
     let [_, stroke, force, _] = readings;
     let touches = |i: usize| {
         let (from, to) = (i.saturating_sub(HELD), (i + HELD + 1).min(force.len()));
-        force[from..to].iter().any(|force| *force > TOUCHING)
+        let near = force[from..to].iter();
+        near.copied().fold(f64::NEG_INFINITY, f64::max)
     };
-    for (i, stroke) in stroke.iter_mut().enumerate() {
-        if course.rests(i) && touches(i) {
-            *stroke = f64::NAN;
+    let pressed: Vec<f64> = (0..force.len()).map(touches).collect();
+    let [_, _, noise] = scenario.noise;
+    for (i, pressed) in pressed.into_iter().enumerate() {
+        if !course.rests(i) || pressed < TOUCHING {
+            continue;
+        }
+        stroke[i] = f64::NAN;
+        let lean = course.edge[i].bisector.cross(course.slide[i]).length();
+        if scenario.contact.friction * pressed * lean > noise {
+            force[i] = f64::NAN;
         }
     }
 }
