@@ -16,6 +16,7 @@ mod equations;
 mod estimator;
 mod laboratory;
 mod layers;
+mod own_cell;
 mod paper_deviation;
 mod paper_page;
 mod planted;

@@ -1,6 +1,7 @@
 //! `idc diagnose`: from a folder with a rig file and recordings to what the model lacks, for one case or many.
 
 mod all;
+mod arm_prediction;
 mod cell;
 mod cell_account;
 mod one;

@@ -85,6 +85,24 @@ pub enum CellError {
         /// What is wrong with it.
         source: WorkpieceError,
     },
+    /// Physics that a diagnosis found: the simulation has keys of its own for it.
+    #[error("{}: `effect.{effect}` is what a diagnosis found, which is diagnosed and predicted with but not run; say it by the keys of the cell", file.display())]
+    Effect {
+        /// Scenario file.
+        file: PathBuf,
+        /// The first effect.
+        effect: &'static str,
+    },
+    /// A drive of a joint that the arm does not have.
+    #[error("{}: `arm.drives` names joint `{joint}`, expected one of {}", file.display(), joints.join(", "))]
+    DriveUnknown {
+        /// Scenario file.
+        file: PathBuf,
+        /// The name.
+        joint: String,
+        /// Names of the arm's joints, base first.
+        joints: Vec<String>,
+    },
     /// A posture for another number of axes.
     #[error("{}: `arm.seed_posture_deg` is a list of {found}, expected a list of {axes}, one angle an axis", file.display())]
     SeedPosture {

@@ -12,6 +12,7 @@ pub use part::{Part, choose_edge};
 use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
 use crate::control::force::ForceController;
+use crate::control::transmission::TransmissionParameters;
 use crate::device::{Device, PressureMap};
 use crate::path::plan::PlanRequest;
 use crate::path::profile::MotionLimits;
@@ -27,6 +28,8 @@ pub struct Cell {
     pub arm: Arm,
     /// The arm with the device's slide as its last joint.
     pub arm_with_slide: Chain,
+    /// What stands between motor and link of each of its joints, base first; none where they are one.
+    pub transmissions: Vec<Option<TransmissionParameters>>,
     /// The device.
     pub device: Device,
     /// What sets the regulator's pressure, as it is at the start.
@@ -47,7 +50,14 @@ impl Cell {
     /// # Errors
     /// What is missing, refused or out of reach, by file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
-        let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
+        if let Some((effect, _)) = scenario.effects.first() {
+            return Err(CellError::Effect {
+                file: scenario.path.clone(),
+                effect: effect.name,
+            });
+        }
+        let mut arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
+        let transmissions = drives(&scenario, &mut arm.chain)?;
         check_seed_posture(&scenario, &arm.chain)?;
         let arm_with_slide = with_slide(&arm.chain, &scenario);
         let part = Part::load(&scenario)?;
@@ -72,6 +82,7 @@ impl Cell {
             scenario,
             arm,
             arm_with_slide,
+            transmissions,
             device,
             controller,
             part,
@@ -113,6 +124,34 @@ pub fn arm_options(arm: &ArmScenario) -> ArmOptions {
             .collect(),
         skip_visuals: false,
     }
+}
+
+/// Gives the joints the friction that the scenario says, and says what stands between their motors and links.
+fn drives(
+    scenario: &Scenario,
+    chain: &mut Chain,
+) -> Result<Vec<Option<TransmissionParameters>>, CellError> {
+    let mut transmissions = vec![None; chain.len()];
+    for drive in &scenario.arm.drives {
+        let Some(axis) = chain.joints.iter().position(|j| j.name == drive.joint) else {
+            return Err(CellError::DriveUnknown {
+                file: scenario.path.clone(),
+                joint: drive.joint.clone(),
+                joints: chain.joints.iter().map(|j| j.name.clone()).collect(),
+            });
+        };
+        if let Some(friction) = drive.friction {
+            chain.joints[axis].friction = friction;
+        }
+        if drive.stiffness.is_finite() {
+            transmissions[axis] = Some(TransmissionParameters {
+                stiffness: drive.stiffness,
+                damping_time: drive.damping_time,
+                play: drive.backlash,
+            });
+        }
+    }
+    Ok(transmissions)
 }
 
 fn check_seed_posture(scenario: &Scenario, arm: &Chain) -> Result<(), CellError> {

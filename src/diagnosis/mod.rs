@@ -15,6 +15,7 @@ pub mod experiment;
 pub mod fit;
 pub mod free;
 pub mod hypothesis;
+pub mod joint_friction;
 pub mod latent;
 pub mod left_out;
 pub mod links;

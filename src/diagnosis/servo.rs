@@ -29,6 +29,8 @@ pub struct ServoLink {
     pub gain: f64,
     /// Readings.
     pub count: usize,
+    /// How much a sum of squares counts: less than one where encoders depart from any such lag by more than their noise, and not at random [1].
+    pub weight: f64,
     /// Root mean square of what it leaves of each joint, in standard deviations of the noise [1].
     pub left: Vec<f64>,
 }
@@ -78,7 +80,9 @@ pub fn servo_link(axes: &[Axes], noise: f64, believed: f64) -> Option<ServoLink>
     let spacing = (high - low) / TRIED as f64;
     let tried = (0..=TRIED).map(|i| low + spacing * i as f64);
     let mut costs: Vec<(f64, f64)> = tried.map(|u| (cost(u.exp()), u)).collect();
-    costs.push((cost(believed), believed.ln()));
+    if believed.is_finite() {
+        costs.push((cost(believed), believed.ln()));
+    }
     costs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut from, mut to) = (costs[0].1 - spacing, costs[0].1 + spacing);
     // Golden sections: the cost has one valley there.
@@ -108,15 +112,46 @@ pub fn servo_link(axes: &[Axes], noise: f64, believed: f64) -> Option<ServoLink>
         deviation: (2.0 / curvature.max(1e-12)).sqrt(),
         gain: cost(believed) - best,
         count,
+        weight: 1.0,
         left,
     })
+}
+
+/// The same of motors that a servo of its own moves, which loads and friction push aside: what is left is not noise, and counts for as many samples as are
+/// independent (first-order autocorrelation, Bartlett, J. R. Stat. Soc. 8, 1946). A lag faster than the servo [Hz] is the servo's own.
+#[must_use]
+pub fn pushed_servo_link(
+    axes: &[Axes],
+    noise: f64,
+    believed: f64,
+    servo: f64,
+) -> Option<ServoLink> {
+    let mut link = servo_link(axes, noise, believed)?;
+    let (mut square, mut next, mut count) = (0.0, 0.0, 0.0);
+    for recording in axes {
+        for joint in 0..recording.commands.len() {
+            let one = std::slice::from_ref(recording);
+            let left: Vec<f64> = residuals(one, joint, noise, link.bandwidth).collect();
+            square += left.iter().map(|l| l * l).sum::<f64>();
+            next += left.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
+            count += left.len() as f64;
+        }
+    }
+    let likeness = (next / square.max(f64::MIN_POSITIVE)).clamp(0.0, 0.999);
+    let independent = (1.0 - likeness) / (1.0 + likeness);
+    link.weight = (independent * count / square.max(f64::MIN_POSITIVE)).min(1.0);
+    link.deviation /= link.weight.sqrt();
+    if link.bandwidth > servo {
+        link.gain = 0.0;
+    }
+    Some(link)
 }
 
 impl ServoLink {
     /// Do the encoders show another bandwidth than the believed one? By Schwarz's criterion, as for any effect.
     #[must_use]
     pub fn differs(&self) -> bool {
-        self.gain > (self.count as f64).ln() + LOOK_ELSEWHERE
+        self.weight * self.gain > (self.count as f64).ln() + LOOK_ELSEWHERE
     }
 
     /// The effect, if they do.

@@ -42,6 +42,8 @@ pub fn meaning(effect: &str) -> &'static str {
         "part_misplaced" => "the part stands out, or back, along the bisector of its edge, and slopes along it",
         "burr" => "a burr stands on the edge",
         "compliant_joint" => "a joint gives way between its motor and its link, more than believed",
+        "joint_backlash" => "a joint has play between its motor and its link",
+        "joint_friction" => "a joint rubs more than believed, or less",
         "joint_encoder_offset" => "a joint's encoder reads too much, so that the arm stands off by it",
         "servo_lag" => "the joints' servos follow their commands at another bandwidth than believed",
         _ => "physics beyond the believed model",

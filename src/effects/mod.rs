@@ -13,7 +13,7 @@ mod regulator;
 mod sensors;
 
 pub use catalogue::CATALOGUE;
-pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, SERVO_LAG, vocabulary};
+pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG, vocabulary};
 pub use effect::{Clues, Effect, Parameter, Subsystem};
 pub use meaning::meaning;
 pub use quantity::{Coordinate, Quantity};

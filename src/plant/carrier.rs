@@ -28,6 +28,8 @@ pub(super) struct ReplayCarrier<'a> {
     pub rate: f64,
     /// A burr on the edge and its rate: of a cell [m], [m/s]; none on a bench.
     pub burr: Option<[f64; 2]>,
+    /// Is the rate at which a burr comes up damped too?
+    pub burr_damped: bool,
     /// What swinging links do.
     pub swung: Swung,
     /// What the piston is held to, if it is.
@@ -72,9 +74,9 @@ impl ReplayCarrier<'_> {
         let [a, b, c, d] = self.surface;
         let (mut deviation, mut rate) = self.contact.deviation(self.start + time);
         if let Some([height, rise]) = self.burr {
-            // The ball's own motion is damped, whatever the shape that it meets.
             deviation -= height + time * rise;
-            rate = 0.0;
+            // Of a ball that is met along the bisector its own motion is damped, whatever the shape that it meets.
+            rate = if self.burr_damped { rate - rise } else { 0.0 };
         }
         let [lift, lifting, more] = self.swung.surface;
         let surface = a + lift + time * (b + lifting + time * (c + more + time * d));

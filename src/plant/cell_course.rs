@@ -9,8 +9,10 @@
 
 use super::cell_parameters::{CellParameters, MOST_JOINTS};
 use super::servo::follow;
+use super::sharp_edge::SharpEdge;
 use glam::{DQuat, DVec3};
 use nalgebra::DMatrix;
+use std::sync::Arc;
 
 /// One joint over a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +25,8 @@ pub struct JointCourse {
     pub axis: Vec<DVec3>,
     /// A point on its axis in the base frame [m].
     pub origin: Vec<DVec3>,
+    /// Acceleration of that angle [rad/s2].
+    pub bend: Vec<f64>,
     /// Torque that accelerates what is behind it [N m].
     pub torque: Vec<f64>,
 }
@@ -55,6 +59,12 @@ pub struct CellCourse {
     pub slide: Vec<DVec3>,
     /// The edge beside the ball.
     pub edge: Vec<EdgeStation>,
+    /// The edge as the ball meets it; none where it is met along its bisector.
+    pub sharp: Option<Arc<SharpEdge>>,
+    /// Does the load cell measure along the slide, not along the bisector?
+    pub force_along_slide: bool,
+    /// Does a recording start with the slide out on its stop, at the pressure set, not retracted without pressure?
+    pub starts_pressing: bool,
     /// Where its middle is, from its start [m].
     pub edge_middle: f64,
     /// Radius of the ball [m].
@@ -99,10 +109,18 @@ pub struct Felt {
     pub speed: Vec<f64>,
     /// Force that accelerates the moving mass with the flange, along the slide [N].
     pub carried: Vec<f64>,
+    /// Centre of the ball at no stroke [m].
+    pub balls: Vec<DVec3>,
+    /// Direction of the slide [1].
+    pub slides: Vec<DVec3>,
+    /// How far the part stands out under the ball [m].
+    pub lift: Vec<f64>,
 }
 
 /// Samples to a mass matrix: an arm hardly changes its posture in so many.
 pub const INERTIA_EVERY: usize = 16;
+/// Commanded speed along the edge below which a tool may still hold on to it by friction [m/s].
+const RESTING: f64 = 3e-3;
 /// Speed along the edge at which friction is felt in full [m/s].
 pub(super) const SLIDING: f64 = 1e-3;
 
@@ -115,6 +133,13 @@ impl CellCourse {
     /// Is there no sample?
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
+    }
+
+    /// Does the tool rest where it is, instead of being moved along the edge?
+    pub fn rests(&self, i: usize) -> bool {
+        let (before, after) = (i.saturating_sub(1), (i + 1).min(self.len() - 1));
+        let way = self.edge[after].station - self.edge[before].station;
+        way.abs() < RESTING * (self.time[after] - self.time[before])
     }
 
     /// Levers of a sample, for `levers`.
@@ -164,6 +189,8 @@ impl CellCourse {
         for i in 0..count {
             self.note(&mut felt, cell, i, &balls, &slides);
         }
+        felt.balls = balls;
+        felt.slides = slides;
         felt
     }
 
@@ -173,8 +200,9 @@ impl CellCourse {
         let turn = |(joint, offset): (&JointCourse, f64)| {
             // The servo closes on the encoder: the arm stands off by what it reads too much.
             if moved {
-                let angle = follow(&self.time, &joint.command, cell.servo_bandwidth).angle;
-                let away = angle.iter().zip(&joint.angle);
+                let of = |bandwidth| follow(&self.time, &joint.command, bandwidth).angle;
+                let (there, here) = (of(cell.servo_bandwidth), of(self.bandwidth));
+                let away = there.iter().zip(&here);
                 Turn::Course(away.map(|(there, here)| there - here - offset).collect())
             } else {
                 Turn::Constant(-offset)
@@ -201,11 +229,24 @@ impl CellCourse {
         let along = (ball + slide * self.usual_stroke - edge.point).dot(edge.tangent);
         let station = edge.station + along;
         let lift = cell.part_shift + cell.part_tilt * (station - self.edge_middle);
-        let standoff = n.dot(ball - edge.point) - self.ball_radius - lift;
-        let share = -n.dot(slide);
+        let (standoff, share) = match &self.sharp {
+            None => (
+                n.dot(ball - edge.point) - self.ball_radius - lift,
+                -n.dot(slide),
+            ),
+            Some(sharp) => {
+                // As it would be at the usual stroke.
+                let centre = ball + slide * self.usual_stroke - n * lift;
+                let touch = sharp.touch(centre, station);
+                let share = -touch.normal.dot(slide);
+                let standoff = touch.distance - self.ball_radius + share * self.usual_stroke;
+                (standoff, share)
+            }
+        };
         let speed = self.slope(i, |j| balls[j]).dot(edge.tangent);
         let mass_at = |j: usize| balls[j] + slides[j] * (self.usual_stroke - self.mass_behind_ball);
         let acceleration = self.curvature(i, mass_at);
+        felt.lift.push(lift);
         felt.standoff.push(standoff);
         felt.share.push(share);
         felt.burr.push(cell.burr.at(station));

@@ -10,6 +10,10 @@ pub struct CellParameters {
     pub servo_bandwidth: f64,
     /// Stiffness of the spring between the motor and the link of each joint [N m/rad].
     pub joint_stiffness: [f64; MOST_JOINTS],
+    /// Play between the motor and the link of each joint, from flank to flank [rad].
+    pub joint_play: [f64; MOST_JOINTS],
+    /// Dry friction of each joint, which its drive overcomes: seen in its torque, not in what the device feels [N m].
+    pub joint_friction: [f64; MOST_JOINTS],
     /// Damping over stiffness of each joint, a time [s].
     pub joint_damping: f64,
     /// What each joint's encoder reads beyond the truth [rad].
@@ -60,6 +64,8 @@ impl CellParameters {
     pub const RIGID: Self = Self {
         servo_bandwidth: f64::INFINITY,
         joint_stiffness: [f64::INFINITY; MOST_JOINTS],
+        joint_play: [0.0; MOST_JOINTS],
+        joint_friction: [0.0; MOST_JOINTS],
         joint_damping: 3e-3,
         encoder_offset: [0.0; MOST_JOINTS],
         friction: 0.0,

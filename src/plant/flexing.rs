@@ -3,6 +3,8 @@
 //!     M d'' + D d' + K d = J_n F + J_t T + J_a (c F - G) - tau           links against motors
 //!     T = -mu F sat(v / v_s),   v = v_motors + J_t . d'
 //!
+//! With play p the spring rests at the flank, K (d - sign(d) p/2), and does nothing between the flanks.
+//!
 //! d deflections [rad], M mass matrix without the moving mass's along the slide, which there goes its own way [kg m2], D = b K (Kelvin and Voigt), J_n, J_t,
 //! J_a levers of the ball along bisector, edge and slide [m], F contact force, c its share along the slide, G what the device pushes the moving mass with, T
 //! friction along the edge, regularised so that there is none at rest, tau what the motors' acceleration takes. (Spong, J. Dyn. Syst. Meas. Control 109,
@@ -12,7 +14,11 @@
 
 use super::cell_course::{CellCourse, Felt, INERTIA_EVERY, SLIDING};
 use super::cell_parameters::{CellParameters, MOST_JOINTS};
+use glam::DVec3;
 use nalgebra::DMatrix;
+
+/// Stiffness of a joint that does not give [N m/rad]: no torque of an arm turns it by what a sensor sees.
+const FIRM: f64 = 3e8;
 
 /// One number a joint.
 type Joints = [f64; MOST_JOINTS];
@@ -25,6 +31,8 @@ pub(super) struct Flexing<'a> {
     count: usize,
     deflection: Joints,
     speed: Joints,
+    /// Levers along the normal of the contact at no stroke [m], and what a stroke adds [1].
+    levers: [Joints; 2],
     /// Inverse of what multiplies the speeds, and what it goes with.
     inverse: Option<(Key, Vec<f64>)>,
 }
@@ -35,6 +43,8 @@ struct Key {
     inertia: usize,
     touching: bool,
     step: f64,
+    /// Joints whose teeth are apart, one bit each.
+    apart: u8,
 }
 
 /// Forces that bend the arm.
@@ -69,44 +79,90 @@ impl<'a> Flexing<'a> {
     /// At rest; none where no joint gives.
     pub fn new(course: &'a CellCourse, cell: &'a CellParameters) -> Option<Self> {
         let count = course.joints.len();
-        let gives = cell.joint_stiffness[..count].iter().all(|k| k.is_finite());
-        (gives && count > 0).then_some(Self {
+        let gives = cell.joint_stiffness[..count].iter().any(|k| k.is_finite());
+        let plays = cell.joint_play[..count].iter().any(|play| *play > 0.0);
+        ((gives || plays) && count > 0).then_some(Self {
             course,
             cell,
             count,
             deflection: [0.0; MOST_JOINTS],
             speed: [0.0; MOST_JOINTS],
+            levers: [[0.0; MOST_JOINTS]; 2],
             inverse: None,
         })
     }
 
-    /// Levers along the bisector at a stroke [m].
-    fn lift(&self, i: usize, stroke: f64) -> Joints {
-        let [fixed, turn] = &self.course.levers[i].lift;
+    /// Bends the joints to where they carry what is on them, at a sample.
+    pub fn settle(&mut self, i: usize, push: f64) {
+        for j in 0..self.count {
+            let load = self.course.levers[i].axial[j] * push + self.course.joints[j].torque[i];
+            let half = 0.5 * self.cell.joint_play[j];
+            let side = if load == 0.0 { 0.0 } else { -load.signum() };
+            self.deflection[j] = -load / self.stiffness(j) + side * half;
+        }
+    }
+
+    /// Takes the levers at a sample, along the bisector of the edge or another normal.
+    pub fn face(&mut self, i: usize, normal: Option<DVec3>) {
+        let Some(normal) = normal else {
+            self.levers = self.course.levers[i].lift;
+            return;
+        };
+        for (j, joint) in self.course.joints.iter().enumerate() {
+            let axis = joint.axis[i];
+            let ball = axis.cross(self.course.ball[i] - joint.origin[i]);
+            self.levers[0][j] = ball.dot(normal);
+            self.levers[1][j] = axis.cross(self.course.slide[i]).dot(normal);
+        }
+    }
+
+    /// How far the swing takes the ball at a stroke [m].
+    pub fn away(&self, i: usize, stroke: f64) -> DVec3 {
+        let tip = self.course.ball[i] + self.course.slide[i] * stroke;
+        let joints = self.course.joints.iter().zip(&self.deflection);
+        joints
+            .map(|(joint, angle)| joint.axis[i].cross(tip - joint.origin[i]) * *angle)
+            .sum()
+    }
+
+    /// Levers along the normal at a stroke [m].
+    fn lift(&self, stroke: f64) -> Joints {
+        let [fixed, turn] = &self.levers;
         std::array::from_fn(|j| fixed[j] + stroke * turn[j])
+    }
+
+    /// Stiffness of a joint, one that does not give being stiffer than any [N m/rad].
+    fn stiffness(&self, joint: usize) -> f64 {
+        self.cell.joint_stiffness[joint].min(FIRM)
     }
 
     /// Where the surface is now, and where it goes.
     pub fn now(&self, i: usize, stroke: f64, share: f64) -> Swung {
-        self.swung(i, &self.lift(i, stroke), share)
+        self.swung(&self.lift(stroke), share, i)
     }
 
-    fn swung(&self, i: usize, lift: &Joints, share: f64) -> Swung {
+    fn swung(&self, lift: &Joints, share: f64, i: usize) -> Swung {
         Swung {
             surface: [
                 dot(lift, &self.deflection) / share,
                 dot(lift, &self.speed) / share,
                 0.0,
             ],
-            turned: dot(&self.course.levers[i].lift[1], &self.deflection),
+            turned: dot(self.turning(i), &self.deflection),
             acceleration: 0.0,
         }
     }
 
-    /// Advances over `h` [s] from sample `i` under forces as they are now.
-    pub fn advance(&mut self, felt: &Felt, i: usize, h: f64, forces: Bending) -> Swung {
-        let share = felt.share[i];
-        let lift = self.lift(i, forces.stroke);
+    fn turning(&self, i: usize) -> &Joints {
+        match self.course.sharp {
+            None => &self.course.levers[i].lift[1],
+            Some(_) => &self.levers[1],
+        }
+    }
+
+    /// Advances over `h` [s] from sample `i` under forces as they are now, `share` of the contact's along the slide.
+    pub fn advance(&mut self, felt: &Felt, i: usize, h: f64, share: f64, forces: Bending) -> Swung {
+        let lift = self.lift(forces.stroke);
         let levers = &self.course.levers[i];
         let [fixed, turn] = &levers.slip;
         let slip: Joints = std::array::from_fn(|j| fixed[j] + forces.stroke * turn[j]);
@@ -115,9 +171,10 @@ impl<'a> Flexing<'a> {
             inertia: i / INERTIA_EVERY,
             touching: forces.contact > 0.0,
             step: h,
+            apart: self.apart(),
         };
         let inertia = &self.course.inertia[key.inertia];
-        let (stiffness, halved) = self.springs(h);
+        let (stiffness, halved, rest) = self.springs(h, key.apart);
         // The contact over the step: as it is, with what the piston and the swing do to it by its middle.
         let [spring, damper] = if key.touching {
             [forces.stiffness, forces.damping]
@@ -136,7 +193,7 @@ impl<'a> Flexing<'a> {
                 - axial[j] * forces.push
                 - motor
                 - halved[j] * self.speed[j]
-                - stiffness[j] * self.deflection[j];
+                - stiffness[j] * (self.deflection[j] - rest[j]);
             for k in 0..self.count {
                 right[j] += inertia[(j, k)] / h * self.speed[k];
             }
@@ -163,7 +220,7 @@ impl<'a> Flexing<'a> {
         if friction.abs() > most {
             friction = most * friction.signum();
         }
-        let mut swung = self.swung(i, &lift, share);
+        let mut swung = self.swung(&lift, share, i);
         for j in 0..self.count {
             let end = freely[j] - friction * dragged[j];
             let rate = (end - self.speed[j]) / h;
@@ -175,14 +232,25 @@ impl<'a> Flexing<'a> {
         swung
     }
 
-    /// Stiffness [N m/rad] and half of what damping and springs take over a step [N m s/rad], of each joint.
-    fn springs(&self, h: f64) -> (Joints, Joints) {
-        let stiffness = self.cell.joint_stiffness;
-        let mut halved = [0.0; MOST_JOINTS];
+    /// Joints whose teeth are apart, one bit each.
+    fn apart(&self) -> u8 {
+        (0..self.count)
+            .filter(|j| self.deflection[*j].abs() < 0.5 * self.cell.joint_play[*j])
+            .fold(0, |bits, j| bits | 1 << j)
+    }
+
+    /// Stiffness [N m/rad], half of what damping and springs take over a step [N m s/rad], and where the springs rest [rad], of each joint.
+    fn springs(&self, h: f64, apart: u8) -> (Joints, Joints, Joints) {
+        let (mut stiffness, mut halved, mut rest) =
+            ([0.0; MOST_JOINTS], [0.0; MOST_JOINTS], [0.0; MOST_JOINTS]);
         for j in 0..self.count {
+            if apart & 1 << j == 0 {
+                stiffness[j] = self.stiffness(j);
+            }
             halved[j] = (0.5 * self.cell.joint_damping + 0.25 * h) * stiffness[j];
+            rest[j] = 0.5 * self.cell.joint_play[j] * self.deflection[j].signum();
         }
-        (stiffness, halved)
+        (stiffness, halved, rest)
     }
 
     fn solve(&self, right: &Joints) -> Joints {

@@ -16,8 +16,10 @@ mod guide;
 mod inputs;
 mod latent;
 mod parameters;
+mod riding;
 mod sensors;
 mod servo;
+mod sharp_edge;
 mod simulate;
 
 pub use cell_course::{CellCourse, EdgeStation, Felt, INERTIA_EVERY, JointCourse, Levers};
@@ -28,5 +30,6 @@ pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
 pub use parameters::PlantParameters;
 pub use sensors::SensorErrors;
-pub use servo::{Followed, follow};
+pub use servo::{Followed, follow, shown};
+pub use sharp_edge::{SharpEdge, Touch};
 pub use simulate::{CHANNELS, Channel, PlantCourse, Trajectory, readings, simulate, trajectory};

@@ -6,6 +6,8 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::{Matrix3, Vector3};
+
 /// Angles of one motor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Followed {
@@ -15,8 +17,16 @@ pub struct Followed {
     pub acceleration: Vec<f64>,
 }
 
-/// What a servo of a bandwidth [Hz] makes of commands [rad] at times [s], from rest on the first one.
+/// What a servo of a bandwidth [Hz] makes of commands [rad] at times [s], from rest on the first one; one of no lag obeys.
 pub fn follow(time: &[f64], command: &[f64], bandwidth: f64) -> Followed {
+    if bandwidth.is_infinite() {
+        return Followed {
+            angle: command.to_vec(),
+            acceleration: (0..command.len())
+                .map(|i| curvature(time, command, i))
+                .collect(),
+        };
+    }
     let w = TAU * bandwidth;
     let mut angle = Vec::with_capacity(command.len());
     let mut acceleration = Vec::with_capacity(command.len());
@@ -42,6 +52,76 @@ pub fn follow(time: &[f64], command: &[f64], bandwidth: f64) -> Followed {
     }
 }
 
+/// Second derivative at a sample; none at the ends, where everything rests.
+pub(super) fn curvature(time: &[f64], values: &[f64], i: usize) -> f64 {
+    if i == 0 || i + 1 >= values.len() {
+        return 0.0;
+    }
+    let [before, after] = [time[i] - time[i - 1], time[i + 1] - time[i]];
+    let rise = (values[i + 1] - values[i]) / after - (values[i] - values[i - 1]) / before;
+    rise * 2.0 / (before + after)
+}
+
+/// Half the span over which what an encoder shows beside its command is smoothed [s]: servos hardly swing faster.
+const SMOOTHED: f64 = 0.009;
+/// Standard deviations of an encoder's noise by which what it shows must move before its motor is taken to have moved. To shake a motor by its encoder's
+/// noise would loosen every seal that sticks behind it.
+const UNMOVED: f64 = 2.0;
+
+/// What an encoder [rad] with noise of a standard deviation [rad] shows that a motor did, which a servo without loads would have moved as `led`: its
+/// departure from that fitted by a parabola about each sample (Savitzky, Golay, Anal. Chem. 36, 1964), and followed with as much play as noise makes.
+/// Values that are absent count for nothing.
+pub fn shown(time: &[f64], led: &Followed, encoder: &[f64], noise: f64) -> Followed {
+    let count = led.angle.len();
+    let pairs = encoder.iter().zip(&led.angle);
+    let away: Vec<f64> = pairs.map(|(encoder, led)| encoder - led).collect();
+    let mut held = f64::NAN;
+    let mut angle = Vec::with_capacity(count);
+    let mut acceleration = Vec::with_capacity(count);
+    for i in 0..count {
+        let [value, bend] = parabola(time, &away, i);
+        held = if held.is_nan() {
+            value
+        } else {
+            held.clamp(value - UNMOVED * noise, value + UNMOVED * noise)
+        };
+        angle.push(led.angle[i] + held);
+        acceleration.push(led.acceleration[i] + bend);
+    }
+    Followed {
+        angle,
+        acceleration,
+    }
+}
+
+/// Value and second derivative at a sample of the parabola through those about it.
+fn parabola(time: &[f64], values: &[f64], i: usize) -> [f64; 2] {
+    let from = time.partition_point(|t| *t < time[i] - SMOOTHED);
+    let to = time.partition_point(|t| *t <= time[i] + SMOOTHED);
+    let mut normal = Matrix3::zeros();
+    let mut right = Vector3::zeros();
+    for j in from..to {
+        if values[j].is_finite() {
+            let u = (time[j] - time[i]) / SMOOTHED;
+            let row = Vector3::new(1.0, u, u * u);
+            normal += row * row.transpose();
+            right += row * values[j];
+        }
+    }
+    // Too few for a parabola: as it was read, or as it was led.
+    let Some(fit) = normal.cholesky().map(|c| c.solve(&right)) else {
+        return [
+            if values[i].is_finite() {
+                values[i]
+            } else {
+                0.0
+            },
+            0.0,
+        ];
+    };
+    [fit[0], 2.0 * fit[2] / (SMOOTHED * SMOOTHED)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,6 +139,30 @@ mod tests {
             let exact = 1.0 - (1.0 + w * t) * (-w * t).exp();
             assert!((q - exact).abs() < 1e-6, "{t}: {q} against {exact}");
         }
+    }
+
+    #[test]
+    fn an_encoder_shows_what_pushed_its_motor_aside_and_its_noise_moves_nothing() {
+        let time: Vec<f64> = (0..500).map(|i| f64::from(i) * 4e-3).collect();
+        let led = follow(&time, &time, f64::INFINITY);
+        let pushed = |t: f64| 1e-4 * (-(((t - 1.0) / 0.03).powi(2))).exp();
+        // Noise of two values in turn, and one reading that is lost.
+        let noise = |i: usize| if i % 3 == 0 { 2e-6 } else { -1e-6 };
+        let mut encoder: Vec<f64> = (0..500)
+            .map(|i| time[i] + pushed(time[i]) + noise(i))
+            .collect();
+        encoder[100] = f64::NAN;
+        let shown = shown(&time, &led, &encoder, 2e-6);
+        for i in 0..500 {
+            let error = shown.angle[i] - time[i] - pushed(time[i]);
+            assert!(error.abs() < 1e-5, "{i}: {error}");
+        }
+        let still: Vec<f64> = (20..90).map(|i| shown.angle[i] - time[i]).collect();
+        assert!(
+            still
+                .windows(2)
+                .all(|pair| (pair[0] - pair[1]).abs() < 1e-12)
+        );
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::guide::Guide;
 use super::inputs::PlantInputs;
 use super::latent::{Moment, Port};
 use super::parameters::PlantParameters;
+use super::riding::Riding;
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::valve::ValvePosition;
 
@@ -50,6 +51,8 @@ pub struct Trajectory {
     pub mass_flow: Vec<f64>,
     /// Force that held the piston to a measured motion [N]; none where nothing did.
     pub hold_force: Vec<f64>,
+    /// Share of the contact force along the stroke [1].
+    pub share: Vec<f64>,
 }
 
 /// A simulated recording.
@@ -75,6 +78,15 @@ pub fn readings(
     truth: &Trajectory,
 ) -> [Vec<f64>; 4] {
     let sensors = &plant.sensors;
+    let along_slide = inputs.cell.as_ref().is_some_and(|c| c.force_along_slide);
+    let axial: Vec<f64>;
+    let force = if along_slide {
+        let pairs = truth.contact_force.iter().zip(&truth.share);
+        axial = pairs.map(|(force, share)| force * share).collect();
+        &axial
+    } else {
+        &truth.contact_force
+    };
     let mut readings = [
         truth.outlet.clone(),
         truth
@@ -82,7 +94,7 @@ pub fn readings(
             .iter()
             .map(|stroke| sensors.stroke_gain * stroke)
             .collect(),
-        sensors.force_readings(&inputs.time, &truth.contact_force, &truth.acceleration),
+        sensors.force_readings(&inputs.time, force, &truth.acceleration),
         truth.acceleration.clone(),
     ];
     if let Some(latent) = &plant.latent {
@@ -115,15 +127,20 @@ pub fn trajectory(
         let felt = felt.as_ref().map(|felt| felt.pull[i]);
         mass * felt.unwrap_or(plant.gravity_along_extension)
     };
-    let mut motion = PistonMotion {
-        stroke: plant.cell.start_stroke + pull(0).min(0.0) / plant.device.end_stop.stiffness,
-        speed: 0.0,
-    };
-    let mut state = device.at_rest(motion.stroke, 0.0);
+    let pressing = inputs.cell.as_ref().is_some_and(|c| c.starts_pressing);
+    let (mut motion, mut state) = at_rest(plant, &device, inputs, pressing, pull(0));
     let mut flexing = inputs
         .cell
         .as_ref()
         .and_then(|course| Flexing::new(course, &plant.cell));
+    if let (true, Some(flexing), Some(felt)) = (pressing, &mut flexing, &felt) {
+        let push = device.piston_force(&state, motion) + pull(0) + felt.carried[0];
+        flexing.settle(0, push);
+    }
+    let sharp = inputs.cell.as_ref().and_then(|course| {
+        let sharp = course.sharp.as_ref()?;
+        Some((course, sharp))
+    });
     let count = inputs.time.len();
     let mut truth = Trajectory::default();
     let mut entered = 0.0;
@@ -149,6 +166,7 @@ pub fn trajectory(
             weight: [pull(i), (pull(next) - pull(i)) / h],
             share: 1.0,
             burr: None,
+            burr_damped: sharp.is_some(),
             swung: Swung::default(),
             start: inputs.time[i],
             surface: [0.0; 4],
@@ -178,6 +196,16 @@ pub fn trajectory(
                 [inputs.slope(surface, i), inputs.slope(surface, next)],
             );
         }
+        let mut normal = None;
+        if let (Some((course, sharp)), Some(felt)) = (sharp, &felt) {
+            let stroke = motion.stroke + 0.5 * h * motion.speed;
+            let away = flexing.as_ref().map(|flexing| flexing.away(i, stroke));
+            let away = away.unwrap_or_default();
+            let riding = Riding::on(course, sharp, felt, i, h, stroke, away);
+            carrier.share = riding.share;
+            carrier.surface = riding.surface;
+            normal = Some(riding.normal);
+        }
         if let Some(latent) = &plant.latent {
             let pressures = device.pressures(&state, motion.stroke);
             let mut moment = Moment {
@@ -206,7 +234,8 @@ pub fn trajectory(
                 }
             }
         }
-        if let Some(flexing) = &flexing {
+        if let Some(flexing) = &mut flexing {
+            flexing.face(i, normal);
             carrier.swung = flexing.now(i, motion.stroke, carrier.share);
         }
         truth.note(&device, &state, motion, &carrier);
@@ -238,7 +267,7 @@ pub fn trajectory(
                     stroke: motion.stroke,
                     speed: motion.speed,
                 };
-                let swung = flexing.advance(felt, i, h / parts, forces);
+                let swung = flexing.advance(felt, i, h / parts, leg.share, forces);
                 leg.swung = swung;
                 leg.weight[0] -= mass * swung.acceleration;
             }
@@ -253,6 +282,27 @@ pub fn trajectory(
         }
     }
     truth
+}
+
+/// Retracted on its stop, all at the atmosphere; or out on its stop at the first pressure set. A rig that presses what it holds pushes its stop in.
+fn at_rest(
+    plant: &PlantParameters,
+    device: &Device,
+    inputs: &PlantInputs,
+    pressing: bool,
+    pull: f64,
+) -> (PistonMotion, DeviceState) {
+    let stop = plant.device.end_stop.stiffness;
+    let resting = |stroke: f64| PistonMotion { stroke, speed: 0.0 };
+    if !pressing {
+        let motion = resting(plant.cell.start_stroke + pull.min(0.0) / stop);
+        return (motion, device.at_rest(motion.stroke, 0.0));
+    }
+    let out = plant.device.full_stroke;
+    let set = inputs.set_pressure[0];
+    let push = device.piston_force(&device.at_rest(out, set), resting(out)) + pull;
+    let motion = resting(out + push.max(0.0) / stop);
+    (motion, device.at_rest(motion.stroke, set))
 }
 
 /// Steps into which a sample is cut where links swing.
@@ -302,6 +352,7 @@ impl Trajectory {
         self.acceleration.push(force / mass);
         self.contact_force.push(contact_force);
         self.hold_force.push(hold_force);
+        self.share.push(carrier.axial_share());
         self.pressures[0].push(pressures[0]);
         self.pressures[1].push(pressures[1]);
     }

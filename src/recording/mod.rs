@@ -9,6 +9,7 @@ pub mod csv;
 mod error;
 pub mod parquet;
 pub mod rerun;
+pub mod samples;
 pub mod scene;
 pub mod schema;
 pub mod unit;

@@ -178,6 +178,9 @@ pub const SIGNALS: [SignalDefinition; 22] = [
         "Speed of the tool along the edge."),
 ];
 
+/// Sensors of a cell, recorded behind its signals.
+pub const CELL_SENSORS: [&str; 3] = [MEASURED_REGULATOR_PRESSURE, MEASURED_STROKE, MEASURED_FORCE];
+
 /// Signals that only a bench rig records, or sensors.
 #[rustfmt::skip]
 pub const BENCH_SIGNALS: [SignalDefinition; 13] = [
@@ -220,15 +223,18 @@ pub enum JointSignal {
     Velocity,
     /// Torque of the drive.
     Torque,
+    /// What the encoder reads, on the motor's side.
+    Encoder,
 }
 
 impl JointSignal {
     /// Every joint signal, in the order of the table's columns.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Position,
         Self::Reference,
         Self::Velocity,
         Self::Torque,
+        Self::Encoder,
     ];
 
     /// What stands behind the joint's number.
@@ -239,6 +245,7 @@ impl JointSignal {
             Self::Reference => "reference",
             Self::Velocity => "velocity",
             Self::Torque => "torque",
+            Self::Encoder => "encoder",
         }
     }
 
@@ -246,7 +253,7 @@ impl JointSignal {
     #[must_use]
     pub const fn unit(self) -> Unit {
         match self {
-            Self::Position | Self::Reference => Unit::Radian,
+            Self::Position | Self::Reference | Self::Encoder => Unit::Radian,
             Self::Velocity => Unit::RadianPerSecond,
             Self::Torque => Unit::NewtonMetre,
         }
@@ -260,6 +267,9 @@ impl JointSignal {
             Self::Reference => "Angle that the joint's servo is told to hold.",
             Self::Velocity => "Angular velocity of the joint.",
             Self::Torque => "Torque of the joint's drive, gravity feed-forward included.",
+            Self::Encoder => {
+                "Angle that the joint's encoder reads, on the motor's side of its transmission."
+            }
         }
     }
 }

@@ -6,12 +6,14 @@ use crate::arm::load_arm;
 use crate::cell::{CellError, arm_options, choose_edge};
 use crate::plant::{
     CellCourse, CellParameters, ContactLaw, ContactParameters, EdgeStation, MOST_JOINTS, Periodic,
-    PlantParameters, SensorErrors,
+    PlantParameters, SensorErrors, SharpEdge,
 };
 use crate::scenario::RecordedCell;
 use crate::scenario::recorded_cell::apply;
 use crate::workpiece::{EdgeCurve, load_mesh};
 use glam::DVec3;
+use glamx::DPose3;
+use std::sync::Arc;
 
 /// A recorded cell with its arm and its edge.
 #[derive(Debug, Clone)]
@@ -35,7 +37,7 @@ impl LoadedCell {
         let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         let joints: Vec<String> = arm.chain.joints.iter().map(|j| j.name.clone()).collect();
         let axes = arm.chain.len();
-        if scenario.joint_stiffness.len() != axes {
+        if !scenario.own && scenario.joint_stiffness.len() != axes {
             return Err(CellError::JointStiffness {
                 file: scenario.path.clone(),
                 found: scenario.joint_stiffness.len(),
@@ -52,7 +54,13 @@ impl LoadedCell {
         let mesh = load_mesh(&scenario.workpiece.mesh, scenario.workpiece.mesh_scale)?;
         let edge = choose_edge(&scenario.path, &scenario.workpiece, &mesh)?;
         let device = &scenario.device;
+        let sharp = scenario
+            .own
+            .then(|| Arc::new(sharp_edge(&edge, scenario.workpiece.world_from_part)));
         let cell = ReplayCell {
+            sharp,
+            own: scenario.own,
+            encoder_noise: scenario.joint_noise,
             chain: arm.chain,
             world_from_base: scenario.arm.world_from_base,
             gravity: scenario.gravity,
@@ -96,13 +104,26 @@ impl LoadedCell {
                 joint_stiffness,
                 joint_damping: scenario.joint_damping[0],
                 friction: scenario.contact.friction,
+                joint_friction: self.frictions(),
                 ..CellParameters::RIGID
             },
             latent: None,
-            sensors: SensorErrors::NONE,
+            sensors: SensorErrors {
+                force_delay: scenario.force_delay,
+                ..SensorErrors::NONE
+            },
         };
         apply(&scenario.effects, &mut plant);
         plant
+    }
+
+    /// Dry friction that the arm's file gives its joints [N m].
+    fn frictions(&self) -> [f64; MOST_JOINTS] {
+        let mut frictions = [0.0; MOST_JOINTS];
+        for (own, joint) in frictions.iter_mut().zip(&self.cell.chain.joints) {
+            *own = joint.friction;
+        }
+        frictions
     }
 
     /// The arm's course in a recording: times [s], commanded places along the edge [m] and angles of the joints [rad], servos of a bandwidth [Hz].
@@ -111,6 +132,18 @@ impl LoadedCell {
         time: &[f64],
         path: &[f64],
         joints: &[Vec<f64>],
+        bandwidth: f64,
+    ) -> CellCourse {
+        self.course_of(time, path, joints, None, bandwidth)
+    }
+
+    /// The same where the encoders' readings [rad], of a cell whose motors do not keep to a law that is known, say where the joints went.
+    pub fn course_of(
+        &self,
+        time: &[f64],
+        path: &[f64],
+        joints: &[Vec<f64>],
+        encoders: Option<&[Option<Vec<f64>>]>,
         bandwidth: f64,
     ) -> CellCourse {
         let world_from_part = self.scenario.workpiece.world_from_part;
@@ -128,7 +161,27 @@ impl LoadedCell {
             time,
             joints,
             edge: &edge,
+            encoders: encoders.filter(|_| self.scenario.own),
         };
         self.cell.course(commands, bandwidth)
     }
+}
+
+/// The edge as a chain of segments in the world.
+fn sharp_edge(edge: &EdgeCurve, world_from_part: DPose3) -> SharpEdge {
+    let mut points = edge.points.clone();
+    let mut stations = edge.stations().to_vec();
+    if edge.closed {
+        points.push(edge.points[0]);
+        stations.push(edge.length);
+    }
+    let of = |normal: DVec3| world_from_part.rotation * normal;
+    SharpEdge::new(
+        points
+            .iter()
+            .map(|&point| world_from_part.transform_point(point))
+            .collect(),
+        stations,
+        edge.normals.iter().map(|&(a, b)| [of(a), of(b)]).collect(),
+    )
 }

@@ -1,16 +1,21 @@
 //! From the commands of a recorded cell to what its device feels: the arm's course along the part's edge.
 
+mod drive_torque;
 mod load;
 
+pub use drive_torque::Drive;
 pub use load::LoadedCell;
 
 use crate::arm::chain::{BodyInertia, Chain, MAX_JOINTS};
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::link_poses;
-use crate::plant::{CellCourse, EdgeStation, INERTIA_EVERY, JointCourse, MOST_JOINTS, follow};
-use glam::{DMat3, DQuat, DVec3};
+use crate::plant::{
+    CellCourse, EdgeStation, INERTIA_EVERY, JointCourse, MOST_JOINTS, SharpEdge, follow, shown,
+};
+use glam::{DMat3, DVec3};
 use glamx::DPose3;
 use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 const _: () = assert!(MAX_JOINTS == MOST_JOINTS);
 
@@ -35,6 +40,12 @@ pub struct ReplayCell {
     pub full_stroke: f64,
     /// Length of the edge [m].
     pub edge_length: f64,
+    /// Standard deviation of the encoders' noise [rad].
+    pub encoder_noise: f64,
+    /// The edge as the ball meets it; none where it is met along its bisector.
+    pub sharp: Option<Arc<SharpEdge>>,
+    /// Is it one of this project's own: gravity bends its joints, its load cell measures along the slide, a recording starts with the slide out?
+    pub own: bool,
 }
 
 /// Commands of one recording.
@@ -46,17 +57,23 @@ pub struct Commands<'a> {
     pub joints: &'a [Vec<f64>],
     /// The edge where the commands have the ball.
     pub edge: &'a [EdgeStation],
+    /// What the encoders of the joints read [rad], where the course is to be theirs; in place of it the commands' where there is none.
+    pub encoders: Option<&'a [Option<Vec<f64>>]>,
 }
 
 impl ReplayCell {
     /// The arm's course on commands, its servos of a bandwidth [Hz].
     pub fn course(&self, commands: Commands<'_>, bandwidth: f64) -> CellCourse {
         let count = commands.time.len();
-        let followed: Vec<_> = commands
-            .joints
-            .iter()
-            .map(|command| follow(commands.time, command, bandwidth))
-            .collect();
+        let moved = |(joint, command): (usize, &Vec<f64>)| {
+            let led = follow(commands.time, command, bandwidth);
+            let encoder = commands.encoders.and_then(|all| all[joint].as_deref());
+            match encoder {
+                Some(encoder) => shown(commands.time, &led, encoder, self.encoder_noise),
+                None => led,
+            }
+        };
+        let followed: Vec<_> = commands.joints.iter().enumerate().map(moved).collect();
         let usual_stroke = 0.5 * self.full_stroke;
         let loaded = self.loaded(usual_stroke);
         let joints = self.chain.len();
@@ -71,12 +88,16 @@ impl ReplayCell {
                     axis: Vec::with_capacity(count),
                     origin: Vec::with_capacity(count),
                     torque: Vec::with_capacity(count),
+                    bend: followed.acceleration.clone(),
                 })
                 .collect(),
             bandwidth,
             ball: Vec::with_capacity(count),
             slide: Vec::with_capacity(count),
             edge: commands.edge.to_vec(),
+            sharp: self.sharp.clone(),
+            force_along_slide: self.own,
+            starts_pressing: self.own,
             edge_middle: 0.5 * self.edge_length,
             ball_radius: self.ball_radius,
             levers: Vec::with_capacity(count),
@@ -98,11 +119,12 @@ impl ReplayCell {
                 qdd[j] = followed.acceleration[i];
             }
             link_poses(&self.chain, self.world_from_base, &q, &mut poses);
-            // Gravity and Coriolis torques are compensated: only what accelerates bends the springs.
+            // Where gravity and Coriolis torques are compensated, only what accelerates bends the springs.
+            let gravity = if self.own { self.gravity } else { DVec3::ZERO };
             inverse_dynamics(
                 &loaded,
-                DQuat::IDENTITY,
-                DVec3::ZERO,
+                self.world_from_base.rotation,
+                gravity,
                 &q,
                 &still,
                 &qdd,

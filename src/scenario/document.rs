@@ -226,7 +226,9 @@ fn expected_value(expected: &str, key: &str) -> String {
         "u32" | "u64" | "usize" => number("a whole number, 0 or more"),
         "a boolean" => "true or false".to_owned(),
         "a string" | "path string" => "a text in quotes".to_owned(),
-        "a sequence" if ["arm.limit_overrides", "command", "valve"].contains(&key) => {
+        "a sequence"
+            if ["arm.limit_overrides", "arm.drives", "command", "valve"].contains(&key) =>
+        {
             format!("tables [[{key}]]")
         }
         "a sequence" => number("a list of numbers"),

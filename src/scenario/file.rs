@@ -35,6 +35,8 @@ pub(super) struct ScenarioFile {
     pub controller: ControllerKeys,
     #[serde(default)]
     pub expect: BTreeMap<String, BoundKeys>,
+    #[serde(default)]
+    pub effect: super::recorded_cell::EffectKeys,
 }
 
 /// `[arm]`.
@@ -48,6 +50,8 @@ pub(super) struct ArmKeys {
     pub packages: BTreeMap<String, PathBuf>,
     #[serde(default)]
     pub limit_overrides: Vec<LimitKeys>,
+    #[serde(default)]
+    pub drives: Vec<DriveKeys>,
     pub base_position_mm: Option<Vec<f64>>,
     pub base_rotation_deg: Option<Vec<f64>>,
     pub seed_posture_deg: Option<Vec<f64>>,
@@ -64,6 +68,17 @@ pub(super) struct LimitKeys {
     pub velocity_deg_per_s: Option<f64>,
 }
 
+/// `[[arm.drives]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DriveKeys {
+    pub joint: String,
+    pub friction_n_m: Option<f64>,
+    pub stiffness_n_m_per_rad: Option<f64>,
+    pub damping_time_ms: Option<f64>,
+    pub backlash_deg: Option<f64>,
+}
+
 /// `[arm.servo]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -72,6 +87,8 @@ pub(super) struct ServoKeys {
     pub damping_ratio: Option<f64>,
     pub integral_time_s: Option<f64>,
     pub contact_feed_forward: Option<bool>,
+    pub lag_bandwidth_hz: Option<f64>,
+    pub encoder_noise_rad: Option<f64>,
 }
 
 /// `[device]` of a scenario.
@@ -244,6 +261,8 @@ pub(super) struct ContactKeys {
     pub stiffness_n_per_m: Option<f64>,
     pub damping_n_s_per_m: Option<f64>,
     pub friction_coefficient: Option<f64>,
+    pub runout_um: Option<f64>,
+    pub runout_frequency_hz: Option<f64>,
 }
 
 /// `[process]`.

@@ -13,14 +13,15 @@ use super::device::load_with_overrides;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
+use super::recorded_cell::effects_of;
 use super::rig_device::is_rig;
 use super::sections::{bench_sections, scenario_sections};
 use super::sensing::sensing;
 use super::suggestion::Sections;
 use super::workpiece::workpiece;
 use super::{
-    AnyScenario, ArmScenario, ContactScenario, DeviceScenario, Expectation, LimitOverride,
-    ProcessScenario, Scenario, ServoScenario, SimulationScenario,
+    AnyScenario, ArmScenario, ContactScenario, DeviceScenario, DriveScenario, Expectation,
+    LimitOverride, ProcessScenario, Scenario, ServoScenario, SimulationScenario,
 };
 
 /// Reads and checks a scenario file of either kind and the device model file that it names.
@@ -122,6 +123,7 @@ fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, Scena
         controller,
         simulation,
         expect: expectations(&section("expect"), &file.expect)?,
+        effects: effects_of(document, &file.effect)?,
         device,
         contact,
     })
@@ -145,6 +147,7 @@ pub(super) fn arm(
         flange_link: section.text("flange_link", &keys.flange_link)?,
         package_directories: keys.packages.iter().map(folder).collect::<Result<_, _>>()?,
         limit_overrides: limit_overrides(section.document(), &keys.limit_overrides)?,
+        drives: drives(section.document(), &keys.drives)?,
         world_from_base: section.pose(
             ("base_position_mm", keys.base_position_mm.as_deref()),
             ("base_rotation_deg", keys.base_rotation_deg.as_deref()),
@@ -187,6 +190,41 @@ fn limit_overrides(
     Ok(limits)
 }
 
+fn drives(
+    document: &Document<'_>,
+    drives: &[file::DriveKeys],
+) -> Result<Vec<DriveScenario>, ScenarioError> {
+    let mut joints = BTreeSet::new();
+    let mut checked = Vec::with_capacity(drives.len());
+    for (index, keys) in drives.iter().enumerate() {
+        let section = Section::new(document, format!("arm.drives[{index}]"));
+        let joint = section.text("joint", &keys.joint)?;
+        if !joints.insert(&keys.joint) {
+            let expected = "each joint once".to_owned();
+            return Err(section.refuse("joint", format!("\"{joint}\" again"), expected));
+        }
+        let drive = drive(&section, keys, joint)?;
+        if drive.backlash > 0.0 && drive.stiffness.is_infinite() {
+            let expected = "the stiffness of the teeth beside a backlash";
+            return Err(section.missing("stiffness_n_m_per_rad", expected));
+        }
+        checked.push(drive);
+    }
+    Ok(checked)
+}
+
+#[rustfmt::skip] // A table: one key a line.
+fn drive(section: &Section<'_>, keys: &file::DriveKeys, joint: String) -> Result<DriveScenario, ScenarioError> {
+    let friction = keys.friction_n_m;
+    Ok(DriveScenario {
+        joint,
+        friction: friction.map(|value| section.number("friction_n_m", value, 0.0..=10_000.0)).transpose()?,
+        stiffness: section.number("stiffness_n_m_per_rad", keys.stiffness_n_m_per_rad.unwrap_or(f64::INFINITY), 1000.0..=f64::INFINITY)?,
+        damping_time: section.number("damping_time_ms", keys.damping_time_ms.unwrap_or(2.5), 0.1..=50.0)?,
+        backlash: section.number("backlash_deg", keys.backlash_deg.unwrap_or(0.0), 0.0..=5.0)?,
+    })
+}
+
 #[rustfmt::skip] // A table: one key a line.
 fn servo(section: &Section<'_>, keys: &file::ServoKeys) -> Result<ServoScenario, ScenarioError> {
     Ok(ServoScenario {
@@ -194,6 +232,8 @@ fn servo(section: &Section<'_>, keys: &file::ServoKeys) -> Result<ServoScenario,
         damping_ratio: section.number("damping_ratio", keys.damping_ratio.unwrap_or(1.0), 0.1..=10.0)?,
         integral_time: section.number("integral_time_s", keys.integral_time_s.unwrap_or(0.1), 0.001..=f64::INFINITY)?,
         contact_feed_forward: keys.contact_feed_forward.unwrap_or(true),
+        lag_bandwidth: section.number("lag_bandwidth_hz", keys.lag_bandwidth_hz.unwrap_or(f64::INFINITY), 0.5..=f64::INFINITY)?,
+        encoder_noise: section.number("encoder_noise_rad", keys.encoder_noise_rad.unwrap_or(0.0), 0.0..=0.01)?,
     })
 }
 
@@ -220,6 +260,8 @@ pub(super) fn contact(section: &Section<'_>, keys: &file::ContactKeys) -> Result
         stiffness: section.number("stiffness_n_per_m", keys.stiffness_n_per_m.unwrap_or(1.5e5), 1e3..=1e8)?,
         damping: section.number("damping_n_s_per_m", keys.damping_n_s_per_m.unwrap_or(4e2), 0.0..=1e6)?,
         friction: section.number("friction_coefficient", keys.friction_coefficient.unwrap_or(0.15), 0.0..=2.0)?,
+        runout_amplitude: section.number("runout_um", keys.runout_um.unwrap_or(0.0), 0.0..=1000.0)?,
+        runout_frequency: section.number("runout_frequency_hz", keys.runout_frequency_hz.unwrap_or(30.0), 0.1..=200.0)?,
     })
 }
 

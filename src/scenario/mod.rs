@@ -6,6 +6,7 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use crate::device::DeviceParameters;
+use crate::effects::Effect;
 use crate::sensing::SensingParameters;
 
 pub mod bench;
@@ -73,6 +74,8 @@ pub struct Scenario {
     pub controller: ControllerScenario,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
+    /// Physics beyond the cell, as a diagnosis writes it into improved.toml, with all its numbers; nothing that is simulated.
+    pub effects: Vec<(&'static Effect, Vec<f64>)>,
 }
 
 /// The arm.
@@ -92,6 +95,8 @@ pub struct ArmScenario {
     pub world_from_base: DPose3,
     /// Joint positions near which a solution is sought first [rad]; found by search when absent.
     pub seed_posture: Option<Vec<f64>>,
+    /// Joints whose drives are not as the URDF has them.
+    pub drives: Vec<DriveScenario>,
     /// The joint servo.
     pub servo: ServoScenario,
 }
@@ -107,6 +112,21 @@ pub struct LimitOverride {
     pub velocity: Option<f64>,
 }
 
+/// What the drive of one joint is like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriveScenario {
+    /// Joint name.
+    pub joint: String,
+    /// Dry friction [N m]; the URDF's when absent.
+    pub friction: Option<f64>,
+    /// Stiffness of the spring between motor and link [N m/rad]; infinite for none.
+    pub stiffness: f64,
+    /// Its damping over its stiffness [s].
+    pub damping_time: f64,
+    /// Play between motor and link, from flank to flank [rad].
+    pub backlash: f64,
+}
+
 /// The joint servo, the same for all axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ServoScenario {
@@ -118,6 +138,10 @@ pub struct ServoScenario {
     pub integral_time: f64,
     /// Is the torque of the contact force (from the device's pressures) fed forward?
     pub contact_feed_forward: bool,
+    /// Bandwidth of the critically damped lag with which the drives take their commands [Hz]; infinite for none.
+    pub lag_bandwidth: f64,
+    /// Standard deviation of the encoders' noise [rad].
+    pub encoder_noise: f64,
 }
 
 /// The device and its tool.
@@ -233,6 +257,10 @@ pub struct ContactScenario {
     pub damping: f64,
     /// Coulomb friction coefficient [1].
     pub friction: f64,
+    /// Runout of the tool, zero to peak [m].
+    pub runout_amplitude: f64,
+    /// Its turns a second [Hz].
+    pub runout_frequency: f64,
 }
 
 /// The job.

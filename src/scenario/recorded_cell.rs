@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use serde::Deserialize;
 
-use super::bench_file::Kind;
+use super::bench_file::{Kind, KindOnly};
 use super::check::Section;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
@@ -18,8 +18,11 @@ use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, Workpiec
 use crate::effects::Effect;
 
 mod effects;
+mod own;
 
+pub(super) use effects::EffectKeys;
 pub use effects::{FoundNumbers, apply, improved_cell_text};
+pub(super) use own::effects_of;
 
 /// The file.
 #[derive(Debug, Deserialize)]
@@ -39,7 +42,7 @@ pub(super) struct RecordedCellFile {
     #[serde(default)]
     pub belief: BeliefKeys,
     #[serde(default)]
-    pub effect: effects::EffectKeys,
+    pub effect: EffectKeys,
 }
 
 /// `[joints]`.
@@ -106,6 +109,13 @@ pub struct RecordedCell {
     pub tolerance: f64,
     /// How far off its retracted stop the slide may start [m].
     pub start_stroke_tolerance: f64,
+    /// Is it a cell that this project runs? Its joints do not give, gravity is theirs to carry, its encoders say where its motors went; its ball meets the
+    /// edge as the mesh has it, its load cell measures along the slide, and a recording starts with the slide out on its stop.
+    pub own: bool,
+    /// How late its force is stamped [s]: in a row of a run stands that of the step which ended with it.
+    pub force_delay: f64,
+    /// Samples per second of its sensors, if they are fewer than the recording's rows [Hz].
+    pub sample_rate: f64,
 }
 
 /// Reads and checks the scenario file of a recorded cell and the device model file that it names.
@@ -115,6 +125,10 @@ pub struct RecordedCell {
 pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, file::SCHEMA)?;
+    let KindOnly { kind } = document.parse(&recorded_cell_sections())?;
+    if kind == Kind::Cell {
+        return own::of_scenario(&load::load(path)?, &document, &text);
+    }
     let file: RecordedCellFile = document.parse(&recorded_cell_sections())?;
     if file.kind != Kind::RecordedCell {
         return Err(ScenarioError::OtherKind {
@@ -153,6 +167,9 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
             0.0..=10.0,
         )?,
         device,
+        own: false,
+        force_delay: 0.0,
+        sample_rate: f64::INFINITY,
         servo_bandwidth: joints.number(
             "servo_bandwidth_hz",
             drives.servo_bandwidth_hz,

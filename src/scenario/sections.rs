@@ -15,6 +15,7 @@ pub(crate) fn scenario_sections() -> Vec<Table> {
         ("", keys::<file::ScenarioFile>()),
         ("arm", keys::<file::ArmKeys>()),
         ("arm.limit_overrides", keys::<file::LimitKeys>()),
+        ("arm.drives", keys::<file::DriveKeys>()),
         ("arm.servo", keys::<file::ServoKeys>()),
         ("device", keys::<file::DeviceKeys>()),
         ("device.override", keys::<file::ModelKeys>()),

@@ -48,6 +48,8 @@ pub struct SensorChain {
     acceleration_noise: Noise,
     pressure_noise: Noise,
     held: Readings,
+    /// Was the last call one that took a sample?
+    sampled: bool,
 }
 
 impl SensorChain {
@@ -63,6 +65,7 @@ impl SensorChain {
             acceleration_noise: Noise::new(seed, Stream::Acceleration),
             pressure_noise: Noise::new(seed, Stream::RegulatorPressure),
             held: Readings::default(),
+            sampled: false,
         };
         chain.settle(0.0);
         chain
@@ -86,7 +89,8 @@ impl SensorChain {
 
     /// Takes a sample if one is due at a time [s] and returns what is held then.
     pub fn measure(&mut self, time: f64, truth: &Truth) -> Readings {
-        if self.clock.is_due(time) {
+        self.sampled = self.clock.is_due(time);
+        if self.sampled {
             let parameters = &self.parameters;
             let force_unfiltered = parameters.force.read(truth.force, &mut self.force_noise);
             self.held = Readings {
@@ -102,6 +106,13 @@ impl SensorChain {
             };
         }
         self.held
+    }
+}
+
+impl SensorChain {
+    /// Did the last call of `measure` take a sample?
+    pub fn sampled(&self) -> bool {
+        self.sampled
     }
 }
 

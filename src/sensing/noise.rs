@@ -19,6 +19,8 @@ pub enum Stream {
     Acceleration = 3,
     /// The actual value's.
     RegulatorPressure = 4,
+    /// The joints' encoders'.
+    Encoders = 5,
 }
 
 /// A stream of standard normal numbers.

@@ -6,6 +6,7 @@
 pub mod contact;
 mod dispatch;
 mod error;
+pub mod runout;
 mod sample;
 mod step;
 pub mod world;

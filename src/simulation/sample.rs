@@ -7,7 +7,7 @@ use crate::path::Phase;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
 use crate::recording::{Channel, PhaseSpan, Recording, RecordingError};
 
-/// Signals of all steps, in the order of `schema::SIGNALS` and then of the joints. Kept by rows, which a step writes in one go, until the run has ended.
+/// Signals of all steps, in the order of `schema::SIGNALS`, the sensors and then the joints. Kept by rows, which a step writes in one go, until the run has ended.
 #[derive(Debug, Clone)]
 pub struct SampleLog {
     joints: usize,
@@ -28,11 +28,17 @@ impl SampleLog {
     }
 
     fn width(joints: usize) -> usize {
-        schema::SIGNALS.len() + JointSignal::ALL.len() * joints
+        schema::SIGNALS.len() + schema::CELL_SENSORS.len() + JointSignal::ALL.len() * joints
     }
 
-    /// Adds a sample: `signals` in the order of `schema::SIGNALS`, then position, reference, velocity and torque of each joint.
-    pub fn push(&mut self, time: f64, phase: Phase, signals: &[f64], joints: &[[f64; 4]]) {
+    /// Adds a sample: `signals` in the order of `schema::SIGNALS` and `schema::CELL_SENSORS`, then those of each joint in the order of `JointSignal::ALL`.
+    pub fn push(
+        &mut self,
+        time: f64,
+        phase: Phase,
+        signals: &[f64],
+        joints: &[[f64; JointSignal::ALL.len()]],
+    ) {
         match self.phases.last_mut() {
             Some(span) if span.name == phase.name() => span.end = time,
             last => {
@@ -58,6 +64,11 @@ impl SampleLog {
     pub fn into_recording(self) -> Result<Recording, RecordingError> {
         let singles = schema::SIGNALS
             .iter()
+            .chain(
+                schema::CELL_SENSORS
+                    .iter()
+                    .filter_map(|sensor| schema::definition(sensor)),
+            )
             .map(|signal| (signal.quantity.to_owned(), signal.unit));
         let joints = (1..=self.joints).flat_map(|joint| {
             JointSignal::ALL.map(|signal| (joint_quantity(joint, signal), signal.unit()))

@@ -6,18 +6,23 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use super::error::SimulationError;
+use super::runout::Runout;
 use super::sample::{FrameLog, SampleLog};
 use super::world::{World, WorldDescription};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::point_force_torques;
 use crate::cell::Cell;
+use crate::control::command_lag::CommandLag;
 use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::JointLaw;
 use crate::control::servo::{AxisCommand, Servo, ServoParameters};
+use crate::control::transmission::Motor;
 use crate::device::{DeviceForce, DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
 use crate::recording::Unit;
+use crate::recording::schema::{self, JointSignal};
+use crate::sensing::noise::{Noise, Stream};
 use crate::sensing::{Readings, SensorChain, Truth};
 
 /// Time between two frames of the picture [s].
@@ -46,6 +51,13 @@ pub struct Simulation<'a> {
     world: World,
     device: DeviceState,
     servo: Servo,
+    /// What each axis's drive makes of its command, where the drives lag.
+    lags: Vec<CommandLag>,
+    /// The motor of each axis that does not move with its link, with the law of its drive over the last step.
+    motors: Vec<Option<(Motor, JointLaw)>>,
+    /// What each encoder read last [rad], and their noise.
+    encoders: [f64; MAX_JOINTS],
+    encoder_noise: Noise,
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
@@ -80,12 +92,20 @@ impl<'a> Simulation<'a> {
         };
         let device = cell.device.at_rest(stroke, set_pressure);
         let mut positions = cell.plan.start();
+        let bandwidth = scenario.arm.servo.lag_bandwidth;
+        let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
+        let lags = if bandwidth.is_finite() {
+            positions.iter().map(lag).collect()
+        } else {
+            Vec::new()
+        };
         positions.push(stroke);
-        world.set_positions(&positions);
         let count = positions.len();
         let mut masses = nalgebra::DMatrix::zeros(count, count);
         mass_matrix(&cell.arm_with_slide, &positions, &mut masses);
         let inertias: Vec<f64> = (0..count - 1).map(|i| masses[(i, i)]).collect();
+        let motors = motors(cell, &inertias, &mut positions);
+        world.set_positions(&positions);
         let servo = Servo::new(
             &cell.arm.chain,
             &inertias,
@@ -102,6 +122,10 @@ impl<'a> Simulation<'a> {
             cell,
             world,
             servo,
+            lags,
+            motors,
+            encoders: [0.0; MAX_JOINTS],
+            encoder_noise: Noise::new(scenario.simulation.seed, Stream::Encoders),
             controller: cell.controller.clone(),
             answer: set_pressure,
             sensors,
@@ -169,9 +193,10 @@ impl<'a> Simulation<'a> {
         lap(|t| &mut t.reference);
         let force = self.advance_device(set_pressure, dt);
         lap(|t| &mut t.device);
-        self.set_laws(&reference, force, dt);
+        let told = self.told(&reference, dt);
+        self.set_laws(&told, force, dt);
         lap(|t| &mut t.servo);
-        self.ride_burr(&reference);
+        self.raise_contact(&reference, dt);
         self.world.step();
         self.steps += 1;
         lap(|t| &mut t.rigid_bodies);
@@ -217,6 +242,17 @@ impl<'a> Simulation<'a> {
             .advance(&mut self.device, set_pressure, motion, dt, substeps)
     }
 
+    /// What the drives are told: the reference, as far as they lag behind it.
+    fn told(&mut self, reference: &Reference, dt: f64) -> Reference {
+        let mut told = *reference;
+        for (axis, lag) in self.lags.iter_mut().enumerate() {
+            told.acceleration[axis] = lag.advance(reference.position[axis], dt);
+            told.position[axis] = lag.position;
+            told.velocity[axis] = lag.velocity;
+        }
+        told
+    }
+
     /// Laws of all degrees of freedom: the axes' servo with feed-forward, the device on the slide.
     fn set_laws(&mut self, reference: &Reference, device: DeviceForce, dt: f64) {
         let n = self.slide();
@@ -229,7 +265,14 @@ impl<'a> Simulation<'a> {
             };
             let (position, velocity) =
                 (self.world.positions()[axis], self.world.velocities()[axis]);
-            self.laws[axis] = self.servo.law(axis, &command, position, velocity, dt);
+            self.laws[axis] = match &mut self.motors[axis] {
+                None => self.servo.law(axis, &command, position, velocity, dt),
+                Some((motor, drive)) => {
+                    let (angle, speed) = (motor.angle, motor.speed);
+                    *drive = self.servo.law(axis, &command, angle, speed, dt);
+                    motor.advance(drive, position, velocity, dt)
+                }
+            };
         }
         let device_scenario = &self.cell.scenario.device;
         self.laws[n] = if device_scenario.locked {
@@ -288,9 +331,19 @@ impl<'a> Simulation<'a> {
         torque
     }
 
-    /// Lifts the part's surface under the ball by the burr.
-    fn ride_burr(&mut self, reference: &Reference) {
+    /// Lifts the part's surface under the ball by the burr, and by the tool's runout.
+    fn raise_contact(&mut self, reference: &Reference, dt: f64) {
+        let contact = &self.cell.scenario.contact;
+        let runout = Runout {
+            amplitude: contact.runout_amplitude,
+            frequency: contact.runout_frequency,
+        };
+        let parameters = WorldDescription::of(self.cell).contact;
+        let turned = runout.lift((self.steps as f64 + 0.5) * dt, &parameters);
         let Some(ride) = &self.cell.part.ride else {
+            if runout.amplitude > 0.0 {
+                self.world.part_contact_mut().set_lift(turned, DVec3::ZERO);
+            }
             return;
         };
         // The ball is where the arm has really taken it: ahead of the reference's foot point by its error along the edge.
@@ -299,7 +352,7 @@ impl<'a> Simulation<'a> {
         let gradient = reference.tangent * ride.slope(place);
         self.world
             .part_contact_mut()
-            .set_lift(ride.lift(place), gradient);
+            .set_lift(ride.lift(place) + turned, gradient);
     }
 
     fn sample(&mut self, reference: &Reference, set_pressure: f64) -> Result<(), SimulationError> {
@@ -322,6 +375,9 @@ impl<'a> Simulation<'a> {
             },
         );
         self.slide_speed = speed;
+        if self.sensors.sampled() {
+            self.read_encoders();
+        }
 
         let off = self.world.tool_centre() - reference.centre;
         let across = off - reference.axis * off.dot(reference.axis);
@@ -348,18 +404,23 @@ impl<'a> Simulation<'a> {
             across.length(),
             off.dot(reference.axis) - (stroke - cell.scenario.process.working_stroke),
             reference.feed,
+            gas.atmosphere + self.readings.regulator_pressure,
+            self.readings.stroke,
+            self.readings.force,
         ];
-        let mut joints = [[0.0; 4]; MAX_JOINTS];
+        let mut joints = [[0.0; JointSignal::ALL.len()]; MAX_JOINTS];
         for (axis, joint) in joints.iter_mut().enumerate().take(n) {
             let velocity = self.world.velocities()[axis];
-            let torque = self
-                .servo
-                .drive_torque(axis, self.world.applied_force(axis), velocity);
+            let (applied, at_drive) = match &self.motors[axis] {
+                None => (self.world.applied_force(axis), velocity),
+                Some((motor, drive)) => (drive.at(motor.angle, motor.speed), motor.speed),
+            };
             *joint = [
                 self.world.positions()[axis],
                 reference.position[axis],
                 velocity,
-                torque,
+                self.servo.drive_torque(axis, applied, at_drive),
+                self.encoders[axis],
             ];
         }
         self.check_finite(&signals, &joints[..n], reference.phase, time)?;
@@ -382,6 +443,17 @@ impl<'a> Simulation<'a> {
         self.check_stroke(reference, stroke, time)
     }
 
+    fn read_encoders(&mut self) {
+        let noise = self.cell.scenario.arm.servo.encoder_noise;
+        for axis in 0..self.slide() {
+            let angle = match &self.motors[axis] {
+                None => self.world.positions()[axis],
+                Some((motor, _)) => motor.angle,
+            };
+            self.encoders[axis] = angle + noise * self.encoder_noise.normal();
+        }
+    }
+
     fn frame(&mut self, time: f64, reference: &Reference, force: DVec3, normal: DVec3) {
         self.frames.times.push(time);
         self.frames.path_lengths.push(reference.edge_length);
@@ -398,11 +470,13 @@ impl<'a> Simulation<'a> {
     fn check_finite(
         &self,
         signals: &[f64],
-        joints: &[[f64; 4]],
+        joints: &[[f64; JointSignal::ALL.len()]],
         phase: Phase,
         time: f64,
     ) -> Result<(), SimulationError> {
-        let mut named = signals.iter().zip(&crate::recording::schema::SIGNALS);
+        let sensors = schema::CELL_SENSORS.iter();
+        let sensors = sensors.filter_map(|sensor| schema::definition(sensor));
+        let mut named = signals.iter().zip(schema::SIGNALS.iter().chain(sensors));
         let bad = named.find(|(value, signal)| {
             !value.is_finite() || (signal.unit == Unit::Kilogram && **value < 0.0)
         });
@@ -428,7 +502,7 @@ impl<'a> Simulation<'a> {
 
     fn check_axes(
         &self,
-        joints: &[[f64; 4]],
+        joints: &[[f64; JointSignal::ALL.len()]],
         phase: Phase,
         time: f64,
     ) -> Result<(), SimulationError> {
@@ -474,4 +548,31 @@ impl<'a> Simulation<'a> {
         }
         Ok(())
     }
+}
+
+/// Share of a joint's own inertia that its rotor has, seen from the joint [1]: gears of robots make it of the same order.
+const ROTOR_SHARE: f64 = 0.5;
+
+/// Motors at rest where the plan starts; moves the links of `positions` to where they hang on them.
+fn motors(cell: &Cell, inertias: &[f64], positions: &mut [f64]) -> Vec<Option<(Motor, JointLaw)>> {
+    let still = vec![0.0; positions.len()];
+    let mut torques = still.clone();
+    let scenario = &cell.scenario;
+    inverse_dynamics(
+        &cell.arm_with_slide,
+        scenario.arm.world_from_base.rotation,
+        scenario.simulation.gravity,
+        positions,
+        &still,
+        &still,
+        &mut torques,
+    );
+    let motor = |(axis, parameters): (usize, &Option<_>)| {
+        let inertia = ROTOR_SHARE * inertias[axis];
+        let parameters = (*parameters)?;
+        let (motor, link) = Motor::at_rest(parameters, inertia, positions[axis], torques[axis]);
+        positions[axis] = link;
+        Some((motor, JointLaw::default()))
+    };
+    cell.transmissions.iter().enumerate().map(motor).collect()
 }

@@ -1,26 +1,51 @@
-//! A case of a recorded cell: a folder with recordings alone. What lacks measured columns is to be predicted.
+//! A case of a cell: a folder with recordings alone, files of a real cell or folders of runs of this program. What lacks measured columns, or is named
+//! `predict`, is to be predicted.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::super::error::AppError;
+use super::arm_prediction::arm_prediction;
 use crate::diagnosis::case::{Case, NamedRecording, tolerated};
+use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::free::{Free, Prior};
+use crate::diagnosis::joint_friction::{DriveLoad, JointFriction, joint_friction};
 use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, hold};
-use crate::diagnosis::servo::{Axes, ServoLink, servo_link};
-use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, Quantity};
+use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
+use crate::effects::{
+    CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, Quantity, vocabulary,
+};
 use crate::plant::{CHANNELS, ContactLaw, PlantInputs, PlantParameters};
 use crate::recording::csv::{CellRecording, read_cell_csv};
-use crate::replay::LoadedCell;
+use crate::recording::parquet::read_parquet;
+use crate::recording::samples::cell_recording;
+use crate::replay::{Drive, LoadedCell};
+use crate::scenario::RecordedCell;
 
+/// The samples of a run.
+const SAMPLES: &str = "samples.parquet";
+/// Name of a recording that is to be predicted, whatever it holds.
+const PREDICT: &str = "predict";
 /// Noise of a channel that cells do not have: nothing is as much.
 const UNMEASURED: f64 = 1e9;
+
+/// Force above which a tool touches [N]; any sensor's noise is less.
+const TOUCHING: f64 = 10.0;
+/// Samples next to one that touches which may touch too.
+const HELD: usize = 2;
 
 /// A case of a cell, with what its servos were found to do.
 pub(super) struct CellCase {
     pub case: Case,
     pub servo: Option<ServoLink>,
+    /// What the drives' torques show of their joints' friction.
+    pub frictions: Vec<JointFriction>,
+    /// Errors of what is said of the arm in the recording that is to be predicted.
+    pub of_arm: Vec<PredictionError>,
 }
+
+/// Name, file and content.
+type Named = (String, String, CellRecording);
 
 /// Is this a folder with recordings?
 pub(super) fn is_case(folder: &Path) -> bool {
@@ -28,25 +53,61 @@ pub(super) fn is_case(folder: &Path) -> bool {
 }
 
 fn recordings(folder: &Path) -> Vec<PathBuf> {
+    let own = folder.join(SAMPLES);
+    if own.is_file() {
+        return vec![own];
+    }
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let files = entries.map(|entry| entry.path());
-    let mut files: Vec<PathBuf> = files
-        .filter(|path| path.is_file() && path.extension().is_some_and(|e| e == "csv"))
+    let recording = |path: PathBuf| {
+        let run = path.join(SAMPLES);
+        if run.is_file() {
+            return Some(run);
+        }
+        let csv = path.is_file() && path.extension().is_some_and(|e| e == "csv");
+        csv.then_some(path)
+    };
+    let mut files: Vec<PathBuf> = entries
+        .filter_map(|entry| recording(entry.path()))
         .collect();
     files.sort();
     files
 }
 
+/// Name of a recording: its file's, of a run its folder's.
+fn name_of(path: &Path) -> String {
+    let run = path.file_name().is_some_and(|name| name == SAMPLES);
+    let named = if run { path.parent() } else { None };
+    let name = named.unwrap_or(path).file_name().unwrap_or_default();
+    name.display().to_string()
+}
+
+fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, AppError> {
+    let joints = cell.joints.len();
+    if path.file_name().is_none_or(|name| name != SAMPLES) {
+        return Ok(read_cell_csv(path, joints)?);
+    }
+    let scenario = &cell.scenario;
+    let atmosphere = scenario.device.parameters.gas.atmosphere;
+    let samples = read_parquet(path)?.recording;
+    let taken = cell_recording(&samples, joints, scenario.sample_rate, atmosphere);
+    taken.map_err(|source| {
+        AppError::from(RecordedError::Missing {
+            file: path.display().to_string(),
+            source: Box::new(source),
+        })
+    })
+}
+
 /// Reads a case.
 pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppError> {
-    let joints = cell.joints.len();
     let mut known = Vec::new();
     let mut unseen = Vec::new();
     for path in recordings(folder) {
-        let recording = read_cell_csv(&path, joints)?;
-        let name = path.file_name().unwrap_or_default().display().to_string();
+        let recording = read_one(cell, &path)?;
+        let name = name_of(&path);
+        let is_unseen = recording.readings.is_empty() || name == PREDICT;
         let named = (name, path.display().to_string(), recording);
-        if named.2.readings.is_empty() {
+        if is_unseen {
             unseen.push(named);
         } else {
             known.push(named);
@@ -68,13 +129,28 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppErro
         .iter()
         .map(|(_, _, recording)| axes(recording))
         .collect();
-    let servo = servo_link(&axes, scenario.joint_noise, scenario.servo_bandwidth);
+    let (noise, bandwidth) = (scenario.joint_noise, scenario.servo_bandwidth);
+    let servo = if scenario.own {
+        let own = scenario.arm.servo.natural_frequency;
+        pushed_servo_link(&axes, noise, bandwidth, own)
+    } else {
+        servo_link(&axes, noise, bandwidth)
+    };
     let believed = cell.plant();
     let shown = servo.as_ref().and_then(|servo| servo.shown(&believed));
     let bandwidth = match (&servo, &shown) {
         (Some(servo), Some(_)) => servo.bandwidth,
         _ => scenario.servo_bandwidth,
     };
+    let frictions = frictions(cell, &known, &believed);
+    let of_arm = unseen.first().map(|(name, _, recording)| {
+        let drives = drives(cell, recording);
+        arm_prediction(cell, name, recording, servo.as_ref(), &frictions, &drives)
+    });
+    for (_, _, recording) in &mut unseen {
+        // Where the motors went is to be predicted too.
+        recording.encoders.fill(None);
+    }
     let mut named = |(name, file, recording): (String, String, CellRecording)| {
         recorded(cell, &file, recording, bandwidth).map(|recorded| NamedRecording {
             name,
@@ -91,15 +167,69 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppErro
     Ok(CellCase {
         case: Case {
             tolerated: tolerated_numbers(cell, &believed),
-            believed,
+            believed: believed.clone(),
             noise: [pressure, stroke, force, UNMEASURED],
             recordings,
             unseen,
-            candidates: candidates(joints),
-            shown: shown.into_iter().collect(),
+            candidates: candidates(cell),
+            shown: shown
+                .into_iter()
+                .chain(frictions.iter().filter_map(|f| f.shown(&believed)))
+                .collect(),
         },
         servo,
+        frictions,
+        of_arm: of_arm.unwrap_or_default(),
     })
+}
+
+/// Friction of each joint by the drives' torques, where they were recorded.
+fn frictions(cell: &LoadedCell, known: &[Named], believed: &PlantParameters) -> Vec<JointFriction> {
+    let joints = cell.joints.len();
+    let mut loads: Vec<Vec<DriveLoad>> = vec![Vec::new(); joints];
+    for (_, _, recording) in known {
+        for (loads, load) in loads.iter_mut().zip(drives(cell, recording)) {
+            loads.push(load);
+        }
+    }
+    let tolerance = cell.scenario.tolerance;
+    let of = |joint: usize| {
+        let believed = believed.cell.joint_friction[joint];
+        joint_friction(joint, &loads[joint], believed, tolerance)
+    };
+    (0..joints).filter_map(of).collect()
+}
+
+/// The drives' torques in a recording; none where they, stroke or force were not recorded.
+fn drives(cell: &LoadedCell, recording: &CellRecording) -> Vec<DriveLoad> {
+    let reading = |quantity: &str| {
+        let found = recording
+            .readings
+            .iter()
+            .find(|(name, _)| *name == quantity);
+        found.map(|(_, values)| values)
+    };
+    let [_, stroke, force, _] = QUANTITIES.map(reading);
+    let (Some(stroke), Some(force)) = (stroke, force) else {
+        return Vec::new();
+    };
+    if recording.torques.iter().any(Option::is_none) {
+        return Vec::new();
+    }
+    let course = cell.course_of(
+        &recording.time,
+        &recording.path,
+        &recording.commands,
+        Some(&recording.encoders),
+        cell.scenario.servo_bandwidth,
+    );
+    let drives = cell.drives(&course, &recording.torques, stroke, force);
+    let load = |drive: Drive| DriveLoad {
+        torque: drive.torque,
+        expected: drive.expected,
+        rate: drive.rate,
+    };
+    drives.into_iter().flatten().map(load).collect()
 }
 
 fn axes(recording: &CellRecording) -> Axes {
@@ -116,16 +246,18 @@ fn recorded(
     recording: CellRecording,
     bandwidth: f64,
 ) -> Result<Recorded, AppError> {
+    let scenario = &cell.scenario;
     let CellRecording {
         time,
         path,
         commands,
+        encoders,
         mut set_pressure,
         readings,
         ..
     } = recording;
     let filled = hold(&mut set_pressure);
-    let course = cell.course(&time, &path, &commands, bandwidth);
+    let course = cell.course_of(&time, &path, &commands, Some(&encoders), bandwidth);
     let inputs = PlantInputs {
         set_pressure,
         extends: vec![true; time.len()],
@@ -138,10 +270,13 @@ fn recorded(
         source,
     })?;
     let nothing = vec![f64::NAN; inputs.time.len()];
-    let readings = QUANTITIES.map(|quantity| {
+    let mut readings = QUANTITIES.map(|quantity| {
         let found = readings.iter().find(|(name, _)| *name == quantity);
         found.map_or_else(|| nothing.clone(), |(_, values)| values.clone())
     });
+    if scenario.own {
+        forget_what_friction_holds(&mut readings, &inputs, scenario);
+    }
     Ok(Recorded {
         inputs,
         readings,
@@ -149,12 +284,43 @@ fn recorded(
     })
 }
 
+/// A tool that rests on the edge holds on to it, across too, by as much as friction lets it: where it stands then is no matter of the model, and what a
+/// leaned device carries of it neither.
+fn forget_what_friction_holds(
+    readings: &mut [Vec<f64>; CHANNELS.len()],
+    inputs: &PlantInputs,
+    scenario: &RecordedCell,
+) {
+    let Some(course) = &inputs.cell else { return };
+    let [_, stroke, force, _] = readings;
+    let touches = |i: usize| {
+        let (from, to) = (i.saturating_sub(HELD), (i + HELD + 1).min(force.len()));
+        let near = force[from..to].iter();
+        near.copied().fold(f64::NEG_INFINITY, f64::max)
+    };
+    let pressed: Vec<f64> = (0..force.len()).map(touches).collect();
+    let [_, _, noise] = scenario.noise;
+    for (i, pressed) in pressed.into_iter().enumerate() {
+        if !course.rests(i) || pressed < TOUCHING {
+            continue;
+        }
+        stroke[i] = f64::NAN;
+        let lean = course.edge[i].bisector.cross(course.slide[i]).length();
+        if scenario.contact.friction * pressed * lean > noise {
+            force[i] = f64::NAN;
+        }
+    }
+}
+
 /// Effects that a cell may show. A surface that is off is a part that is misplaced there.
-fn candidates(joints: usize) -> Vec<&'static Effect> {
+fn candidates(cell: &LoadedCell) -> Vec<&'static Effect> {
+    let joints = cell.joints.len();
     let of_device = CATALOGUE.iter().filter(|e| e.name != "surface_offset");
     of_device
         .chain(&CELL_EFFECTS)
         .chain(JOINT_EFFECTS[..joints].iter().flatten())
+        // Joints whose gravity is compensated are described by their springs alone.
+        .filter(|e| cell.scenario.own || vocabulary(e.name).0 != "joint_backlash")
         .collect()
 }
 
@@ -203,7 +369,8 @@ fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free>
         free.push(about(start, 0.5 * off, 0.5 * off / 3f64.sqrt(), [0.0, off]));
     }
     let [time, deviation] = scenario.joint_damping;
-    if deviation > 0.0 {
+    // Joints that do not give have no damping to speak of.
+    if deviation > 0.0 && !scenario.own {
         let damping = number!("joints.damping_time_s", p => p.cell.joint_damping);
         let bounds = [0.1 * time, time + 4.0 * deviation];
         free.push(about(damping, time, deviation, bounds));

@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
+use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::diagnose::Diagnosis;
+use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::servo::ServoLink;
@@ -14,6 +16,8 @@ use crate::replay::LoadedCell;
 pub(super) fn cell_account(
     cell: &LoadedCell,
     servo: Option<&ServoLink>,
+    frictions: &[JointFriction],
+    of_arm: &[PredictionError],
     diagnosis: &Diagnosis,
 ) -> String {
     let mut text = String::from("\nThe arm\n");
@@ -29,6 +33,15 @@ pub(super) fn cell_account(
         }
     }
     match servo {
+        Some(servo) if cell.scenario.own && !servo.differs() => {
+            let left: Vec<String> = servo.left.iter().map(|l| format!("{l:.1}")).collect();
+            let _ = writeln!(
+                text,
+                "  From their commands to their encoders the joints answer without a lag beyond that of their servos; what loads push them aside by is {} times\n  the encoders' noise of joints 1 to {}.",
+                left.join(", "),
+                servo.left.len(),
+            );
+        }
         None => text.push_str("  No encoder was recorded: nothing is said of the servos.\n"),
         Some(servo) => {
             let left: Vec<String> = servo.left.iter().map(|l| format!("{l:.3}")).collect();
@@ -47,6 +60,29 @@ pub(super) fn cell_account(
                 left.join(", ")
             );
         }
+    }
+    for friction in frictions {
+        let _ = writeln!(
+            text,
+            "  By its drive's torque joint {} rubs with {:.2} N m ({:.2} to {:.2}), believed {:.2}{}.",
+            friction.joint + 1,
+            friction.friction,
+            friction.friction - 1.96 * friction.deviation,
+            friction.friction + 1.96 * friction.deviation,
+            friction.believed,
+            if friction.differs() {
+                ": another friction"
+            } else {
+                ""
+            }
+        );
+    }
+    for error in of_arm {
+        let _ = writeln!(
+            text,
+            "  Error of {} in {}, which was not looked at: {:.3e} as believed, {:.3e} improved.",
+            error.channel, error.recording, error.before, error.after
+        );
     }
     let places = places(diagnosis);
     if !places.is_empty() {

@@ -10,8 +10,10 @@ use super::cell_account::cell_account;
 use super::unlisted_picture::picture;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
+use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::diagnose::{Diagnosis, diagnose};
 use crate::diagnosis::estimate::Number;
+use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::recorded::{COLUMNS, recorded};
 use crate::diagnosis::servo::ServoLink;
 use crate::effects::CATALOGUE;
@@ -49,6 +51,8 @@ enum Model {
     Cell {
         cell: Box<LoadedCell>,
         servo: Option<ServoLink>,
+        frictions: Vec<JointFriction>,
+        of_arm: Vec<PredictionError>,
     },
 }
 
@@ -139,11 +143,20 @@ impl Prepared {
         };
         let prediction = prediction(&self.case, &plant)?;
         let picture = picture(&diagnosis)?;
-        let answer = diagnosis.answer(start.elapsed().as_secs_f64());
+        let mut answer = diagnosis.answer(start.elapsed().as_secs_f64());
+        if let Model::Cell { of_arm, .. } = &self.model {
+            answer.details.prediction.extend(of_arm.iter().cloned());
+        }
         let document = answer.text()?;
         let mut account = diagnosis.account(&self.name);
-        if let Model::Cell { cell, servo } = &self.model {
-            account += &cell_account(cell, servo.as_ref(), &diagnosis);
+        if let Model::Cell {
+            cell,
+            servo,
+            frictions,
+            of_arm,
+        } = &self.model
+        {
+            account += &cell_account(cell, servo.as_ref(), frictions, of_arm, &diagnosis);
             if diagnosis.shape.is_some() {
                 account += "\nA cell's improved.toml has no place for a term without a name: it stands in prediction.csv alone.\n";
             }
@@ -218,6 +231,8 @@ fn cell_case(folder: &Path, cell: &LoadedCell) -> Result<(Model, Case), AppError
     let model = Model::Cell {
         cell: Box::new(cell.clone()),
         servo: read.servo,
+        frictions: read.frictions,
+        of_arm: read.of_arm,
     };
     Ok((model, read.case))
 }

@@ -8,6 +8,9 @@
 use super::*;
 use Coordinate::Logarithmic;
 
+/// What a joint that is believed rigid may be [N m/rad].
+const RIGID: [f64; 2] = [1e3, 1e8];
+
 /// Name in the vocabulary.
 pub(super) const NAME: &str = "compliant_joint";
 
@@ -37,11 +40,18 @@ pub(super) const fn effect<const J: usize>() -> Effect {
                     set: |p, v| p.cell.joint_stiffness[J] = v,
                 },
                 Logarithmic,
-                [1e-4 * believed, 100.0 * believed],
+                if believed.is_finite() {
+                    [1e-4 * believed, 100.0 * believed]
+                } else {
+                    RIGID
+                },
             )]
         },
         starts: |clues: &Clues<'_>| {
             let believed = clues.plant.cell.joint_stiffness[J];
+            if believed.is_infinite() {
+                return vec![vec![1e7], vec![1e6], vec![1e5]];
+            }
             let shares = [0.02, 0.1, 0.4].iter();
             shares.map(|share| vec![share * believed]).collect()
         },

@@ -18,6 +18,8 @@ pub struct CellRecording {
     pub commands: Vec<Vec<f64>>,
     /// What each joint's encoder read [rad]; none where the file lacks it.
     pub encoders: Vec<Option<Vec<f64>>>,
+    /// Torque of each joint's drive [N m]; none where it was not recorded.
+    pub torques: Vec<Option<Vec<f64>>>,
     /// Set pressure [Pa gauge].
     pub set_pressure: Vec<f64>,
     /// Readings by their quantity in the schema; a quantity whose column the file lacks is absent.
@@ -28,16 +30,16 @@ pub struct CellRecording {
     pub ignored: Vec<String>,
 }
 
-/// Columns of joints: commands, encoders.
-const JOINTS: [[&str; 2]; 8] = [
-    ["joint_1_command_rad", "joint_1_rad"],
-    ["joint_2_command_rad", "joint_2_rad"],
-    ["joint_3_command_rad", "joint_3_rad"],
-    ["joint_4_command_rad", "joint_4_rad"],
-    ["joint_5_command_rad", "joint_5_rad"],
-    ["joint_6_command_rad", "joint_6_rad"],
-    ["joint_7_command_rad", "joint_7_rad"],
-    ["joint_8_command_rad", "joint_8_rad"],
+/// Columns of joints: commands, encoders, torques.
+const JOINTS: [[&str; 3]; 8] = [
+    ["joint_1_command_rad", "joint_1_rad", "joint_1_torque_n_m"],
+    ["joint_2_command_rad", "joint_2_rad", "joint_2_torque_n_m"],
+    ["joint_3_command_rad", "joint_3_rad", "joint_3_torque_n_m"],
+    ["joint_4_command_rad", "joint_4_rad", "joint_4_torque_n_m"],
+    ["joint_5_command_rad", "joint_5_rad", "joint_5_torque_n_m"],
+    ["joint_6_command_rad", "joint_6_rad", "joint_6_torque_n_m"],
+    ["joint_7_command_rad", "joint_7_rad", "joint_7_torque_n_m"],
+    ["joint_8_command_rad", "joint_8_rad", "joint_8_torque_n_m"],
 ];
 /// Most turns that a joint makes, both ways [rad]; degrees are soon beyond.
 const MOST_TURNS: f64 = 14.0;
@@ -76,7 +78,8 @@ pub fn read_cell_csv(path: &Path, joints: usize) -> Result<CellRecording, Record
     let set_pressure = next().unwrap_or_default();
     let commands = (0..joints).map(|_| next().unwrap_or_default()).collect();
     let encoders = (0..joints).map(|_| next()).collect();
-    let readings = columns[2 + 2 * joints..]
+    let torques = (0..joints).map(|_| next()).collect();
+    let readings = columns[2 + 3 * joints..]
         .iter()
         .filter_map(|column| Some((column.quantity, next()?)))
         .collect();
@@ -86,6 +89,7 @@ pub fn read_cell_csv(path: &Path, joints: usize) -> Result<CellRecording, Record
         path: path_length,
         commands,
         encoders,
+        torques,
         set_pressure,
         readings,
         repeated: table.repeated,
@@ -93,7 +97,7 @@ pub fn read_cell_csv(path: &Path, joints: usize) -> Result<CellRecording, Record
     })
 }
 
-/// Path, set pressure, commands, encoders, readings.
+/// Path, set pressure, commands, encoders, torques, readings.
 fn columns(joints: usize) -> Vec<Column> {
     let of_rig = |quantity: &str| COLUMNS.iter().find(|c| c.quantity == quantity).cloned();
     let length = Column {
@@ -119,6 +123,13 @@ fn columns(joints: usize) -> Vec<Column> {
     columns.extend(of_rig(schema::SET_PRESSURE_GAUGE));
     columns.extend(JOINTS[..joints].iter().map(|names| joint(names[0], true)));
     columns.extend(JOINTS[..joints].iter().map(|names| joint(names[1], false)));
+    let torque = |names: &[&'static str; 3]| Column {
+        unit: Unit::NewtonMetre,
+        range: [-1e5, 1e5],
+        larger_than_si: None,
+        ..joint(names[2], false)
+    };
+    columns.extend(JOINTS[..joints].iter().map(torque));
     for quantity in [
         schema::MEASURED_REGULATOR_PRESSURE_GAUGE,
         schema::MEASURED_STROKE,

@@ -10,7 +10,7 @@ use super::super::document::Document;
 use super::super::error::ScenarioError;
 use super::super::rig_file::blank;
 use super::RecordedCell;
-use crate::effects::{CATALOGUE, CELL_EFFECTS, Effect, JOINT_EFFECTS, SERVO_LAG};
+use crate::effects::{CATALOGUE, CELL_EFFECTS, Effect, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG};
 use crate::plant::PlantParameters;
 
 /// `[effect.NAME]`: all its numbers by name.
@@ -24,6 +24,7 @@ fn all() -> impl Iterator<Item = &'static Effect> {
         .iter()
         .chain(&CELL_EFFECTS)
         .chain(JOINT_EFFECTS.iter().flatten())
+        .chain(&JOINT_FRICTION)
         .chain([&SERVO_LAG])
 }
 

@@ -86,6 +86,10 @@ fn beside(key: &str) -> String {
             "[[arm.limit_overrides]]\njoint = 'a'\nvelocity_deg_per_s = 90".into()
         }
         ("arm.limit_overrides", _) => "[[arm.limit_overrides]]\njoint = 'a'\neffort_n_m = 9".into(),
+        ("arm.drives", "backlash_deg") => {
+            "[[arm.drives]]\njoint = 'a'\nstiffness_n_m_per_rad = 1e6".into()
+        }
+        ("arm.drives", _) => "[[arm.drives]]\njoint = 'a'".into(),
         ("estimator", _) => "[estimator]\n".into(),
         ("hand", _) => "[hand]\npeak_force_n = 1\nfrequency_hz = 1".into(),
         ("command", "force_n") => "[[command]]\nat_s = 0\nforce_n = 1".into(),

@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 
 use super::super::{
-    BurrScenario, EdgeSelection, Expectation, LimitOverride, Misplacement, ProcessScenario,
-    ServoScenario, SimulationScenario,
+    BurrScenario, DriveScenario, EdgeSelection, Expectation, LimitOverride, Misplacement,
+    ProcessScenario, ServoScenario, SimulationScenario,
 };
 use super::{MINIMAL, edited, read, scenarios};
 
@@ -47,7 +47,8 @@ fn every_key_of_the_arm_reaches_its_field() {
         "flange_link = \"flange\"\n",
         "flange_link = \"tool0\"\nbase_link = \"base\"\npackages = { b = \".\", a = \"../models\" }\nbase_position_mm = [1, 2, 3]\n\
          base_rotation_deg = [90, 0, 90]\nseed_posture_deg = [0, 180, -90]\n\
-         servo = { natural_frequency_hz = 30, damping_ratio = 0.8, integral_time_s = inf, contact_feed_forward = false }\n\
+         servo = { natural_frequency_hz = 30, damping_ratio = 0.8, integral_time_s = inf, contact_feed_forward = false, lag_bandwidth_hz = 9, encoder_noise_rad = 1e-5 }\n\
+         drives = [{ joint = \"a\", friction_n_m = 7, stiffness_n_m_per_rad = 2e5, damping_time_ms = 3, backlash_deg = 0.18 }]\n\
          limit_overrides = [{ joint = \"a\", effort_n_m = 12 }, { joint = \"b\", velocity_deg_per_s = 90 }]\n",
     );
     let arm = read(&text).unwrap().arm;
@@ -66,8 +67,18 @@ fn every_key_of_the_arm_reaches_its_field() {
         damping_ratio: 0.8,
         integral_time: f64::INFINITY,
         contact_feed_forward: false,
+        lag_bandwidth: 9.0,
+        encoder_noise: 1e-5,
     };
     assert_eq!(arm.servo, servo);
+    let drive = DriveScenario {
+        joint: "a".to_owned(),
+        friction: Some(7.0),
+        stiffness: 2e5,
+        damping_time: 0.003,
+        backlash: 0.001 * PI,
+    };
+    assert_eq!(arm.drives, [drive]);
     let limit = |joint: &str, effort, velocity| LimitOverride {
         joint: joint.to_owned(),
         effort,

@@ -1,0 +1,68 @@
+//! What the improved arm says of the recording that is to be predicted, where it holds encoders and torques: servos and friction show there, and hardly in
+//! what the device feels.
+
+use crate::diagnosis::details::PredictionError;
+use crate::diagnosis::joint_friction::{DriveLoad, JointFriction};
+use crate::diagnosis::servo::ServoLink;
+use crate::plant::follow;
+use crate::recording::csv::CellRecording;
+use crate::replay::LoadedCell;
+
+/// Errors before and after of the joints whose servos or friction were found to be others than believed.
+pub(super) fn arm_prediction(
+    cell: &LoadedCell,
+    name: &str,
+    recording: &CellRecording,
+    servo: Option<&ServoLink>,
+    frictions: &[JointFriction],
+    drives: &[DriveLoad],
+) -> Vec<PredictionError> {
+    let mut errors = Vec::new();
+    let error = |channel: String, before: f64, after: f64, noise: f64| PredictionError {
+        recording: name.to_owned(),
+        channel,
+        before,
+        after,
+        noise,
+        before_sigmas: before / noise,
+        after_sigmas: after / noise,
+    };
+    if let Some(servo) = servo.filter(|servo| servo.differs()) {
+        let of = |bandwidth: f64| {
+            let joints = recording.commands.iter().zip(&recording.encoders);
+            let departures = joints.flat_map(|(command, encoder)| {
+                let angle = follow(&recording.time, command, bandwidth).angle;
+                let encoder = encoder.as_deref().unwrap_or_default();
+                let pairs = encoder.iter().zip(angle);
+                pairs.map(|(e, a)| e - a).collect::<Vec<f64>>()
+            });
+            root_mean_square(departures)
+        };
+        let before = of(cell.scenario.servo_bandwidth);
+        if before.is_finite() {
+            let after = of(servo.bandwidth);
+            let noise = cell.scenario.joint_noise;
+            errors.push(error("joints_rad".to_owned(), before, after, noise));
+        }
+    }
+    for friction in frictions.iter().filter(|friction| friction.differs()) {
+        let Some(drive) = drives.get(friction.joint) else {
+            continue;
+        };
+        let of = |rubs: f64| root_mean_square(drive.departures(rubs).into_iter());
+        let channel = format!("joint_{}_torque_n_m", friction.joint + 1);
+        let [before, after] = [friction.believed, friction.friction].map(of);
+        if before.is_finite() {
+            errors.push(error(channel, before, after, friction.deviation));
+        }
+    }
+    errors
+}
+
+/// Of the values that there are; not finite where there is none.
+fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
+    let (square, count) = values
+        .filter(|value| value.is_finite())
+        .fold((0.0, 0.0), |(s, n), v| (s + v * v, n + 1.0));
+    (square / count).sqrt()
+}

@@ -1,0 +1,146 @@
+//! What stands between a joint's motor and its link: a spring, and play between teeth.
+//!
+//!     B theta'' = tau - T                                      motor, seen from the joint
+//!     T = K z + K b (theta' - q'),   z = e - sign(e) p/2 where |e| > p/2, else T = 0,   e = theta - q
+//!
+//! theta motor's angle over the gear, where the encoder sits [rad], q link's angle [rad], tau torque of the drive less its losses [N m], B rotor's inertia
+//! seen from the joint [kg m2], K stiffness [N m/rad], b damping over stiffness [s], p play from flank to flank [rad]. (Spong, J. Dyn. Syst. Meas. Control
+//! 109, 1987; the play as in Nordin, Gutman, Automatica 38, 2002, sec. 2.)
+//!
+//! The motor takes a backward-Euler step against the link as it moves now; the link then meets the spring at the motor's new place, implicitly again.
+
+use super::law::JointLaw;
+
+/// Spring and play of one joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TransmissionParameters {
+    /// Stiffness [N m/rad].
+    pub stiffness: f64,
+    /// Damping over stiffness [s].
+    pub damping_time: f64,
+    /// Play from flank to flank [rad].
+    pub play: f64,
+}
+
+/// A motor behind its transmission.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motor {
+    parameters: TransmissionParameters,
+    /// Inertia of the rotor seen from the joint [kg m2].
+    inertia: f64,
+    /// Angle over the gear [rad].
+    pub angle: f64,
+    /// Its rate [rad/s].
+    pub speed: f64,
+}
+
+impl Motor {
+    /// At rest where its servo holds it, carrying a torque [N m]; gives the link's angle too.
+    pub fn at_rest(
+        parameters: TransmissionParameters,
+        inertia: f64,
+        angle: f64,
+        torque: f64,
+    ) -> (Self, f64) {
+        let side = if torque == 0.0 { 0.0 } else { torque.signum() };
+        let link = angle - torque / parameters.stiffness - 0.5 * side * parameters.play;
+        let motor = Self {
+            parameters,
+            inertia,
+            angle,
+            speed: 0.0,
+        };
+        (motor, link)
+    }
+
+    /// Advances over `dt` [s] under the drive's law, the link being at an angle [rad] and a speed [rad/s]; gives the law of the link.
+    pub fn advance(&mut self, drive: &JointLaw, link: f64, link_speed: f64, dt: f64) -> JointLaw {
+        let half = 0.5 * self.parameters.play;
+        let wound = self.angle - link;
+        let side = if half == 0.0 {
+            0.0
+        } else {
+            wound.signum() * half
+        };
+        let engaged = wound.abs() >= half;
+        let stiffness = if engaged {
+            self.parameters.stiffness
+        } else {
+            0.0
+        };
+        let damping = self.parameters.damping_time * stiffness;
+        let ahead = link + dt * link_speed;
+        let torque = drive.force
+            - drive.stiffness * (self.angle - drive.rest)
+            - stiffness * (self.angle - ahead - side)
+            + damping * link_speed;
+        let resistance =
+            self.inertia / dt + drive.damping + damping + dt * (drive.stiffness + stiffness);
+        self.speed = (self.inertia / dt * self.speed + torque) / resistance;
+        self.angle += dt * self.speed;
+        JointLaw {
+            force: damping * self.speed,
+            stiffness,
+            rest: self.angle - side,
+            damping,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPRING: TransmissionParameters = TransmissionParameters {
+        stiffness: 1e5,
+        damping_time: 2e-3,
+        play: 4e-3,
+    };
+
+    /// A link of 5 kg m2 under a torque, its motor held by a stiff servo.
+    fn settled(parameters: TransmissionParameters, torque: f64) -> f64 {
+        let (mut motor, mut link) = Motor::at_rest(parameters, 2.0, 0.3, 0.0);
+        let servo = JointLaw {
+            force: 0.0,
+            stiffness: 1e6,
+            rest: 0.3,
+            damping: 4e3,
+        };
+        let (mut speed, dt, inertia) = (0.0, 1e-3, 5.0);
+        for _ in 0..4000 {
+            let law = motor.advance(&servo, link, speed, dt);
+            let pull = law.force - law.stiffness * (link - law.rest) + torque - 20.0 * speed;
+            speed =
+                (inertia / dt * speed + pull) / (inertia / dt + law.damping + dt * law.stiffness);
+            link += dt * speed;
+        }
+        link - motor.angle
+    }
+
+    #[test]
+    fn a_loaded_link_stands_off_its_motor_by_spring_and_half_the_play() {
+        for torque in [150.0, -60.0f64] {
+            let expected = torque / 1e5 + 2e-3 * torque.signum();
+            assert!((settled(SPRING, torque) - expected).abs() < 1e-6);
+        }
+        let tight = TransmissionParameters {
+            play: 0.0,
+            ..SPRING
+        };
+        assert!((settled(tight, 150.0) - 1.5e-3).abs() < 1e-7);
+    }
+
+    #[test]
+    fn it_starts_at_rest_under_its_load() {
+        let (mut motor, link) = Motor::at_rest(SPRING, 2.0, 0.3, 80.0);
+        let servo = JointLaw {
+            force: 80.0,
+            stiffness: 1e6,
+            rest: 0.3,
+            damping: 4e3,
+        };
+        let law = motor.advance(&servo, link, 0.0, 1e-3);
+        assert!((law.at(link, 0.0) - 80.0).abs() < 1e-6);
+        assert!(motor.speed.abs() < 1e-9);
+    }
+}

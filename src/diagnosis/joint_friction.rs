@@ -1,0 +1,177 @@
+//! The link from an arm's motion to the torques of its drives, by itself: dry friction of each joint.
+//!
+//!     tau_measured - tau_expected = b_r + F sat(v)        b_r of recording r, F friction [N m], sat(v) = v/sqrt(v^2 + v_0^2)
+//!
+//! Ordinary least squares; what is left is not white, so that its samples count for as many as are independent of each other (first-order autocorrelation:
+//! Bartlett, J. R. Stat. Soc. 8, 1946). A drive's torque is known through a torque constant, and its load through a model: neither better than the belief's
+//! tolerance.
+
+use super::free::{Prior, free_of};
+use super::search::{LOOK_ELSEWHERE, Shown};
+use crate::effects::JOINT_FRICTION;
+use crate::plant::PlantParameters;
+
+/// One drive in one recording.
+#[derive(Debug, Clone, Default)]
+pub struct DriveLoad {
+    /// Torque measured [N m].
+    pub torque: Vec<f64>,
+    /// Torque expected but for dry friction [N m].
+    pub expected: Vec<f64>,
+    /// Speed of the motor [rad/s].
+    pub rate: Vec<f64>,
+}
+
+impl DriveLoad {
+    /// Torque measured beyond what is expected with a dry friction [N m].
+    #[must_use]
+    pub fn departures(&self, friction: f64) -> Vec<f64> {
+        (0..self.torque.len())
+            .map(|i| {
+                let rate = self.rate[i];
+                self.torque[i] - self.expected[i] - friction * rate / rate.hypot(STILL)
+            })
+            .collect()
+    }
+}
+
+/// What a joint was found to rub with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointFriction {
+    /// Which, from 0.
+    pub joint: usize,
+    /// Dry friction [N m].
+    pub friction: f64,
+    /// Its standard deviation [N m].
+    pub deviation: f64,
+    /// What was believed [N m].
+    pub believed: f64,
+    /// Readings that count as independent.
+    pub count: f64,
+}
+
+/// Speed v_0 [rad/s].
+const STILL: f64 = 1e-3;
+/// Sum of squares of sat(v) about its mean below which a joint hardly changed its speed, and nothing can be said.
+const LEAST_CHANGE: f64 = 5.0;
+
+/// Friction of a joint from its drive in all recordings; none where its speed hardly changed.
+#[must_use]
+pub fn joint_friction(
+    joint: usize,
+    drives: &[DriveLoad],
+    believed: f64,
+    tolerance: f64,
+) -> Option<JointFriction> {
+    let (mut change, mut product, mut largest) = (0.0, 0.0, 0.0f64);
+    let mut centred: Vec<Vec<[f64; 2]>> = Vec::new();
+    for drive in drives {
+        let count = drive.torque.len() as f64;
+        let rows: Vec<[f64; 2]> = (0..drive.torque.len())
+            .map(|i| {
+                let rate = drive.rate[i];
+                largest = largest.max(drive.expected[i].abs());
+                [
+                    drive.torque[i] - drive.expected[i],
+                    rate / rate.hypot(STILL),
+                ]
+            })
+            .collect();
+        let mean = |k: usize| rows.iter().map(|row| row[k]).sum::<f64>() / count.max(1.0);
+        let means = [mean(0), mean(1)];
+        let rows: Vec<[f64; 2]> = rows
+            .iter()
+            .map(|row| [row[0] - means[0], row[1] - means[1]])
+            .collect();
+        change += rows.iter().map(|row| row[1] * row[1]).sum::<f64>();
+        product += rows.iter().map(|row| row[0] * row[1]).sum::<f64>();
+        centred.push(rows);
+    }
+    if change < LEAST_CHANGE {
+        return None;
+    }
+    let friction = product / change;
+    let (mut square, mut next, mut count) = (0.0, 0.0, 0.0);
+    for rows in &centred {
+        let left: Vec<f64> = rows.iter().map(|row| row[0] - friction * row[1]).collect();
+        square += left.iter().map(|l| l * l).sum::<f64>();
+        next += left.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
+        count += left.len() as f64;
+    }
+    let likeness = (next / square.max(f64::MIN_POSITIVE)).clamp(0.0, 0.999);
+    let independent = (1.0 - likeness) / (1.0 + likeness);
+    let scatter = (square / count / (change * independent)).sqrt();
+    Some(JointFriction {
+        joint,
+        friction,
+        deviation: scatter.hypot(tolerance * largest),
+        believed,
+        count: count * independent,
+    })
+}
+
+impl JointFriction {
+    /// Does it differ from what is believed? By Schwarz's criterion, as for any effect.
+    #[must_use]
+    pub fn differs(&self) -> bool {
+        let gain = ((self.friction - self.believed) / self.deviation).powi(2);
+        gain > self.count.max(1.0).ln() + LOOK_ELSEWHERE
+    }
+
+    /// The effect, if it does.
+    #[must_use]
+    pub fn shown(&self, plant: &PlantParameters) -> Option<Shown> {
+        let effect = &JOINT_FRICTION[self.joint];
+        let mut numbers = free_of(effect, plant, &[self.friction]);
+        for number in &mut numbers {
+            number.prior = Prior::Normal {
+                mean: self.friction,
+                deviation: self.deviation,
+            };
+        }
+        self.differs().then_some(Shown { effect, numbers })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_distr::StandardNormal;
+
+    use super::*;
+
+    /// A drive whose joint rests, moves and rests again, under a load that grows.
+    fn drive(friction: f64) -> DriveLoad {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(3);
+        let mut drive = DriveLoad::default();
+        for i in 0..600 {
+            let rate = if (150..450).contains(&i) { 0.03 } else { 0.0 };
+            let expected = 80.0 + 0.01 * f64::from(i);
+            let noise: f64 = random.sample(StandardNormal);
+            drive.rate.push(rate);
+            drive.expected.push(expected);
+            let rubs = friction * rate / f64::hypot(rate, STILL);
+            drive.torque.push(expected + 1.5 + rubs + 0.3 * noise);
+        }
+        drive
+    }
+
+    #[test]
+    fn a_joint_that_rubs_is_found_and_sized_and_one_as_believed_is_left_alone() {
+        let found = joint_friction(1, &[drive(14.0)], 1.0, 0.005).unwrap();
+        assert!((found.friction - 14.0).abs() < 0.3, "{found:?}");
+        assert!(found.differs());
+        assert!(
+            !joint_friction(1, &[drive(1.0)], 1.0, 0.005)
+                .unwrap()
+                .differs()
+        );
+    }
+
+    #[test]
+    fn of_a_joint_that_does_not_move_nothing_is_said() {
+        let mut still = drive(9.0);
+        still.rate.fill(0.0);
+        assert_eq!(joint_friction(0, &[still], 1.0, 0.005), None);
+    }
+}

@@ -1,0 +1,56 @@
+//! Where a cell's contact stands over one sample, seen along the slide: share of the stroke that goes into it, surface as a cubic of time.
+//!
+//!     d = c (x - s)
+//!
+//! On a sharp edge c and s are those of the tangent plane of the distance at the present stroke; over a sample they err by its curvature alone.
+
+use super::carrier::hermite;
+use super::cell_course::{CellCourse, Felt};
+use super::sharp_edge::SharpEdge;
+use glam::DVec3;
+
+/// The contact over one sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Riding {
+    /// Share c [1].
+    pub share: f64,
+    /// Surface s: coefficients of 1, t, t2, t3 [m].
+    pub surface: [f64; 4],
+    /// Normal of the part [1].
+    pub normal: DVec3,
+}
+
+impl Riding {
+    /// From sample `i` on over `h` [s], the slide about a stroke [m], its links swung away by a displacement [m].
+    pub fn on(
+        course: &CellCourse,
+        sharp: &SharpEdge,
+        felt: &Felt,
+        i: usize,
+        h: f64,
+        stroke: f64,
+        away: DVec3,
+    ) -> Self {
+        let last = course.len() - 1;
+        let next = (i + 1).min(last);
+        let bisector = course.edge[i].bisector;
+        // Seen from the part where it is.
+        let centre = |j: usize| felt.balls[j] + felt.slides[j] * stroke - bisector * felt.lift[j];
+        let middle = 0.5 * (centre(i) + centre(next)) + away;
+        let touch = sharp.touch(middle, course.edge[i].station);
+        let normal = touch.normal;
+        let share = -normal.dot(0.5 * (felt.slides[i] + felt.slides[next]));
+        let from = middle - normal * touch.distance;
+        let at = |j: usize| stroke + (normal.dot(centre(j) - from) - course.ball_radius) / share;
+        let slope = |j: usize| {
+            let (before, after) = (j.saturating_sub(1), (j + 1).min(last));
+            (at(after) - at(before)) / (course.time[after] - course.time[before])
+        };
+        let surface = hermite(h, [at(i), at(next)], [slope(i), slope(next)]);
+        Self {
+            share,
+            surface,
+            normal,
+        }
+    }
+}
