@@ -1,16 +1,27 @@
 //! Physics without a name: where no known effect explains the recordings, a latent term inside the simulator, at each port and over each variable in
 //! turn; the evidence says which.
+//!
+//!     score = 1/2 (S + L),   S = cost + n ln N,   L = cost of each recording as foretold by a term fitted to the others
+//!
+//! S is Schwarz's estimate of -2 ln p(all recordings), L the sum of -2 ln p(one recording | the others). Hats over time fit whatever happens in one
+//! recording, and S cannot tell: all hats have as many coefficients. What happens in another recording they do not foretell, unless it is a matter of
+//! time. Where only one recording shows a term, L says nothing of it either way, and S decides.
 
 use super::evidence::{Evidence, Prediction};
-use super::fit::{Effort, FULL, ROUGH, fit, foretold, jacobian};
+use super::fit::{Effort, FULL, Fit, ROUGH, fit};
 use super::free::{Free, Prior};
 use super::hypothesis::Hypothesis;
 use super::search::Search;
 use super::spectrum;
+use super::unlisted::elsewhere::Elsewhere;
 use crate::effects::{Coordinate, Quantity};
 use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, PlantParameters, Port, Variable};
 use rayon::prelude::*;
 
+/// Terms that get a second look after their first step: where the piston meets a stop a term over the stroke needs more than one.
+const LOOKED_AT: usize = 12;
+/// Iterations of that look.
+const LOOK: usize = 4;
 /// Terms that are fitted roughly.
 const FITTED: usize = 5;
 /// Iterations of a rough fit.
@@ -21,8 +32,10 @@ const IN_FULL: usize = 3;
 const FULL_ITERATIONS: usize = 25;
 /// Widths of the port's scale that a coefficient is believed to lie within [1].
 const BELIEVED: f64 = 20.0;
-/// Share of its largest value below which a term does not act [1].
-const NARROW: f64 = 0.1;
+/// Shares of its value where it is surest below which a term does not act [1]: both are tried, and the fit decides.
+const NARROW: [f64; 2] = [0.1, 0.3];
+/// Share of what its variable moves through from which a term is not narrow [1].
+const WIDE: f64 = 0.6;
 /// Share of the gain of the best term within which another variable is not told apart [1].
 const ALIKE: f64 = 0.05;
 
@@ -202,50 +215,87 @@ fn range(evidence: &Evidence, base: &Prediction, variable: Variable) -> Option<[
     (high > low).then_some([low, high])
 }
 
+/// A term in words for the log.
+fn described(hypothesis: &Hypothesis) -> String {
+    hypothesis.unlisted().map_or(String::new(), |latent| {
+        let directed = if latent.directed { ", directed" } else { "" };
+        let (port, variable) = (latent.port, latent.variable);
+        let count = latent.coefficients.len();
+        format!("latent {port:?}({variable:?}{directed}) of {count}")
+    })
+}
+
+/// The part of its range in which a fitted term acts: about the knot that the recordings are surest of, for what they hardly show, such as a force
+/// that a stop takes, may be anything. Nothing where that is most of the range.
+fn window(fit: &Fit, share: f64) -> Option<[f64; 2]> {
+    let latent = fit.prediction.plant.latent.as_ref()?;
+    let Basis::Hats { ends } = latent.basis else {
+        return None;
+    };
+    let c = &latent.coefficients;
+    let own = fit.free.len() - c.len();
+    let sure = |k: usize| c[k] * c[k] * fit.information[(own + k, own + k)];
+    let peak = (0..c.len()).max_by(|a, b| sure(*a).total_cmp(&sure(*b)))?;
+    let acts = |k: &usize| c[*k].abs() > share * c[peak].abs();
+    let first = (0..=peak).rev().take_while(acts).last()?;
+    let last = (peak..c.len()).take_while(acts).last()?;
+    let spacing = (ends[1] - ends[0]) / (c.len() - 1) as f64;
+    let from = ends[0] + spacing * (first as f64 - 1.5);
+    let to = ends[0] + spacing * (last as f64 + 1.5);
+    (to - from < WIDE * (ends[1] - ends[0])).then_some([from, to])
+}
+
 impl Search<'_> {
     /// The latent term that explains most beside a hypothesis.
     pub fn latent(&self, base: &Hypothesis, say: &mut dyn FnMut(&str)) -> Option<Hypothesis> {
         // Of a full fit the held prediction is wanted.
         let base = &self.refine_from_here(base, ROUGH, 2);
         let terms = terms(self.evidence, &base.fit.prediction);
-        let mut ranked: Vec<(f64, &Latent)> = terms
+        let mut ranked: Vec<Hypothesis> = terms
             .par_iter()
-            .map(|latent| (self.promise(base, latent), latent))
+            .map(|latent| self.with_latent(base, latent, ROUGH, 1))
             .collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (cost, latent) in ranked.iter().take(12) {
+        ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
+        ranked.truncate(LOOKED_AT);
+        ranked = ranked
+            .par_iter()
+            .map(|promising| self.refine_from_here(promising, ROUGH, LOOK))
+            .collect();
+        ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
+        for h in &ranked {
             say(&format!(
-                "  latent {:?}({:?}{}) {} promises {cost:.0}",
-                latent.port,
-                latent.variable,
-                if latent.directed { ", directed" } else { "" },
-                latent.coefficients.len(),
+                "  {} promises {:.0}",
+                described(h),
+                self.latent_score(h)
             ));
         }
-        let mut fitted: Vec<(Hypothesis, &Latent)> = ranked
-            .iter()
-            .take(FITTED)
-            .map(|(_, latent)| {
-                let fitted = self.with_latent(base, latent, ROUGH, ROUGH_ITERATIONS);
-                (self.narrowed(base, fitted), *latent)
+        let fitted = ranked.iter().take(FITTED).map(|promising| {
+            let fitted = self.refine_from_here(promising, ROUGH, ROUGH_ITERATIONS);
+            self.narrowed(base, fitted)
+        });
+        let turns = Elsewhere::of(self.evidence);
+        let mut fitted: Vec<(f64, Hypothesis)> = fitted
+            .map(|h| {
+                let own = self.latent_score(&h);
+                let elsewhere = turns.as_ref().map_or(own, |turns| turns.cost(&h.fit));
+                say(&format!(
+                    "  {} rough {own:.0}, elsewhere {elsewhere:.0}",
+                    described(&h)
+                ));
+                (0.5 * (own + elsewhere), h)
             })
             .collect();
-        fitted.sort_by(|a, b| self.latent_score(&a.0).total_cmp(&self.latent_score(&b.0)));
-        for (hypothesis, latent) in &fitted {
-            say(&format!(
-                "  latent {:?}({:?}{}) rough {:.0}",
-                latent.port,
-                latent.variable,
-                if latent.directed { ", directed" } else { "" },
-                self.latent_score(hypothesis)
-            ));
-        }
-        let (best, latent) = fitted.first()?;
-        let gain = base.fit.rough - best.fit.rough;
-        let alike = |h: &Hypothesis| h.fit.rough - best.fit.rough < ALIKE * gain;
+        fitted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (least, best) = fitted.first()?;
+        let latent = best.unlisted()?;
+        let gain = (base.fit.rough - least).max(0.0);
+        let alike = |score: f64| score - least <= ALIKE * gain;
         let mut depends_on = Vec::new();
-        for (hypothesis, other) in &fitted {
-            if other.port == latent.port && alike(hypothesis) {
+        for (score, hypothesis) in &fitted {
+            let Some(other) = hypothesis.unlisted() else {
+                continue;
+            };
+            if other.port == latent.port && alike(*score) {
                 depends_on.push(other.variable.name());
                 if other.directed {
                     depends_on.push("velocity_sign");
@@ -261,9 +311,9 @@ impl Search<'_> {
         depends_on.truncate(3);
         let mut full: Vec<Hypothesis> = fitted
             .iter()
-            .filter(|(h, _)| alike(h))
+            .filter(|(score, _)| alike(*score))
             .take(IN_FULL)
-            .map(|(h, _)| self.refine_from_here(h, FULL, FULL_ITERATIONS))
+            .map(|(_, h)| self.refine_from_here(h, FULL, FULL_ITERATIONS))
             .collect();
         full.sort_by(|a, b| a.fit.cost().total_cmp(&b.fit.cost()));
         let mut hypothesis = full.into_iter().next()?;
@@ -284,34 +334,6 @@ impl Search<'_> {
     fn latent_score(&self, hypothesis: &Hypothesis) -> f64 {
         let numbers = count(&hypothesis.fit.prediction.plant) as f64;
         hypothesis.fit.rough + numbers * (self.evidence.count() as f64).ln()
-    }
-
-    /// Rough cost that a latent term could come to in one step.
-    fn promise(&self, base: &Hypothesis, latent: &Latent) -> f64 {
-        let fit = &base.fit;
-        let mut there = fit.prediction.clone();
-        there.plant.latent = Some(latent.clone());
-        let mut free = fit.free.clone();
-        let mut values = fit.values.clone();
-        let own = free_of_latent(latent);
-        // A frequency that starts from nothing has no derivative.
-        let own: Vec<Free> = own
-            .into_iter()
-            .filter(|f| f.quantity.name != FREQUENCY.name)
-            .collect();
-        values.extend(own.iter().map(|f| f.start));
-        free.extend(own);
-        let mut columns = fit.columns.clone();
-        columns.extend(jacobian(
-            self.evidence,
-            &there,
-            &free,
-            &values,
-            fit.free.len(),
-        ));
-        let numbers = (free.len() - fit.free.len()) as f64;
-        let (cost, _) = foretold(self.evidence, &there, &free, &values, &columns, &ROUGH[0]);
-        cost + numbers * (self.evidence.count() as f64).ln()
     }
 
     fn with_latent(
@@ -349,39 +371,31 @@ impl Search<'_> {
 
     /// A term that acts in a part of its range alone, with its knots there, if that fits better.
     fn narrowed(&self, base: &Hypothesis, fitted: Hypothesis) -> Hypothesis {
-        let Some(latent) = fitted.fit.prediction.plant.latent.clone() else {
-            return fitted;
-        };
-        let Basis::Hats { ends } = latent.basis else {
-            return fitted;
-        };
-        let c = &latent.coefficients;
-        let largest = c.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-        let acts = |k: &usize| c[*k].abs() > NARROW * largest;
-        let (Some(first), Some(last)) = ((0..c.len()).find(acts), (0..c.len()).rev().find(acts))
-        else {
-            return fitted;
-        };
-        let spacing = (ends[1] - ends[0]) / (c.len() - 1) as f64;
-        let from = ends[0] + spacing * (first as f64 - 1.5);
-        let to = ends[0] + spacing * (last as f64 + 1.5);
-        if to - from > 0.6 * (ends[1] - ends[0]) {
-            return fitted;
-        }
-        let mut narrow = Latent {
-            basis: Basis::Hats { ends: [from, to] },
-            ..latent.clone()
-        };
-        let step = (to - from) / (c.len() - 1) as f64;
-        narrow.coefficients = (0..c.len())
-            .map(|k| latent.shape(from + step * k as f64))
+        let mut windows: Vec<[f64; 2]> = NARROW
+            .iter()
+            .filter_map(|share| window(&fitted.fit, *share))
             .collect();
-        let tried = self.with_latent(base, &narrow, ROUGH, ROUGH_ITERATIONS);
-        if tried.fit.rough < fitted.fit.rough {
-            tried
-        } else {
-            fitted
+        windows.dedup();
+        let mut best = fitted;
+        let Some(latent) = best.unlisted().cloned() else {
+            return best;
+        };
+        for [from, to] in windows {
+            let count = latent.coefficients.len();
+            let step = (to - from) / (count - 1) as f64;
+            let narrow = Latent {
+                basis: Basis::Hats { ends: [from, to] },
+                coefficients: (0..count)
+                    .map(|k| latent.shape(from + step * k as f64))
+                    .collect(),
+                ..latent.clone()
+            };
+            let tried = self.with_latent(base, &narrow, ROUGH, ROUGH_ITERATIONS);
+            if tried.fit.rough < best.fit.rough {
+                best = tried;
+            }
         }
+        best
     }
 
     /// Goes on with a fit from where it is.

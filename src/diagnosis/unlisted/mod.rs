@@ -1,6 +1,8 @@
-//! Physics without a name, for people: the shape that was found, what known physics has such a shape, and which known effects came nearest.
+//! Physics without a name: what it says of recordings that it was not fitted to; and for people, the shape that was found, what known physics has such
+//! a shape, and which known effects came nearest.
 
 pub mod balance;
+pub mod elsewhere;
 pub mod form;
 pub mod known;
 pub mod report;
