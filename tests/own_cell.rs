@@ -14,6 +14,9 @@ struct Planted {
     joint: Option<usize>,
     numbers: &'static [(&'static str, f64)],
     better: &'static str,
+    /// Is nothing else named beside it? The flanks of a play strike each other while the tool is set on the edge, harder than the encoders' samples can
+    /// follow, which leaves a second, smaller play in another joint.
+    alone: bool,
 }
 
 /// Tables that an edit can add to: what they follow in the file.
@@ -29,6 +32,7 @@ const NOTHING: Planted = Planted {
     joint: None,
     numbers: &[],
     better: "",
+    alone: true,
 };
 
 const RUBBING: Planted = Planted {
@@ -41,6 +45,7 @@ const RUBBING: Planted = Planted {
     joint: Some(2),
     numbers: &[("friction_n_m", 20.0)],
     better: "joint_2_torque_n_m",
+    alone: true,
 };
 
 const PLANTED: [Planted; 9] = [
@@ -53,6 +58,7 @@ const PLANTED: [Planted; 9] = [
         name: "coulomb_viscous_friction",
         joint: None,
         numbers: &[("coulomb_force_n", 8.0)],
+        alone: true,
         better: "force_n",
     },
     Planted {
@@ -61,6 +67,7 @@ const PLANTED: [Planted; 9] = [
         name: "transport_delay",
         joint: None,
         numbers: &[("delay_s", 0.09)],
+        alone: true,
         better: "regulator_pressure_pa",
     },
     Planted {
@@ -72,6 +79,7 @@ const PLANTED: [Planted; 9] = [
         name: "joint_backlash",
         joint: Some(2),
         numbers: &[("play_rad", 0.04 * std::f64::consts::PI / 180.0)],
+        alone: false,
         better: "stroke_m",
     },
     RUBBING,
@@ -84,6 +92,7 @@ const PLANTED: [Planted; 9] = [
         name: "compliant_joint",
         joint: Some(2),
         numbers: &[("stiffness_n_m_per_rad", 1.5e5)],
+        alone: true,
         better: "stroke_m",
     },
     Planted {
@@ -92,6 +101,7 @@ const PLANTED: [Planted; 9] = [
         name: "servo_lag",
         joint: None,
         numbers: &[("bandwidth_hz", 8.0)],
+        alone: true,
         better: "joints_rad",
     },
     Planted {
@@ -103,6 +113,7 @@ const PLANTED: [Planted; 9] = [
         name: "part_misplaced",
         joint: None,
         numbers: &[("shift_m", 8e-4), ("tilt_m_per_m", -0.006_981_4)],
+        alone: true,
         better: "stroke_m",
     },
     Planted {
@@ -114,6 +125,7 @@ const PLANTED: [Planted; 9] = [
         name: "burr",
         joint: None,
         numbers: &[("position_m", 0.035), ("height_m", 4e-4)],
+        alone: true,
         better: "stroke_m",
     },
     Planted {
@@ -125,6 +137,7 @@ const PLANTED: [Planted; 9] = [
         name: "tool_runout",
         joint: None,
         numbers: &[("amplitude_m", 6e-5), ("frequency_hz", 27.0)],
+        alone: true,
         better: "force_n",
     },
 ];
@@ -280,7 +293,10 @@ fn holds(bench: &Bench, planted: &Planted) {
         return;
     }
     let names: Vec<&str> = answer.effects.iter().map(|e| e.name.as_str()).collect();
-    assert_eq!(names, [planted.name], "{account}");
+    if planted.alone {
+        assert_eq!(names, [planted.name], "{account}");
+    }
+    assert_eq!(names[0], planted.name, "{account}");
     let found = &answer.effects[0].parameters;
     let number = |name: &str| found.iter().find(|(n, _)| n == name).map(|(_, e)| e.value);
     assert_eq!(
