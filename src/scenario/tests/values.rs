@@ -76,7 +76,7 @@ fn every_key_of_the_arm_reaches_its_field() {
         friction: Some(7.0),
         stiffness: 2e5,
         damping_time: 0.003,
-        backlash: 0.001 * PI,
+        backlash: 0.18_f64.to_radians(),
     };
     assert_eq!(arm.drives, [drive]);
     let limit = |joint: &str, effort, velocity| LimitOverride {
