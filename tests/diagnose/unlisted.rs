@@ -57,7 +57,7 @@ fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
     for said in [
         "missing: physics that no known effect explains",
         "a force on the piston that depends on the stroke",
-        "picture: unlisted.svg",
+        "drawn in unlisted.svg",
     ] {
         assert!(words.contains(said), "no {said:?} in\n{account}");
     }
