@@ -185,7 +185,10 @@ fn a_line_in_segments_keeps_its_air_and_many_are_one_tube_of_evenly_spread_resis
     let (four, _) = course(&in_segments(4), 2);
     let (far, near) = (apart(&one, &coarse), apart(&four, &coarse));
     println!("one segment off by {far:.1e}, four by {near:.1e}");
-    assert!((3.0..5.0).contains(&(far / near)) && near > 1e-3, "{far} {near}");
+    assert!(
+        (3.0..5.0).contains(&(far / near)) && near > 1e-3,
+        "{far} {near}"
+    );
 }
 
 /// Pressure in a chamber of fixed volume and in its line [Pa absolute] at a time [s], by Runge-Kutta of the two equations in microseconds.
