@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use idc_cell::diagnosis::answer::Answer;
-use idc_cell::laboratory::{EFFECTS, Known, Recipe, SealedCase, write_case};
+use idc_cell::laboratory::{EFFECTS, Known, LOST, Recipe, SealedCase, write_case};
 
 /// Makes a case, diagnoses it by the program, and returns the answer with what was concealed.
 fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer, SealedCase) {
@@ -116,14 +116,20 @@ fn two_effects_at_once_are_both_found() {
 fn every_effect_is_found_at_half_its_largest_size() {
     let mut missed = Vec::new();
     for (index, effect) in EFFECTS.iter().enumerate() {
-        let (answer, _) = diagnosed(effect.name, 500 + index as u64, &[(effect.name, 0.5)]);
+        let (answer, sealed) = diagnosed(effect.name, 500 + index as u64, &[(effect.name, 0.5)]);
         println!(
-            "{}: answered {:?} in {:.1} s",
+            "{}, {:.0} deviations: answered {:?} in {:.1} s",
             effect.name,
+            sealed.shows,
             named(&answer),
             answer.seconds
         );
-        if named(&answer) != [effect.name] {
+        // A reservoir that holds out feeds a device as a full one does: there is nothing to find.
+        let wanted: &[&str] = match sealed.shows < LOST {
+            true => &[],
+            false => &[effect.name],
+        };
+        if named(&answer) != wanted {
             missed.push(format!("{} for {}", named(&answer).join("+"), effect.name));
         }
     }
