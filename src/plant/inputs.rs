@@ -122,9 +122,9 @@ mod tests {
             time: time.clone(),
             cell: None,
         };
-        for i in 1..4 {
+        for (i, t) in time.iter().enumerate().take(4).skip(1) {
             let slope = inputs.slope(&values, i);
-            assert!((slope - (10.0 * time[i] - 2.0)).abs() < 1e-12, "{slope}");
+            assert!((slope - (10.0 * t - 2.0)).abs() < 1e-12, "{slope}");
         }
         let mut open = values;
         open[2] = f64::NAN;

@@ -147,14 +147,14 @@ mod tests {
         let led = follow(&time, &time, f64::INFINITY);
         let pushed = |t: f64| 1e-4 * (-(((t - 1.0) / 0.03).powi(2))).exp();
         // Noise of two values in turn, and one reading that is lost.
-        let noise = |i: usize| if i % 3 == 0 { 2e-6 } else { -1e-6 };
+        let noise = |i: usize| if i.is_multiple_of(3) { 2e-6 } else { -1e-6 };
         let mut encoder: Vec<f64> = (0..500)
             .map(|i| time[i] + pushed(time[i]) + noise(i))
             .collect();
         encoder[100] = f64::NAN;
         let shown = shown(&time, &led, &encoder, 2e-6);
-        for i in 0..500 {
-            let error = shown.angle[i] - time[i] - pushed(time[i]);
+        for (i, t) in time.iter().enumerate() {
+            let error = shown.angle[i] - t - pushed(*t);
             assert!(error.abs() < 1e-5, "{i}: {error}");
         }
         let still: Vec<f64> = (20..90).map(|i| shown.angle[i] - time[i]).collect();

@@ -54,7 +54,7 @@ impl Search<'_> {
             && self.score(&first) < self.score(&full[0])
         {
             let own = |base: &&Hypothesis| base.names() == first.names();
-            let without = (bases.iter().find(own)).map(|base| self.from_where(base, &first));
+            let without = (bases.iter().find(own)).map(|base| self.fitted_where(base, &first));
             match without.filter(|h| scale.is_adequate(h) || self.score(h) <= self.score(&first)) {
                 Some(without) => {
                     say(&format!("  without a term {:.1}", self.score(&without)));
@@ -144,7 +144,7 @@ impl Search<'_> {
 
     /// A hypothesis fitted again from where a richer one stands. Impacts make many dips, and a fit comes to rest in one of them: what another gains by
     /// having come to a better one is not what it has more.
-    fn from_where(&self, hypothesis: &Hypothesis, richer: &Hypothesis) -> Hypothesis {
+    fn fitted_where(&self, hypothesis: &Hypothesis, richer: &Hypothesis) -> Hypothesis {
         let there = &richer.fit.prediction.plant;
         let free: Vec<Free> = (hypothesis.fit.free.iter())
             .map(|f| Free {
@@ -187,7 +187,7 @@ impl Search<'_> {
             if gain <= least {
                 return;
             }
-            let again = self.from_where(best, &more);
+            let again = self.fitted_where(best, &more);
             let gain = self.score(&again) - self.score(&more);
             say(&format!("  of which its own {gain:.1}"));
             if self.score(&again) < score {
