@@ -65,10 +65,11 @@ impl Search<'_> {
         }
     }
 
-    /// Takes effects out of the best hypothesis as long as it scores better without.
+    /// Takes effects out of the best hypothesis as long as it scores better without, the last one too: a rough fit of the believed model may have come to
+    /// rest where an effect of no size let a full one go on.
     pub(super) fn eliminate(&self, full: &mut Vec<Hypothesis>, say: &mut dyn FnMut(&str)) {
         while let Some(best) = full.first()
-            && best.effects.len() > 1 + self.shown.len()
+            && best.effects.len() > self.shown.len()
         {
             let score = self.score(best);
             let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
