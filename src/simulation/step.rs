@@ -49,6 +49,7 @@ pub struct StepTimes {
 pub struct Simulation<'a> {
     cell: &'a Cell,
     world: World,
+    runout: Option<Runout>,
     device: DeviceState,
     servo: Servo,
     /// What each axis's drive makes of its command, where the drives lag.
@@ -121,6 +122,7 @@ impl<'a> Simulation<'a> {
         Self {
             cell,
             world,
+            runout: Runout::of(&scenario.contact),
             servo,
             lags,
             motors,
@@ -333,15 +335,12 @@ impl<'a> Simulation<'a> {
 
     /// Lifts the part's surface under the ball by the burr, and by the tool's runout.
     fn raise_contact(&mut self, reference: &Reference, dt: f64) {
-        let contact = &self.cell.scenario.contact;
-        let runout = Runout {
-            amplitude: contact.runout_amplitude,
-            frequency: contact.runout_frequency,
+        let turned = match &self.runout {
+            Some(runout) => runout.lift((self.steps as f64 + 0.5) * dt),
+            None => 0.0,
         };
-        let parameters = WorldDescription::of(self.cell).contact;
-        let turned = runout.lift((self.steps as f64 + 0.5) * dt, &parameters);
         let Some(ride) = &self.cell.part.ride else {
-            if runout.amplitude > 0.0 {
+            if self.runout.is_some() {
                 self.world.part_contact_mut().set_lift(turned, DVec3::ZERO);
             }
             return;
