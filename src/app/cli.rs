@@ -160,6 +160,9 @@ pub(super) struct SweepArguments {
     /// Devices with nothing missing.
     #[arg(long, default_value_t = 150)]
     pub(super) empty: u64,
+    /// Which devices are drawn: another number, others.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..1_000_000))]
+    pub(super) draw: u64,
     /// Length of each recording [s].
     #[arg(long, default_value_t = 4.0, value_parser = duration)]
     pub(super) duration_s: f64,

@@ -74,6 +74,7 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
     let plan = SweepPlan {
         effects: arguments.effects.clone(),
         seeds: arguments.seeds,
+        draw: arguments.draw,
         sizes: usize::from(arguments.sizes),
         empty: arguments.empty,
         duration: arguments.duration_s,

@@ -30,8 +30,10 @@ const ROUGH_ITERATIONS: usize = 8;
 const IN_FULL: usize = 3;
 /// Iterations of the full fit.
 const FULL_ITERATIONS: usize = 25;
-/// Widths of the port's scale that a coefficient is believed to lie within [1].
+/// Standard deviation that is believed of a term's level or of a wave, in the port's scale [1].
 const BELIEVED: f64 = 20.0;
+/// Standard deviation that is believed of the rise from one knot to the next, in the port's scale [1].
+const RISES_BY: f64 = 2.0;
 /// Shares of its value where it is surest below which a term does not act [1]: both are tried, and the fit decides.
 const NARROW: [f64; 2] = [0.1, 0.3];
 /// Share of what its variable moves through from which a term is not narrow [1].
@@ -83,21 +85,56 @@ pub fn scale(port: Port) -> f64 {
         .map_or(1.0, |(_, scale, _)| *scale)
 }
 
-macro_rules! coefficients {
+macro_rules! quantities {
     ($($index:literal)*) => {
         /// Coefficients of the latent term as quantities.
         static COEFFICIENTS: [Quantity; MOST_COEFFICIENTS] = [$(Quantity {
             name: concat!("coefficient_", $index),
-            get: |p| p.latent.as_ref().and_then(|l| l.coefficients.get($index)).copied().unwrap_or(0.0),
+            get: |p| coefficient(p, $index),
             set: |p, value| {
                 if let Some(c) = p.latent.as_mut().and_then(|l| l.coefficients.get_mut($index)) {
                     *c = value;
                 }
             },
         }),*];
+        /// By how much each coefficient is above the one before it.
+        static RISES: [Quantity; MOST_COEFFICIENTS] = [$(Quantity {
+            name: concat!("rise_", $index),
+            get: |p| rise(p, $index),
+            set: |p, value| {
+                let further = value - rise(p, $index);
+                let coefficients = p.latent.iter_mut().flat_map(|l| &mut l.coefficients);
+                coefficients.skip($index).for_each(|c| *c += further);
+            },
+        }),*];
     };
 }
-coefficients!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
+quantities!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
+
+fn coefficient(plant: &PlantParameters, index: usize) -> f64 {
+    let latent = plant.latent.as_ref();
+    latent
+        .and_then(|l| l.coefficients.get(index))
+        .copied()
+        .unwrap_or(0.0)
+}
+
+fn rise(plant: &PlantParameters, index: usize) -> f64 {
+    let before = index.checked_sub(1);
+    coefficient(plant, index) - before.map_or(0.0, |before| coefficient(plant, before))
+}
+
+/// What a unit of the free quantity of an index adds to a term at a value of its variable.
+#[must_use]
+pub fn response(latent: &Latent, index: usize, at: f64) -> f64 {
+    let mut unit = latent.clone();
+    unit.coefficients.fill(0.0);
+    match latent.basis {
+        Basis::Hats { .. } => unit.coefficients[index..].fill(1.0),
+        Basis::Waves { .. } => unit.coefficients[index] = 1.0,
+    }
+    unit.shape(at)
+}
 
 /// The frequency of a periodic term.
 const FREQUENCY: Quantity = Quantity {
@@ -113,23 +150,35 @@ const FREQUENCY: Quantity = Quantity {
     },
 };
 
-/// What is free of a latent term.
+/// What is free of a latent term: of hats the level and the rises, for a curve's neighbouring values are alike until the recordings say otherwise, and
+/// what is not passed through stays as beside it.
 fn free_of_latent(latent: &Latent) -> Vec<Free> {
     let scale = scale(latent.port);
-    let mut free: Vec<Free> = COEFFICIENTS[..latent.coefficients.len()]
-        .iter()
-        .zip(&latent.coefficients)
-        .map(|(quantity, value)| Free {
-            quantity: *quantity,
-            start: *value,
-            coordinate: Coordinate::Linear(scale),
-            bounds: [-1e3 * scale, 1e3 * scale],
-            prior: Prior::Normal {
-                mean: 0.0,
-                deviation: BELIEVED * scale,
-            },
-        })
-        .collect();
+    let count = latent.coefficients.len();
+    let free = |(quantity, value): (&Quantity, f64), deviation: f64| Free {
+        quantity: *quantity,
+        start: value,
+        coordinate: Coordinate::Linear(scale),
+        bounds: [-1e3 * scale, 1e3 * scale],
+        prior: Prior::Normal {
+            mean: 0.0,
+            deviation: deviation * scale,
+        },
+    };
+    let c = latent.coefficients.iter().copied();
+    let mut free: Vec<Free> = match latent.basis {
+        Basis::Hats { .. } => {
+            let before = std::iter::once(0.0).chain(c.clone());
+            let rises = c.zip(before).map(|(c, before)| c - before);
+            let believed = std::iter::once(BELIEVED).chain(std::iter::repeat(RISES_BY));
+            let rises = RISES[..count].iter().zip(rises).zip(believed);
+            rises.map(|(rise, by)| free(rise, by)).collect()
+        }
+        Basis::Waves { .. } => {
+            let waves = COEFFICIENTS[..count].iter().zip(c);
+            waves.map(|wave| free(wave, BELIEVED)).collect()
+        }
+    };
     if let Basis::Waves { frequency } = latent.basis {
         // One turn of phase over the longest recording is a step of about a tenth of a hertz.
         free.push(Free {
@@ -234,7 +283,16 @@ fn window(fit: &Fit, share: f64) -> Option<[f64; 2]> {
     };
     let c = &latent.coefficients;
     let own = fit.free.len() - c.len();
-    let sure = |k: usize| c[k] * c[k] * fit.information[(own + k, own + k)];
+    // A knot that moves alone is a rise to it, and a fall after it.
+    let alone = |k: usize| {
+        let (rise, fall) = (own + k, own + k + 1);
+        let known = &fit.information;
+        if k + 1 == c.len() {
+            return known[(rise, rise)];
+        }
+        known[(rise, rise)] + known[(fall, fall)] - 2.0 * known[(rise, fall)]
+    };
+    let sure = |k: usize| c[k] * c[k] * alone(k);
     let peak = (0..c.len()).max_by(|a, b| sure(*a).total_cmp(&sure(*b)))?;
     let acts = |k: &usize| c[*k].abs() > share * c[peak].abs();
     let first = (0..=peak).rev().take_while(acts).last()?;

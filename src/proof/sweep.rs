@@ -14,6 +14,8 @@ use crate::recording::atomic::write_text;
 const SEEDS_PER_EFFECT: u64 = 1000;
 /// Seed of the first device with nothing missing.
 const EMPTY_SEED: u64 = 1_000_000;
+/// Seeds of a draw of devices.
+const SEEDS_PER_DRAW: u64 = 10_000_000;
 /// Folder of the outcomes.
 const OUTCOMES: &str = "outcomes";
 
@@ -24,6 +26,8 @@ pub struct SweepPlan {
     pub effects: Vec<String>,
     /// Devices for each effect.
     pub seeds: u64,
+    /// Which devices are drawn.
+    pub draw: u64,
     /// Sizes of each effect.
     pub sizes: usize,
     /// Devices with nothing missing.
@@ -57,6 +61,7 @@ impl SweepPlan {
         if self.effects.is_empty() {
             chosen = all().take(EFFECTS.len()).collect();
         }
+        let first = SEEDS_PER_DRAW * self.draw;
         // Seed by seed: what a sweep that is stopped has done is of all effects.
         for seed in 0..self.seeds {
             for (index, effect) in &chosen {
@@ -64,7 +69,7 @@ impl SweepPlan {
                     tasks.push(Task {
                         effect: Some(effect),
                         size,
-                        seed: SEEDS_PER_EFFECT * (*index as u64 + 1) + seed,
+                        seed: first + SEEDS_PER_EFFECT * (*index as u64 + 1) + seed,
                     });
                 }
             }
@@ -72,7 +77,7 @@ impl SweepPlan {
         tasks.extend((0..self.empty).map(|i| Task {
             effect: None,
             size: 0,
-            seed: EMPTY_SEED + i,
+            seed: first + EMPTY_SEED + i,
         }));
         Ok(tasks)
     }
@@ -227,6 +232,7 @@ mod tests {
         let mut plan = SweepPlan {
             effects: vec!["force_sensor_gain_error".to_owned()],
             seeds: 1,
+            draw: 0,
             sizes: 2,
             empty: 1,
             duration: 2.0,

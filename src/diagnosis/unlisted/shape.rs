@@ -1,8 +1,8 @@
 //! The shape of a term without a name: its value against its variable, with how sure it is.
 //!
-//!     y(x) = sum c_k phi_k(x),   half width = 1.96 sqrt(phi^T V phi)
+//!     y(x) = sum d_k psi_k(x),   half width = 1.96 sqrt(psi^T V psi)
 //!
-//! c coefficients in the port's unit, V their covariance (`super::super::covariance`).
+//! d what the fit moves, in the port's unit, psi what a unit of each adds (`super::super::latent`), V their covariance (`super::super::covariance`).
 
 use nalgebra::DVector;
 
@@ -131,7 +131,7 @@ fn even([from, to]: [f64; 2], steps: usize) -> impl Iterator<Item = f64> {
     (0..=steps).map(move |step| from + (to - from) * step as f64 / steps as f64)
 }
 
-/// Covariance of the coefficients, and that of the frequency, in SI.
+/// Covariance of what the fit moves of a term, and that of the frequency, in SI.
 struct Spread {
     covariance: nalgebra::DMatrix<f64>,
     frequency: f64,
@@ -164,12 +164,7 @@ impl Spread {
 
     fn half_width(&self, latent: &Latent, at: f64) -> f64 {
         let count = latent.coefficients.len();
-        let mut unit = latent.clone();
-        let functions = DVector::from_fn(count, |k, _| {
-            unit.coefficients.fill(0.0);
-            unit.coefficients[k] = 1.0;
-            unit.shape(at)
-        });
+        let functions = DVector::from_fn(count, |k, _| latent::response(latent, k, at));
         INTERVAL
             * functions
                 .dot(&(&self.covariance * &functions))
