@@ -223,6 +223,9 @@ pub(super) struct DiagnoseArguments {
     /// Print nothing but errors.
     #[arg(long)]
     pub(super) quiet: bool,
+    /// Print on stderr what the search tries, and what each explanation would cost.
+    #[arg(long, conflicts_with_all = ["quiet", "all"])]
+    pub(super) verbose: bool,
     /// Print what diagnosis.json holds instead of the account; with --all, one line for each case.
     #[arg(long, conflicts_with = "quiet")]
     pub(super) json: bool,

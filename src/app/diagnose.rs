@@ -59,8 +59,13 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         return Ok(ExitCode::Done);
     }
     let prepared = one::Prepared::new(&arguments.case, cell, &out, standing)?;
-    let spinner = progress::spinner(arguments.quiet || arguments.json);
-    let finished = prepared.run(&mut |text| spinner.set_message(text.trim().to_owned()));
+    let spinner = progress::spinner(arguments.quiet || arguments.json || arguments.verbose);
+    let finished = prepared.run(&mut |text| {
+        spinner.set_message(text.trim().to_owned());
+        if arguments.verbose {
+            eprintln!("{text}");
+        }
+    });
     spinner.finish_and_clear();
     let finished = finished?;
     if arguments.json {

@@ -5,10 +5,9 @@ use super::case::{Case, NamedRecording, Prepared};
 use super::clean::{Cleaning, clean};
 use super::estimate::{Estimates, estimates};
 use super::evidence::{Evidence, Prediction};
-use super::fit::robust_sum;
 use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
-use super::left_out::left_out;
+use super::left_out::{self, left_out};
 use super::links::{LinkResidual, links};
 use super::localise::{Parting, partings, robust_rms};
 use super::mismatch::{Interval, intervals};
@@ -40,8 +39,7 @@ pub struct Ranked {
 impl Ranked {
     /// Robust sum of squares of what was left out in turn.
     fn left_out_sum(&self) -> Option<f64> {
-        let channels = self.left_out.as_ref()?.iter().flatten();
-        Some(channels.map(|residuals| robust_sum(residuals)).sum())
+        Some(left_out::sum(self.left_out.as_ref()?))
     }
 }
 

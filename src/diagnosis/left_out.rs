@@ -6,7 +6,7 @@
 //! is all but the whole way. Then the recording r is simulated with u_r.
 
 use super::evidence::Evidence;
-use super::fit::{Fit, with_values};
+use super::fit::{Fit, robust_sum, with_values};
 use crate::plant::{CHANNELS, simulate};
 use nalgebra::{DMatrix, DVector};
 
@@ -36,6 +36,17 @@ pub fn left_out(evidence: &Evidence, fit: &Fit) -> Option<Vec<[Vec<f64>; CHANNEL
         start = end;
     }
     Some(all)
+}
+
+/// Robust sum of squares of what is left of recordings, each foretold by a fit to the others; nothing where there are no others.
+pub fn cost(evidence: &Evidence, fit: &Fit) -> Option<f64> {
+    Some(sum(&left_out(evidence, fit)?))
+}
+
+/// Robust sum of squares of what was left out in turn.
+pub fn sum(left: &[[Vec<f64>; CHANNELS.len()]]) -> f64 {
+    let channels = left.iter().flatten();
+    channels.map(|residuals| robust_sum(residuals)).sum()
 }
 
 /// Values of the free quantities without some samples.

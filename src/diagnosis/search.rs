@@ -152,12 +152,13 @@ impl Search<'_> {
             }
             levels.push(children);
         }
+        let mut all: Vec<Hypothesis> = levels.into_iter().flatten().collect();
+        all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         if full.is_empty() {
-            let mut all: Vec<Hypothesis> = levels.into_iter().flatten().collect();
-            all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
             full = self.in_full(&all, &scale, &mut done, say);
         }
         self.eliminate(&mut full, say);
+        self.add_plainer(&mut full, &all, say);
         self.add_small(&mut full, &scale, say);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.prefer_plain(&mut full, &scale);

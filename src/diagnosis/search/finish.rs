@@ -3,13 +3,42 @@
 use super::super::fit::{FULL, ROUGH};
 use super::super::free::Free;
 use super::super::hypothesis::{Hypothesis, stands_for};
+use super::super::left_out;
 use super::super::scale::Scale;
 use super::{FULL_ITERATIONS, HOPELESS, LOOK_ELSEWHERE, MOST_EFFECTS, Search, same};
 
+/// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
+const CHANCE: f64 = 6.0;
 /// Iterations of a rough fit without one of the effects.
 const LIGHTER: usize = 8;
 
 impl Search<'_> {
+    /// Fits in full what says the same as the best hypothesis with plainer laws, where that has not been done: what the best was taken from may have had
+    /// an effect more, that no plain law was tried without.
+    pub(super) fn add_plainer(
+        &self,
+        full: &mut Vec<Hypothesis>,
+        rough: &[Hypothesis],
+        say: &mut dyn FnMut(&str),
+    ) {
+        let Some(best) = full.first() else { return };
+        let plainer = |h: &&Hypothesis| {
+            h.fit.free.len() < best.fit.free.len()
+                && stands_for(h, best)
+                && !full.iter().any(|known| known.names() == h.names())
+        };
+        let more: Vec<Hypothesis> = rough
+            .iter()
+            .filter(plainer)
+            .map(|h| self.refine(h, FULL, FULL_ITERATIONS))
+            .collect();
+        for h in &more {
+            say(&format!("  plainer: {:?} {:.1}", h.effects, self.score(h)));
+        }
+        full.extend(more);
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
     /// Of laws that exclude one another puts the plainest first that explains as much but for what idealisation leaves: a richer law bends to the errors
     /// of a plain one.
     pub(super) fn prefer_plain(&self, full: &mut Vec<Hypothesis>, scale: &Scale) {
@@ -159,7 +188,9 @@ impl Search<'_> {
         self.fitted(effects, plant, &free, stages, FULL_ITERATIONS, None)
     }
 
-    /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good.
+    /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good. What a law is a little wrong by at an impact, an effect
+    /// that has nothing to do with it may fit by chance: so it must foretell recordings that were left out, and where the piston is held to its measured
+    /// motion it must not be worse by more than chance.
     pub(super) fn add_small(
         &self,
         full: &mut Vec<Hypothesis>,
@@ -190,11 +221,21 @@ impl Search<'_> {
             }
             let again = self.fitted_where(best, &more);
             let gain = self.score(&again) - self.score(&more);
-            say(&format!("  of which its own {gain:.1}"));
+            let held = again.fit.rough - more.fit.rough;
+            say(&format!("  of which its own {gain:.1}, held {held:.1}"));
+            let foretold = |h: &Hypothesis| left_out::cost(self.evidence, &h.fit);
+            let foretells = match (foretold(&again), foretold(&more)) {
+                (Some(without), Some(with)) => {
+                    say(&format!("  and {:.1} of what was left out", without - with));
+                    with < without
+                }
+                _ => true,
+            };
             if self.score(&again) < score {
                 full[0] = again;
             }
-            if gain <= least {
+            let contradicted = held < -CHANCE * (2.0 * more.fit.free.len() as f64).sqrt();
+            if gain <= least || contradicted || !foretells {
                 return;
             }
             full.insert(0, more);
