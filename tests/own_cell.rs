@@ -14,9 +14,9 @@ struct Planted {
     joint: Option<usize>,
     numbers: &'static [(&'static str, f64)],
     better: &'static str,
-    /// Is nothing else named beside it? The flanks of a play strike each other while the tool is set on the edge, harder than the encoders' samples can
-    /// follow, which leaves a second, smaller play in another joint.
-    alone: bool,
+    /// Is nothing else named beside it on the plate, on the bracket? What a joint swings and strikes by while the tool is set on the edge, the encoders'
+    /// samples do not follow quite, and a smaller effect may be named for what is left.
+    alone: [bool; 2],
 }
 
 /// Tables that an edit can add to: what they follow in the file.
@@ -32,7 +32,7 @@ const NOTHING: Planted = Planted {
     joint: None,
     numbers: &[],
     better: "",
-    alone: true,
+    alone: [true; 2],
 };
 
 const RUBBING: Planted = Planted {
@@ -45,7 +45,7 @@ const RUBBING: Planted = Planted {
     joint: Some(2),
     numbers: &[("friction_n_m", 20.0)],
     better: "joint_2_torque_n_m",
-    alone: true,
+    alone: [true; 2],
 };
 
 const PLANTED: [Planted; 9] = [
@@ -58,7 +58,7 @@ const PLANTED: [Planted; 9] = [
         name: "coulomb_viscous_friction",
         joint: None,
         numbers: &[("coulomb_force_n", 8.0)],
-        alone: true,
+        alone: [true; 2],
         better: "force_n",
     },
     Planted {
@@ -67,7 +67,7 @@ const PLANTED: [Planted; 9] = [
         name: "transport_delay",
         joint: None,
         numbers: &[("delay_s", 0.09)],
-        alone: true,
+        alone: [true; 2],
         better: "regulator_pressure_pa",
     },
     Planted {
@@ -79,7 +79,7 @@ const PLANTED: [Planted; 9] = [
         name: "joint_backlash",
         joint: Some(2),
         numbers: &[("play_rad", 0.04 * std::f64::consts::PI / 180.0)],
-        alone: false,
+        alone: [false; 2],
         better: "stroke_m",
     },
     RUBBING,
@@ -92,16 +92,16 @@ const PLANTED: [Planted; 9] = [
         name: "compliant_joint",
         joint: Some(2),
         numbers: &[("stiffness_n_m_per_rad", 1.5e5)],
-        alone: true,
+        alone: [true, false],
         better: "stroke_m",
     },
     Planted {
         case: "lag",
-        edits: &[(SERVO, "lag_bandwidth_hz = 8\n")],
+        edits: &[(SERVO, "lag_bandwidth_hz = 16\n")],
         name: "servo_lag",
         joint: None,
-        numbers: &[("bandwidth_hz", 8.0)],
-        alone: true,
+        numbers: &[("bandwidth_hz", 16.0)],
+        alone: [true; 2],
         better: "joints_rad",
     },
     Planted {
@@ -113,7 +113,7 @@ const PLANTED: [Planted; 9] = [
         name: "part_misplaced",
         joint: None,
         numbers: &[("shift_m", 8e-4), ("tilt_m_per_m", -0.006_981_4)],
-        alone: true,
+        alone: [true; 2],
         better: "stroke_m",
     },
     Planted {
@@ -125,7 +125,7 @@ const PLANTED: [Planted; 9] = [
         name: "burr",
         joint: None,
         numbers: &[("position_m", 0.035), ("height_m", 4e-4)],
-        alone: true,
+        alone: [true; 2],
         better: "stroke_m",
     },
     Planted {
@@ -137,7 +137,7 @@ const PLANTED: [Planted; 9] = [
         name: "tool_runout",
         joint: None,
         numbers: &[("amplitude_m", 6e-5), ("frequency_hz", 27.0)],
-        alone: true,
+        alone: [true; 2],
         better: "force_n",
     },
 ];
@@ -145,10 +145,11 @@ const PLANTED: [Planted; 9] = [
 /// Name, lean [deg], force [N], feed [mm/s], seed.
 type Program = (&'static str, f64, f64, f64, u32);
 
-const PROGRAMS: [Program; 4] = [
+const PROGRAMS: [Program; 5] = [
     ("a", 0.0, 170.0, 40.0, 11),
     ("b", 14.0, 60.0, 60.0, 12),
     ("c", -9.0, 115.0, 50.0, 14),
+    ("d", 0.0, 70.0, 50.0, 15),
     ("predict", 6.0, 150.0, 55.0, 13),
 ];
 
@@ -179,7 +180,8 @@ const BRACKET: Job = Job {
     ],
 };
 
-/// How the tool is set on the edge: the engine takes the jolt with which the slide leaves its stop in steps of this size.
+/// How the tool is set on the edge, in steps that are finer than a cell needs: Rapier is of first order in them, and seals of 60 N s/m behave like ones of
+/// 51 at 0.25 ms.
 const PROCESS: &str = "feed_mm_per_s = FEED
 lean_deg = LEAN
 approach_distance_mm = 10
@@ -191,7 +193,7 @@ kind = \"proportional_integral\"
 period_ms = 20
 
 [simulation]
-step_ms = 0.25
+step_ms = 0.05
 seed = SEED
 ";
 
@@ -286,14 +288,14 @@ fn answer(bench: &Bench, case: &str) -> (Answer, String) {
     (serde_json::from_str(&text).unwrap(), account)
 }
 
-fn holds(bench: &Bench, planted: &Planted) {
+fn holds(bench: &Bench, planted: &Planted, job: usize) {
     let (answer, account) = answer(bench, planted.case);
     if planted.name.is_empty() {
         assert_eq!(answer.verdict, Verdict::NothingMissing, "{account}");
         return;
     }
     let names: Vec<&str> = answer.effects.iter().map(|e| e.name.as_str()).collect();
-    if planted.alone {
+    if planted.alone[job] {
         assert_eq!(names, [planted.name], "{account}");
     }
     assert_eq!(names[0], planted.name, "{account}");
@@ -329,7 +331,7 @@ fn in_runs_as_believed_nothing_is_found_and_a_joint_that_rubs_is_named() {
     let all = [NOTHING, RUBBING];
     let bench = diagnosed(&PLATE, &all);
     for planted in &all {
-        holds(&bench, planted);
+        holds(&bench, planted, 0);
     }
 }
 
@@ -338,7 +340,7 @@ fn in_runs_as_believed_nothing_is_found_and_a_joint_that_rubs_is_named() {
 fn everything_planted_in_the_plate_s_cell_is_named_placed_and_sized() {
     let bench = diagnosed(&PLATE, &PLANTED);
     for planted in &PLANTED {
-        holds(&bench, planted);
+        holds(&bench, planted, 0);
     }
 }
 
@@ -347,6 +349,6 @@ fn everything_planted_in_the_plate_s_cell_is_named_placed_and_sized() {
 fn everything_planted_in_the_bracket_s_cell_is_named_placed_and_sized() {
     let bench = diagnosed(&BRACKET, &PLANTED);
     for planted in &PLANTED {
-        holds(&bench, planted);
+        holds(&bench, planted, 1);
     }
 }

@@ -4,8 +4,13 @@
 //!     s = n . (b - e) - r - l      standoff at no stroke
 //!     c = -n . a                   share of the stroke that goes into the part
 //!
-//! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out (a burr is met by the ball alone, `carrier`), x stroke. Joints that are off turn all behind them about their axes, from the last
-//! one to the first: the product of exponentials (Brockett, 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
+//! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out (a burr is met by the ball alone,
+//! `carrier`), x stroke. Joints that are off turn all behind them about their axes, from the last one to the first: the product of exponentials (Brockett,
+//! 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
+//!
+//!     l = n . u,   u = shift n_0 + tilt (t_0 x n_0) x (e - e_0)          small displacement of a rigid part (Siciliano et al., Robotics, 2009, sec. 2.4)
+//!
+//! e_0, t_0, n_0 middle of the edge, its direction and bisector there.
 
 use super::cell_parameters::{CellParameters, MOST_JOINTS};
 use super::servo::follow;
@@ -65,8 +70,8 @@ pub struct CellCourse {
     pub force_along_slide: bool,
     /// Does a recording start with the slide out on its stop, at the pressure set, not retracted without pressure?
     pub starts_pressing: bool,
-    /// Where its middle is, from its start [m].
-    pub edge_middle: f64,
+    /// Its middle, about which a part that does not lie where it should is turned.
+    pub middle: EdgeStation,
     /// Radius of the ball [m].
     pub ball_radius: f64,
     /// Levers of the joints; see [`CellCourse::levers_of`].
@@ -113,8 +118,8 @@ pub struct Felt {
     pub balls: Vec<DVec3>,
     /// Direction of the slide [1].
     pub slides: Vec<DVec3>,
-    /// How far the part stands out under the ball [m].
-    pub lift: Vec<f64>,
+    /// How far the part is displaced under the ball [m].
+    pub aside: Vec<DVec3>,
 }
 
 /// Samples to a mass matrix: an arm hardly changes its posture in so many.
@@ -228,15 +233,15 @@ impl CellCourse {
         let (ball, slide) = (balls[i], slides[i]);
         let along = (ball + slide * self.usual_stroke - edge.point).dot(edge.tangent);
         let station = edge.station + along;
-        let lift = cell.part_shift + cell.part_tilt * (station - self.edge_middle);
+        let aside = self.aside(cell, edge.point + edge.tangent * along);
         let (standoff, share) = match &self.sharp {
             None => (
-                n.dot(ball - edge.point) - self.ball_radius - lift,
+                n.dot(ball - edge.point - aside) - self.ball_radius,
                 -n.dot(slide),
             ),
             Some(sharp) => {
                 // As it would be at the usual stroke.
-                let centre = ball + slide * self.usual_stroke - n * lift;
+                let centre = ball + slide * self.usual_stroke - aside;
                 let touch = sharp.touch(centre, station);
                 let share = -touch.normal.dot(slide);
                 let standoff = touch.distance - self.ball_radius + share * self.usual_stroke;
@@ -246,7 +251,7 @@ impl CellCourse {
         let speed = self.slope(i, |j| balls[j]).dot(edge.tangent);
         let mass_at = |j: usize| balls[j] + slides[j] * (self.usual_stroke - self.mass_behind_ball);
         let acceleration = self.curvature(i, mass_at);
-        felt.lift.push(lift);
+        felt.aside.push(aside);
         felt.standoff.push(standoff);
         felt.share.push(share);
         felt.burr.push(cell.burr.at(station));
@@ -254,6 +259,18 @@ impl CellCourse {
         felt.carried
             .push(self.moving_mass * acceleration.dot(slide));
         felt.pull.push((self.gravity - acceleration).dot(slide));
+    }
+
+    /// How far the part is from where it should be at one of its points [m].
+    fn aside(&self, cell: &CellParameters, point: DVec3) -> DVec3 {
+        let EdgeStation {
+            point: pivot,
+            tangent,
+            bisector,
+            ..
+        } = self.middle;
+        let turn = tangent.cross(bisector) * cell.part_tilt;
+        bisector * cell.part_shift + turn.cross(point - pivot)
     }
 
     /// Rate of a point that is known at the samples [m/s].

@@ -33,9 +33,8 @@ impl Riding {
     ) -> Self {
         let last = course.len() - 1;
         let next = (i + 1).min(last);
-        let bisector = course.edge[i].bisector;
         // Seen from the part where it is.
-        let centre = |j: usize| felt.balls[j] + felt.slides[j] * stroke - bisector * felt.lift[j];
+        let centre = |j: usize| felt.balls[j] + felt.slides[j] * stroke - felt.aside[j];
         let middle = 0.5 * (centre(i) + centre(next)) + away;
         let touch = sharp.touch(middle, course.edge[i].station);
         let normal = touch.normal;

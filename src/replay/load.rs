@@ -69,7 +69,7 @@ impl LoadedCell {
             ball_centre: device.tool_centre,
             ball_radius: device.tool_radius,
             full_stroke: device.parameters.full_stroke,
-            edge_length: edge.length,
+            middle: station(&edge, scenario.workpiece.world_from_part, 0.5 * edge.length),
         };
         Ok(Self {
             scenario,
@@ -147,15 +147,7 @@ impl LoadedCell {
         bandwidth: f64,
     ) -> CellCourse {
         let world_from_part = self.scenario.workpiece.world_from_part;
-        let station = |place: &f64| {
-            let point = self.edge.at(place.clamp(0.0, self.edge.length));
-            EdgeStation {
-                point: world_from_part.transform_point(point.point),
-                tangent: world_from_part.rotation * point.tangent,
-                bisector: (world_from_part.rotation * point.bisector).normalize_or(DVec3::Z),
-                station: place.clamp(0.0, self.edge.length),
-            }
-        };
+        let station = |place: &f64| station(&self.edge, world_from_part, *place);
         let edge: Vec<EdgeStation> = path.iter().map(station).collect();
         let commands = Commands {
             time,
@@ -164,6 +156,18 @@ impl LoadedCell {
             encoders: encoders.filter(|_| self.scenario.own),
         };
         self.cell.course(commands, bandwidth)
+    }
+}
+
+/// A place on an edge [m] in the world.
+fn station(edge: &EdgeCurve, world_from_part: DPose3, place: f64) -> EdgeStation {
+    let place = place.clamp(0.0, edge.length);
+    let point = edge.at(place);
+    EdgeStation {
+        point: world_from_part.transform_point(point.point),
+        tangent: world_from_part.rotation * point.tangent,
+        bisector: (world_from_part.rotation * point.bisector).normalize_or(DVec3::Z),
+        station: place,
     }
 }
 

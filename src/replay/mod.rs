@@ -38,8 +38,8 @@ pub struct ReplayCell {
     pub ball_radius: f64,
     /// The device's stroke [m].
     pub full_stroke: f64,
-    /// Length of the edge [m].
-    pub edge_length: f64,
+    /// Middle of the edge.
+    pub middle: EdgeStation,
     /// Standard deviation of the encoders' noise [rad].
     pub encoder_noise: f64,
     /// The edge as the ball meets it; none where it is met along its bisector.
@@ -98,7 +98,7 @@ impl ReplayCell {
             sharp: self.sharp.clone(),
             force_along_slide: self.own,
             starts_pressing: self.own,
-            edge_middle: 0.5 * self.edge_length,
+            middle: self.middle,
             ball_radius: self.ball_radius,
             levers: Vec::with_capacity(count),
             inertia: Vec::with_capacity(count / INERTIA_EVERY + 1),

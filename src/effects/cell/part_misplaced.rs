@@ -1,8 +1,9 @@
 //! The part does not lie where the cell believes: it stands out by a shift along the bisector, and by a slope along the edge.
 //!
-//!     l(s) = shift + tilt (s - L/2)
+//!     l(s) = shift + tilt (s - L/2)          along a straight edge
 //!
-//! Small displacements of a rigid body (Siciliano et al., Robotics, 2009, sec. 2.4); what it does across the bisector a ball on the edge does not feel.
+//! Small displacements of a rigid body, about the middle of the edge (Siciliano et al., Robotics, 2009, sec. 2.4): round a corner the shift has another share
+//! along the bisector (`plant/cell_course.rs`). Turns about the edge and its bisector, and shifts across, are not looked for.
 //!
 //! Signature: the stroke is off by l/c all along the ride, whatever the force and the speed; the tool touches earlier or later.
 //! Confused with: an encoder that is off (which moves the ball by a lever that changes along the path and with the lean), a soft joint (whose part grows
