@@ -97,10 +97,10 @@ const PLANTED: [Planted; 9] = [
     },
     Planted {
         case: "lag",
-        edits: &[(SERVO, "lag_bandwidth_hz = 16\n")],
+        edits: &[(SERVO, "lag_bandwidth_hz = 25\n")],
         name: "servo_lag",
         joint: None,
-        numbers: &[("bandwidth_hz", 16.0)],
+        numbers: &[("bandwidth_hz", 25.0)],
         alone: [true; 2],
         better: "joints_rad",
     },
