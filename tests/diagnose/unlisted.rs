@@ -86,3 +86,27 @@ fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
     assert_eq!(refused.code, 2);
     assert!(line.contains("rig.toml holds [latent]"), "{line}");
 }
+
+/// An outlet that gives way in proportion to the air that is drawn: as little as a hundredth of the force, and over time it is all ups and downs.
+const DROOP: &str = "
+[latent]
+port = \"outlet_pressure\"
+variable = \"mass_flow\"
+directed = false
+from_kg_per_s = -0.003
+to_kg_per_s = 0.003
+value_pa = [15000.0, 10000.0, 5000.0, 0.0, -5000.0, -10000.0, -15000.0]
+";
+
+#[test]
+fn a_planted_droop_is_placed_at_the_regulator_over_the_flow() {
+    let bench = Bench::new("plate_edge");
+    case(&bench, "case", DROOP, Dirt::None);
+    let outcome = diagnose(&bench, &["case", "--out", "out"]);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let answer = json(&bench.path("out/diagnosis.json"));
+    assert_eq!(names(&answer), ["unlisted"], "{answer:#}");
+    let found = &answer["effects"][0];
+    assert_eq!(found["subsystem"], "regulator");
+    assert_eq!(found["depends_on"][0], "mass_flow");
+}
