@@ -58,6 +58,8 @@ fn plant_of(rig: &Rig) -> PlantParameters {
         },
         sensors: SensorErrors::NONE,
         latent: None,
+        chain: Chain::Whole,
+        links: LinkParameters::NONE,
         cell: idc_cell::plant::CellParameters::RIGID,
     }
 }
@@ -66,6 +68,7 @@ fn inputs_of(programme: &Programme) -> PlantInputs {
     let time = programme.times.clone();
     PlantInputs {
         cell: None,
+        motion: None,
         set_pressure: time.iter().map(|t| programme.set_pressure(*t)).collect(),
         extends: time.iter().map(|t| programme.extends(*t)).collect(),
         surface: time

@@ -155,6 +155,7 @@ fn record(
         extends: vec![true; made.time.len()],
         surface: course.felt(&plant.cell).surface(),
         cell: Some(std::sync::Arc::new(course)),
+        motion: None,
     };
     let readings = simulate(plant, &inputs).readings;
     let mut random =

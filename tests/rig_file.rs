@@ -67,6 +67,7 @@ fn bench_and_prediction_agree_with_every_effect_that_both_have() {
         surface: vec![0.02; time.len()],
         time,
         cell: None,
+        motion: None,
     };
     let plant = load_rig(&path("rig.toml")).unwrap().plant;
     let readings = simulate(&plant, &inputs).readings;

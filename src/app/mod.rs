@@ -14,6 +14,7 @@ mod output;
 mod picture;
 mod predict;
 mod prove;
+mod recordings;
 mod run;
 
 pub use bench::{FinishedBench, run_rig};

@@ -6,17 +6,19 @@ use std::path::Path;
 use super::cli::PredictArguments;
 use super::error::{AppError, ExitCode};
 use super::output::say;
+use super::recordings::read_rig;
 use crate::diagnosis::clean::clean;
-use crate::diagnosis::recorded::{COLUMNS, recorded};
+use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::plant::simulate;
-use crate::recording::csv::{read_csv, write_csv};
+use crate::recording::csv::write_csv;
 use crate::scenario::rig_file::load_rig;
 
 /// Predicts and writes.
 pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError> {
     let rig = load_rig(&arguments.rig)?;
     let file = arguments.inputs.display().to_string();
-    let mut taken = recorded(&file, &read_csv(&arguments.inputs)?.recording)?;
+    let recording = read_rig(rig.plant.chain, &arguments.inputs)?;
+    let mut taken = recorded_of(rig.plant.chain, &file, &recording)?;
     for input in [&arguments.rig, &arguments.inputs] {
         if same_file(input, &arguments.out) {
             return Err(AppError::Overwrites {

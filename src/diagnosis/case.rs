@@ -6,7 +6,7 @@ use super::free::{Free, Prior};
 use super::recorded::{COLUMNS, Recorded, RecordedError};
 use super::search::Shown;
 use crate::effects::{Coordinate, Effect, Quantity};
-use crate::plant::{CHANNELS, PlantParameters};
+use crate::plant::{CHANNELS, Chain, Channel, PlantParameters};
 
 /// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
 const OTHER_NOISE: f64 = 1.5;
@@ -58,6 +58,41 @@ pub fn tolerated(quantity: Quantity, value: f64, tolerance: f64) -> Free {
     }
 }
 
+/// What is never known exactly of a rig with a part of the device: where a closed chamber starts, which its first readings tell to their noise [Pa], and
+/// how far its sensor drifts, one standard deviation [Pa/s].
+#[must_use]
+pub fn of_link(chain: Chain, noise: f64, drift: f64) -> Vec<Free> {
+    let free = |quantity: Quantity, deviation: f64| Free {
+        quantity,
+        start: 0.0,
+        coordinate: Coordinate::Linear(deviation),
+        bounds: [-20.0 * deviation, 20.0 * deviation],
+        prior: Prior::Normal {
+            mean: 0.0,
+            deviation,
+        },
+    };
+    let mut found = Vec::new();
+    if chain == Chain::ClosedChamber {
+        found.push(free(START_ERROR, noise));
+    }
+    if drift > 0.0 && chain.output() == Some(Channel::RegulatorPressure) {
+        found.push(free(PRESSURE_DRIFT, drift));
+    }
+    found
+}
+
+const START_ERROR: Quantity = Quantity {
+    name: "start_error_pa",
+    get: |p| p.links.start_error,
+    set: |p, v| p.links.start_error = v,
+};
+const PRESSURE_DRIFT: Quantity = Quantity {
+    name: "pressure_sensor_drift_pa_per_s",
+    get: |p| p.sensors.pressure_drift,
+    set: |p, v| p.sensors.pressure_drift = v,
+};
+
 /// Recordings made fit to be believed.
 #[derive(Debug)]
 pub struct Prepared {
@@ -86,7 +121,9 @@ pub fn prepare(case: &Case) -> Result<Prepared, RecordedError> {
             .recorded
             .check(&recording.file, &cleaning.noise, &case.noise)?;
         let name = &recording.name;
-        notes.extend(missing(name, &readings));
+        if case.believed.chain == Chain::Whole {
+            notes.extend(missing(name, &readings));
+        }
         if recording.recorded.filled > 0 {
             notes.push(format!(
                 "{name}: {} lost values of the inputs filled in",

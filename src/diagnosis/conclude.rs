@@ -5,18 +5,20 @@ use super::answer::{
 };
 use super::details::{
     ChannelMisfit, ChannelNoise, Details, LinkReport, NextExperiment, PredictionError,
-    RegimeReport, ToleratedNumber,
+    RegimeReport, RemainingReport, ToleratedNumber,
 };
 use super::diagnose::{Diagnosis, names_of};
 use super::estimate::Number;
+use super::evidence::Prediction;
 use super::fit::robust_sum;
 use super::hypothesis::Hypothesis;
 use super::links::Link;
-use super::localise::{NOISE_ALONE, misfits, robust_rms};
+use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms};
 use super::recorded::COLUMNS;
+use super::regime::{Regime, regimes};
 use crate::effects::Effect;
 use crate::effects::vocabulary;
-use crate::plant::CHANNELS;
+use crate::plant::{CHANNELS, Chain};
 
 /// Variables named at most for a link.
 const MOST_REGIMES: usize = 5;
@@ -97,7 +99,7 @@ impl Diagnosis {
                     .chain(
                         numbers
                             .iter()
-                            .filter(|number| number.reported)
+                            .filter(|number| number.reported || self.is_of_link())
                             .map(|number| (number.name.to_owned(), estimate(number))),
                     )
                     .collect(),
@@ -186,6 +188,12 @@ impl Diagnosis {
         super::localise::by_channel(&self.evidence, residuals)
     }
 
+    /// Is there a part of the device alone?
+    #[must_use]
+    pub fn is_of_link(&self) -> bool {
+        self.believed.chain != Chain::Whole
+    }
+
     /// What is not scored.
     #[must_use]
     pub fn details(&self) -> Details {
@@ -205,6 +213,7 @@ impl Diagnosis {
                 .collect(),
             links: self.link_reports(),
             explained_share: self.explained_share(),
+            remaining: self.remaining_report(),
             tolerated: self.tolerated(),
             prediction: self.prediction_errors(),
             next_experiment: self.next_experiment(),
@@ -239,8 +248,29 @@ impl Diagnosis {
                 tolerated_sigmas: baseline.sigmas,
                 improved_sigmas: improved.sigmas,
                 left_out_sigmas: left(believed.recording, believed.channel as usize),
+                believed_rms: self.size(&self.as_believed, believed).0,
+                improved_rms: self.size(&self.best().fit.prediction, believed).0,
+                improved_share: self.size(&self.best().fit.prediction, believed).1,
             })
             .collect()
+    }
+
+    /// Root mean square of what a prediction leaves of a channel, in its unit, and its share of the root mean square of the channel itself [1].
+    fn size(&self, prediction: &Prediction, misfit: &Misfit) -> (f64, f64) {
+        let channel = misfit.channel as usize;
+        let measured = &self.evidence.recordings[misfit.recording].readings[channel];
+        let predicted = &prediction.courses[misfit.recording].readings[channel];
+        let (mut left, mut own, mut count) = (0.0, 0.0, 0.0);
+        for (m, p) in measured
+            .iter()
+            .zip(predicted)
+            .filter(|(m, _)| m.is_finite())
+        {
+            left += (m - p).powi(2);
+            own += m * m;
+            count += 1.0;
+        }
+        ((left / f64::max(count, 1.0)).sqrt(), (left / own).sqrt())
     }
 
     fn link_reports(&self) -> Vec<LinkReport> {
@@ -264,6 +294,38 @@ impl Diagnosis {
                 }
             })
             .collect()
+    }
+
+    fn remaining_report(&self) -> Option<RemainingReport> {
+        let remaining = self.remaining.as_ref()?;
+        let regimes = self.regimes_of_what_is_left().into_iter();
+        Some(RemainingReport {
+            channel: COLUMNS[remaining.channel as usize].to_owned(),
+            rms: remaining.size,
+            sensor_noise: remaining.noise,
+            alike_s: remaining.time,
+            regimes: regimes
+                .take(MOST_REGIMES)
+                .map(|regime| RegimeReport {
+                    variable: regime.variable.to_owned(),
+                    share: regime.share,
+                })
+                .collect(),
+        })
+    }
+
+    /// What says when the best explanation leaves something of a part of the device.
+    pub(super) fn regimes_of_what_is_left(&self) -> Vec<Regime> {
+        let Some(remaining) = &self.remaining else {
+            return Vec::new();
+        };
+        let best = &self.best().fit.prediction;
+        let own = self.by_channel(&best.residuals);
+        let own = own.filter(|(_, channel, _)| *channel == remaining.channel);
+        let left: Vec<f64> = own
+            .flat_map(|(_, _, residuals)| residuals.to_vec())
+            .collect();
+        regimes(&self.evidence, &best.plant, &best.courses, &left)
     }
 
     fn tolerated(&self) -> Vec<ToleratedNumber> {

@@ -12,9 +12,6 @@ use super::evidence::Evidence;
 use super::fit::{Fit, robust_weight};
 use crate::plant::CHANNELS;
 
-/// Length of a block [s]: longer than a chamber takes to follow.
-const BLOCK: f64 = 0.25;
-
 /// Covariance of the free quantities in the fit's coordinates.
 pub fn covariance(evidence: &Evidence, fit: &Fit) -> DMatrix<f64> {
     let inverse = inverse(&fit.information);
@@ -48,7 +45,7 @@ fn blocks(evidence: &Evidence, fit: &Fit) -> Vec<DVector<f64>> {
     for measured in &evidence.recordings {
         let time = &measured.inputs.time;
         let first = time[0];
-        let number = |t: f64| ((t - first) / BLOCK) as usize;
+        let number = |t: f64| ((t - first) / evidence.block) as usize;
         let mut own = vec![DVector::zeros(fit.free.len()); number(time[time.len() - 1]) + 1];
         for _ in 0..CHANNELS.len() {
             for (i, t) in time.iter().enumerate() {

@@ -18,6 +18,8 @@ pub struct Details {
     pub links: Vec<LinkReport>,
     /// Share of the mismatch that is explained [1]; none where there is none.
     pub explained_share: Option<f64>,
+    /// What no law explains, where it is more than noise and everything was judged against it.
+    pub remaining: Option<RemainingReport>,
     /// Numbers of the rig file within their tolerances.
     pub tolerated: Vec<ToleratedNumber>,
     /// Errors of prediction on what was not fitted to.
@@ -54,6 +56,15 @@ pub struct ChannelMisfit {
     pub improved_sigmas: f64,
     /// With what was found, fitted to the other recordings.
     pub left_out_sigmas: Option<f64>,
+    /// Root mean square of what the believed model leaves, in the column's unit.
+    #[serde(default)]
+    pub believed_rms: f64,
+    /// The same with what was found.
+    #[serde(default)]
+    pub improved_rms: f64,
+    /// That as a share of the root mean square of the channel itself [1].
+    #[serde(default)]
+    pub improved_share: f64,
 }
 
 /// What a link of the chain leaves, given its own measured input.
@@ -66,6 +77,21 @@ pub struct LinkReport {
     /// Does it explain its own recording?
     pub explained: bool,
     /// Variables that say when the mismatch appears.
+    pub regimes: Vec<RegimeReport>,
+}
+
+/// What no law explains.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RemainingReport {
+    /// Column.
+    pub channel: String,
+    /// Root mean square, in the column's unit.
+    pub rms: f64,
+    /// Standard deviation of the sensor's noise, in the column's unit.
+    pub sensor_noise: f64,
+    /// Time for which it is alike [s].
+    pub alike_s: f64,
+    /// Variables that say when it appears.
     pub regimes: Vec<RegimeReport>,
 }
 

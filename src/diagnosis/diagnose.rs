@@ -5,6 +5,7 @@ use super::case::{Case, NamedRecording, Prepared};
 use super::clean::{Cleaning, clean};
 use super::estimate::{Estimates, estimates};
 use super::evidence::{Evidence, Prediction};
+use super::fit::FULL;
 use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
 use super::left_out::{self, left_out};
@@ -13,10 +14,11 @@ use super::localise::{Parting, partings, robust_rms};
 use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
 use super::regime::{Regime, regimes};
-use super::search::Search;
+use super::remaining::Remaining;
+use super::search::{MOST_EFFECTS, MOST_OF_LINK, Search};
 use super::unlisted::Shape;
 use crate::effects::vocabulary;
-use crate::plant::{CHANNELS, PlantParameters, simulate};
+use crate::plant::{CHANNELS, Chain, PlantParameters, simulate};
 
 /// Odds below which an explanation is no alternative [1].
 pub const LEAST_ODDS: f64 = 0.01;
@@ -82,6 +84,8 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
     /// Explanations, best first.
     pub ranked: Vec<Ranked>,
+    /// What no law explains of a part of the device; none where that is noise, or where there is the whole of it.
+    pub remaining: Option<Remaining>,
     /// Numbers of the best.
     pub estimates: Estimates,
     /// Shape of its term without a name, if it has one.
@@ -106,14 +110,17 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
         cleanings,
         notes,
     } = prepared;
-    let search = Search {
-        evidence: &evidence,
-        believed: case.believed.clone(),
-        tolerated: case.tolerated.clone(),
-        candidates: case.candidates.clone(),
-        shown: case.shown.clone(),
+    let remaining = (case.believed.chain.output())
+        .map(|channel| Remaining::of(&search_of(case, &evidence), channel, say))
+        .filter(|remaining| !remaining.is_noise());
+    let (ranked, evidence) = match &remaining {
+        None => {
+            let search = search_of(case, &evidence);
+            (rank(&search, search.run(say)), evidence)
+        }
+        Some(remaining) => against(case, remaining, &evidence, say),
     };
-    let ranked = rank(&search, search.run(say));
+    let search = search_of(case, &evidence);
     let best = &ranked[0].hypothesis;
     say("locating the mismatch");
     let baseline = baseline(&search, best);
@@ -123,7 +130,8 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     });
     say("comparing experiments");
     // The experiments known are those of a bench: what an arm can do is in its programs.
-    let of_bench = evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
+    let of_bench = case.believed.chain == Chain::Whole
+        && evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
     let rival = ranked.get(1).filter(|_| of_bench);
     let experiments = rival.map_or_else(Vec::new, |rival| {
         separations(&evidence, &best.fit, &rival.hypothesis.fit)
@@ -131,6 +139,7 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     Diagnosis {
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
+        remaining,
         estimates: estimates(&case.believed, best, &evidence),
         shape: Shape::of(&evidence, best),
         mismatch: intervals(&evidence, &case.believed, best),
@@ -142,6 +151,46 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
         cleanings,
         notes,
         evidence,
+    }
+}
+
+/// Explanations found against what no law explains, with samples that are all but independent; then fitted to all samples.
+fn against(
+    case: &Case,
+    remaining: &Remaining,
+    evidence: &Evidence,
+    say: &mut dyn FnMut(&str),
+) -> (Vec<Ranked>, Evidence) {
+    let independent = remaining.independent(evidence);
+    let search = search_of(case, &independent);
+    let mut ranked = rank(&search, search.run(say));
+    let whole = remaining.whole(evidence);
+    let search = search_of(case, &whole);
+    let all_samples = &FULL[FULL.len() - 1..];
+    for (place, ranked) in ranked.iter_mut().enumerate() {
+        if place == 0 || ranked.odds >= LEAST_ODDS {
+            ranked.hypothesis = search.refine(&ranked.hypothesis, all_samples, 40);
+            ranked.left_out = left_out(&whole, &ranked.hypothesis.fit);
+        }
+    }
+    (ranked, whole)
+}
+
+/// The search in some evidence of a case.
+fn search_of<'a>(case: &Case, evidence: &'a Evidence) -> Search<'a> {
+    // A single link is simulated in no time.
+    let (look, most_effects) = match case.believed.chain {
+        Chain::Whole => (3, MOST_EFFECTS),
+        _ => (12, MOST_OF_LINK),
+    };
+    Search {
+        evidence,
+        believed: case.believed.clone(),
+        tolerated: case.tolerated.clone(),
+        candidates: case.candidates.clone(),
+        shown: case.shown.clone(),
+        look,
+        most_effects,
     }
 }
 
@@ -207,12 +256,15 @@ fn baseline(search: &Search<'_>, best: &Hypothesis) -> Baseline {
         (plant, held)
     };
     let prediction = evidence.predict(&plant, false, None);
-    let links = links(evidence, &held, &search.tolerated)
-        .into_iter()
-        .map(|link| {
-            let regimes = regimes(evidence, &plant, &held.courses, &link.sigmas);
-            (link, regimes)
-        });
+    // A single link has nothing to be cut from.
+    let links = match plant.chain {
+        Chain::Whole => links(evidence, &held, &search.tolerated),
+        _ => Vec::new(),
+    };
+    let links = links.into_iter().map(|link| {
+        let regimes = regimes(evidence, &plant, &held.courses, &link.sigmas);
+        (link, regimes)
+    });
     Baseline {
         links: links.collect(),
         partings: partings(evidence, &prediction.residuals),

@@ -26,6 +26,9 @@ struct Shares {
     values: Arc<Vec<f64>>,
 }
 
+/// What a law leaves is alike for less than this [s]: longer than a chamber takes to follow.
+const BLOCK: f64 = 0.25;
+
 /// Recordings and the noise of their channels.
 #[derive(Debug)]
 pub struct Evidence {
@@ -33,6 +36,8 @@ pub struct Evidence {
     pub recordings: Vec<Measured>,
     /// Standard deviation of each channel's noise, in the order of [`CHANNELS`].
     pub noise: [f64; 4],
+    /// Time for which what a law leaves is taken to be alike at most [s].
+    pub block: f64,
     /// Motions measured, one per recording.
     guides: Vec<Guide>,
     /// What was found before.
@@ -58,6 +63,7 @@ impl Evidence {
             guides: recordings.iter().map(guide).collect(),
             recordings,
             noise,
+            block: BLOCK,
             shares: Mutex::default(),
         }
     }

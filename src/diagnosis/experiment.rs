@@ -61,6 +61,7 @@ impl Limits {
             extends: values.iter().map(|v| v.1).collect(),
             surface: values.iter().map(|v| v.2).collect(),
             cell: None,
+            motion: None,
             time,
         }
     }

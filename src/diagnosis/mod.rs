@@ -24,6 +24,7 @@ pub mod mismatch;
 pub mod next_experiment;
 pub mod recorded;
 pub mod regime;
+pub mod remaining;
 mod scale;
 pub mod search;
 pub mod servo;

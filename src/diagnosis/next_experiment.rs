@@ -107,7 +107,9 @@ mod tests {
     use super::super::free::{Free, Prior};
     use super::*;
     use crate::effects::{Coordinate, Quantity};
-    use crate::plant::{ContactLaw, ContactParameters, Periodic, SensorErrors};
+    use crate::plant::{
+        Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, SensorErrors,
+    };
 
     fn plant() -> PlantParameters {
         PlantParameters {
@@ -122,6 +124,8 @@ mod tests {
             },
             sensors: SensorErrors::NONE,
             latent: None,
+            chain: Chain::Whole,
+            links: LinkParameters::NONE,
             cell: crate::plant::CellParameters::RIGID,
         }
     }
@@ -132,6 +136,7 @@ mod tests {
         let count = time.len();
         let inputs = PlantInputs {
             cell: None,
+            motion: None,
             set_pressure: vec![2e5; count],
             extends: vec![true; count],
             surface: vec![0.02; count],

@@ -1,7 +1,8 @@
 //! From a recording of a rig to what drove it and what was measured of it.
 
-use crate::plant::{CHANNELS, InputError, PlantInputs};
+use crate::plant::{CHANNELS, Chain, InputError, MeasuredMotion, PlantInputs};
 use crate::recording::{Recording, RecordingError, schema};
+use std::sync::Arc;
 
 /// Quantities of the channels in a recording, in the order of [`CHANNELS`].
 pub const QUANTITIES: [&str; CHANNELS.len()] = [
@@ -112,6 +113,7 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
         extends: valve.iter().map(|position| *position > 0.5).collect(),
         surface,
         cell: None,
+        motion: None,
     };
     inputs.check().map_err(|source| RecordedError::Inputs {
         file: file.to_owned(),
@@ -128,6 +130,72 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
         readings,
         filled,
     })
+}
+
+/// Takes a recording of a rig apart that has so much of the device.
+///
+/// # Errors
+/// What drives or shows that part is absent.
+pub fn recorded_of(
+    chain: Chain,
+    file: &str,
+    recording: &Recording,
+) -> Result<Recorded, RecordedError> {
+    let Some(output) = chain.output() else {
+        return recorded(file, recording);
+    };
+    let values = |quantity: &str| {
+        recording
+            .values(quantity)
+            .map(<[f64]>::to_vec)
+            .map_err(|source| RecordedError::Missing {
+                file: file.to_owned(),
+                source: Box::new(source),
+            })
+    };
+    let time = recording.time().to_vec();
+    let count = time.len();
+    let mut readings: [Vec<f64>; CHANNELS.len()] = std::array::from_fn(|_| vec![f64::NAN; count]);
+    let measured = values(QUANTITIES[output as usize])?;
+    let mut set_pressure = match chain {
+        Chain::MovedPiston => values(schema::MEASURED_REGULATOR_PRESSURE_GAUGE)?,
+        Chain::Regulator => values(schema::SET_PRESSURE_GAUGE)?,
+        Chain::ClosedChamber => vec![first_level(&time, &measured); count],
+        Chain::Whole | Chain::DrivenSlide => vec![0.0; count],
+    };
+    let filled = hold(&mut set_pressure);
+    readings[output as usize] = measured;
+    let mut inputs = PlantInputs {
+        set_pressure,
+        extends: vec![true; count],
+        surface: vec![f64::NAN; count],
+        time,
+        cell: None,
+        motion: None,
+    };
+    inputs.check().map_err(|source| RecordedError::Inputs {
+        file: file.to_owned(),
+        source,
+    })?;
+    if chain.takes_motion() {
+        let stroke = values(schema::MEASURED_STROKE)?;
+        inputs.motion = Some(Arc::new(MeasuredMotion::of(&inputs.time, &stroke)));
+    }
+    Ok(Recorded {
+        inputs,
+        readings,
+        filled,
+    })
+}
+
+/// The median of the readings in the first second, or of the first few.
+fn first_level(time: &[f64], readings: &[f64]) -> f64 {
+    const FEW: usize = 5;
+    let within = time.partition_point(|t| t - time[0] <= 1.0).max(FEW);
+    let mut first: Vec<f64> = readings.iter().copied().take(within).collect();
+    first.retain(|p| p.is_finite());
+    first.sort_by(f64::total_cmp);
+    first.get(first.len() / 2).copied().unwrap_or(0.0)
 }
 
 impl Recorded {

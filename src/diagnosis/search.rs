@@ -16,8 +16,10 @@ use rayon::prelude::*;
 const FULL_ITERATIONS: usize = 40;
 /// Rough cost over the leading one beyond which a hypothesis is not built upon [1].
 const FAR_BEHIND: f64 = 2.0;
-/// Effects at most.
-const MOST_EFFECTS: usize = 3;
+/// Effects at most, of a whole device.
+pub const MOST_EFFECTS: usize = 3;
+/// Those of a part of it, which is seen with all its details.
+pub const MOST_OF_LINK: usize = 5;
 /// Hypotheses that are carried on from each number of effects.
 const PARENTS: usize = 2;
 /// Candidates of each that are fitted in full.
@@ -30,6 +32,7 @@ const STAGNATION: f64 = 0.5;
 pub const LOOK_ELSEWHERE: f64 = 7.0;
 
 /// Everything a search needs.
+#[derive(Clone)]
 pub struct Search<'a> {
     /// The recordings.
     pub evidence: &'a Evidence,
@@ -41,6 +44,10 @@ pub struct Search<'a> {
     pub candidates: Vec<&'static Effect>,
     /// Effects that a link of its own has shown, with their numbers.
     pub shown: Vec<Shown>,
+    /// Iterations of the second look at an effect that promises most.
+    pub look: usize,
+    /// Effects at most, beside those shown.
+    pub most_effects: usize,
 }
 
 /// An effect that a link of its own has shown, such as a servo's in commands and encoders: what it found is what is believed of its numbers.
@@ -117,7 +124,7 @@ impl Search<'_> {
         let mut full: Vec<Hypothesis> = Vec::new();
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
         let mut done = Vec::new();
-        while levels.len() <= MOST_EFFECTS && full.is_empty() {
+        while levels.len() <= self.most_effects && full.is_empty() {
             let parents = &levels[levels.len() - 1];
             let before = parents[0].fit.rough - noise;
             // Beside one that leaves noise alone, no other need be carried on.

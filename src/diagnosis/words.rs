@@ -10,7 +10,12 @@ type Shown = (&'static str, &'static str, f64);
 
 /// Units by the end of a name, longer ends first.
 #[rustfmt::skip] // A table: one unit a line.
-const UNITS: [Shown; 28] = [
+const UNITS: [Shown; 33] = [
+    ("_1_per_pa_s", "1/(bar s)", 1e5),
+    ("_1_per_pa", "1/bar", 1e5),
+    ("_1_per_s", "1/s", 1.0),
+    ("_1_per_m", "1/m", 1.0),
+    ("_1", "", 1.0),
     ("_j_per_kg_k", "J/(kg K)", 1.0),
     ("_pa_s_per_kg", "bar s/kg", 1e-5),
     ("_n_s_per_m", "N s/m", 1.0),

@@ -39,6 +39,15 @@ pub fn meaning(effect: &str) -> &'static str {
         "inertial_crosstalk" => "the load cell feels the mass in front of it being accelerated",
         "stroke_sensor_gain_error" => "the position sensor reads too much or too little in proportion",
         "channel_time_offset" => "the load cell's samples are stamped late",
+        "viscous_friction_by_direction" => "viscous friction is larger one way than the other",
+        "regulator_venting" => "the regulator vents at another pace than it fills",
+        "load_behind_line" => "a load behind a line fills and empties more slowly than the outlet moves",
+        "pressure_sensor_offset" => "the pressure sensor does not read zero at the atmosphere",
+        "leak_in_proportion" => "the chamber leaks in proportion to its gauge pressure, as through pores",
+        "orifice_leakage" => "the chamber leaks as through a short hole",
+        "gap_leakage" => "the chamber leaks as through a narrow gap, laminar while the air expands",
+        "leak_opened_by_pressure" => "the chamber leaks through something that pressure opens",
+        "chamber_cooling" => "air that filling has warmed cools after the chamber is shut",
         "part_misplaced" => "the part stands out, or back, along the bisector of its edge, and slopes along it",
         "burr" => "a burr stands on the edge",
         "compliant_joint" => "a joint gives way between its motor and its link, more than believed",
@@ -52,13 +61,13 @@ pub fn meaning(effect: &str) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::super::CATALOGUE;
+    use super::super::{CATALOGUE, LINK_EFFECTS};
     use super::meaning;
 
     #[test]
     fn every_effect_has_words_of_its_own() {
         let mut seen = std::collections::BTreeSet::new();
-        for effect in CATALOGUE {
+        for effect in CATALOGUE.iter().chain(LINK_EFFECTS) {
             assert_ne!(meaning(effect.name), meaning(""), "{effect:?}");
             assert!(seen.insert(meaning(effect.name)), "{effect:?}");
         }

@@ -88,6 +88,11 @@ impl RegulatorState {
         }
     }
 
+    /// Set pressure acted on: the one that arrived, within the play [Pa gauge].
+    pub fn acted_on(&self) -> f64 {
+        self.acted_on
+    }
+
     /// Puts the outlet at a pressure [Pa gauge], at rest there, whatever brought it.
     pub fn place(&mut self, outlet: f64) {
         (self.outlet, self.pilot, self.rate) = (outlet, outlet, 0.0);

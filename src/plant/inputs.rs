@@ -1,6 +1,7 @@
 //! What drives a rig in a recording: set pressure, valve, surface.
 
 use super::cell_course::CellCourse;
+use super::measured_motion::MeasuredMotion;
 use std::cmp::Ordering;
 use std::sync::Arc;
 
@@ -17,6 +18,8 @@ pub struct PlantInputs {
     pub surface: Vec<f64>,
     /// The arm that carries the device, if it is one of a cell: it says where the surface stands, and how the device is carried.
     pub cell: Option<Arc<CellCourse>>,
+    /// The motion of the piston, where a rig or a drive moves it; the set pressure is then that in chamber 1, as it was measured.
+    pub motion: Option<Arc<MeasuredMotion>>,
 }
 
 /// Inputs that do not fit together.
@@ -121,6 +124,7 @@ mod tests {
             surface: values.clone(),
             time: time.clone(),
             cell: None,
+            motion: None,
         };
         for (i, t) in time.iter().enumerate().take(4).skip(1) {
             let slope = inputs.slope(&values, i);

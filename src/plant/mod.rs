@@ -10,11 +10,13 @@
 mod carrier;
 mod cell_course;
 mod cell_parameters;
+mod chain;
 mod contact;
 mod flexing;
 mod guide;
 mod inputs;
 mod latent;
+mod measured_motion;
 mod parameters;
 mod riding;
 mod sensors;
@@ -24,10 +26,12 @@ mod simulate;
 
 pub use cell_course::{CellCourse, EdgeStation, Felt, INERTIA_EVERY, JointCourse, Levers};
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS};
+pub use chain::{Chain, LinkParameters};
 pub use contact::{ContactLaw, ContactParameters, Periodic};
 pub use guide::Guide;
 pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
+pub use measured_motion::MeasuredMotion;
 pub use parameters::PlantParameters;
 pub use sensors::SensorErrors;
 pub use servo::{Followed, follow, shown};

@@ -1,6 +1,7 @@
 //! What does not change in a rig while it is recorded.
 
 use super::cell_parameters::CellParameters;
+use super::chain::{Chain, LinkParameters};
 use super::contact::ContactParameters;
 use super::latent::{Latent, Port};
 use super::sensors::SensorErrors;
@@ -9,6 +10,10 @@ use crate::device::DeviceParameters;
 /// A rig: device, contact, sensors; of a cell its arm and part too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlantParameters {
+    /// How much of the device there is.
+    pub chain: Chain,
+    /// What single links of it have besides.
+    pub links: LinkParameters,
     /// The device.
     pub device: DeviceParameters,
     /// Component of gravity along extension [m/s2].
@@ -26,7 +31,9 @@ pub struct PlantParameters {
 impl PlantParameters {
     /// Does the rig move as another one does where there is no workpiece?
     pub fn moves_freely_as(&self, other: &Self) -> bool {
-        self.device == other.device
+        self.chain == other.chain
+            && self.links == other.links
+            && self.device == other.device
             && self.gravity_along_extension == other.gravity_along_extension
             && self.cell == other.cell
             && self.moving_latent() == other.moving_latent()

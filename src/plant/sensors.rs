@@ -2,9 +2,10 @@
 //!
 //!     force:   F_m = clip( g L(F + m_x a) + b + d t ),   at the time of its stamp less a delay;   L: 1/(T s + 1)
 //!     stroke:  x_m = g_x x
+//!     outlet:  p_m = p + b_p + d_p t
 //!
 //! F contact force [N], a acceleration along extension [m/s2], m_x mass beyond the load cell [kg], g gains [1], b bias [N], d drift [N/s],
-//! T time constant [s].
+//! T time constant [s], b_p offset [Pa] and d_p drift [Pa/s] of the pressure sensor.
 
 /// Errors of the sensors; the ideal ones change nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +26,10 @@ pub struct SensorErrors {
     pub crosstalk_mass: f64,
     /// Gain of the position sensor [1].
     pub stroke_gain: f64,
+    /// Reading of the pressure sensor at the atmosphere at the start of a recording [Pa].
+    pub pressure_offset: f64,
+    /// Drift of that [Pa/s].
+    pub pressure_drift: f64,
 }
 
 impl SensorErrors {
@@ -38,7 +43,20 @@ impl SensorErrors {
         force_delay: 0.0,
         crosstalk_mass: 0.0,
         stroke_gain: 1.0,
+        pressure_offset: 0.0,
+        pressure_drift: 0.0,
     };
+
+    /// Readings of the pressure sensor [Pa gauge] at increasing times [s], from the outlet [Pa gauge] there.
+    pub fn pressure_readings(&self, time: &[f64], outlet: &[f64]) -> Vec<f64> {
+        if self.pressure_offset == 0.0 && self.pressure_drift == 0.0 {
+            return outlet.to_vec();
+        }
+        let readings = time.iter().zip(outlet);
+        readings
+            .map(|(t, p)| p + self.pressure_offset + self.pressure_drift * (t - time[0]))
+            .collect()
+    }
 
     /// Readings of the load cell [N] at increasing times [s], from the contact force [N] and the acceleration along extension [m/s2] there.
     pub fn force_readings(&self, time: &[f64], force: &[f64], acceleration: &[f64]) -> Vec<f64> {

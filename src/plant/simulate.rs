@@ -2,6 +2,7 @@
 
 use super::carrier::{Hold, ReplayCarrier, hermite};
 use super::cell_course::Felt;
+use super::chain::{self, Chain};
 use super::flexing::{Bending, Flexing, Swung};
 use super::guide::Guide;
 use super::inputs::PlantInputs;
@@ -88,7 +89,7 @@ pub fn readings(
         &truth.contact_force
     };
     let mut readings = [
-        truth.outlet.clone(),
+        sensors.pressure_readings(&inputs.time, &truth.outlet),
         truth
             .stroke
             .iter()
@@ -118,6 +119,9 @@ pub fn trajectory(
     inputs: &PlantInputs,
     guide: Option<&Guide>,
 ) -> Trajectory {
+    if plant.chain != Chain::Whole {
+        return chain::trajectory(plant, inputs);
+    }
     let device = Device::new(plant.device.clone());
     let mass = plant.device.moving_mass;
     let felt = inputs.cell.as_ref().map(|course| course.felt(&plant.cell));

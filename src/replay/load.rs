@@ -5,8 +5,8 @@ use crate::arm::chain::JointKind;
 use crate::arm::load_arm;
 use crate::cell::{CellError, arm_options, choose_edge};
 use crate::plant::{
-    CellCourse, CellParameters, ContactLaw, ContactParameters, EdgeStation, MOST_JOINTS, Periodic,
-    PlantParameters, SensorErrors, SharpEdge,
+    CellCourse, CellParameters, Chain, ContactLaw, ContactParameters, EdgeStation, LinkParameters,
+    MOST_JOINTS, Periodic, PlantParameters, SensorErrors, SharpEdge,
 };
 use crate::scenario::RecordedCell;
 use crate::scenario::recorded_cell::apply;
@@ -108,6 +108,8 @@ impl LoadedCell {
                 ..CellParameters::RIGID
             },
             latent: None,
+            chain: Chain::Whole,
+            links: LinkParameters::NONE,
             sensors: SensorErrors {
                 force_delay: scenario.force_delay,
                 ..SensorErrors::NONE

@@ -3,6 +3,7 @@
 //!     key = 5.09                                   a number
 //!     key = { value = 5.09, tolerance = 0.01 }     believed to lie within 1 % of it
 //!     key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
+//!     [rig]  chain = "moved_piston"                a part of the device ([`crate::plant::Chain`]); only that part's numbers are then asked for
 //!     [effect.coulomb_viscous_friction]            physics beyond the believed model, with all its numbers
 //!     [latent]                                     physics that no known effect explains (`latent`)
 
@@ -13,7 +14,7 @@ use super::error::ScenarioError;
 use crate::effects::{Effect, Quantity};
 use crate::plant::PlantParameters;
 use keys::{RigKeys, sections};
-use values::{check_together, recordings, sensors};
+use values::{check_together, pressure_drift, recordings, sensors};
 
 mod effect;
 mod entry;
@@ -48,6 +49,8 @@ pub struct RigFile {
     pub rate: f64,
     /// Standard deviation of each sensor's noise, in the order of [`crate::plant::CHANNELS`].
     pub noise: [f64; 4],
+    /// Standard deviation of the pressure sensor's drift [Pa/s].
+    pub pressure_drift: f64,
     /// Recordings to diagnose from, as the file names them.
     pub fit: Vec<String>,
     /// Recording whose inputs are to be predicted.
@@ -93,7 +96,8 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
         effect::apply(effect, values, &mut plant);
     }
     plant.latent = latent::latent(&document, keys.latent.as_ref())?;
-    let (rate, noise) = sensors(&document, &keys)?;
+    let (rate, noise) = sensors(&document, &keys, plant.chain)?;
+    let pressure_drift = pressure_drift(&document, &keys)?;
     let (fit, predict) = recordings(&document, keys.recordings)?;
     Ok(RigFile {
         path: path.to_owned(),
@@ -102,6 +106,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
         tolerances,
         rate,
         noise,
+        pressure_drift,
         fit,
         predict,
         effects,

@@ -51,6 +51,7 @@ pub fn case_files(bench: &Bench, folder: &str, effects: &str, dirt: Dirt) {
         let values: Vec<(f64, bool, f64)> = time.iter().map(|t| at(*t)).collect();
         let inputs = PlantInputs {
             cell: None,
+            motion: None,
             set_pressure: values.iter().map(|v| v.0).collect(),
             extends: values.iter().map(|v| v.1).collect(),
             surface: values.iter().map(|v| v.2).collect(),

@@ -263,6 +263,7 @@ fn recorded(
         extends: vec![true; time.len()],
         surface: course.felt(&cell.plant().cell).surface(),
         cell: Some(Arc::new(course)),
+        motion: None,
         time,
     };
     inputs.check().map_err(|source| RecordedError::Inputs {

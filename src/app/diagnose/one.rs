@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::super::error::AppError;
 use super::super::files::OutputFolder;
+use super::super::recordings::read_rig;
 use super::cell;
 use super::cell_account::cell_account;
 use super::unlisted_picture::picture;
@@ -14,11 +15,11 @@ use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::diagnose::{Diagnosis, diagnose};
 use crate::diagnosis::estimate::Number;
 use crate::diagnosis::joint_friction::JointFriction;
-use crate::diagnosis::recorded::{COLUMNS, recorded};
+use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::diagnosis::servo::ServoLink;
-use crate::effects::CATALOGUE;
+use crate::effects::candidates;
 use crate::plant::{CHANNELS, PlantParameters, simulate};
-use crate::recording::csv::{columns_text, read_csv};
+use crate::recording::csv::columns_text;
 use crate::replay::LoadedCell;
 use crate::scenario::RecordedCell;
 use crate::scenario::recorded_cell::{FoundNumbers, improved_cell_text};
@@ -260,7 +261,7 @@ fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
     let read = |name: &String| -> Result<NamedRecording, AppError> {
         let path = folder.join(name);
         let file = path.display().to_string();
-        let recorded = recorded(&file, &read_csv(&path)?.recording)?;
+        let recorded = recorded_of(rig.plant.chain, &file, &read_rig(rig.plant.chain, &path)?)?;
         Ok(NamedRecording {
             name: name.clone(),
             file,
@@ -272,11 +273,16 @@ fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
         believed: rig.plant.clone(),
         tolerated: tolerances
             .map(|t| tolerated(t.quantity, t.value, t.tolerance))
+            .chain(case::of_link(
+                rig.plant.chain,
+                rig.noise[0],
+                rig.pressure_drift,
+            ))
             .collect(),
         noise: rig.noise,
         recordings: rig.fit.iter().map(read).collect::<Result<_, _>>()?,
         unseen: rig.predict.as_ref().map(read).transpose()?,
-        candidates: CATALOGUE.iter().collect(),
+        candidates: candidates(rig.plant.chain),
         shown: Vec::new(),
     })
 }

@@ -7,7 +7,7 @@ use super::super::regime::Regime;
 use super::super::words::{figures, listed};
 
 /// Share of a mismatch's variance from which a variable is worth a word [1].
-const TELLING: f64 = 0.1;
+pub(super) const TELLING: f64 = 0.1;
 
 impl Diagnosis {
     pub(super) fn which_link(&self) -> Vec<String> {

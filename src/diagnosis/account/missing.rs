@@ -8,6 +8,7 @@ use super::super::words::{
     CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, listed, percent, spoken, with_interval,
 };
 use super::MOST_OTHERS;
+use super::link::TELLING;
 use crate::effects::meaning;
 
 impl Diagnosis {
@@ -16,7 +17,7 @@ impl Diagnosis {
         for (effect, numbers) in &self.estimates.effects {
             let numbers: Vec<String> = numbers
                 .iter()
-                .filter(|n| n.reported)
+                .filter(|n| n.reported || self.is_of_link())
                 .map(|n| {
                     let (words, unit, factor) = spoken(n.name);
                     let interval = n.interval.map(|end| end * factor);
@@ -92,7 +93,7 @@ impl Diagnosis {
             )
         };
         format!(
-            "; {what} {} from {} to {} in the {}, where the sensor's noise is {}",
+            "; {what} {} from {} to {} in the {}, where {} is {}",
             if worst.after < worst.before {
                 "falls"
             } else {
@@ -101,11 +102,53 @@ impl Diagnosis {
             said(worst.before),
             said(worst.after),
             CHANNEL_WORDS[index.unwrap_or(0)],
+            self.yardstick(),
             said(worst.noise)
         )
     }
 
+    /// What departures are compared with.
+    pub(super) fn yardstick(&self) -> &'static str {
+        match self.remaining {
+            None => "the sensor's noise",
+            Some(_) => "what no law explains",
+        }
+    }
+
+    /// What no law explains of a part of the device.
+    fn unexplained(&self) -> Option<String> {
+        let remaining = self.remaining.as_ref()?;
+        let (unit, factor) = CHANNEL_UNITS[remaining.channel as usize];
+        let said = |value: f64| format!("{} {unit}", figures(value * factor, 2));
+        let telling: Vec<String> = (self.regimes_of_what_is_left().iter())
+            .filter(|regime| regime.share >= TELLING)
+            .take(MOST_OTHERS)
+            .map(|regime| {
+                let name = regime.variable.trim_end_matches("_m").replace('_', " ");
+                format!("{name} ({})", percent(regime.share))
+            })
+            .collect();
+        let when = if telling.is_empty() {
+            "no single variable says when".to_owned()
+        } else {
+            format!(
+                "what says when, by its share of the variance: {}",
+                listed(&telling)
+            )
+        };
+        Some(format!(
+            "The best laws leave {} RMS in the {}, where the sensor's noise is {}, alike for {} s; {when}. No known effect explains that, and every effect was judged against it.",
+            said(remaining.size),
+            CHANNEL_WORDS[remaining.channel as usize],
+            said(remaining.noise),
+            figures(remaining.time, 2),
+        ))
+    }
+
     pub(super) fn what_is_left(&self) -> Vec<String> {
+        if let Some(unexplained) = self.unexplained() {
+            return vec![unexplained];
+        }
         let left: Vec<String> = self
             .by_misfit(&self.best().fit.prediction.residuals)
             .iter()
@@ -141,15 +184,14 @@ impl Diagnosis {
             .filter_map(|n| {
                 let believed = self.tolerated.iter().find(|f| f.quantity.name == n.name)?;
                 let (words, unit, factor) = spoken(n.name);
-                let table = n.name.split('.').next().unwrap_or_default();
-                let change = 100.0 * (n.value / believed.start - 1.0);
+                let table = n.name.split_once('.').map_or("", |(table, _)| table);
+                let change = if believed.start == 0.0 {
+                    String::new()
+                } else {
+                    format!(" ({:+.1} %)", 100.0 * (n.value / believed.start - 1.0))
+                };
                 let value = figures(n.value * factor, 4);
-                Some(
-                    format!("{table} {words} {value} {unit}")
-                        .trim_end()
-                        .to_owned()
-                        + &format!(" ({change:+.1} %)"),
-                )
+                Some(format!("{table} {words} {value} {unit}").trim().to_owned() + &change)
             })
             .collect();
         if numbers.is_empty() {

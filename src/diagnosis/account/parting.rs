@@ -32,10 +32,11 @@ impl Diagnosis {
             let worst = self.by_misfit(&self.best().fit.prediction.residuals);
             let to = worst.first().map_or_else(String::new, |worst| {
                 format!(
-                    ": the worst channel, the {} of {}, departs by {} times its noise",
+                    ": the worst channel, the {} of {}, departs by {} times {}",
                     CHANNEL_WORDS[worst.channel as usize],
                     self.name(worst.recording),
-                    figures(worst.sigmas, 3)
+                    figures(worst.sigmas, 3),
+                    self.yardstick()
                 )
             });
             return vec![format!(
@@ -92,10 +93,11 @@ impl Diagnosis {
             count => format!(", in {count} stretches that make {long:.1} s"),
         };
         format!(
-            "Between {from:.2} and {to:.2} s of {} the {} parts from the believed model, whatever its tolerances allow{times}: by {} RMS, where the sensor's noise is {}.",
+            "Between {from:.2} and {to:.2} s of {} the {} parts from the believed model, whatever its tolerances allow{times}: by {} RMS, where {} is {}.",
             self.name(worst.recording),
             CHANNEL_WORDS[worst.channel as usize],
             self.in_unit(worst.channel, worst.sigmas),
+            self.yardstick(),
             self.in_unit(worst.channel, 1.0),
         )
     }

@@ -38,6 +38,8 @@ fn plant() -> PlantParameters {
         cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
         latent: None,
+        chain: Chain::Whole,
+        links: LinkParameters::NONE,
     }
 }
 
@@ -54,6 +56,7 @@ fn recording(contact: bool, seed: u64) -> (Vec<f64>, [Vec<f64>; 4]) {
         surface: vec![if contact { 0.02 } else { f64::NAN }; time.len()],
         time: time.clone(),
         cell: None,
+        motion: None,
     };
     let mut readings = simulate(&plant(), &inputs).readings;
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);

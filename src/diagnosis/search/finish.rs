@@ -5,7 +5,7 @@ use super::super::free::Free;
 use super::super::hypothesis::{Hypothesis, stands_for};
 use super::super::left_out;
 use super::super::scale::Scale;
-use super::{FULL_ITERATIONS, HOPELESS, LOOK_ELSEWHERE, MOST_EFFECTS, Search, same};
+use super::{FULL_ITERATIONS, HOPELESS, LOOK_ELSEWHERE, Search, same};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -198,7 +198,7 @@ impl Search<'_> {
         say: &mut dyn FnMut(&str),
     ) {
         while let Some(best) = full.first()
-            && best.effects.len() < MOST_EFFECTS + self.shown.len()
+            && best.effects.len() < self.most_effects + self.shown.len()
             && scale.is_adequate(best)
         {
             let score = self.score(best);

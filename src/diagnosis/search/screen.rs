@@ -9,8 +9,6 @@ use super::{Search, same};
 use crate::effects::{Clues, Coordinate, Effect, Quantity, Subsystem};
 use rayon::prelude::*;
 
-/// Iterations of the second look at those that promise most.
-const LOOK: usize = 3;
 /// Effects whose starts are looked at with all their derivatives, beside those that have no secant.
 const GLANCED_AT: usize = 14;
 /// Cost over the least beyond which they are not [1].
@@ -95,7 +93,7 @@ impl Search<'_> {
         best.truncate(LOOKED_AT);
         let mut looked: Vec<Hypothesis> = best
             .par_iter()
-            .map(|promise| self.add(from, promise.effect, &promise.start, stages, LOOK))
+            .map(|promise| self.add(from, promise.effect, &promise.start, stages, self.look))
             .collect();
         let score = |hypothesis: &Hypothesis| match stages[0].guided {
             true => self.rough_score(hypothesis),

@@ -9,6 +9,7 @@
 //! Confused with: a longer time constant (small steps too), supply_droop (depends on what was drawn before), regulator_second_order.
 
 use super::*;
+use crate::plant::Chain;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
@@ -29,5 +30,12 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
-    starts: |_| vec![vec![4e5, 4e5], vec![1.2e6, 4e5], vec![4e5, 1.2e6]],
+    // A small valve on a large load is far slower than one on a device.
+    starts: |c| match c.plant.chain {
+        Chain::Regulator => [3e4, 1e5, 3e5]
+            .into_iter()
+            .flat_map(|rate| [vec![rate, 1e7], vec![rate, rate], vec![1e7, rate]])
+            .collect(),
+        _ => vec![vec![4e5, 4e5], vec![1.2e6, 4e5], vec![4e5, 1.2e6]],
+    },
 };

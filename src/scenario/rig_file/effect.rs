@@ -8,7 +8,7 @@ use super::super::error::ScenarioError;
 use super::super::suggestion::nearest;
 use super::keys::Numbers;
 use super::values::{checked, tolerance};
-use crate::effects::{CATALOGUE, Effect};
+use crate::effects::{Effect, candidates};
 use crate::plant::PlantParameters;
 
 /// The effects of a file on a rig without them, in the order of the catalogue, each with all its numbers.
@@ -17,12 +17,13 @@ pub(super) fn effects(
     tables: &BTreeMap<String, Numbers>,
     plant: &PlantParameters,
 ) -> Result<Vec<(&'static Effect, Vec<f64>)>, ScenarioError> {
+    let known = candidates(plant.chain);
     if let Some(name) = tables
         .keys()
-        .find(|name| CATALOGUE.iter().all(|effect| effect.name != **name))
+        .find(|name| known.iter().all(|effect| effect.name != **name))
     {
         let key = join("effect", name);
-        let names: Vec<&str> = CATALOGUE.iter().map(|effect| effect.name).collect();
+        let names: Vec<&str> = known.iter().map(|effect| effect.name).collect();
         return Err(ScenarioError::UnknownKey {
             place: document.place(&key),
             key,
@@ -30,7 +31,7 @@ pub(super) fn effects(
         });
     }
     let mut found: Vec<(&'static Effect, Vec<f64>)> = Vec::new();
-    for effect in CATALOGUE {
+    for effect in known {
         let Some(numbers) = tables.get(effect.name) else {
             continue;
         };

@@ -16,18 +16,34 @@ pub(super) type Numbers = BTreeMap<String, Number>;
 #[serde(deny_unknown_fields)]
 pub(super) struct RigKeys {
     pub schema: u32,
+    #[serde(default)]
+    pub rig: PartKeys,
+    #[serde(default)]
     pub cylinder: Numbers,
+    #[serde(default)]
     pub end_stop: Numbers,
+    #[serde(default)]
     pub regulator: Numbers,
+    #[serde(default)]
     pub valve: Numbers,
+    #[serde(default)]
     pub gas: Numbers,
+    #[serde(default)]
     pub contact: Numbers,
+    #[serde(default)]
     pub sensors: Numbers,
     #[serde(default)]
     pub recordings: RecordingsKeys,
     #[serde(default)]
     pub effect: BTreeMap<String, Numbers>,
     pub latent: Option<BTreeMap<String, Entry>>,
+}
+
+/// `[rig]`: how much of the device there is.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PartKeys {
+    pub chain: Option<String>,
 }
 
 /// `[recordings]`.
@@ -59,6 +75,7 @@ impl RigKeys {
 pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
     let mut sections: Vec<(&'static str, &'static [&'static str])> = vec![
         ("", keys::<RigKeys>()),
+        ("rig", keys::<PartKeys>()),
         ("recordings", keys::<RecordingsKeys>()),
         ("cylinder", &["count", "bore_m", "rod_m", "stroke_m", "dead_volume_m3", "moving_mass_kg", "gravity_along_axis_m_per_s2"]),
         ("end_stop", &["stiffness_n_per_m", "damping_n_s_per_m"]),
@@ -66,7 +83,7 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("valve", &["supply_orifice_m2", "exhaust_orifice_m2", "discharge_coefficient"]),
         ("gas", &["specific_gas_constant_j_per_kg_k", "heat_capacity_ratio", "temperature_k", "atmosphere_pa"]),
         ("contact", &["stiffness_n_per_m", "damping_n_s_per_m"]),
-        ("sensors", &["rate_hz", "force_n", "stroke_m", "regulator_pressure_pa", "acceleration_m_per_s2"]),
+        ("sensors", &["rate_hz", "force_n", "stroke_m", "regulator_pressure_pa", "acceleration_m_per_s2", "regulator_pressure_drift_pa_per_s"]),
     ];
     let with_accuracy = [
         "cylinder.*", "end_stop.*", "regulator.*", "valve.*", "gas.*", "contact.*", "sensors.*", "effect.*",

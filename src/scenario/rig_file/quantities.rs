@@ -4,7 +4,8 @@ use crate::device::DeviceParameters;
 use crate::effects::Quantity;
 use crate::physics::regulator::RegulatorParameters;
 use crate::plant::{
-    CellParameters, ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors,
+    CellParameters, Chain, ContactLaw, ContactParameters, LinkParameters, Periodic,
+    PlantParameters, SensorErrors,
 };
 
 /// A number of the file.
@@ -73,6 +74,21 @@ pub(super) const SENSOR_KEYS: [(&str, [f64; 2]); 5] = [
     ("sensors.acceleration_m_per_s2", [1e-4, 100.0]),
 ];
 
+/// Drift of the pressure sensor, one standard deviation, of which only a part of the device may be told: its table and key with its plausible range.
+pub(super) const DRIFT: (&str, &str, [f64; 2]) =
+    ("sensors", "regulator_pressure_drift_pa_per_s", [0.0, 1e4]);
+
+/// Numbers that a rig with a part of the device must have; all of them for the whole of it.
+pub(super) fn needs(chain: Chain, key: &str) -> bool {
+    match chain {
+        Chain::Whole => true,
+        Chain::MovedPiston => ["cylinder.count", "cylinder.bore_m"].contains(&key),
+        Chain::DrivenSlide => key == "cylinder.moving_mass_kg",
+        Chain::ClosedChamber => false,
+        Chain::Regulator => ["regulator.gain", "regulator.time_constant_s"].contains(&key),
+    }
+}
+
 /// Pressure of a regulator's supply of which the file says nothing: as much as a regulator stands, so that it never binds [Pa gauge].
 const AMPLE_SUPPLY: f64 = 16e5;
 
@@ -98,5 +114,7 @@ pub(in super::super) fn blank() -> PlantParameters {
         cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
         latent: None,
+        chain: Chain::Whole,
+        links: LinkParameters::NONE,
     }
 }

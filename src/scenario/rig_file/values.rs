@@ -8,8 +8,8 @@ use super::super::units::{Unit, look_alike};
 use super::Tolerance;
 use super::keys::{Numbers, RecordingsKeys, RigKeys, sections};
 use super::number::Number;
-use super::quantities::{COUNT, QUANTITIES, SENSOR_KEYS};
-use crate::plant::PlantParameters;
+use super::quantities::{COUNT, DRIFT, QUANTITIES, Row, SENSOR_KEYS, needs};
+use crate::plant::{Chain, PlantParameters};
 
 /// Sets the rig's numbers and returns those that are not exactly known.
 pub(super) fn base(
@@ -20,15 +20,30 @@ pub(super) fn base(
     for (table, numbers) in keys.tables() {
         refuse_unknown(document, table, numbers)?;
     }
+    plant.chain = chain(document, keys)?;
+    let stands = |table: &str, key: &str| {
+        let tables = keys.tables();
+        let numbers = tables.iter().find(|(name, _)| *name == table);
+        numbers.is_some_and(|(_, numbers)| numbers.contains_key(key))
+    };
+    let asked = |dotted: &str| {
+        let (table, key) = dotted.split_once('.').unwrap_or(("", dotted));
+        needs(plant.chain, dotted) || stands(table, key)
+    };
     let (table, key, range) = COUNT;
     let section = Section::new(document, table);
-    let count = exact(&section, key, find(&section, keys, table, key)?, range)?;
-    if count.fract() != 0.0 {
-        return Err(section.refuse(key, plain(count), "a whole number".to_owned()));
+    if asked("cylinder.count") {
+        let count = exact(&section, key, find(&section, keys, table, key)?, range)?;
+        if count.fract() != 0.0 {
+            return Err(section.refuse(key, plain(count), "a whole number".to_owned()));
+        }
+        plant.device.cylinder_count = count as u32;
     }
-    plant.device.cylinder_count = count as u32;
+    let rows: Vec<&Row> = (QUANTITIES.iter())
+        .filter(|row| asked(row.quantity.name))
+        .collect();
     let mut tolerances = Vec::new();
-    for row in &QUANTITIES {
+    for row in rows {
         let (table, key) = split(row.quantity.name);
         let section = Section::new(document, table);
         let number = find(&section, keys, table, key)?;
@@ -52,6 +67,19 @@ fn split(dotted: &'static str) -> (&'static str, &'static str) {
     dotted
         .split_once('.')
         .expect("every number of the rig stands in a table")
+}
+
+/// How much of the device there is.
+fn chain(document: &Document<'_>, keys: &RigKeys) -> Result<Chain, ScenarioError> {
+    let Some(name) = &keys.rig.chain else {
+        return Ok(Chain::Whole);
+    };
+    let known = Chain::ALL.into_iter().find(|chain| chain.name() == name);
+    known.ok_or_else(|| {
+        let names = Chain::ALL.map(Chain::name).join(", ");
+        let section = Section::new(document, "rig");
+        section.refuse("chain", format!("{name:?}"), format!("one of {names}"))
+    })
 }
 
 fn refuse_unknown(
@@ -187,7 +215,7 @@ pub(super) fn check_together(
     plant: &PlantParameters,
 ) -> Result<(), ScenarioError> {
     let device = &plant.device;
-    if device.rod >= device.bore {
+    if plant.chain == Chain::Whole && device.rod >= device.bore {
         let expected = format!("less than bore_m, {} m", plain(device.bore));
         let section = Section::new(document, "cylinder");
         return Err(section.refuse_number("rod_m", device.rod, expected));
@@ -199,15 +227,37 @@ pub(super) fn check_together(
 pub(super) fn sensors(
     document: &Document<'_>,
     keys: &RigKeys,
+    chain: Chain,
 ) -> Result<(f64, [f64; 4]), ScenarioError> {
-    let mut values = [0.0; SENSOR_KEYS.len()];
-    for (value, (dotted, range)) in values.iter_mut().zip(SENSOR_KEYS) {
+    let mut values = [1.0; SENSOR_KEYS.len()];
+    let output = chain.output().map(|channel| channel as usize);
+    for (index, (value, (dotted, range))) in values.iter_mut().zip(SENSOR_KEYS).enumerate() {
         let (table, key) = split(dotted);
+        let measured = output.is_none_or(|output| PLACES[index] == Some(output));
+        if !measured && !keys.sensors.contains_key(key) {
+            continue;
+        }
         let section = Section::new(document, table);
         *value = exact(&section, key, find(&section, keys, table, key)?, range)?;
     }
     let [rate, noise @ ..] = values;
     Ok((rate, noise))
+}
+
+/// Channel of each sensor's noise; the rate is none.
+const PLACES: [Option<usize>; SENSOR_KEYS.len()] = [None, Some(0), Some(1), Some(2), Some(3)];
+
+/// Drift of the pressure sensor, one standard deviation [Pa/s].
+pub(super) fn pressure_drift(
+    document: &Document<'_>,
+    keys: &RigKeys,
+) -> Result<f64, ScenarioError> {
+    let (table, key, range) = DRIFT;
+    let section = Section::new(document, table);
+    match keys.sensors.get(key) {
+        None => Ok(0.0),
+        Some(number) => exact(&section, key, number, range),
+    }
 }
 
 /// Names of the recordings to diagnose from, and of the one to predict.

@@ -1,0 +1,209 @@
+//! What no law explains of a rig with a part of the device, and how recordings are judged against it.
+//!
+//!     t = 1 + 2 sum rho_k   up to the first rho_k < 0.05
+//!
+//! rho_k correlation of what is left with itself k samples later, t samples that tell as much as one. A part on a laboratory's bench is seen through one good
+//! sensor at close distances of samples: what the best laws leave is large beside its noise and alike for many samples, so that any effect would gain
+//! something against noise alone. So the laws are first let loose to see what they leave; then the search is done with that as the noise and with one
+//! sample in t, which are all but independent. The last fit is to all samples.
+
+use super::evidence::{Evidence, Measured};
+use super::hypothesis::Hypothesis;
+use super::search::Search;
+use crate::plant::{CHANNELS, Channel};
+
+/// Correlation at which two samples count as independent [1].
+const INDEPENDENT: f64 = 0.05;
+/// Samples of a recording that are kept at least.
+const LEAST_KEPT: usize = 60;
+/// Samples of all recordings that a first look takes, about.
+const FIRST_LOOK: usize = 4000;
+/// What is left counts as the sensor's noise up to so many times of it [1].
+const NOISE_ALONE: f64 = 1.3;
+
+/// What the best laws leave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Remaining {
+    /// The channel.
+    pub channel: Channel,
+    /// Its root mean square, in the channel's unit.
+    pub size: f64,
+    /// Standard deviation of the sensor's noise, in the channel's unit.
+    pub noise: f64,
+    /// Samples that tell as much as one [1].
+    pub alike: f64,
+    /// The same as a time [s].
+    pub time: f64,
+}
+
+impl Remaining {
+    /// What the best laws that a search can find leave of its evidence.
+    pub fn of(search: &Search<'_>, channel: Channel, say: &mut dyn FnMut(&str)) -> Self {
+        let evidence = search.evidence;
+        let every = evidence.count().div_ceil(FIRST_LOOK);
+        let first = thinned(evidence, |_| every, evidence.noise);
+        let best = greedy(
+            &Search {
+                evidence: &first,
+                ..search.clone()
+            },
+            say,
+        );
+        let prediction = evidence.predict(&best.fit.prediction.plant, true, None);
+        let index = channel as usize;
+        let (mut squares, mut count, mut weighted, mut seconds) = (0.0, 0.0, 0.0, 0.0);
+        for (measured, course) in evidence.recordings.iter().zip(&prediction.courses) {
+            let pairs = measured.readings[index].iter().zip(&course.readings[index]);
+            let left: Vec<f64> = pairs
+                .map(|(m, p)| m - p)
+                .filter(|r| r.is_finite())
+                .collect();
+            let own = left.len() as f64;
+            squares += left.iter().map(|r| r * r).sum::<f64>();
+            count += own;
+            let time = &measured.inputs.time;
+            let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+            weighted += own * alike(&left);
+            seconds += own * alike(&left) * step;
+        }
+        Self {
+            channel,
+            size: (squares / count.max(1.0)).sqrt(),
+            noise: evidence.noise[index],
+            alike: weighted / count.max(1.0),
+            time: seconds / count.max(1.0),
+        }
+    }
+
+    /// Is it no more than the sensor's noise?
+    pub fn is_noise(&self) -> bool {
+        self.size < NOISE_ALONE * self.noise && self.alike < 2.0
+    }
+
+    /// Noise of the channels where what is left counts as it.
+    fn taken_as_noise(&self, evidence: &Evidence) -> [f64; CHANNELS.len()] {
+        let mut noise = evidence.noise;
+        noise[self.channel as usize] = self.size.max(self.noise);
+        noise
+    }
+
+    /// The evidence with samples that are all but independent, against what is left.
+    pub fn independent(&self, evidence: &Evidence) -> Evidence {
+        let every = |count: usize| {
+            let most = (count / LEAST_KEPT).max(1);
+            (self.alike.ceil() as usize).clamp(1, most)
+        };
+        thinned(evidence, every, self.taken_as_noise(evidence))
+    }
+
+    /// The evidence with all samples, against what is left.
+    pub fn whole(&self, evidence: &Evidence) -> Evidence {
+        let mut whole = thinned(evidence, |_| 1, self.taken_as_noise(evidence));
+        whole.block = whole.block.max(2.0 * self.time);
+        whole
+    }
+}
+
+/// The evidence with every so many-th reading, by the number of a recording's samples, and another noise.
+fn thinned(
+    evidence: &Evidence,
+    every: impl Fn(usize) -> usize,
+    noise: [f64; CHANNELS.len()],
+) -> Evidence {
+    let thin = |measured: &Measured| {
+        let mut kept = measured.clone();
+        let every = every(measured.inputs.time.len());
+        for readings in &mut kept.readings {
+            for (i, reading) in readings.iter_mut().enumerate() {
+                if i % every != every / 2 {
+                    *reading = f64::NAN;
+                }
+            }
+        }
+        kept
+    };
+    Evidence::new(evidence.recordings.iter().map(thin).collect(), noise)
+}
+
+/// Samples that tell as much as one.
+fn alike(left: &[f64]) -> f64 {
+    let count = left.len();
+    let mean = left.iter().sum::<f64>() / count.max(1) as f64;
+    let at = |lag: usize| -> f64 {
+        let pairs = left.iter().zip(&left[lag..]);
+        pairs.map(|(a, b)| (a - mean) * (b - mean)).sum()
+    };
+    let own = at(0);
+    if count < 4 || own <= 0.0 {
+        return 1.0;
+    }
+    let mut sum = 1.0;
+    for lag in 1..count / 4 {
+        let share = at(lag) / own;
+        if share < INDEPENDENT {
+            break;
+        }
+        sum += 2.0 * share;
+    }
+    sum
+}
+
+/// Effect after effect, as long as one more explains a part of what is left.
+fn greedy(search: &Search<'_>, say: &mut dyn FnMut(&str)) -> Hypothesis {
+    /// Share of what is left that one more must explain [1].
+    const WORTH: f64 = 0.03;
+    /// Candidates that are fitted with everything free.
+    const TRIED: usize = 5;
+    let stages = super::fit::ROUGH;
+    let mut best = search.baseline();
+    while best.effects.len() < search.most_effects {
+        let candidates = search.screen(&best, stages, f64::INFINITY);
+        let mut refined: Vec<Hypothesis> = (candidates.iter().take(TRIED))
+            .map(|candidate| search.refine(candidate, stages, 30))
+            .collect();
+        refined.sort_by(|a, b| a.fit.rough.total_cmp(&b.fit.rough));
+        let Some(more) = refined.into_iter().next() else {
+            break;
+        };
+        say(&format!(
+            "  let loose: {:?} {:.0} -> {:.0}",
+            more.effects, best.fit.rough, more.fit.rough
+        ));
+        if more.fit.rough > (1.0 - WORTH) * best.fit.rough {
+            break;
+        }
+        best = more;
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::alike;
+    use rand::{Rng, SeedableRng};
+
+    #[test]
+    fn noise_is_alike_for_one_sample_and_a_smoothed_one_for_as_many_as_theory_says() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(9);
+        let white: Vec<f64> = (0..40_000)
+            .map(|_| random.random_range(-1.0..1.0))
+            .collect();
+        assert!((alike(&white) - 1.0).abs() < 0.1);
+        // First order with decay a: (1 + a)/(1 - a).
+        let decay = 0.9;
+        let mut state = 0.0;
+        let smooth: Vec<f64> = white
+            .iter()
+            .map(|w| {
+                state = decay * state + w;
+                state
+            })
+            .collect();
+        let expected = (1.0 + decay) / (1.0 - decay);
+        assert!(
+            (alike(&smooth) / expected - 1.0).abs() < 0.15,
+            "{}",
+            alike(&smooth)
+        );
+    }
+}

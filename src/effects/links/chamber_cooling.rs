@@ -1,0 +1,36 @@
+//! Air that was warmed by filling cools after the chamber is shut.
+//!
+//!     dp/dt = -(D/T_c) e^(-t/T_c)
+//!
+//! D pressure that cooling takes [Pa], T_c its time [s], t since the start of the recording. The last of a filling's heat, to the walls at a constant
+//! coefficient (Carneiro and de Almeida 2006).
+//!
+//! Signature: a fall at the start that ends by itself.
+//! Confused with: a leak (goes on), the sensor's warming up.
+
+use super::*;
+
+/// A chamber of a litre exchanges its heat in some seconds: slower than this is another thing [s].
+const LONGEST_COOLING: [f64; 2] = [0.1, 20.0];
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "chamber_cooling",
+    subsystem: Subsystem::Chambers,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                quantity!("pressure_lost_pa", p => p.links.cooling),
+                Linear(500.0),
+                [-1e5, 1e5],
+            ),
+            reported(
+                quantity!("cooling_time_constant_s", p => p.links.cooling_time),
+                Logarithmic,
+                LONGEST_COOLING,
+            ),
+        ]
+    },
+    starts: |_| vec![vec![300.0, 2.0], vec![300.0, 10.0]],
+};

@@ -1,0 +1,25 @@
+//! A leak whose flow grows with the gauge pressure: pores, permeation, a long narrow gap at a small pressure.
+//!
+//!     dp/dt = -r g
+//!
+//! p pressure, g its excess over the atmosphere [Pa], r conductance by volume, one over the time constant [1/s]. Darcy 1856.
+//!
+//! Signature: an exponential decay.
+//! Confused with: the other laws of a leak, while the pressure falls by a small share of itself; a drift of the sensor.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "leak_in_proportion",
+    subsystem: Subsystem::Chambers,
+    group: LEAK,
+    parameters: |_| {
+        vec![reported(
+            quantity!("conductance_per_volume_1_per_s", p => p.links.leak.proportional),
+            Logarithmic,
+            [1e-8, 10.0],
+        )]
+    },
+    starts: |_| each(&[1e-5, 1e-4, 1e-3, 1e-2, 0.1]),
+};

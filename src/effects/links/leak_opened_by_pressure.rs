@@ -1,0 +1,38 @@
+//! A leak that pressure opens: a seam, a lip or a wall that gives way.
+//!
+//!     dp/dt = -r (1 + o g) g
+//!
+//! p pressure, g its excess over the atmosphere [Pa], r conductance by volume at no pressure [1/s], o its growth [1/Pa]. First order of a gap's width in the
+//! pressure. At o = 1/(2 p_a) it is a narrow gap's law (gap_leakage), beyond it the walls give way as well, or the flow is not laminar throughout.
+//!
+//! Signature: a decay far faster than exponential at high pressures that becomes exponential.
+//! Confused with: orifice and gap, while the pressure falls by a small share of itself.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "leak_opened_by_pressure",
+    subsystem: Subsystem::Chambers,
+    group: LEAK,
+    parameters: |_| {
+        vec![
+            reported(
+                quantity!("conductance_per_volume_1_per_s", p => p.links.leak.proportional),
+                Logarithmic,
+                [1e-8, 10.0],
+            ),
+            reported(
+                quantity!("growth_per_pressure_1_per_pa", p => p.links.leak.opening),
+                Linear(1e-6),
+                [-1e-6, 1e-3],
+            ),
+        ]
+    },
+    starts: |_| {
+        [1e-4, 1e-3, 1e-2]
+            .into_iter()
+            .flat_map(|rate| [vec![rate, 5e-6], vec![rate, 2e-5]])
+            .collect()
+    },
+};

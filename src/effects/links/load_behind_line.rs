@@ -1,0 +1,33 @@
+//! A load behind a line fills and empties more slowly than the outlet: the outlet gives way until it has.
+//!
+//!     y = p - w (p - q),   dq/dt = (p - q)/T
+//!
+//! y outlet [Pa gauge], p what the regulator alone would hold [Pa gauge], q the load's pressure [Pa gauge], w share [1], T time in which the load fills [s].
+//! Two volumes with a laminar line between them; Anderson 1967, chapter 4.
+//!
+//! Signature: after every step a slow tail, both ways, of the same share.
+//! Confused with: regulator_venting (down alone), regulator_second_order, a longer time constant (no fast part before).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "load_behind_line",
+    subsystem: Subsystem::Regulator,
+    group: None,
+    parameters: |_| {
+        vec![
+            reported(
+                quantity!("share_1", p => p.links.load_share),
+                Linear(0.1),
+                [0.0, 0.95],
+            ),
+            reported(
+                quantity!("load_time_constant_s", p => p.links.load_time),
+                Logarithmic,
+                [1e-2, 100.0],
+            ),
+        ]
+    },
+    starts: |_| vec![vec![0.2, 0.5], vec![0.2, 2.0]],
+};

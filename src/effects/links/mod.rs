@@ -1,0 +1,71 @@
+//! Effects that only a rig with a part of the device shows: a moved piston, a closed chamber, a regulator alone.
+
+mod chamber_cooling;
+mod gap_leakage;
+mod leak_in_proportion;
+mod leak_opened_by_pressure;
+mod load_behind_line;
+mod orifice_leakage;
+mod pressure_sensor_offset;
+mod regulator_venting;
+mod viscous_friction_by_direction;
+
+use super::catalogue::CATALOGUE;
+use super::effect::Effect;
+use super::parts::*;
+use crate::plant::Chain;
+
+/// All of them, in the order in which they are tried.
+pub static LINK_EFFECTS: &[Effect] = &[
+    viscous_friction_by_direction::EFFECT,
+    regulator_venting::EFFECT,
+    load_behind_line::EFFECT,
+    pressure_sensor_offset::EFFECT,
+    leak_in_proportion::EFFECT,
+    orifice_leakage::EFFECT,
+    gap_leakage::EFFECT,
+    leak_opened_by_pressure::EFFECT,
+    chamber_cooling::EFFECT,
+];
+
+/// Laws of a leak exclude one another.
+const LEAK: Option<&str> = Some("leak");
+
+/// Effects that can act in a rig with so much of the device.
+#[must_use]
+pub fn candidates(chain: Chain) -> Vec<&'static Effect> {
+    let of = |subsystems: &[Subsystem]| -> Vec<&'static Effect> {
+        let all = CATALOGUE.iter().chain(LINK_EFFECTS);
+        all.filter(|effect| subsystems.contains(&effect.subsystem))
+            .collect()
+    };
+    match chain {
+        Chain::Whole => CATALOGUE.iter().collect(),
+        Chain::MovedPiston | Chain::DrivenSlide => {
+            of(&[Subsystem::ForceBalance, Subsystem::Sensors])
+        }
+        Chain::ClosedChamber => {
+            let mut effects = of(&[Subsystem::Chambers]);
+            effects.retain(|effect| LINK_EFFECTS.iter().any(|own| own.name == effect.name));
+            effects
+        }
+        Chain::Regulator => of(&[Subsystem::Regulator, Subsystem::Sensors]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_whole_device_has_the_catalogue_and_no_effect_has_two_names() {
+        assert_eq!(candidates(Chain::Whole).len(), CATALOGUE.len());
+        for chain in Chain::ALL {
+            let mut names: Vec<&str> = candidates(chain).iter().map(|e| e.name).collect();
+            let count = names.len();
+            names.sort_unstable();
+            names.dedup();
+            assert!(count > 0 && names.len() == count, "{chain:?}");
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! A leak through a short hole.
+//!
+//!     dp/dt = -(A C/V) sqrt(R T) p f(p_a/p)
+//!
+//! p pressure and p_a the atmosphere's [Pa absolute], A C/V equivalent area by volume [1/m], R specific gas constant [J/(kg K)], T temperature [K], f the
+//! choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//!
+//! Signature: a decay in proportion to the absolute pressure down to the critical ratio, then ever slower, to an end in finite time.
+//! Confused with: the other laws of a leak, while the pressure falls by a small share of itself.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "orifice_leakage",
+    subsystem: Subsystem::Chambers,
+    group: LEAK,
+    parameters: |_| {
+        vec![reported(
+            quantity!("orifice_area_per_volume_1_per_m", p => p.links.leak.orifice),
+            Logarithmic,
+            [1e-11, 1e-1],
+        )]
+    },
+    starts: |_| each(&[5e-8, 5e-7, 5e-6, 5e-5, 5e-4]),
+};

@@ -1,0 +1,25 @@
+//! The pressure sensor does not read zero at the atmosphere.
+//!
+//!     p_m = p + b
+//!
+//! p_m reading and p pressure [Pa gauge], b offset [Pa]. ISA-37.
+//!
+//! Signature: the reading is off by the same at every pressure, at none too.
+//! Confused with: regulator_gain_error (grows with the pressure), a set value that is itself off: a recording of one sensor cannot tell.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "pressure_sensor_offset",
+    subsystem: Subsystem::Sensors,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("offset_pa", p => p.sensors.pressure_offset),
+            Linear(1000.0),
+            [-2e5, 2e5],
+        )]
+    },
+    starts: |_| vec![vec![0.0]],
+};

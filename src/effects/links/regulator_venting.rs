@@ -1,0 +1,33 @@
+//! The regulator vents by another valve than it fills by.
+//!
+//!     dp/dt = (K p_set - p)/T_v   while it falls
+//!
+//! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], T_v time constant of venting [s]. Zorlu, Ozsoy and Kuzucu 2003: inlet and exhaust of a
+//! proportional regulator's own valve differ, and the exhaust works against the atmosphere.
+//!
+//! Signature: after a step down another time constant than after a step up.
+//! Confused with: regulator_rate_limit (ramps), load_behind_line (a slow tail both ways).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "regulator_venting",
+    subsystem: Subsystem::Regulator,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            Quantity {
+                name: "venting_time_constant_s",
+                get: |p| {
+                    let own = p.links.venting_time_constant;
+                    own.unwrap_or(p.device.regulator.time_constant)
+                },
+                set: |p, v| p.links.venting_time_constant = Some(v),
+            },
+            Logarithmic,
+            [1e-3, 30.0],
+        )]
+    },
+    starts: |c| shares(&[0.3, 1.5, 4.0], c.plant.device.regulator.time_constant),
+};

@@ -1,0 +1,26 @@
+//! Viscous friction is not the same both ways.
+//!
+//!     F = -(b + B sign(v)) v
+//!
+//! F force along extension [N], b viscous coefficient [N s/m], B half of what it is larger by in extension than in retraction [N s/m], v speed of
+//! extension [m/s]. Janot, Gautier and Brunot 2019 for a ball screw; lips of seals that face one way.
+//!
+//! Signature: what is left grows with the size of the speed, with the same sign both ways.
+//! Confused with: axial_force_offset (the same at every speed), regulator or drive gains that differ by direction.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "viscous_friction_by_direction",
+    subsystem: Subsystem::ForceBalance,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("viscous_asymmetry_n_s_per_m", p => p.links.viscous_asymmetry),
+            Linear(20.0),
+            [-5000.0, 5000.0],
+        )]
+    },
+    starts: |_| vec![vec![0.0]],
+};

@@ -1,0 +1,99 @@
+//! Rigs that have a part of the device alone: what is recorded stands in the place of what would be simulated before it.
+//!
+//!     moved piston      pressure, motion -> force          a rig moves the piston, the chamber's pressure is held
+//!     driven slide      motion -> force of the drive       a motor and screw in place of the air
+//!     closed chamber    start pressure -> pressure         filled and shut off
+//!     regulator         set pressure -> outlet             nothing but its own volume behind it
+//!
+//! Each is a link of the whole chain with the same parameters, effects and sensors.
+
+mod closed_chamber;
+mod moved;
+mod parameters;
+mod regulator_alone;
+
+use super::inputs::PlantInputs;
+use super::parameters::PlantParameters;
+use super::simulate::{Channel, Trajectory};
+
+pub use parameters::LinkParameters;
+
+/// How much of the device a rig has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Chain {
+    /// All of it, from set pressure to contact force.
+    #[default]
+    Whole,
+    /// A piston that a rig moves at a recorded pressure; the load cell carries what it pushes.
+    MovedPiston,
+    /// A slide that a motor drives; the force of the drive is recorded, positive along extension.
+    DrivenSlide,
+    /// A chamber, filled and shut off.
+    ClosedChamber,
+    /// A regulator.
+    Regulator,
+}
+
+impl Chain {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Whole,
+        Self::MovedPiston,
+        Self::DrivenSlide,
+        Self::ClosedChamber,
+        Self::Regulator,
+    ];
+
+    /// Name in a rig file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::MovedPiston => "moved_piston",
+            Self::DrivenSlide => "driven_slide",
+            Self::ClosedChamber => "closed_chamber",
+            Self::Regulator => "regulator",
+        }
+    }
+
+    /// The channel that is predicted; none where all are.
+    pub fn output(self) -> Option<Channel> {
+        match self {
+            Self::Whole => None,
+            Self::MovedPiston | Self::DrivenSlide => Some(Channel::Force),
+            Self::ClosedChamber | Self::Regulator => Some(Channel::RegulatorPressure),
+        }
+    }
+
+    /// Is the motion of the piston recorded and taken as it is?
+    pub fn takes_motion(self) -> bool {
+        matches!(self, Self::MovedPiston | Self::DrivenSlide)
+    }
+}
+
+/// What really happens in a rig with a part of the device.
+pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
+    match plant.chain {
+        Chain::Whole => Trajectory::default(),
+        Chain::MovedPiston | Chain::DrivenSlide => moved::trajectory(plant, inputs),
+        Chain::ClosedChamber => closed_chamber::trajectory(plant, inputs),
+        Chain::Regulator => regulator_alone::trajectory(plant, inputs),
+    }
+}
+
+impl Trajectory {
+    /// Nothing happens, at every sample.
+    fn still(count: usize, atmosphere: f64) -> Self {
+        let nothing = vec![0.0; count];
+        Self {
+            outlet: nothing.clone(),
+            stroke: nothing.clone(),
+            speed: nothing.clone(),
+            acceleration: nothing.clone(),
+            contact_force: nothing.clone(),
+            pressures: [vec![atmosphere; count], vec![atmosphere; count]],
+            mass_flow: nothing.clone(),
+            hold_force: nothing.clone(),
+            share: vec![1.0; count],
+        }
+    }
+}
