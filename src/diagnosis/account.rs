@@ -25,6 +25,7 @@ impl Diagnosis {
         text.push_str(&self.shape_table().unwrap_or_default());
         let mut part = |title, paragraphs: &[String]| add(&mut text, title, paragraphs);
         part("What is left", &self.what_is_left());
+        part("What was ruled out", &[self.what_was_ruled_out()]);
         let title = "What the recordings do not tell apart";
         part(title, &self.not_told_apart());
         part("What to record next", &[self.what_next()]);

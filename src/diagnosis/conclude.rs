@@ -5,7 +5,7 @@ use super::answer::{
 };
 use super::details::{
     ChannelMisfit, ChannelNoise, Details, LinkReport, NextExperiment, PredictionError,
-    RegimeReport, RemainingReport, ToleratedNumber,
+    RegimeReport, RemainingReport, RuledOutReport, ToleratedNumber,
 };
 use super::diagnose::{Diagnosis, names_of};
 use super::estimate::Number;
@@ -18,7 +18,7 @@ use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
 use crate::effects::Effect;
 use crate::effects::vocabulary;
-use crate::plant::{CHANNELS, Chain};
+use crate::plant::{CHANNELS, Chain, Channel};
 
 /// Variables named at most for a link.
 const MOST_REGIMES: usize = 5;
@@ -214,6 +214,19 @@ impl Diagnosis {
             links: self.link_reports(),
             explained_share: self.explained_share(),
             remaining: self.remaining_report(),
+            ruled_out: (self.ruled_out.iter())
+                .map(|variant| RuledOutReport {
+                    effects: variant
+                        .effects
+                        .iter()
+                        .map(|name| (*name).to_owned())
+                        .collect(),
+                    rms: variant.rms,
+                    parameters: (variant.numbers.iter())
+                        .map(|(name, value)| ((*name).to_owned(), *value))
+                        .collect(),
+                })
+                .collect(),
             tolerated: self.tolerated(),
             prediction: self.prediction_errors(),
             next_experiment: self.next_experiment(),
@@ -271,6 +284,19 @@ impl Diagnosis {
             count += 1.0;
         }
         ((left / f64::max(count, 1.0)).sqrt(), (left / own).sqrt())
+    }
+
+    /// Root mean square of what the best explanation leaves of a channel, in its unit.
+    pub(super) fn left_of(&self, channel: Channel) -> f64 {
+        let best = &self.best().fit.prediction;
+        let of_channel = misfits(&self.evidence, &best.residuals);
+        let of_channel = of_channel.iter().filter(|m| m.channel == channel);
+        let (mut squares, mut count) = (0.0, 0.0);
+        for misfit in of_channel {
+            squares += misfit.samples as f64 * self.size(best, misfit).0.powi(2);
+            count += misfit.samples as f64;
+        }
+        (squares / f64::max(count, 1.0)).sqrt()
     }
 
     fn link_reports(&self) -> Vec<LinkReport> {

@@ -20,6 +20,8 @@ pub struct Details {
     pub explained_share: Option<f64>,
     /// What no law explains, where it is more than noise and everything was judged against it.
     pub remaining: Option<RemainingReport>,
+    /// Variants of the explanation of a part of the device, the best first.
+    pub ruled_out: Vec<RuledOutReport>,
     /// Numbers of the rig file within their tolerances.
     pub tolerated: Vec<ToleratedNumber>,
     /// Errors of prediction on what was not fitted to.
@@ -93,6 +95,17 @@ pub struct RemainingReport {
     pub alike_s: f64,
     /// Variables that say when it appears.
     pub regimes: Vec<RegimeReport>,
+}
+
+/// A variant of an explanation: without one of its effects, or with another law in an effect's place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RuledOutReport {
+    /// Its effects.
+    pub effects: Vec<String>,
+    /// Root mean square of what it leaves, in the unit of the part's channel.
+    pub rms: f64,
+    /// Its numbers.
+    pub parameters: Vec<(String, f64)>,
 }
 
 /// How much of a mismatch a variable tells.

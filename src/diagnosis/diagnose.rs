@@ -15,11 +15,14 @@ use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
 use super::regime::{Regime, regimes};
 use super::remaining::Remaining;
+use super::ruled_out::{RuledOut, ruled_out};
 use super::search::{MOST_EFFECTS, MOST_OF_LINK, Search};
 use super::unlisted::Shape;
 use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, Chain, PlantParameters, simulate};
 
+/// Times that what no law explains is looked at anew.
+const MOST_ROUNDS: usize = 3;
 /// Odds below which an explanation is no alternative [1].
 pub const LEAST_ODDS: f64 = 0.01;
 
@@ -86,6 +89,8 @@ pub struct Diagnosis {
     pub ranked: Vec<Ranked>,
     /// What no law explains of a part of the device; none where that is noise, or where there is the whole of it.
     pub remaining: Option<Remaining>,
+    /// Variants of the best that do worse, of a part of the device.
+    pub ruled_out: Vec<RuledOut>,
     /// Numbers of the best.
     pub estimates: Estimates,
     /// Shape of its term without a name, if it has one.
@@ -113,12 +118,26 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     let remaining = (case.believed.chain.output())
         .map(|channel| Remaining::of(&search_of(case, &evidence), channel, say))
         .filter(|remaining| !remaining.is_noise());
-    let (ranked, evidence) = match &remaining {
+    let (ranked, evidence, remaining) = match remaining {
         None => {
             let search = search_of(case, &evidence);
-            (rank(&search, search.run(say)), evidence)
+            (rank(&search, search.run(say)), evidence, None)
         }
-        Some(remaining) => against(case, remaining, &evidence, say),
+        Some(first) => {
+            let mut remaining = first;
+            let mut rounds = 0;
+            loop {
+                let (ranked, whole) = against(case, &remaining, &evidence, say);
+                let best = &ranked[0].hypothesis.fit.prediction;
+                let left = Remaining::left_by(best, &evidence, remaining.channel);
+                rounds += 1;
+                if rounds == MOST_ROUNDS || !remaining.is_more_than(&left) {
+                    break (ranked, whole, Some(left));
+                }
+                // The first look was too rough: what it left would hide what is still to be found.
+                remaining = left;
+            }
+        }
     };
     let search = search_of(case, &evidence);
     let best = &ranked[0].hypothesis;
@@ -139,6 +158,10 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     Diagnosis {
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
+        ruled_out: match case.believed.chain.output() {
+            Some(channel) => ruled_out(&search, best, channel),
+            None => Vec::new(),
+        },
         remaining,
         estimates: estimates(&case.believed, best, &evidence),
         shape: Shape::of(&evidence, best),

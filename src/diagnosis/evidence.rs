@@ -38,6 +38,8 @@ pub struct Evidence {
     pub noise: [f64; 4],
     /// Time for which what a law leaves is taken to be alike at most [s].
     pub block: f64,
+    /// What a sample counts, where neighbours tell the same [1].
+    pub worth: f64,
     /// Motions measured, one per recording.
     guides: Vec<Guide>,
     /// What was found before.
@@ -64,6 +66,7 @@ impl Evidence {
             recordings,
             noise,
             block: BLOCK,
+            worth: 1.0,
             shares: Mutex::default(),
         }
     }
@@ -140,10 +143,11 @@ impl Evidence {
             .collect()
     }
 
-    /// Samples that count.
+    /// Samples that count, as many as tell something of their own.
     pub fn count(&self) -> usize {
         let readings = self.recordings.iter().flat_map(|m| &m.readings);
-        readings.flatten().filter(|value| value.is_finite()).count()
+        let finite = readings.flatten().filter(|value| value.is_finite()).count();
+        (finite as f64 * self.worth) as usize
     }
 
     /// What each residual counts when errors in time [s] are forgiven: noise over noise and slope times that error together.

@@ -529,5 +529,6 @@ pub fn rough_noise(evidence: &Evidence) -> f64 {
         .zip(shares.iter())
         .filter(|(value, _)| value.is_finite())
         .map(|(_, share)| share * share)
-        .sum()
+        .sum::<f64>()
+        * evidence.worth
 }

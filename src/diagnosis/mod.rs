@@ -25,6 +25,7 @@ pub mod next_experiment;
 pub mod recorded;
 pub mod regime;
 pub mod remaining;
+pub mod ruled_out;
 mod scale;
 pub mod search;
 pub mod servo;

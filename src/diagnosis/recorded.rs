@@ -179,7 +179,11 @@ pub fn recorded_of(
     })?;
     if chain.takes_motion() {
         let stroke = values(schema::MEASURED_STROKE)?;
-        inputs.motion = Some(Arc::new(MeasuredMotion::of(&inputs.time, &stroke)));
+        let mut motion = MeasuredMotion::of(&inputs.time, &stroke);
+        for index in motion.bridged(&inputs.time) {
+            readings[output as usize][index] = f64::NAN;
+        }
+        inputs.motion = Some(Arc::new(motion));
     }
     Ok(Recorded {
         inputs,

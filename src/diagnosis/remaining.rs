@@ -4,18 +4,18 @@
 //!
 //! rho_k correlation of what is left with itself k samples later, t samples that tell as much as one. A part on a laboratory's bench is seen through one good
 //! sensor at close distances of samples: what the best laws leave is large beside its noise and alike for many samples, so that any effect would gain
-//! something against noise alone. So the laws are first let loose to see what they leave; then the search is done with that as the noise and with one
-//! sample in t, which are all but independent. The last fit is to all samples.
+//! something against noise alone. So the laws are first let loose to see what they leave; then the search is done with that as the noise, and t samples
+//! count for one. The last fit is to all samples.
 
-use super::evidence::{Evidence, Measured};
+use super::evidence::{Evidence, Measured, Prediction};
 use super::hypothesis::Hypothesis;
 use super::search::Search;
 use crate::plant::{CHANNELS, Channel};
 
 /// Correlation at which two samples count as independent [1].
 const INDEPENDENT: f64 = 0.05;
-/// Samples of a recording that are kept at least.
-const LEAST_KEPT: usize = 60;
+/// Samples that a search looks at, about; no more are left out than are alike.
+const ENOUGH: usize = 6000;
 /// Samples of all recordings that a first look takes, about.
 const FIRST_LOOK: usize = 4000;
 /// What is left counts as the sensor's noise up to so many times of it [1].
@@ -50,6 +50,11 @@ impl Remaining {
             say,
         );
         let prediction = evidence.predict(&best.fit.prediction.plant, true, None);
+        Self::left_by(&prediction, evidence, channel)
+    }
+
+    /// What a model leaves.
+    pub fn left_by(prediction: &Prediction, evidence: &Evidence, channel: Channel) -> Self {
         let index = channel as usize;
         let (mut squares, mut count, mut weighted, mut seconds) = (0.0, 0.0, 0.0, 0.0);
         for (measured, course) in evidence.recordings.iter().zip(&prediction.courses) {
@@ -75,6 +80,11 @@ impl Remaining {
         }
     }
 
+    /// Does it turn out to be clearly more than what was left in the end?
+    pub fn is_more_than(&self, other: &Self) -> bool {
+        self.size > NOISE_ALONE * other.size
+    }
+
     /// Is it no more than the sensor's noise?
     pub fn is_noise(&self) -> bool {
         self.size < NOISE_ALONE * self.noise && self.alike < 2.0
@@ -87,13 +97,15 @@ impl Remaining {
         noise
     }
 
-    /// The evidence with samples that are all but independent, against what is left.
+    /// The evidence against what is left, in which as many samples as are alike count for one.
     pub fn independent(&self, evidence: &Evidence) -> Evidence {
-        let every = |count: usize| {
-            let most = (count / LEAST_KEPT).max(1);
-            (self.alike.ceil() as usize).clamp(1, most)
-        };
-        thinned(evidence, every, self.taken_as_noise(evidence))
+        let every = (evidence.count() / ENOUGH).clamp(1, self.alike.ceil() as usize);
+        let alike = (self.alike / every as f64).max(1.0);
+        let mut noise = self.taken_as_noise(evidence);
+        noise[self.channel as usize] *= alike.sqrt();
+        let mut thinned = thinned(evidence, |_| every, noise);
+        thinned.worth = 1.0 / alike;
+        thinned
     }
 
     /// The evidence with all samples, against what is left.
@@ -151,7 +163,7 @@ fn alike(left: &[f64]) -> f64 {
 /// Effect after effect, as long as one more explains a part of what is left.
 fn greedy(search: &Search<'_>, say: &mut dyn FnMut(&str)) -> Hypothesis {
     /// Share of what is left that one more must explain [1].
-    const WORTH: f64 = 0.03;
+    const WORTH: f64 = 0.1;
     /// Candidates that are fitted with everything free.
     const TRIED: usize = 5;
     let stages = super::fit::ROUGH;

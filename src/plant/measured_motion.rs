@@ -1,13 +1,13 @@
 //! A recorded motion with its speed and acceleration, as far as the recording's noise lets them be known.
 //!
-//!     d/dt [x v a] = [v a w],   w white of intensity q;   y = x + noise of variance r
+//!     minimise  sum K((t_i - t)/W) (x_i - c_0 - c_1 (t_i - t) - c_2 (t_i - t)^2 - c_3 (t_i - t)^3)^2,   x = c_0, v = c_1, a = 2 c_2
 //!
-//! smoothed forward and back (Kalman 1960; Rauch, Tung and Striebel 1965) with the ratio q/r at which the readings are most likely (their innovations, r
-//! eliminated): a motion that is rough against its sensor's noise is followed closely, a smooth one is smoothed. Samples may be at unlike distances.
+//! K tricube weights (Cleveland 1979), W half-width [s]: the largest that foretells a reading from the others about as well as the best one does, because
+//! derivatives need more smoothing than the readings themselves. Samples may be at unlike distances.
 
-use nalgebra::{Matrix3, RowVector3, Vector3};
+use nalgebra::{Matrix4, Vector4};
 
-/// Motion along extension, one value of each per sample.
+/// Motion along extension, one value of each per sample; NaN where too few readings are near.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeasuredMotion {
     /// Stroke [m].
@@ -18,154 +18,153 @@ pub struct MeasuredMotion {
     pub acceleration: Vec<f64>,
 }
 
-/// Smoothing times looked at, as multiples of the usual step: first, last, and how many.
-const TIMES: (f64, f64, usize) = (0.2, 300.0, 22);
-/// Halvings of the interval about the best of them.
-const REFINEMENTS: usize = 6;
+/// The narrowest half-width, in usual steps: three readings on either side count.
+const NARROWEST: f64 = 3.5;
+/// The widest, likewise.
+const WIDEST: f64 = 400.0;
+/// Each half-width over the one before.
+const WIDER: f64 = 1.2;
+/// How much worse than the best a half-width may foretell [1].
+const ABOUT_AS_WELL: f64 = 1.03;
+/// How much worse than the best ends the search [1].
+const FAR_WORSE: f64 = 2.0;
+/// Readings that a cubic needs at least.
+const LEAST: usize = 6;
+/// Share of the readings, away from the ends, that are foretold to choose a half-width: one in so many, for the long recordings.
+const JUDGED: usize = 4000;
 
 impl MeasuredMotion {
     /// From readings of the stroke [m] at increasing times [s]; NaN where there is none.
     pub fn of(time: &[f64], stroke: &[f64]) -> Self {
-        let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let known: Vec<(f64, f64)> = (time.iter().zip(stroke))
+            .filter(|(_, x)| x.is_finite())
+            .map(|(t, x)| (*t, *x))
+            .collect();
+        let mut steps: Vec<f64> = known.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
+        if steps.is_empty() {
+            let nothing = vec![f64::NAN; time.len()];
+            return Self {
+                stroke: nothing.clone(),
+                speed: nothing.clone(),
+                acceleration: nothing,
+            };
+        }
         let middle = steps.len() / 2;
         let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-        let (first, last, count) = TIMES;
-        let ratio = (last / first).powf(1.0 / (count - 1) as f64);
-        let at = |k: f64| usual * first * ratio.powf(k);
-        let unlikely = |k: f64| Filter::new(at(k)).unlikelihood(time, stroke);
-        let grid: Vec<f64> = (0..count).map(|k| unlikely(k as f64)).collect();
-        let best = (0..count).min_by(|a, b| grid[*a].total_cmp(&grid[*b]));
-        let mut best = best.unwrap_or(0) as f64;
-        let mut least = unlikely(best);
-        let mut step = 0.5;
-        for _ in 0..REFINEMENTS {
-            for side in [best - step, best + step] {
-                let there = unlikely(side);
-                if there < least {
-                    (best, least) = (side, there);
-                }
-            }
-            step *= 0.5;
-        }
-        Filter::new(at(best)).smoothed(time, stroke)
-    }
-}
-
-/// The filter with r = 1 and q = T^-5.
-struct Filter {
-    intensity: f64,
-}
-
-type State = (Vector3<f64>, Matrix3<f64>);
-
-impl Filter {
-    fn new(smoothing_time: f64) -> Self {
+        let width = best_width(&known, usual);
+        let fitted = time.iter().map(|t| Cubic::at(&known, *t, width));
+        let fitted: Vec<[f64; 3]> = fitted
+            .map(|cubic| cubic.map_or([f64::NAN; 3], |cubic| cubic.motion))
+            .collect();
         Self {
-            intensity: smoothing_time.powi(-5),
+            stroke: fitted.iter().map(|m| m[0]).collect(),
+            speed: fitted.iter().map(|m| m[1]).collect(),
+            acceleration: fitted.iter().map(|m| m[2]).collect(),
         }
     }
+}
 
-    /// Before anything is known: at the first reading, at any speed.
-    fn start(&self, time: &[f64], stroke: &[f64]) -> State {
-        let first = stroke.iter().copied().find(|x| x.is_finite());
-        let h = time[1] - time[0];
-        let wide = Vector3::new(1e6, 1e6 / (h * h), 1e6 / h.powi(4));
-        (
-            Vector3::new(first.unwrap_or(0.0), 0.0, 0.0),
-            Matrix3::from_diagonal(&wide),
-        )
-    }
-
-    fn transition(h: f64) -> Matrix3<f64> {
-        Matrix3::new(1.0, h, 0.5 * h * h, 0.0, 1.0, h, 0.0, 0.0, 1.0)
-    }
-
-    fn spread(&self, h: f64) -> Matrix3<f64> {
-        let (h2, h3, h4, h5) = (h * h, h.powi(3), h.powi(4), h.powi(5));
-        let own = Matrix3::new(
-            h5 / 20.0,
-            h4 / 8.0,
-            h3 / 6.0,
-            h4 / 8.0,
-            h3 / 3.0,
-            h2 / 2.0,
-            h3 / 6.0,
-            h2 / 2.0,
-            h,
-        );
-        self.intensity * own
-    }
-
-    fn predicted(&self, (state, covariance): &State, h: f64) -> State {
-        let f = Self::transition(h);
-        (f * state, f * covariance * f.transpose() + self.spread(h))
-    }
-
-    /// With a reading: the state after it, its innovation and the innovation's variance over r.
-    fn updated((state, covariance): &State, reading: f64) -> (State, f64, f64) {
-        let variance = covariance[(0, 0)] + 1.0;
-        let gain = covariance.column(0) / variance;
-        let innovation = reading - state[0];
-        let h = RowVector3::new(1.0, 0.0, 0.0);
-        let keep = Matrix3::identity() - gain * h;
-        // Joseph's form stays positive.
-        let after = keep * covariance * keep.transpose() + gain * gain.transpose();
-        ((state + gain * innovation, after), innovation, variance)
-    }
-
-    /// Minus the logarithm of the readings' likelihood but for a constant, at the r that suits them best; the first readings find the start.
-    fn unlikelihood(&self, time: &[f64], stroke: &[f64]) -> f64 {
-        let mut state = self.start(time, stroke);
-        let (mut squares, mut logarithms, mut count) = (0.0, 0.0, 0.0);
-        for i in 0..time.len() {
-            if i > 0 {
-                state = self.predicted(&state, time[i] - time[i - 1]);
-            }
-            if stroke[i].is_finite() {
-                let (after, innovation, variance) = Self::updated(&state, stroke[i]);
-                state = after;
-                if i >= 10 {
-                    squares += innovation * innovation / variance;
-                    logarithms += variance.ln();
-                    count += 1.0;
-                }
+impl MeasuredMotion {
+    /// Puts the straight line between what is known in place of what is not, and tells where.
+    pub fn bridged(&mut self, time: &[f64]) -> Vec<usize> {
+        let lost: Vec<usize> = (0..time.len())
+            .filter(|i| !self.stroke[*i].is_finite())
+            .collect();
+        for values in [&mut self.stroke, &mut self.speed, &mut self.acceleration] {
+            let known: Vec<(f64, f64)> = (time.iter().zip(values.iter()))
+                .filter(|(_, x)| x.is_finite())
+                .map(|(t, x)| (*t, *x))
+                .collect();
+            for &i in &lost {
+                let after = known.partition_point(|(t, _)| *t < time[i]);
+                let ends = (
+                    after.checked_sub(1).and_then(|k| known.get(k)),
+                    known.get(after),
+                );
+                values[i] = match ends {
+                    (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (time[i] - a.0) / (b.0 - a.0),
+                    (Some(one), None) | (None, Some(one)) => one.1,
+                    (None, None) => 0.0,
+                };
             }
         }
-        if count == 0.0 {
-            return f64::INFINITY;
-        }
-        count * (squares / count).max(f64::MIN_POSITIVE).ln() + logarithms
+        lost
     }
+}
 
-    fn smoothed(&self, time: &[f64], stroke: &[f64]) -> MeasuredMotion {
-        let count = time.len();
-        let mut filtered: Vec<State> = Vec::with_capacity(count);
-        let mut predicted: Vec<State> = Vec::with_capacity(count);
-        let mut state = self.start(time, stroke);
-        for i in 0..count {
-            if i > 0 {
-                state = self.predicted(&state, time[i] - time[i - 1]);
-            }
-            predicted.push(state);
-            if stroke[i].is_finite() {
-                state = Self::updated(&state, stroke[i]).0;
-            }
-            filtered.push(state);
-        }
-        let mut smooth: Vec<Vector3<f64>> = filtered.iter().map(|(x, _)| *x).collect();
-        for i in (0..count - 1).rev() {
-            let f = Self::transition(time[i + 1] - time[i]);
-            let (x, p) = &filtered[i];
-            let (ahead, spread) = &predicted[i + 1];
-            if let Some(inverse) = spread.try_inverse() {
-                smooth[i] = x + p * f.transpose() * inverse * (smooth[i + 1] - ahead);
+/// The largest half-width [s] that foretells readings from the others about as well as the best.
+fn best_width(known: &[(f64, f64)], usual: f64) -> f64 {
+    let every = known.len().div_ceil(JUDGED);
+    let mut tried: Vec<(f64, f64)> = Vec::new();
+    let mut least = f64::INFINITY;
+    let mut width = NARROWEST * usual;
+    while width <= WIDEST * usual {
+        let error = foretelling_error(known, width, every);
+        if error.is_finite() {
+            least = least.min(error);
+            tried.push((width, error));
+            if error > FAR_WORSE * least {
+                break;
             }
         }
-        MeasuredMotion {
-            stroke: smooth.iter().map(|s| s[0]).collect(),
-            speed: smooth.iter().map(|s| s[1]).collect(),
-            acceleration: smooth.iter().map(|s| s[2]).collect(),
+        width *= WIDER;
+    }
+    let good = tried
+        .iter()
+        .rev()
+        .find(|(_, e)| *e <= ABOUT_AS_WELL * least);
+    good.map_or(NARROWEST * usual, |(width, _)| *width)
+}
+
+/// Root mean square error with which readings are foretold from the others about them; the largest hundredth, such as of jolts, does not count.
+fn foretelling_error(known: &[(f64, f64)], width: f64, every: usize) -> f64 {
+    let mut squares: Vec<f64> = (known.iter().step_by(every))
+        .filter_map(|(t, x)| {
+            let cubic = Cubic::at(known, *t, width)?;
+            Some(((x - cubic.motion[0]) / (1.0 - cubic.leverage)).powi(2))
+        })
+        .filter(|square| square.is_finite())
+        .collect();
+    squares.sort_by(f64::total_cmp);
+    squares.truncate(squares.len() * 99 / 100);
+    if squares.is_empty() {
+        return f64::INFINITY;
+    }
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+/// A cubic fitted about a time.
+struct Cubic {
+    /// Place [m], speed [m/s] and acceleration [m/s2].
+    motion: [f64; 3],
+    /// What a reading at that time counts for the place [1].
+    leverage: f64,
+}
+
+impl Cubic {
+    fn at(known: &[(f64, f64)], time: f64, width: f64) -> Option<Self> {
+        let from = known.partition_point(|(t, _)| *t <= time - width);
+        let to = known.partition_point(|(t, _)| *t < time + width);
+        if to - from < LEAST {
+            return None;
         }
+        let mut normal = Matrix4::zeros();
+        let mut right = Vector4::zeros();
+        // About a reading, so that small departures keep their figures.
+        let origin = known[(from + to) / 2].1;
+        for (t, x) in &known[from..to] {
+            let u = (t - time) / width;
+            let weight = (1.0 - u.abs().powi(3)).powi(3);
+            let powers = Vector4::new(1.0, u, u * u, u * u * u);
+            normal += weight * powers * powers.transpose();
+            right += weight * (x - origin) * powers;
+        }
+        let inverse = normal.cholesky()?.inverse();
+        let c = inverse * right;
+        Some(Self {
+            motion: [origin + c[0], c[1] / width, 2.0 * c[2] / (width * width)],
+            leverage: inverse[(0, 0)],
+        })
     }
 }
 

@@ -176,6 +176,34 @@ impl Diagnosis {
         )]
     }
 
+    /// Variants of the explanation of a part of the device, with what they leave.
+    pub(super) fn what_was_ruled_out(&self) -> String {
+        let Some(channel) = self.believed.chain.output() else {
+            return String::new();
+        };
+        let (unit, factor) = CHANNEL_UNITS[channel as usize];
+        let said = |rms: f64| format!("{} {unit}", figures(rms * factor, 3));
+        let variants: Vec<String> = (self.ruled_out.iter())
+            .map(|variant| {
+                let names: Vec<String> = variant.effects.iter().map(|n| spoken_name(n)).collect();
+                let names = if names.is_empty() {
+                    "nothing".to_owned()
+                } else {
+                    listed(&names)
+                };
+                format!("{names}: {}", said(variant.rms))
+            })
+            .collect();
+        if variants.is_empty() {
+            return String::new();
+        }
+        format!(
+            "The explanation leaves {} RMS. Without one of its effects, or with another law in its place, there would be left, with {}.",
+            said(self.left_of(channel)),
+            variants.join("; with ")
+        )
+    }
+
     pub(super) fn own_numbers(&self) -> String {
         let numbers: Vec<String> = self
             .estimates

@@ -10,6 +10,7 @@
 //! (no step at reversals).
 
 use super::*;
+use crate::plant::Chain;
 
 const GROWTH: Quantity =
     quantity!("friction_per_pressure_n_per_pa", p => p.device.seal_friction.pressure_coefficient);
@@ -27,5 +28,12 @@ pub const EFFECT: Effect = Effect {
             hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
         ]
     },
-    starts: |_| vec![vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]],
+    starts: |c| {
+        let mut starts = vec![vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]];
+        // One small cylinder, moved slowly.
+        if c.plant.chain == Chain::MovedPiston {
+            starts.extend([vec![2e-6, 4.0, 100.0, 5e-5], vec![1e-5, 2.0, 100.0, 5e-5]]);
+        }
+        starts
+    },
 };

@@ -30,9 +30,9 @@ pub const EFFECT: Effect = Effect {
         ]
     },
     starts: |_| {
-        [1e-4, 1e-3, 1e-2]
+        [1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1]
             .into_iter()
-            .flat_map(|rate| [vec![rate, 5e-6], vec![rate, 2e-5]])
+            .flat_map(|rate| [vec![rate, 2e-6], vec![rate, 1e-5]])
             .collect()
     },
 };

@@ -1,12 +1,14 @@
 //! Effects that only a rig with a part of the device shows: a moved piston, a closed chamber, a regulator alone.
 
 mod chamber_cooling;
+mod chamber_shut_later;
 mod gap_leakage;
 mod leak_in_proportion;
 mod leak_opened_by_pressure;
 mod load_behind_line;
 mod orifice_leakage;
 mod pressure_sensor_offset;
+mod regulator_opens_at_zero;
 mod regulator_venting;
 mod viscous_friction_by_direction;
 
@@ -19,6 +21,7 @@ use crate::plant::Chain;
 pub static LINK_EFFECTS: &[Effect] = &[
     viscous_friction_by_direction::EFFECT,
     regulator_venting::EFFECT,
+    regulator_opens_at_zero::EFFECT,
     load_behind_line::EFFECT,
     pressure_sensor_offset::EFFECT,
     leak_in_proportion::EFFECT,
@@ -26,6 +29,7 @@ pub static LINK_EFFECTS: &[Effect] = &[
     gap_leakage::EFFECT,
     leak_opened_by_pressure::EFFECT,
     chamber_cooling::EFFECT,
+    chamber_shut_later::EFFECT,
 ];
 
 /// Laws of a leak exclude one another.
@@ -45,7 +49,7 @@ pub fn candidates(chain: Chain) -> Vec<&'static Effect> {
             of(&[Subsystem::ForceBalance, Subsystem::Sensors])
         }
         Chain::ClosedChamber => {
-            let mut effects = of(&[Subsystem::Chambers]);
+            let mut effects = of(&[Subsystem::Chambers, Subsystem::Sensors]);
             effects.retain(|effect| LINK_EFFECTS.iter().any(|own| own.name == effect.name));
             effects
         }

@@ -5,7 +5,7 @@
 //!
 //! p pressure and p_a that of the atmosphere [Pa absolute], g = p - p_a [Pa], A C/V equivalent area by volume [1/m], f flow function (the source paper's
 //! eqs. 9 to 11), k conductance of laminar compressible flow by volume [1/(Pa s)] (Poiseuille; Egli 1937 for gaps), r rate at small pressure [1/s], o its
-//! growth [1/Pa], D what cooling takes [Pa], T_c its time [s]. With k alone dp/dt = -(2 p_a k g + k g^2). Runge and Kutta's fourth order, a step a sample.
+//! growth [1/Pa], D what cooling takes [Pa], T_c its time [s], t since the chamber was shut; until then it is fed. With k alone dp/dt = -(2 p_a k g + k g^2). Runge and Kutta's fourth order, a step a sample.
 
 use super::super::inputs::PlantInputs;
 use super::super::parameters::PlantParameters;
@@ -37,7 +37,8 @@ pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Traje
         truth.outlet[i] = gauge;
         truth.pressures[0][i] = atmosphere + gauge;
         let Some(next) = time.get(i + 1) else { break };
-        let (start, h) = (time[i] - time[0], next - time[i]);
+        let start = (time[i] - time[0] - links.shut_time).max(0.0);
+        let h = (next - time[0] - links.shut_time).max(0.0) - start;
         let a = rate(start, gauge);
         let b = rate(start + 0.5 * h, gauge + 0.5 * h * a);
         let c = rate(start + 0.5 * h, gauge + 0.5 * h * b);

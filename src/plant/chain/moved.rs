@@ -26,8 +26,13 @@ pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Traje
         let pressure = inputs.set_pressure[i];
         let (stroke, speed) = (motion.stroke[i], motion.speed[i]);
         let seals = device.seal_friction.under(pressure);
-        if i > 0 {
-            deflection = seals.deflection_after(deflection, stroke - motion.stroke[i - 1], speed);
+        let travel = if i > 0 {
+            stroke - motion.stroke[i - 1]
+        } else {
+            0.0
+        };
+        if travel.is_finite() {
+            deflection = seals.deflection_after(deflection, travel, speed);
         }
         let friction = seals.force(deflection, speed) + plant.links.viscous_asymmetry * speed.abs();
         let inertia = device.moving_mass * (motion.acceleration[i] - plant.gravity_along_extension);

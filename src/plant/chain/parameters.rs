@@ -7,6 +7,8 @@ pub struct LinkParameters {
     pub viscous_asymmetry: f64,
     /// Time constant of the regulator while it vents [s]; that of filling where there is none.
     pub venting_time_constant: Option<f64>,
+    /// The same while nothing is set at all, where the exhaust then stands open [s].
+    pub shut_time_constant: Option<f64>,
     /// Share of a change of the outlet that follows only as the load behind a line fills [1].
     pub load_share: f64,
     /// Time in which that load fills [s].
@@ -17,6 +19,8 @@ pub struct LinkParameters {
     pub cooling: f64,
     /// Time in which it does [s].
     pub cooling_time: f64,
+    /// Time after the start of the recording until which a closed chamber is still fed [s].
+    pub shut_time: f64,
     /// How far the start of a closed chamber is from its first readings [Pa].
     pub start_error: f64,
 }
@@ -39,6 +43,7 @@ impl LinkParameters {
     pub const NONE: Self = Self {
         viscous_asymmetry: 0.0,
         venting_time_constant: None,
+        shut_time_constant: None,
         load_share: 0.0,
         load_time: 1.0,
         leak: ChamberLeak {
@@ -49,6 +54,7 @@ impl LinkParameters {
         },
         cooling: 0.0,
         cooling_time: 10.0,
+        shut_time: 0.0,
         start_error: 0.0,
     };
 }

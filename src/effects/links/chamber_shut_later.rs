@@ -1,0 +1,25 @@
+//! The chamber is still fed when the recording begins.
+//!
+//!     dp/dt = 0   for t < t_s
+//!
+//! p pressure [Pa], t_s time after the start of the recording at which it is shut [s].
+//!
+//! Signature: a level at the start, then the decay at once.
+//! Confused with: chamber_cooling (a fast fall at the start).
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "chamber_shut_later",
+    subsystem: Subsystem::Chambers,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            quantity!("shut_time_s", p => p.links.shut_time),
+            Linear(1.0),
+            [0.0, 1e3],
+        )]
+    },
+    starts: |_| each(&[0.5, 2.0, 5.0, 10.0, 30.0]),
+};

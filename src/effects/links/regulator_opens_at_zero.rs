@@ -1,0 +1,34 @@
+//! A regulator that is told nothing opens its exhaust wide instead of metering it.
+//!
+//!     dp/dt = -p/T_0   while p_set = 0
+//!
+//! p outlet and p_set set pressure [Pa gauge], T_0 time constant of the open exhaust [s]. Makers of proportional regulators state that below a least set value
+//! the supply valve shuts and the exhaust stands open.
+//!
+//! Signature: a step to zero falls otherwise than a step to any other low pressure.
+//! Confused with: regulator_venting (every step down alike): recordings with one low set pressure alone cannot tell.
+
+use super::*;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "regulator_opens_at_zero",
+    subsystem: Subsystem::Regulator,
+    group: None,
+    parameters: |_| {
+        vec![reported(
+            Quantity {
+                name: "open_time_constant_s",
+                get: |p| {
+                    let links = &p.links;
+                    let own = links.shut_time_constant.or(links.venting_time_constant);
+                    own.unwrap_or(p.device.regulator.time_constant)
+                },
+                set: |p, v| p.links.shut_time_constant = Some(v),
+            },
+            Logarithmic,
+            [1e-3, 30.0],
+        )]
+    },
+    starts: |c| shares(&[0.1, 0.4, 3.0], c.plant.device.regulator.time_constant),
+};
