@@ -163,7 +163,7 @@ fn alike(left: &[f64]) -> f64 {
 /// Effect after effect, as long as one more explains a part of what is left.
 fn greedy(search: &Search<'_>, say: &mut dyn FnMut(&str)) -> Hypothesis {
     /// Share of what is left that one more must explain [1].
-    const WORTH: f64 = 0.1;
+    const WORTH: f64 = 0.06;
     /// Candidates that are fitted with everything free.
     const TRIED: usize = 5;
     let stages = super::fit::ROUGH;

@@ -19,7 +19,7 @@ const FAR_BEHIND: f64 = 2.0;
 /// Effects at most, of a whole device.
 pub const MOST_EFFECTS: usize = 3;
 /// Those of a part of it, which is seen with all its details.
-pub const MOST_OF_LINK: usize = 5;
+pub const MOST_OF_LINK: usize = 6;
 /// Hypotheses that are carried on from each number of effects.
 const PARENTS: usize = 2;
 /// Candidates of each that are fitted in full.
