@@ -3,6 +3,7 @@
 use crate::cell::CellError;
 use crate::design::DesignError;
 use crate::diagnosis::answer::AnswerError;
+use crate::diagnosis::flange::NoContact;
 use crate::diagnosis::recorded::RecordedError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
@@ -124,6 +125,14 @@ pub enum AppError {
     NoRecordings {
         /// Rig file.
         file: String,
+    },
+    /// A run of a contact flange without contact.
+    #[error("{folder}: {source}")]
+    NoContact {
+        /// The case.
+        folder: String,
+        /// Which run, and what was expected.
+        source: NoContact,
     },
     /// A rig file that carries a term without a name already.
     #[error(

@@ -230,6 +230,7 @@ impl Diagnosis {
             tolerated: self.tolerated(),
             prediction: self.prediction_errors(),
             next_experiment: self.next_experiment(),
+            ..Details::default()
         }
     }
 

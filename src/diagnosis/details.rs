@@ -22,6 +22,12 @@ pub struct Details {
     pub remaining: Option<RemainingReport>,
     /// Variants of the explanation of a part of the device, the best first.
     pub ruled_out: Vec<RuledOutReport>,
+    /// What each run of a contact flange shows.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub runs: Vec<RunShown>,
+    /// What was foretold of a run of a contact flange that was not looked at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub foretold: Option<ForetoldRun>,
     /// Numbers of the rig file within their tolerances.
     pub tolerated: Vec<ToleratedNumber>,
     /// Errors of prediction on what was not fitted to.
@@ -106,6 +112,52 @@ pub struct RuledOutReport {
     pub rms: f64,
     /// Its numbers.
     pub parameters: Vec<(String, f64)>,
+}
+
+/// What a run of a contact flange shows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunShown {
+    /// File name.
+    pub recording: String,
+    /// First contact.
+    pub contact_s: f64,
+    /// Speed of approach.
+    pub approach_m_per_s: f64,
+    /// Force desired in contact.
+    pub desired_n: f64,
+    /// Peak of the impact.
+    pub peak_n: f64,
+    /// Time from contact until the force has settled.
+    pub settling_s: f64,
+    /// Frequency of the ringing.
+    pub ringing_hz: f64,
+    /// Rate at which it dies away.
+    pub decay_1_per_s: Option<f64>,
+    /// Mean of force less desired force once settled.
+    pub steady_error_n: f64,
+    /// Standard deviation of the same.
+    pub wander_n: f64,
+    /// Root mean square of force less desired force while the arm moves in contact.
+    pub moving_rms_n: Option<f64>,
+    /// Share of that time without contact [1].
+    pub contact_lost: f64,
+}
+
+/// What was foretold of a run of a contact flange.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ForetoldRun {
+    /// File name.
+    pub recording: String,
+    /// Its speed of approach.
+    pub approach_m_per_s: f64,
+    /// Peak foretold.
+    pub peak_n: f64,
+    /// Peak measured.
+    pub peak_measured_n: f64,
+    /// Settling foretold.
+    pub settling_s: f64,
+    /// Settling measured.
+    pub settling_measured_s: f64,
 }
 
 /// How much of a mismatch a variable tells.

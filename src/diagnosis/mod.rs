@@ -13,6 +13,8 @@ pub mod estimate;
 pub mod evidence;
 pub mod experiment;
 pub mod fit;
+pub mod flange;
+pub mod flange_answer;
 pub mod free;
 pub mod hypothesis;
 pub mod joint_friction;

@@ -1,5 +1,6 @@
 //! From a recording of a rig to what drove it and what was measured of it.
 
+use super::flange::Run;
 use crate::plant::{CHANNELS, Chain, InputError, MeasuredMotion, PlantInputs};
 use crate::recording::{Recording, RecordingError, schema};
 use std::sync::Arc;
@@ -160,6 +161,7 @@ pub fn recorded_of(
     let mut set_pressure = match chain {
         Chain::MovedPiston => values(schema::MEASURED_REGULATOR_PRESSURE_GAUGE)?,
         Chain::Regulator => values(schema::SET_PRESSURE_GAUGE)?,
+        Chain::ContactFlange => values(schema::DESIRED_FORCE)?,
         Chain::ClosedChamber => vec![first_level(&time, &measured); count],
         Chain::Whole | Chain::DrivenSlide => vec![0.0; count],
     };
@@ -189,6 +191,36 @@ pub fn recorded_of(
         inputs,
         readings,
         filled,
+    })
+}
+
+/// Takes a run of a contact flange apart: force, desired force and the arm's speed.
+///
+/// # Errors
+/// One of them is absent.
+pub fn run_of(file: &str, name: &str, recording: &Recording) -> Result<Run, RecordedError> {
+    let values = |quantity: &str| {
+        let mut values = recording
+            .values(quantity)
+            .map(<[f64]>::to_vec)
+            .map_err(|source| RecordedError::Missing {
+                file: file.to_owned(),
+                source: Box::new(source),
+            })?;
+        hold(&mut values);
+        // What was lost before the first value is as that.
+        let first = values.iter().copied().find(|value| value.is_finite());
+        for value in values.iter_mut().filter(|value| value.is_nan()) {
+            *value = first.unwrap_or(0.0);
+        }
+        Ok(values)
+    };
+    Ok(Run {
+        name: name.to_owned(),
+        force: values(schema::MEASURED_FORCE)?,
+        desired: values(schema::DESIRED_FORCE)?,
+        speed: values(schema::TOOL_SPEED)?,
+        time: recording.time().to_vec(),
     })
 }
 

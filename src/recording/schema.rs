@@ -76,6 +76,8 @@ pub const MEASURED_REGULATOR_PRESSURE: &str = "measured_regulator_pressure";
 pub const SET_PRESSURE_GAUGE: &str = "set_pressure_gauge";
 /// Regulator outlet as its sensor reads it, against the atmosphere.
 pub const MEASURED_REGULATOR_PRESSURE_GAUGE: &str = "measured_regulator_pressure_gauge";
+/// Speed of the arm's tool along its path, as the arm tells it.
+pub const TOOL_SPEED: &str = "tool_speed";
 /// Contact force estimated without a load cell.
 pub const ESTIMATED_FORCE: &str = "estimated_force";
 /// Standard deviation that the estimator gives it.

@@ -14,11 +14,13 @@ use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
 use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::diagnose::{Diagnosis, diagnose};
 use crate::diagnosis::estimate::Number;
+use crate::diagnosis::flange::{NoContact, Shown};
+use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::joint_friction::JointFriction;
-use crate::diagnosis::recorded::{COLUMNS, recorded_of};
+use crate::diagnosis::recorded::{COLUMNS, recorded_of, run_of};
 use crate::diagnosis::servo::ServoLink;
 use crate::effects::candidates;
-use crate::plant::{CHANNELS, PlantParameters, simulate};
+use crate::plant::{CHANNELS, Chain, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::replay::LoadedCell;
 use crate::scenario::RecordedCell;
@@ -60,10 +62,24 @@ enum Model {
 /// A case that can be diagnosed, and a folder that its files can go to.
 pub(super) struct Prepared {
     name: String,
-    model: Model,
-    case: Case,
-    recordings: case::Prepared,
+    work: Work,
     folder: OutputFolder,
+}
+
+/// What there is to diagnose.
+enum Work {
+    /// A plant that can be simulated.
+    Plant {
+        model: Model,
+        case: Box<Case>,
+        recordings: case::Prepared,
+    },
+    /// A contact flange, seen from outside.
+    Flange {
+        rig: Box<RigFile>,
+        runs: Vec<(String, Shown)>,
+        unseen: Option<(String, Shown)>,
+    },
 }
 
 /// A case that was diagnosed; its files are written.
@@ -100,11 +116,16 @@ impl Prepared {
         out: &Path,
         standing: Standing,
     ) -> Result<Self, AppError> {
-        let (model, case) = match cell {
-            Some(cell) => cell_case(folder, cell)?,
-            None => rig_case(folder)?,
+        let work = match cell {
+            Some(cell) => plant_work(cell_case(folder, cell)?)?,
+            None => {
+                let rig = rig_of(folder)?;
+                match rig.plant.chain {
+                    Chain::ContactFlange => flange_work(rig, folder)?,
+                    _ => plant_work(rig_case(rig, folder)?)?,
+                }
+            }
         };
-        let recordings = case::prepare(&case)?;
         if standing == Standing::Refuse && out.join(DIAGNOSIS).exists() {
             return Err(AppError::Diagnosed {
                 folder: out.display().to_string(),
@@ -120,9 +141,7 @@ impl Prepared {
         Ok(Self {
             name: own.file_name().unwrap_or_default().display().to_string(),
             folder: OutputFolder::prepare(out, &NAMES)?,
-            model,
-            case,
-            recordings,
+            work,
         })
     }
 
@@ -131,9 +150,19 @@ impl Prepared {
         let start = Instant::now();
         // An old diagnosis beside new files would pass for theirs.
         self.folder.discard(DIAGNOSIS)?;
-        let diagnosis = diagnose(&self.case, self.recordings, say);
+        let (model, case, recordings) = match self.work {
+            Work::Plant {
+                model,
+                case,
+                recordings,
+            } => (model, case, recordings),
+            Work::Flange { rig, runs, unseen } => {
+                return flange(&self.name, &self.folder, &rig, runs, unseen, start);
+            }
+        };
+        let diagnosis = diagnose(&case, recordings, say);
         let found = &diagnosis.best().fit.prediction.plant;
-        let (improved, plant) = match &self.model {
+        let (improved, plant) = match &model {
             Model::Rig(rig) => {
                 let text = improved(rig, &diagnosis);
                 // As the file says it, so that whoever takes the file gets the same.
@@ -142,10 +171,10 @@ impl Prepared {
             }
             Model::Cell { cell, .. } => (improved_cell(&cell.scenario, &diagnosis)?, found.clone()),
         };
-        let prediction = prediction(&self.case, &plant)?;
+        let prediction = prediction(&case, &plant)?;
         let picture = picture(&diagnosis)?;
         let mut answer = diagnosis.answer(start.elapsed().as_secs_f64());
-        if let Model::Cell { of_arm, .. } = &self.model {
+        if let Model::Cell { of_arm, .. } = &model {
             answer.details.prediction.extend(of_arm.iter().cloned());
         }
         let document = answer.text()?;
@@ -155,7 +184,7 @@ impl Prepared {
             servo,
             frictions,
             of_arm,
-        } = &self.model
+        } = &model
         {
             account += &cell_account(cell, servo.as_ref(), frictions, of_arm, &diagnosis);
             if diagnosis.shape.is_some() {
@@ -204,8 +233,79 @@ fn prediction(case: &Case, plant: &PlantParameters) -> Result<Option<String>, Ap
     Ok(Some(columns_text(&inputs.time, &columns)?))
 }
 
-/// A rig file and the recordings that it names.
-fn rig_case(folder: &Path) -> Result<(Model, Case), AppError> {
+fn plant_work((model, case): (Model, Case)) -> Result<Work, AppError> {
+    Ok(Work::Plant {
+        recordings: case::prepare(&case)?,
+        model,
+        case: Box::new(case),
+    })
+}
+
+/// The runs of a contact flange.
+fn flange_work(rig: RigFile, folder: &Path) -> Result<Work, AppError> {
+    let shown = |name: &String| -> Result<(String, Shown), AppError> {
+        let path = folder.join(name);
+        let file = path.display().to_string();
+        let run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
+        let refused = |source: NoContact| AppError::NoContact {
+            folder: folder.display().to_string(),
+            source,
+        };
+        Ok((name.clone(), run.shown().map_err(refused)?))
+    };
+    Ok(Work::Flange {
+        runs: rig.fit.iter().map(shown).collect::<Result<_, _>>()?,
+        unseen: rig.predict.as_ref().map(shown).transpose()?,
+        rig: Box::new(rig),
+    })
+}
+
+/// Writes what the runs of a contact flange show.
+fn flange(
+    name: &str,
+    folder: &OutputFolder,
+    rig: &RigFile,
+    runs: Vec<(String, Shown)>,
+    unseen: Option<(String, Shown)>,
+    start: Instant,
+) -> Result<Finished, AppError> {
+    let diagnosis = FlangeDiagnosis {
+        name: name.to_owned(),
+        runs,
+        unseen,
+        mass: rig.plant.device.moving_mass,
+    };
+    let answer = diagnosis.answer(start.elapsed().as_secs_f64());
+    let account = diagnosis.account();
+    let document = answer.text()?;
+    // What was found cannot be simulated from outside: it stands in the file as a comment.
+    let mut improved = improved_text(rig, &[], &[], None);
+    for effect in &answer.effects {
+        improved += &format!("\n# Found, and not simulated: {}\n", effect.name);
+        for (key, number) in &effect.parameters {
+            let (value, low, high) = (number.value, number.low, number.high);
+            improved += &format!("# {key} = {value:.5e}   # {low:.3e} to {high:.3e}\n");
+        }
+    }
+    for absent in [PREDICTION, PICTURE] {
+        folder.discard(absent)?;
+    }
+    let files = [
+        (ACCOUNT, account.as_str()),
+        (IMPROVED, improved.as_str()),
+        (DIAGNOSIS, document.as_str()),
+    ];
+    let names = folder.write_texts(&files)?;
+    Ok(Finished {
+        answer,
+        document,
+        account,
+        names,
+    })
+}
+
+/// The rig file of a case.
+fn rig_of(folder: &Path) -> Result<RigFile, AppError> {
     if !is_case(folder) {
         return Err(AppError::NoCase {
             folder: folder.display().to_string(),
@@ -222,6 +322,11 @@ fn rig_case(folder: &Path) -> Result<(Model, Case), AppError> {
             file: rig.path.display().to_string(),
         });
     }
+    Ok(rig)
+}
+
+/// A rig file and the recordings that it names.
+fn rig_case(rig: RigFile, folder: &Path) -> Result<(Model, Case), AppError> {
     let case = case_of(&rig, folder)?;
     Ok((Model::Rig(Box::new(rig)), case))
 }

@@ -4,10 +4,12 @@
 //!     driven slide      motion -> force of the drive       a motor and screw in place of the air
 //!     closed chamber    start pressure -> pressure         filled and shut off
 //!     regulator         set pressure -> outlet             nothing but its own volume behind it
+//!     contact flange    desired force -> contact force     its own control inside, seen from outside
 //!
 //! Each is a link of the whole chain with the same parameters, effects and sensors.
 
 mod closed_chamber;
+mod flange;
 mod moved;
 mod parameters;
 mod regulator_alone;
@@ -32,16 +34,19 @@ pub enum Chain {
     ClosedChamber,
     /// A regulator.
     Regulator,
+    /// A flange that presses by a force that it controls itself; the arm's speed and the contact force are recorded.
+    ContactFlange,
 }
 
 impl Chain {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Whole,
         Self::MovedPiston,
         Self::DrivenSlide,
         Self::ClosedChamber,
         Self::Regulator,
+        Self::ContactFlange,
     ];
 
     /// Name in a rig file.
@@ -52,6 +57,7 @@ impl Chain {
             Self::DrivenSlide => "driven_slide",
             Self::ClosedChamber => "closed_chamber",
             Self::Regulator => "regulator",
+            Self::ContactFlange => "contact_flange",
         }
     }
 
@@ -59,7 +65,7 @@ impl Chain {
     pub fn output(self) -> Option<Channel> {
         match self {
             Self::Whole => None,
-            Self::MovedPiston | Self::DrivenSlide => Some(Channel::Force),
+            Self::MovedPiston | Self::DrivenSlide | Self::ContactFlange => Some(Channel::Force),
             Self::ClosedChamber | Self::Regulator => Some(Channel::RegulatorPressure),
         }
     }
@@ -77,6 +83,7 @@ pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Traje
         Chain::MovedPiston | Chain::DrivenSlide => moved::trajectory(plant, inputs),
         Chain::ClosedChamber => closed_chamber::trajectory(plant, inputs),
         Chain::Regulator => regulator_alone::trajectory(plant, inputs),
+        Chain::ContactFlange => flange::trajectory(plant, inputs),
     }
 }
 

@@ -85,6 +85,9 @@ pub(super) fn needs(chain: Chain, key: &str) -> bool {
         Chain::MovedPiston => ["cylinder.count", "cylinder.bore_m"].contains(&key),
         Chain::DrivenSlide => key == "cylinder.moving_mass_kg",
         Chain::ClosedChamber => false,
+        Chain::ContactFlange => {
+            ["cylinder.moving_mass_kg", "regulator.time_constant_s"].contains(&key)
+        }
         Chain::Regulator => ["regulator.gain", "regulator.time_constant_s"].contains(&key),
     }
 }

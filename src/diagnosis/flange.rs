@@ -1,0 +1,357 @@
+//! A contact flange seen from outside: what its runs show that the first order believed of it leaves out.
+//!
+//!     F_peak = F_0 + v sqrt(k m),   k = ((F_peak - F_0)/v)^2 / m                 a mass m meets a spring k at a speed v (Johnson 1985, chapter 11)
+//!
+//! F_peak largest force of the impact [N], F_0 force desired before it [N]. Each run gives one number of each kind, so that their intervals come from how
+//! they differ from run to run (Student's t), with the force sampled as it was. What cannot be told without pressure and stroke is said to be so.
+
+use std::f64::consts::TAU;
+
+/// One run.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// File name.
+    pub name: String,
+    /// Sample times [s].
+    pub time: Vec<f64>,
+    /// Contact force, pushing positive [N].
+    pub force: Vec<f64>,
+    /// Desired force [N].
+    pub desired: Vec<f64>,
+    /// Speed of the arm's tool along its path [m/s].
+    pub speed: Vec<f64>,
+}
+
+/// What a run shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shown {
+    /// Time of first contact [s].
+    pub contact: f64,
+    /// Speed at which the tool came [m/s].
+    pub approach: f64,
+    /// Force desired before contact [N].
+    pub before: f64,
+    /// Force desired after it [N].
+    pub desired: f64,
+    /// Largest force of the impact [N].
+    pub peak: f64,
+    /// Time from contact until the force, averaged over [`AVERAGED`], stays within [`BAND`] of its later mean [s].
+    pub settling: f64,
+    /// Frequency at which the force rings after the impact [Hz].
+    pub frequency: f64,
+    /// Rate at which that dies away [1/s]; none where it does not stand out long enough.
+    pub decay: Option<f64>,
+    /// Mean of force less desired force once settled, while the arm stands [N].
+    pub steady: f64,
+    /// Standard deviation of the same [N].
+    pub unrest: f64,
+    /// Root mean square of force less desired force while the arm moves in contact [N]; none where it does not.
+    pub moving: Option<f64>,
+    /// Share of the time in which contact is lost while the arm moves [1].
+    pub lost: f64,
+    /// Until when the arm stands [s].
+    pub stands_until: f64,
+}
+
+/// Time over which the force is averaged for its settling [s].
+pub const AVERAGED: f64 = 0.02;
+/// Share of the desired force within which it has settled [1].
+pub const BAND: f64 = 0.1;
+/// Force from which there is contact, as a multiple of the noise in free air [1], and at least [N].
+const CONTACT: (f64, f64) = (10.0, 2.0);
+/// Time before contact in which the approach is looked at [s].
+const APPROACH: (f64, f64) = (0.06, 0.01);
+/// Time after contact in which the impact's peak lies [s].
+const IMPACT: f64 = 0.1;
+/// Frequencies in which the ringing is looked for [Hz].
+const RINGING: (f64, f64) = (15.0, 300.0);
+/// Speed from which the arm moves [m/s].
+const MOVES: f64 = 0.01;
+/// Time that is left to a force to settle at most [s].
+const LONGEST: f64 = 6.0;
+
+/// A run that shows no contact.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "{run}: the force never rises beyond {limit:.1} N after a time without contact; expected a run that begins in free air and ends pressing"
+)]
+pub struct NoContact {
+    /// File name.
+    pub run: String,
+    /// Force from which there would be contact [N].
+    pub limit: f64,
+}
+
+impl Run {
+    /// What it shows.
+    ///
+    /// # Errors
+    /// There is no contact, or it is there from the start.
+    pub fn shown(&self) -> Result<Shown, NoContact> {
+        let (time, force) = (&self.time, &self.force);
+        let free = force.len().min(200);
+        let noise = deviation(&force[..free / 2]);
+        let limit = CONTACT.1.max(CONTACT.0 * noise);
+        let refused = || NoContact {
+            run: self.name.clone(),
+            limit,
+        };
+        let first = force.iter().position(|f| *f > limit).ok_or_else(refused)?;
+        let contact = time[first];
+        let between = |from: f64, to: f64| {
+            time.partition_point(|t| *t < from)..time.partition_point(|t| *t < to)
+        };
+        let approaching = between(contact - APPROACH.0, contact - APPROACH.1);
+        if approaching.len() < 2 {
+            return Err(refused());
+        }
+        let approach = mean(&self.speed[approaching.clone()]);
+        let before = median(&self.desired[approaching]);
+        // The arm stands from when it has come to rest until it moves again, or another force is desired.
+        let held = between(contact, contact + LONGEST);
+        let desired = median(&self.desired[between(contact + 0.3, contact + 1.5)]);
+        let rests = held
+            .clone()
+            .find(|i| time[*i] > contact + 0.3 && self.speed[*i].abs() < MOVES)
+            .unwrap_or(held.end.saturating_sub(1));
+        let leaves = (rests..held.end)
+            .find(|i| {
+                self.speed[*i].abs() > 3.0 * MOVES
+                    || (self.desired[*i] - desired).abs() > 0.1 * desired.abs().max(1.0)
+            })
+            .unwrap_or(held.end);
+        let stands_until = time[leaves.saturating_sub(1).max(first)];
+        let hold = first..leaves.max(first + 2);
+        let settled = between(0.5 * (contact + stands_until), stands_until);
+        let errors: Vec<f64> = settled
+            .clone()
+            .map(|i| force[i] - self.desired[i])
+            .collect();
+        let level = mean(&force[settled]);
+        let smooth = averaged(&time[hold.clone()], &force[hold.clone()]);
+        let outside = smooth
+            .iter()
+            .rposition(|f| (f - level).abs() > BAND * desired.abs());
+        let settling = outside.map_or(0.0, |i| time[hold.start + i] - contact);
+        let impact = between(contact - 2e-3, contact + IMPACT);
+        let peak = force[impact].iter().copied().fold(f64::MIN, f64::max);
+        let rings = between(contact + 0.05, contact + 0.6);
+        let frequency = loudest(&time[rings.clone()], &force[rings.clone()]);
+        let moving: Vec<usize> = (leaves..time.len())
+            .filter(|i| {
+                self.speed[*i].abs() > 3.0 * MOVES
+                    && (self.desired[*i] - desired).abs() < 0.1 * desired.abs()
+            })
+            .collect();
+        let squares: f64 = moving
+            .iter()
+            .map(|i| (force[*i] - self.desired[*i]).powi(2))
+            .sum();
+        let gone = moving.iter().filter(|i| force[**i] < limit).count();
+        let count = moving.len() as f64;
+        Ok(Shown {
+            contact,
+            approach,
+            before,
+            desired,
+            peak,
+            settling,
+            decay: decay(&time[rings.clone()], &force[rings], frequency),
+            frequency,
+            steady: mean(&errors),
+            unrest: deviation(&errors),
+            moving: (count > 50.0).then(|| (squares / count).sqrt()),
+            lost: if count > 0.0 {
+                gone as f64 / count
+            } else {
+                0.0
+            },
+            stands_until,
+        })
+    }
+}
+
+impl Shown {
+    /// Growth of the peak with the speed of approach: sqrt(k m) [N s/m].
+    pub fn impedance(&self) -> f64 {
+        (self.peak - self.before) / self.approach
+    }
+}
+
+/// A mean with its 95 % interval from how values differ; of one value alone, what such values differ by at worst is not known and half of it is taken.
+pub fn spread(values: &[f64]) -> [f64; 3] {
+    /// Student's t at 97.5 % by degrees of freedom.
+    const T: [f64; 10] = [12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23];
+    let centre = mean(values);
+    if values.len() < 2 {
+        return [centre, 0.5 * centre, 1.5 * centre];
+    }
+    let free = values.len() - 1;
+    let sample = deviation(values) * (values.len() as f64 / free as f64).sqrt();
+    let half = T[free.min(T.len()) - 1] * sample / (values.len() as f64).sqrt();
+    [centre, centre - half, centre + half]
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let centre = mean(values);
+    let squares: f64 = values.iter().map(|v| (v - centre).powi(2)).sum();
+    (squares / values.len().max(1) as f64).sqrt()
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Means over [`AVERAGED`] about each time.
+fn averaged(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let around = |t: f64| {
+        let from = time.partition_point(|s| *s < t - 0.5 * AVERAGED);
+        let to = time.partition_point(|s| *s <= t + 0.5 * AVERAGED);
+        mean(&values[from..to])
+    };
+    time.iter().map(|t| around(*t)).collect()
+}
+
+/// Square of the amplitude at a frequency [Hz], in a bell-shaped window.
+fn power_at(time: &[f64], values: &[f64], frequency: f64) -> f64 {
+    let (Some(first), Some(last)) = (time.first(), time.last()) else {
+        return 0.0;
+    };
+    let centre = mean(values);
+    let (mut cosine, mut sine, mut weights) = (0.0, 0.0, 0.0);
+    for (t, x) in time.iter().zip(values) {
+        let weight = 0.5 - 0.5 * (TAU * (t - first) / (last - first)).cos();
+        let (s, c) = (TAU * frequency * t).sin_cos();
+        cosine += weight * (x - centre) * c;
+        sine += weight * (x - centre) * s;
+        weights += weight;
+    }
+    (cosine * cosine + sine * sine) * (2.0 / f64::max(weights, 1e-12)).powi(2)
+}
+
+/// The frequency of the largest power in [`RINGING`] [Hz].
+fn loudest(time: &[f64], force: &[f64]) -> f64 {
+    let steps = 600;
+    let at = |k: usize| RINGING.0 * (RINGING.1 / RINGING.0).powf(k as f64 / f64::from(steps));
+    let powers: Vec<f64> = (0..=steps as usize)
+        .map(|k| power_at(time, force, at(k)))
+        .collect();
+    let best = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b]));
+    at(best.unwrap_or(0))
+}
+
+/// Rate at which the amplitude at a frequency falls [1/s]: a line through the logarithm of its amplitude in pieces of some cycles, while it stands out.
+fn decay(time: &[f64], force: &[f64], frequency: f64) -> Option<f64> {
+    const CYCLES: f64 = 4.0;
+    const STANDS_OUT: f64 = 0.1;
+    let start = *time.first()?;
+    let length = CYCLES / frequency;
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    let mut from = start;
+    while from + length <= *time.last()? {
+        let piece =
+            time.partition_point(|t| *t < from)..time.partition_point(|t| *t < from + length);
+        let amplitude = power_at(&time[piece.clone()], &force[piece], frequency).sqrt();
+        let loudest = points.first().map_or(amplitude, |(_, a)| *a);
+        if amplitude < STANDS_OUT * loudest {
+            break;
+        }
+        points.push((from - start, amplitude));
+        from += length;
+    }
+    if points.len() < 3 {
+        return None;
+    }
+    let times: Vec<f64> = points.iter().map(|(t, _)| *t).collect();
+    let logarithms: Vec<f64> = points.iter().map(|(_, a)| a.ln()).collect();
+    let (t, l) = (mean(&times), mean(&logarithms));
+    let both: f64 = times
+        .iter()
+        .zip(&logarithms)
+        .map(|(a, b)| (a - t) * (b - l))
+        .sum();
+    let own: f64 = times.iter().map(|a| (a - t).powi(2)).sum();
+    let rate = -both / own;
+    (rate > 0.0).then_some(rate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+
+    /// A mass that meets a spring at a speed and rings away, on a steady force that is a little off.
+    fn run(approach: f64, seed: u64) -> Run {
+        let (mass, stiffness, frequency, decay, off) = (3.0, 2e6f64, 80.0, 12.0, 1.5);
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let time: Vec<f64> = (0..8000).map(|i| -1.0 + 8e-4 * f64::from(i)).collect();
+        let own = (stiffness / mass).sqrt();
+        let force = |t: f64| {
+            let impact = approach * (stiffness * mass).sqrt();
+            let half = std::f64::consts::PI / own;
+            let bounce = if t < half {
+                impact * (own * t).sin()
+            } else {
+                0.0
+            };
+            let ringing = 60.0 * (-decay * t).exp() * (TAU * frequency * t).sin();
+            let pushed = if t < half { 0.0 } else { 100.0 + off + ringing };
+            bounce + pushed
+        };
+        Run {
+            name: "run".to_owned(),
+            force: time
+                .iter()
+                .map(|t| {
+                    0.1 * random.random_range(-1.0..1.0) + if *t < 0.0 { 0.0 } else { force(*t) }
+                })
+                .collect(),
+            desired: time
+                .iter()
+                .map(|t| if *t < 0.0 { 0.0 } else { 100.0 })
+                .collect(),
+            speed: time
+                .iter()
+                .map(|t| if *t < 0.1 { approach } else { 0.0 })
+                .collect(),
+            time,
+        }
+    }
+
+    #[test]
+    fn what_was_planted_comes_back_and_a_run_at_another_speed_is_foretold() {
+        let shown = run(0.1, 1).shown().unwrap();
+        assert!(
+            (shown.impedance() / (2e6f64 * 3.0).sqrt() - 1.0).abs() < 0.02,
+            "{shown:?}"
+        );
+        assert!((shown.frequency - 80.0).abs() < 1.0, "{shown:?}");
+        assert!((shown.decay.unwrap() / 12.0 - 1.0).abs() < 0.1, "{shown:?}");
+        assert!((shown.steady - 1.5).abs() < 0.05, "{shown:?}");
+        let other = run(0.25, 2).shown().unwrap();
+        let foretold = other.before + other.approach * shown.impedance();
+        assert!((foretold / other.peak - 1.0).abs() < 0.03);
+    }
+
+    #[test]
+    fn a_run_without_contact_is_refused_and_intervals_are_students() {
+        let mut away = run(0.1, 3);
+        away.force.iter_mut().for_each(|f| *f = f.min(0.1));
+        assert!(
+            away.shown()
+                .unwrap_err()
+                .to_string()
+                .contains("never rises")
+        );
+        let [centre, low, high] = spread(&[1.0, 2.0, 3.0]);
+        assert!(
+            (centre - 2.0).abs() < 1e-12 && (high - low - 2.0 * 4.30 / 3f64.sqrt()).abs() < 0.01
+        );
+    }
+}
