@@ -4,6 +4,7 @@ use crate::cell::CellError;
 use crate::design::DesignError;
 use crate::diagnosis::answer::AnswerError;
 use crate::diagnosis::recorded::RecordedError;
+use crate::import::ImportError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
@@ -69,6 +70,19 @@ pub enum AppError {
     /// A recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// A log, or its map's columns.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    /// Logs that do not come in the map's number.
+    #[error("{given} logs were given, expected {each} or a multiple of it: {} has as many [[file]]", map.display())]
+    Logs {
+        /// How many.
+        given: usize,
+        /// How many the map has.
+        each: usize,
+        /// The map.
+        map: std::path::PathBuf,
+    },
     /// A design study.
     #[error(transparent)]
     Design(Box<DesignError>),

@@ -1,0 +1,15 @@
+//! Logs of real devices, as their makers wrote them, made into recordings: a map says which column is what.
+
+pub mod assemble;
+pub mod clock;
+pub mod error;
+pub mod findings;
+pub mod log;
+pub mod map;
+mod text;
+pub mod units;
+
+pub use assemble::{Imported, LogNote, import};
+pub use error::ImportError;
+pub use log::{Log, Remark, Series, read_log};
+pub use map::{ImportMap, load_map};
