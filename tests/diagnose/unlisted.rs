@@ -1,5 +1,7 @@
 //! Physics that no known effect explains: answered so, drawn, written into the improved rig file, and predicted.
 
+use serde_json::Value;
+
 use super::{diagnose, json, names};
 use crate::diagnose::planted::{Dirt, case};
 use crate::program::Bench;
@@ -15,14 +17,20 @@ to_m = 0.025
 value_n = [0.0, -4.0, -14.0, -30.0, -14.0, -4.0, 0.0]
 ";
 
-#[test]
-fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
+/// Plants a term and diagnoses it; the answer must be that it has no name.
+fn unlisted(term: &str) -> (Bench, Value) {
     let bench = Bench::new("plate_edge");
-    case(&bench, "case", SNAG, Dirt::None);
+    case(&bench, "case", term, Dirt::None);
     let outcome = diagnose(&bench, &["case", "--out", "out"]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     let answer = json(&bench.path("out/diagnosis.json"));
     assert_eq!(names(&answer), ["unlisted"], "{answer:#}");
+    (bench, answer)
+}
+
+#[test]
+fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
+    let (bench, answer) = unlisted(SNAG);
     assert_eq!(answer["verdict"], "unlisted");
     let found = &answer["effects"][0];
     assert_eq!(found["subsystem"], "force_balance");
@@ -87,7 +95,7 @@ fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
     assert!(line.contains("rig.toml holds [latent]"), "{line}");
 }
 
-/// An outlet that gives way in proportion to the air that is drawn: as little as a hundredth of the force, and over time it is all ups and downs.
+/// An outlet that gives way in proportion to the air that is drawn.
 const DROOP: &str = "
 [latent]
 port = \"outlet_pressure\"
@@ -100,12 +108,7 @@ value_pa = [15000.0, 10000.0, 5000.0, 0.0, -5000.0, -10000.0, -15000.0]
 
 #[test]
 fn a_planted_droop_is_placed_at_the_regulator_over_the_flow() {
-    let bench = Bench::new("plate_edge");
-    case(&bench, "case", DROOP, Dirt::None);
-    let outcome = diagnose(&bench, &["case", "--out", "out"]);
-    assert_eq!(outcome.code, 0, "{}", outcome.err);
-    let answer = json(&bench.path("out/diagnosis.json"));
-    assert_eq!(names(&answer), ["unlisted"], "{answer:#}");
+    let (_bench, answer) = unlisted(DROOP);
     let found = &answer["effects"][0];
     assert_eq!(found["subsystem"], "regulator");
     assert_eq!(found["depends_on"][0], "mass_flow");

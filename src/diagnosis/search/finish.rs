@@ -223,22 +223,30 @@ impl Search<'_> {
             let gain = self.score(&again) - self.score(&more);
             let held = again.fit.rough - more.fit.rough;
             say(&format!("  of which its own {gain:.1}, held {held:.1}"));
-            let foretold = |h: &Hypothesis| left_out::cost(self.evidence, &h.fit);
-            let foretells = match (foretold(&again), foretold(&more)) {
-                (Some(without), Some(with)) => {
-                    say(&format!("  and {:.1} of what was left out", without - with));
-                    with < without
-                }
-                _ => true,
-            };
+            let contradicted = held < -CHANCE * (2.0 * more.fit.free.len() as f64).sqrt();
+            let kept = gain > least && !contradicted && self.foretells(&more, &again, say);
             if self.score(&again) < score {
                 full[0] = again;
             }
-            let contradicted = held < -CHANCE * (2.0 * more.fit.free.len() as f64).sqrt();
-            if gain <= least || contradicted || !foretells {
+            if !kept {
                 return;
             }
             full.insert(0, more);
         }
+    }
+
+    /// Does a hypothesis foretell recordings that were left out better than a simpler one? Where there are none, nothing speaks against it.
+    fn foretells(
+        &self,
+        more: &Hypothesis,
+        simpler: &Hypothesis,
+        say: &mut dyn FnMut(&str),
+    ) -> bool {
+        let cost = |h: &Hypothesis| left_out::cost(self.evidence, &h.fit);
+        let (Some(without), Some(with)) = (cost(simpler), cost(more)) else {
+            return true;
+        };
+        say(&format!("  and {:.1} of what was left out", without - with));
+        with < without
     }
 }
