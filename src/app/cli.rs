@@ -89,12 +89,15 @@ pub(super) struct ImportArguments {
     pub(super) map: PathBuf,
     /// Logs in place of those that the map names, in its order; several times as many make several recordings.
     pub(super) logs: Vec<PathBuf>,
-    /// Recording to write, a Parquet file; for several recordings a folder. Nothing is written without it.
+    /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
     #[arg(long)]
     pub(super) out: Option<PathBuf>,
     /// Print nothing but errors.
     #[arg(long)]
     pub(super) quiet: bool,
+    /// Print what was understood as JSON.
+    #[arg(long, conflicts_with = "quiet")]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]

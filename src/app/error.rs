@@ -83,6 +83,16 @@ pub enum AppError {
         /// The map.
         map: std::path::PathBuf,
     },
+    /// Two recordings of one name.
+    #[error("{} and {} would both be written to {}; expected logs of different names, or one command for each", one.display(), other.display(), out.display())]
+    SameOutput {
+        /// The first log.
+        one: std::path::PathBuf,
+        /// The second.
+        other: std::path::PathBuf,
+        /// The recording.
+        out: std::path::PathBuf,
+    },
     /// A design study.
     #[error(transparent)]
     Design(Box<DesignError>),

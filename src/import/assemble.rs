@@ -17,6 +17,8 @@ const GAP: f64 = 3.0;
 pub struct Imported {
     /// The recording, at the first log's times.
     pub recording: Recording,
+    /// What its times count from, in seconds since 1970; 0 where the logs' own start [s].
+    pub origin: f64,
     /// The logs, in the map's order.
     pub logs: Vec<LogNote>,
 }
@@ -42,6 +44,7 @@ pub struct LogNote {
 /// What a log lacks, a clock that cannot be found, logs that do not overlap in time.
 pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportError> {
     let mut logs: Vec<LogNote> = Vec::new();
+    let mut origin = 0.0;
     for (index, file_map) in map.files.iter().enumerate() {
         let file = files.get(index).or(file_map.path.as_ref());
         let Some(file) = file.cloned() else {
@@ -51,6 +54,9 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
             });
         };
         let log = read_log(&file, file_map)?;
+        if index == 0 {
+            origin = log.epoch;
+        }
         let mut note = LogNote {
             file,
             remarks: log.remarks,
@@ -62,6 +68,13 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
                 .collect(),
             series: log.series,
         };
+        // An unknown clock that counts from a start is no half century off one that counts from 1970, nor the other way round.
+        let is_unknown = matches!(file_map.clock, Clock::Unknown { .. });
+        if !is_unknown || (origin == 0.0) == (log.epoch == 0.0) {
+            let shift = log.epoch - origin;
+            let times = note.series.iter_mut().flat_map(|series| &mut series.time);
+            times.for_each(|time| *time += shift);
+        }
         let offset = match &file_map.clock {
             Clock::Shared { offset } => *offset,
             Clock::Unknown { by, largest } => {
@@ -102,6 +115,7 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
     }
     Ok(Imported {
         recording: Recording::new(time, channels, Vec::new())?,
+        origin,
         logs,
     })
 }

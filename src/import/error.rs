@@ -53,6 +53,62 @@ pub enum ImportError {
         /// What would be right.
         expected: String,
     },
+    /// A log that is cut off.
+    #[error("{} is cut off: {found}; {rest}; {advice}", file.display())]
+    Truncated {
+        /// The file.
+        file: PathBuf,
+        /// How that shows.
+        found: String,
+        /// What of it can be read.
+        rest: String,
+        /// What would be right.
+        advice: String,
+    },
+    /// Times whose unit the map should give, or should not.
+    #[error("{}: {column} holds {found}, expected {expected}", file.display())]
+    TimeUnit {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        column: Column,
+        /// What it holds.
+        found: String,
+        /// What the map should say.
+        expected: String,
+    },
+    /// A column whose values are no numbers.
+    #[error("{}: {column} is {found}, expected {expected}", file.display())]
+    Kind {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        column: Column,
+        /// What it is.
+        found: String,
+        /// What would be right.
+        expected: String,
+    },
+    /// Columns of different lengths.
+    #[error("{}: {column} has {found} values, expected {expected}, as many as there are times", file.display())]
+    Length {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        column: Column,
+        /// Its values.
+        found: usize,
+        /// Times.
+        expected: usize,
+    },
+    /// A clock that stands still.
+    #[error("{}: all {rows} rows have the same time, expected it to increase", file.display())]
+    Still {
+        /// The file.
+        file: PathBuf,
+        /// Its rows.
+        rows: usize,
+    },
     /// A time that goes back.
     #[error("{}:{line}: time {found} s after {before} s, expected it to increase", file.display())]
     Time {

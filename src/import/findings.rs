@@ -3,9 +3,10 @@
 //!     noise = 1.4826 median |x_{i+1} - 2 x_i + x_{i-1}| / sqrt 6          white noise on a smooth course (Gasser, Sroka and Jennen-Steinmetz 1986)
 
 use super::assemble::{Imported, LogNote};
+use super::doubts;
 use super::log::Series;
-use super::map::ImportMap;
-use super::units::{LogUnit, UNITS};
+use super::map::{ChannelMap, ImportMap};
+use super::units::LogUnit;
 use crate::recording::Unit;
 use crate::recording::csv::median_step;
 
@@ -46,8 +47,8 @@ pub struct Finding {
     pub quantum: Option<f64>,
     /// Values at which it is cut off.
     pub cut_off_at: Vec<f64>,
-    /// What makes its unit doubtful.
-    pub doubt: Option<String>,
+    /// What makes its unit, or its reading, doubtful.
+    pub doubts: Vec<String>,
 }
 
 /// Findings of all channels.
@@ -56,13 +57,19 @@ pub fn findings(imported: &Imported, map: &ImportMap) -> Vec<Finding> {
     let mut all = Vec::new();
     for (log, file) in imported.logs.iter().zip(&map.files) {
         for (series, channel) in log.series.iter().zip(&file.channels) {
-            all.push(finding(series, &channel.quantity, channel.unit));
+            let mut found = finding(series, channel);
+            found.doubts.extend(doubts::of_time(file, series));
+            found
+                .doubts
+                .extend(doubts::of_command(&imported.recording, channel));
+            all.push(found);
         }
     }
     all
 }
 
-fn finding(series: &Series, quantity: &str, unit: &'static LogUnit) -> Finding {
+/// Finding of one channel by itself.
+pub(super) fn finding(series: &Series, channel: &ChannelMap) -> Finding {
     let there: Vec<f64> = series
         .values
         .iter()
@@ -82,10 +89,10 @@ fn finding(series: &Series, quantity: &str, unit: &'static LogUnit) -> Finding {
         .map(|pair| [pair[0], pair[1]])
         .collect();
     gaps.sort_by(|a, b| (b[1] - b[0]).total_cmp(&(a[1] - a[0])));
-    Finding {
-        quantity: quantity.to_owned(),
-        unit: unit.si,
-        log_unit: unit,
+    let mut found = Finding {
+        quantity: channel.quantity.clone(),
+        unit: channel.unit.si,
+        log_unit: channel.unit,
         samples: series.time.len(),
         missing: series.values.len() - there.len(),
         rate: if step > 0.0 { 1.0 / step } else { 0.0 },
@@ -98,8 +105,10 @@ fn finding(series: &Series, quantity: &str, unit: &'static LogUnit) -> Finding {
             Some(noise) if noise > 0.0 => cut_off_at(&there, range),
             _ => Vec::new(),
         },
-        doubt: doubt(unit, range),
-    }
+        doubts: Vec::new(),
+    };
+    found.doubts = doubts::of_channel(channel, &found, &there);
+    found
 }
 
 /// Standard deviation of white noise on a smooth course.
@@ -157,44 +166,6 @@ fn cut_off_at(values: &[f64], [low, high]: [f64; 2]) -> Vec<f64> {
     [low, high].into_iter().filter(stays).collect()
 }
 
-/// Largest value that is usual in a recording of an actuator, least and most [SI].
-fn usual(unit: Unit) -> Option<[f64; 2]> {
-    match unit {
-        Unit::Pascal => Some([2e3, 5e6]),
-        Unit::Metre => Some([1e-5, 5.0]),
-        Unit::MetrePerSecond => Some([1e-5, 20.0]),
-        Unit::MetrePerSecondSquared => Some([1e-2, 2e4]),
-        Unit::Newton => Some([5e-2, 1e5]),
-        Unit::Kelvin => Some([230.0, 450.0]),
-        Unit::Radian => Some([1e-6, 100.0]),
-        _ => None,
-    }
-}
-
-/// What makes a unit doubtful: values that nobody has, which in another unit of the kind would be usual.
-fn doubt(unit: &LogUnit, range: [f64; 2]) -> Option<String> {
-    let [least, most] = usual(unit.si)?;
-    let peak = range[0].abs().max(range[1].abs());
-    if peak == 0.0 || !peak.is_finite() || (least..=most).contains(&peak) {
-        return None;
-    }
-    let written = peak / unit.factor;
-    let fits = |other: &&LogUnit| {
-        other.si == unit.si && (least..=most).contains(&(written * other.factor))
-    };
-    let others: Vec<&str> = UNITS.iter().filter(fits).map(|other| other.name).collect();
-    let what = if peak > most { "much" } else { "little" };
-    let otherwise = if others.is_empty() {
-        "in no known unit would it be usual: is it another quantity, or has it a gain?".to_owned()
-    } else {
-        format!("in {} it would be usual", others.join(", "))
-    };
-    Some(format!(
-        "reaches {peak:.3e} {} at most, {what} for such a quantity; {otherwise}",
-        unit.si.symbol()
-    ))
-}
-
 /// Share of the rows of two logs that are the same, values for values, if it is most of them: one is a copy of the other.
 #[must_use]
 pub fn same_data(one: &LogNote, other: &LogNote) -> Option<f64> {
@@ -220,7 +191,6 @@ pub fn same_data(one: &LogNote, other: &LogNote) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::units::named;
     use super::*;
 
     fn series(of: impl Fn(f64) -> f64) -> Series {
@@ -245,17 +215,17 @@ mod tests {
     #[test]
     fn noise_and_rate_come_back() {
         let smooth = series(|t| 40.0 * (0.7 * t).sin() + 0.5 * rough(t));
-        let found = finding(&smooth, "force", named("N").unwrap());
+        let found = finding(&smooth, &ChannelMap::as_it_stands("force", "N"));
         assert!((found.noise.unwrap() / 0.5 - 1.0).abs() < 0.1, "{found:?}");
         assert!((found.rate - 100.0).abs() < 1e-6);
-        assert!(found.gaps.is_empty() && found.quantum.is_none() && found.doubt.is_none());
+        assert!(found.gaps.is_empty() && found.quantum.is_none() && found.doubts.is_empty());
         assert!(found.cut_off_at.is_empty());
     }
 
     #[test]
     fn steps_of_a_converter_are_seen() {
         let stepped = series(|t| 0.0025 * (400.0 * (3.0 * t).sin()).round());
-        let found = finding(&stepped, "stroke", named("m").unwrap());
+        let found = finding(&stepped, &ChannelMap::as_it_stands("stroke", "m"));
         assert!(
             (found.quantum.unwrap() / 0.0025 - 1.0).abs() < 1e-6,
             "{found:?}"
@@ -266,7 +236,7 @@ mod tests {
     fn a_channel_that_is_cut_off_is_seen() {
         let cut = series(|t| (30.0 * t.sin() + rough(t)).min(20.0));
         assert_eq!(
-            finding(&cut, "force", named("N").unwrap()).cut_off_at,
+            finding(&cut, &ChannelMap::as_it_stands("force", "N")).cut_off_at,
             [20.0]
         );
     }
@@ -276,22 +246,8 @@ mod tests {
         let mut gapped = series(|t| t);
         gapped.time[500..].iter_mut().for_each(|t| *t += 1.0);
         gapped.time[900..].iter_mut().for_each(|t| *t += 3.0);
-        let gaps = finding(&gapped, "force", named("N").unwrap()).gaps;
+        let gaps = finding(&gapped, &ChannelMap::as_it_stands("force", "N")).gaps;
         assert_eq!(gaps.len(), 2);
         assert!((gaps[0][1] - gaps[0][0] - 3.01).abs() < 1e-9);
-    }
-
-    #[test]
-    fn bar_written_as_pascal_is_doubted_and_bar_is_named() {
-        let bar = series(|t| 3.0 + t.sin());
-        let doubt = finding(&bar, "pressure_gauge", named("Pa").unwrap())
-            .doubt
-            .unwrap();
-        assert!(doubt.contains("little") && doubt.contains("bar"), "{doubt}");
-        let millimetres = series(|t| 40.0 * t.sin());
-        let doubt = finding(&millimetres, "stroke", named("m").unwrap())
-            .doubt
-            .unwrap();
-        assert!(doubt.contains("much") && doubt.contains("mm"), "{doubt}");
     }
 }

@@ -4,13 +4,21 @@ use std::path::Path;
 
 use super::error::ImportError;
 use super::map::{Column, FileMap, Form};
-use super::text;
+use super::{mat_log, mcap_log, parquet_log, text};
+
+/// Times from here on count from 1970, not from a start [s]: over three years.
+const EPOCH: f64 = 1e8;
+const NANOSECONDS: i64 = 1_000_000_000;
+/// Names that a message lists, at most.
+const LISTED: usize = 12;
 
 /// What a log holds of a map's channels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
     /// One for each channel of the map, in its order.
     pub series: Vec<Series>,
+    /// Whole seconds taken off its times, since 1970; 0 where they count from a start [s].
+    pub epoch: f64,
     /// What was left out, or mended, for people.
     pub remarks: Vec<Remark>,
 }
@@ -33,16 +41,35 @@ pub enum Remark {
     Repeated(Vec<u64>),
     /// Rows whose time is that of the row before them; the first of each counts.
     Stamped(Vec<u64>),
-    /// The last row is torn: it ends before its last field.
-    Torn(u64),
+    /// It is cut off, and the map accepts what is left: what that is.
+    Truncated(String),
+    /// Its last line does not end, and its last number may have lost digits.
+    Unended(u64),
+}
+
+/// Times as they are written.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Times {
+    /// In the map's unit.
+    Numbers(Vec<f64>),
+    /// Stamps [ns].
+    Nanoseconds(Vec<i64>),
+}
+
+impl Default for Times {
+    fn default() -> Self {
+        Self::Numbers(Vec::new())
+    }
 }
 
 /// Rows of numbers as they are written, before units.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Rows {
-    /// Times, in the map's unit.
-    pub time: Vec<f64>,
-    /// Numbers of each channel of the map.
+    /// Which of the map's channels they are.
+    pub channels: Vec<usize>,
+    /// Times.
+    pub time: Times,
+    /// Numbers of each of those channels.
     pub columns: Vec<Vec<f64>>,
     /// Where each row stands, from 1.
     pub lines: Vec<u64>,
@@ -55,26 +82,73 @@ pub(super) struct Rows {
 /// # Errors
 /// The file, its row and column that do not fit the map, and what would.
 pub fn read_log(path: &Path, map: &FileMap) -> Result<Log, ImportError> {
-    let rows = match &map.form {
-        Form::Text(form) => text::read(path, form, map)?,
-        Form::Parquet | Form::Mat5 | Form::Mcap => {
-            return Err(ImportError::Read {
-                file: path.to_owned(),
-                cause: "this form is not read yet".to_owned(),
-            });
-        }
+    let groups = match &map.form {
+        Form::Text(form) => vec![text::read(path, form, map)?],
+        Form::Parquet => vec![parquet_log::read(path, map)?],
+        Form::Mat5 => vec![mat_log::read(path, map)?],
+        Form::Mcap => mcap_log::read(path, map)?,
     };
-    of_rows(path, map, rows)
+    let mut log = Log {
+        series: vec![Series::default(); map.channels.len()],
+        ..Log::default()
+    };
+    for (index, rows) in groups.into_iter().enumerate() {
+        let channels = rows.channels.clone();
+        let group = of_rows(path, map, rows)?;
+        if index == 0 {
+            log.epoch = group.epoch;
+        }
+        let shift = group.epoch - log.epoch;
+        for (channel, mut series) in channels.into_iter().zip(group.series) {
+            if shift != 0.0 {
+                series.time.iter_mut().for_each(|time| *time += shift);
+            }
+            log.series[channel] = series;
+        }
+        for remark in group.remarks {
+            if !log.remarks.contains(&remark) {
+                log.remarks.push(remark);
+            }
+        }
+    }
+    Ok(log)
+}
+
+/// Times in seconds, and the whole seconds since 1970 that were taken off them.
+fn seconds(map: &FileMap, times: Times) -> (Vec<f64>, f64) {
+    match times {
+        Times::Numbers(numbers) => {
+            let unit = map.time.as_ref().and_then(|time| time.unit);
+            let to_si = |number: &f64| unit.map_or(*number, |unit| unit.to_si(*number));
+            let time: Vec<f64> = numbers.iter().map(to_si).collect();
+            let epoch = match time.first() {
+                Some(first) if first.abs() > EPOCH => first.floor(),
+                _ => 0.0,
+            };
+            (time.iter().map(|t| t - epoch).collect(), epoch)
+        }
+        // Taken off before they are numbers: a double has steps of 0.2 us by now.
+        Times::Nanoseconds(stamps) => {
+            let epoch = match stamps.first() {
+                Some(first) if *first as f64 > EPOCH * 1e9 => first.div_euclid(NANOSECONDS),
+                _ => 0,
+            };
+            let since = |stamp: &i64| (stamp - epoch * NANOSECONDS) as f64 * 1e-9;
+            (stamps.iter().map(since).collect(), epoch as f64)
+        }
+    }
 }
 
 /// Rows in SI, those left out that the map drops or that say nothing new.
 fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
     let Rows {
+        channels,
         time,
         columns,
         lines,
         mut remarks,
     } = rows;
+    let (time, epoch) = seconds(map, time);
     let [first, last] = map.dropped;
     let count = time.len();
     let kept = first..count.saturating_sub(last);
@@ -88,21 +162,19 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
     if first + last > 0 {
         remarks.push(Remark::Dropped([first, last]));
     }
-    let unit = map.time.as_ref().map(|time| time.unit);
-    let seconds = |row: usize| unit.map_or(time[row], |unit| unit.to_si(time[row]));
     let (mut taken, mut repeated, mut stamped) = (Vec::new(), Vec::new(), Vec::new());
     let same = |a: f64, b: f64| a == b || (a.is_nan() && b.is_nan());
     for row in kept {
         if let Some(&before) = taken.last() {
-            if seconds(row) < seconds(before) {
+            if time[row] < time[before] {
                 return Err(ImportError::Time {
                     file: path.to_owned(),
                     line: lines[row],
-                    found: seconds(row),
-                    before: seconds(before),
+                    found: time[row],
+                    before: time[before],
                 });
             }
-            if seconds(row) == seconds(before) {
+            if time[row] == time[before] {
                 let repeats = columns.iter().all(|c| same(c[row], c[before]));
                 if repeats { &mut repeated } else { &mut stamped }.push(lines[row]);
                 continue;
@@ -110,23 +182,32 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
         }
         taken.push(row);
     }
+    if taken.len() < 2 {
+        return Err(ImportError::Still {
+            file: path.to_owned(),
+            rows: count - first - last,
+        });
+    }
     if !repeated.is_empty() {
         remarks.push(Remark::Repeated(repeated));
     }
     if !stamped.is_empty() {
         remarks.push(Remark::Stamped(stamped));
     }
-    let time: Vec<f64> = taken.iter().map(|row| seconds(*row)).collect();
-    let channels = map.channels.iter().zip(&columns);
-    let series = channels.map(|(channel, numbers)| Series {
-        time: time.clone(),
-        values: taken
-            .iter()
-            .map(|row| channel.to_si(numbers[*row]))
-            .collect(),
+    let time: Vec<f64> = taken.iter().map(|row| time[*row]).collect();
+    let series = channels.iter().zip(&columns).map(|(channel, numbers)| {
+        let channel = &map.channels[*channel];
+        Series {
+            time: time.clone(),
+            values: taken
+                .iter()
+                .map(|row| channel.to_si(numbers[*row]))
+                .collect(),
+        }
     });
     Ok(Log {
         series: series.collect(),
+        epoch,
         remarks,
     })
 }
@@ -151,7 +232,7 @@ pub(super) fn places(
                 file: path.to_owned(),
                 column: column.clone(),
                 there: match names {
-                    Some(names) => named(name, names),
+                    Some(names) => nearest_first(name, names),
                     None => format!("{count} columns without names: `names_line` says where they stand, or give a number"),
                 },
             })
@@ -163,12 +244,16 @@ pub(super) fn places(
 }
 
 /// The names there are, the nearest first.
-fn named(wanted: &str, names: &[String]) -> String {
+pub(super) fn nearest_first(wanted: &str, names: &[String]) -> String {
     let mut sorted: Vec<&String> = names.iter().collect();
     sorted.sort_by(|a, b| {
         let near = |name: &str| strsim::jaro_winkler(wanted, name);
         near(b).total_cmp(&near(a))
     });
-    let quoted: Vec<String> = sorted.iter().map(|name| format!("`{name}`")).collect();
+    let listed = sorted.iter().take(LISTED);
+    let mut quoted: Vec<String> = listed.map(|name| format!("`{name}`")).collect();
+    if sorted.len() > LISTED {
+        quoted.push(format!("{} more", sorted.len() - LISTED));
+    }
     quoted.join(", ")
 }

@@ -2,14 +2,21 @@
 
 pub mod assemble;
 pub mod clock;
+pub mod doubts;
 pub mod error;
 pub mod findings;
+pub mod kinds;
 pub mod log;
 pub mod map;
+pub mod map_file;
+mod mat_log;
+mod mcap_log;
+mod parquet_log;
 mod text;
 pub mod units;
 
 pub use assemble::{Imported, LogNote, import};
 pub use error::ImportError;
 pub use log::{Log, Remark, Series, read_log};
-pub use map::{ImportMap, load_map};
+pub use map::ImportMap;
+pub use map_file::load_map;

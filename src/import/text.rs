@@ -5,7 +5,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::error::ImportError;
-use super::log::{Remark, Rows, places};
+use super::log::{Remark, Rows, Times, places};
 use super::map::{Column, FileMap, Separator, TextForm};
 
 /// Words that stand for no value.
@@ -19,9 +19,10 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
     })?;
     // A vendor's degree sign in another encoding is no reason to refuse the numbers.
     let text = String::from_utf8_lossy(&bytes);
-    let text = text.trim_start_matches('\u{feff}');
+    // Of a line that ends with both, the reader counts the end to the next one.
+    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     let whole = text.ends_with('\n');
-    let (header, body) = split_after(text, form.header_lines);
+    let (header, body) = split_after(&text, form.header_lines);
     let rows =
         records(body, header.len() as u64, &form.separator).map_err(|cause| ImportError::Read {
             file: path.to_owned(),
@@ -49,15 +50,21 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
         .max()
         .map_or(0, |most| most + 1);
     let mut found = Rows {
+        channels: (0..map.channels.len()).collect(),
         columns: vec![Vec::new(); channel_places.len()],
         ..Rows::default()
     };
+    let mut times = Vec::new();
     for (index, (line, row)) in rows.iter().enumerate() {
         let is_last = index + 1 == rows.len();
         // A log that was cut off ends within a field, and what stands of it may be another number.
-        let torn = is_last && !whole && row.len() < count;
-        if torn {
-            found.remarks.push(Remark::Torn(*line));
+        if is_last && !whole && row.len() < count {
+            let torn = torn(path, *line, row.len(), count, found.lines.len());
+            if !map.accepts_truncated {
+                return Err(torn);
+            }
+            let rest = format!("its last row, line {line}, is torn and was left out");
+            found.remarks.push(Remark::Truncated(rest));
             break;
         }
         if row.len() < needed {
@@ -74,9 +81,7 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
             decimal_mark: form.decimal_mark,
         };
         if let (Some(place), Some(time)) = (time_place, &map.time) {
-            found
-                .time
-                .push(reading.time(&row[place], &time.column, time.thousands_mark)?);
+            times.push(reading.time(&row[place], &time.column, time.thousands_mark)?);
         }
         for (numbers, (place, channel)) in found
             .columns
@@ -86,8 +91,25 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
             numbers.push(reading.number(&row[*place], &channel.column)?);
         }
         found.lines.push(*line);
+        // A number that was cut off is shorter than the one before it.
+        let before = index.checked_sub(1).and_then(|i| rows[i].1.iter().last());
+        let is_shorter = before.is_some_and(|text| row[row.len() - 1].len() < text.len());
+        if is_last && !whole && needed == row.len() && is_shorter {
+            found.remarks.push(Remark::Unended(*line));
+        }
     }
+    found.time = Times::Numbers(times);
     Ok(found)
+}
+
+/// Refuses a log whose last line ends within a row.
+fn torn(path: &Path, line: u64, fields: usize, expected: usize, rows: usize) -> ImportError {
+    ImportError::Truncated {
+        file: path.to_owned(),
+        found: format!("its last row, line {line}, ends after {fields} of {expected} fields"),
+        rest: format!("the {rows} rows before it can be read"),
+        advice: "`accept_truncated = true` in the map's [[file]] uses them".to_owned(),
+    }
 }
 
 /// A text's first lines, and what follows them.
