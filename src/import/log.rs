@@ -245,9 +245,10 @@ pub(super) fn places(
 
 /// The names there are, the nearest first.
 pub(super) fn nearest_first(wanted: &str, names: &[String]) -> String {
+    let wanted = wanted.to_lowercase();
     let mut sorted: Vec<&String> = names.iter().collect();
     sorted.sort_by(|a, b| {
-        let near = |name: &str| strsim::jaro_winkler(wanted, name);
+        let near = |name: &str| strsim::jaro_winkler(&wanted, &name.to_lowercase());
         near(b).total_cmp(&near(a))
     });
     let listed = sorted.iter().take(LISTED);

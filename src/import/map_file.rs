@@ -368,7 +368,7 @@ fn time_map(
     Ok(TimeMap {
         column: keys.column.0.clone(),
         unit: match &keys.unit {
-            Some(name) => Some(unit(&section, name, Some(Unit::Second))?),
+            Some(name) => Some(unit(&section, name, Some(&[Unit::Second]))?),
             None => None,
         },
         thousands_mark: keys.thousands_mark.as_ref().map(mark).transpose()?,
@@ -387,26 +387,8 @@ fn channel_map(
         let expected = "a name of small letters, digits and underscores, without a unit".to_owned();
         return Err(section.refuse("quantity", format!("{:?}", keys.quantity), expected));
     }
-    let unit = unit(&section, &keys.unit, None)?;
-    if let Some(kinds) = kinds::of_quantity(&keys.quantity)
-        && !kinds.contains(&unit.si)
-    {
-        let fitting: Vec<&str> = kinds
-            .iter()
-            .flat_map(|kind| units::of_kind(*kind))
-            .collect();
-        let volts = if unit.si == Unit::Volt {
-            "; of a sensor in volts the unit is what its `gain` makes of them"
-        } else {
-            ""
-        };
-        let expected = format!(
-            "a unit of `{}`: {}{volts}",
-            keys.quantity,
-            fitting.join(", ")
-        );
-        return Err(section.refuse("unit", format!("{:?}", keys.unit), expected));
-    }
+    let kinds = kinds::of_quantity(&keys.quantity);
+    let unit = unit(&section, &keys.unit, kinds.as_deref())?;
     let gauge = keys.quantity.ends_with(GAUGE);
     let above = match (unit.si, keys.pressure) {
         (Unit::Pascal, None) => {
@@ -447,21 +429,33 @@ fn gain(section: &Section<'_>, given: Option<f64>) -> Result<f64, ScenarioError>
     }
 }
 
+/// A unit of one of these kinds, or of any.
 fn unit(
     section: &Section<'_>,
     name: &str,
-    kind: Option<Unit>,
+    kinds: Option<&[Unit]>,
 ) -> Result<&'static LogUnit, ScenarioError> {
-    let known = units::named(name).filter(|unit| kind.is_none_or(|kind| unit.si == kind));
-    known.ok_or_else(|| {
-        let expected = match kind {
-            Some(kind) => units::of_kind(kind).join(", "),
-            None => {
-                let all: Vec<&str> = units::UNITS.iter().map(|unit| unit.name).collect();
-                all.join(", ")
-            }
+    let known = units::named(name);
+    let fits = |unit: &&LogUnit| kinds.is_none_or(|kinds| kinds.contains(&unit.si));
+    known.filter(fits).ok_or_else(|| {
+        let of_kinds = |kinds: &[Unit]| {
+            kinds
+                .iter()
+                .flat_map(|kind| units::of_kind(*kind))
+                .collect()
         };
-        section.refuse("unit", format!("{name:?}"), format!("one of {expected}"))
+        let fitting: Vec<&str> = match kinds {
+            Some(kinds) => of_kinds(kinds),
+            None => units::UNITS.iter().map(|unit| unit.name).collect(),
+        };
+        let volts = match known {
+            Some(unit) if unit.si == Unit::Volt => {
+                "; of a sensor in volts the unit is what its `gain` makes of them"
+            }
+            _ => "",
+        };
+        let expected = format!("one of {}{volts}", fitting.join(", "));
+        section.refuse("unit", format!("{name:?}"), expected)
     })
 }
 
@@ -496,4 +490,43 @@ fn check_together(document: &Document<'_>, map: &ImportMap) -> Result<(), Scenar
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAGE: &str = include_str!("../../assets/import/README.md");
+
+    #[test]
+    fn the_page_of_maps_names_every_key_and_unit() {
+        for (table, keys) in sections() {
+            for key in keys {
+                assert!(PAGE.contains(&format!("`{key}`")), "{table}: {key}");
+            }
+        }
+        for unit in units::UNITS {
+            assert!(PAGE.contains(&format!("`{}`", unit.name)), "{}", unit.name);
+        }
+    }
+
+    #[test]
+    fn the_map_on_the_page_is_one() {
+        let start = PAGE.find("    schema = 1").unwrap();
+        let end = PAGE.find("    value in SI").unwrap();
+        let text: String = PAGE[start..end]
+            .lines()
+            .map(|line| line.trim_start().to_owned() + "\n")
+            .collect();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.toml");
+        std::fs::write(&path, text).unwrap();
+        let map = load_map(&path).unwrap_or_else(|error| panic!("{error}"));
+        let [file] = &map.files[..] else {
+            panic!("{map:?}")
+        };
+        // 50 N/V of 0.15 V less 2.5 N.
+        assert!((file.channels[0].to_si(0.15) - 5.0).abs() < 1e-12);
+        assert_eq!(file.channels[1].to_si(3.0), 3e5);
+    }
 }

@@ -333,7 +333,10 @@ fn time_field(
             column: time.column.clone(),
             there: format!(
                 "{LOG_TIME}, {PUBLISH_TIME} and, in the messages of {topic}, {}",
-                nearest_first(name, &definition.times())
+                match &definition.times()[..] {
+                    [] => "no stamps".to_owned(),
+                    stamps => nearest_first(name, stamps),
+                }
             ),
         });
     };
