@@ -89,7 +89,7 @@ fn channel(quantity: &str, column: &str, unit: &str) -> String {
 }
 
 /// Asks a recording for the planted course, to the rounding of its unit's factor.
-fn assert_planted(recording: &Recording, what: &[(&str, fn(Truth) -> f64, f64)]) {
+fn assert_planted(recording: &Recording, what: &[Planted]) {
     assert_eq!(recording.sample_count(), ROWS);
     let start = recording.time()[0] - truth(0).time;
     for (row, time) in recording.time().iter().enumerate() {
@@ -109,9 +109,12 @@ fn assert_planted(recording: &Recording, what: &[(&str, fn(Truth) -> f64, f64)])
     }
 }
 
+/// A quantity, what was planted, and how far the two may be apart, relatively.
+type Planted = (&'static str, fn(Truth) -> f64, f64);
+
 const EXACT: f64 = 1e-14;
-const STROKE: (&str, fn(Truth) -> f64, f64) = ("stroke", |t| t.stroke, 1e-12);
-const FORCE: (&str, fn(Truth) -> f64, f64) = ("force", |t| t.force, EXACT);
+const STROKE: Planted = ("stroke", |t| t.stroke, 1e-12);
+const FORCE: Planted = ("force", |t| t.force, EXACT);
 
 #[test]
 fn texts_of_every_kind_come_back() {
@@ -136,7 +139,7 @@ fn texts_of_every_kind_come_back() {
         channel("stroke", "\"s\"", "mm"),
     ];
     folder.map("map.toml", &(keys.to_owned() + &channels.concat()));
-    let pressure: (&str, fn(Truth) -> f64, f64) = ("pressure_gauge", |t| t.pressure, 1e-12);
+    let pressure: Planted = ("pressure_gauge", |t| t.pressure, 1e-12);
     let (stored, _) = folder.imported("map.toml", &["log.csv"]);
     assert_planted(&stored.recording, &[FORCE, STROKE, pressure]);
 
@@ -153,7 +156,7 @@ fn texts_of_every_kind_come_back() {
         &format!("form = \"text\"\nfield_widths = [7, 24, 9]\ntime = {{ column = 1, unit = \"ms\" }}\n{force}{stroke}"),
     );
     let (stored, _) = folder.imported("map.toml", &["log.txt"]);
-    let volts: (&str, fn(Truth) -> f64, f64) = ("force", |t| t.force, 1e-13);
+    let volts: Planted = ("force", |t| t.force, 1e-13);
     assert_planted(&stored.recording, &[volts, STROKE]);
 }
 
@@ -166,8 +169,8 @@ fn a_parquet_with_stamps_comes_back() {
     let keys = "form = \"parquet\"\ntime = { column = \"stamp\" }\n";
     folder.map("map.toml", &(keys.to_owned() + &channels));
     let (stored, said) = folder.imported("map.toml", &["log.parquet"]);
-    let single: (&str, fn(Truth) -> f64, f64) = ("stroke", |t| t.stroke, 3e-7);
-    let force: (&str, fn(Truth) -> f64, f64) = ("force", |t| t.force, 1e-13);
+    let single: Planted = ("stroke", |t| t.stroke, 3e-7);
+    let force: Planted = ("force", |t| t.force, 1e-13);
     assert_planted(&stored.recording, &[force, single]);
     let origin = START + 1;
     assert_eq!(stored.metadata["time_origin_unix_s"], origin.to_string());
@@ -229,18 +232,14 @@ fn topics_with_stamps_of_their_own_come_back_whatever_the_compression() {
         let keys = "form = \"mcap\"\ntime = { column = \"header.stamp\" }\n";
         folder.map("map.toml", &(keys.to_owned() + &channels));
         let (stored, _) = folder.imported("map.toml", &["log.mcap"]);
-        let stroke: (&str, fn(Truth) -> f64, f64) = ("stroke", |t| t.stroke, EXACT);
+        let stroke: Planted = ("stroke", |t| t.stroke, EXACT);
         assert_planted(&stored.recording, &[FORCE, stroke]);
         let angle = stored.recording.values("elbow_angle").unwrap();
         // A line, so that reading it off between its messages is exact; it starts 1 ms after the wrench and ends 8 ms before it.
         assert!(angle[0].is_nan() && angle[ROWS - 1].is_nan());
-        for row in 1..ROWS - 4 {
+        for (row, angle) in angle.iter().enumerate().take(ROWS - 4).skip(1) {
             let right = 10.0 * truth(row).time;
-            assert!(
-                (angle[row] - right).abs() < 1e-8,
-                "row {row}: {}",
-                angle[row]
-            );
+            assert!((angle - right).abs() < 1e-8, "row {row}: {angle}");
         }
     }
 }

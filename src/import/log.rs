@@ -202,6 +202,8 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
             values: taken
                 .iter()
                 .map(|row| channel.to_si(numbers[*row]))
+                // An overflow is no value.
+                .map(|value| if value.is_finite() { value } else { f64::NAN })
                 .collect(),
         }
     });

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use mcap::MessageStream;
+use mcap::{McapError, MessageStream};
 
 use super::error::ImportError;
 use super::log::{Remark, Rows, Times, nearest_first};
@@ -52,6 +52,11 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError>
     let scan = Scan::of(&bytes);
     let mut remarks = Vec::new();
     if let Some(cause) = &scan.cause {
+        // A chunk is checked at its end, when its messages have been read.
+        if scan.is_damaged {
+            let advice = "copy it once more from where it was recorded, or let `mcap recover` leave out what is damaged";
+            return Err(fail(format!("it is damaged: {cause}; {advice}")));
+        }
         let rest = scan.rest();
         if !map.accepts_truncated {
             return Err(ImportError::Truncated {
@@ -97,6 +102,8 @@ struct Scan {
     logged: [u64; 2],
     /// Why it breaks off, if it does.
     cause: Option<String>,
+    /// Are messages before that not what was written?
+    is_damaged: bool,
 }
 
 impl Scan {
@@ -106,6 +113,7 @@ impl Scan {
             messages: 0,
             logged: [u64::MAX, 0],
             cause: None,
+            is_damaged: false,
         };
         let stream = match MessageStream::new(bytes) {
             Ok(stream) => stream,
@@ -118,6 +126,7 @@ impl Scan {
             let message = match message {
                 Ok(message) => message,
                 Err(error) => {
+                    scan.is_damaged = matches!(error, McapError::BadChunkCrc { .. });
                     scan.cause = Some(error.to_string());
                     break;
                 }

@@ -58,8 +58,12 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
     for (index, (line, row)) in rows.iter().enumerate() {
         let is_last = index + 1 == rows.len();
         // A log that was cut off ends within a field, and what stands of it may be another number.
-        if is_last && !whole && row.len() < count {
-            let torn = torn(path, *line, row.len(), count, found.lines.len());
+        let fields = match &form.separator {
+            Separator::Widths(widths) if is_last => whole_fields(body, widths),
+            _ => row.len(),
+        };
+        if is_last && !whole && fields < count {
+            let torn = torn(path, *line, fields, count, found.lines.len());
             if !map.accepts_truncated {
                 return Err(torn);
             }
@@ -92,7 +96,9 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
         }
         found.lines.push(*line);
         // A number that was cut off is shorter than the one before it.
-        let before = index.checked_sub(1).and_then(|i| rows[i].1.iter().last());
+        let before = index
+            .checked_sub(1)
+            .and_then(|i| rows[i].1.iter().next_back());
         let is_shorter = before.is_some_and(|text| row[row.len() - 1].len() < text.len());
         if is_last && !whole && needed == row.len() && is_shorter {
             found.remarks.push(Remark::Unended(*line));
@@ -100,6 +106,24 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
     }
     found.time = Times::Numbers(times);
     Ok(found)
+}
+
+/// Fields that the last line holds to their ends; all of them if it is as long as the first.
+fn whole_fields(body: &str, widths: &[usize]) -> usize {
+    let mut filled = body.lines().filter(|line| !line.trim().is_empty());
+    let first = filled.next().map_or(0, |line| line.chars().count());
+    let last = filled
+        .next_back()
+        .map_or(first, |line| line.chars().count());
+    if last >= first {
+        return widths.len();
+    }
+    let mut end = 0;
+    let reaches = |width: &&usize| {
+        end += **width;
+        end <= last
+    };
+    widths.iter().take_while(reaches).count()
 }
 
 /// Refuses a log whose last line ends within a row.

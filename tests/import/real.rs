@@ -10,11 +10,6 @@ use crate::common::project;
 /// A set of recordings, where it is there.
 fn set(name: &str) -> Option<PathBuf> {
     let folder = project("../shared/recordings").join(name);
-    let folder = if folder.is_dir() {
-        folder
-    } else {
-        Path::new("/work/shared/recordings").join(name)
-    };
     if !folder.is_dir() {
         eprintln!("skipped without ../shared/recordings/{name}");
         return None;

@@ -343,6 +343,21 @@ fn a_text_with_a_torn_last_line() {
         ],
     );
     assert_eq!(accepted(&folder, "log.csv", "line 402, is torn"), 400);
+
+    files::text(&folder.path("log.txt"), "", |row| {
+        format!("{:>6}{:>9}", whole(row).0, whole(row).1)
+    });
+    cut(&folder, "log.txt", 0.997);
+    let keys = "form = \"text\"\nfield_widths = [6, 9]\ntime = { column = 1, unit = \"ms\" }\n";
+    folder.map(
+        "map.toml",
+        &(keys.to_owned() + &channel("stroke", "2", "um")),
+    );
+    refused(
+        &folder,
+        &["log.txt"],
+        &["line 399, ends after 1 of 2 fields; the 398 rows"],
+    );
 }
 
 #[test]
@@ -373,6 +388,27 @@ fn a_bag_that_is_cut_off() {
         let samples = accepted(&folder, "log.mcap", "messages can be read");
         assert!((100..300).contains(&samples), "{samples}");
     }
+}
+
+#[test]
+fn a_bag_that_is_damaged_is_refused_even_where_less_is_accepted() {
+    let folder = Folder::new();
+    files::mcap(&folder.path("log.mcap"), None);
+    let mut bytes = std::fs::read(folder.path("log.mcap")).unwrap();
+    let force = truth(7).force.to_le_bytes();
+    let place = bytes.windows(8).position(|window| window == force).unwrap();
+    bytes[place + 3] ^= 1;
+    folder.write("log.mcap", bytes);
+    let keys = "form = \"mcap\"\naccept_truncated = true\n".to_owned();
+    folder.map(
+        "map.toml",
+        &(keys + &channel("force", "\"/wrench.wrench.force.z\"", "N")),
+    );
+    refused(
+        &folder,
+        &["log.mcap"],
+        &["cannot read log.mcap: it is damaged: Chunk CRC failed"],
+    );
 }
 
 #[test]
