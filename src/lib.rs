@@ -34,6 +34,7 @@ pub mod diagnosis;
 pub mod effects;
 pub mod estimation;
 pub mod figure;
+pub mod import;
 pub mod laboratory;
 pub mod metrics;
 pub mod path;

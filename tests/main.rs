@@ -14,6 +14,7 @@ mod determinism;
 mod diagnose;
 mod equations;
 mod estimator;
+mod import;
 mod laboratory;
 mod layers;
 mod own_cell;

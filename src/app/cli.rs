@@ -46,6 +46,9 @@ enum Command {
     /// List the sharp edges of a part and the outlines of its faces.
     #[command(after_help = "Example: idc edges assets/bracket.stl")]
     Edges(EdgesArguments),
+    /// Make a recording of the logs of a real device, as a map says what their columns are.
+    #[command(after_help = super::import::EXAMPLES)]
+    Import(ImportArguments),
     /// Say what a rig file, believed or improved, predicts for the inputs of a recording.
     #[command(after_help = "Example: idc predict improved.toml predict.csv --out prediction.csv")]
     Predict(PredictArguments),
@@ -78,6 +81,23 @@ struct RunArguments {
     /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
     #[arg(long, hide = true)]
     hold_at_s: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ImportArguments {
+    /// Import map.
+    pub(super) map: PathBuf,
+    /// Logs in place of those that the map names, in its order; several times as many make several recordings.
+    pub(super) logs: Vec<PathBuf>,
+    /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
+    #[arg(long)]
+    pub(super) out: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(long)]
+    pub(super) quiet: bool,
+    /// Print what was understood as JSON.
+    #[arg(long, conflicts_with = "quiet")]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -247,6 +267,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Run(arguments) => run(arguments),
         Command::Design(arguments) => design(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
+        Command::Import(arguments) => super::import::run(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
         Command::Prove(arguments) => super::prove::run_prove(arguments),

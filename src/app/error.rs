@@ -5,6 +5,7 @@ use crate::design::DesignError;
 use crate::diagnosis::answer::AnswerError;
 use crate::diagnosis::flange::NoContact;
 use crate::diagnosis::recorded::RecordedError;
+use crate::import::ImportError;
 use crate::metrics::MetricsError;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
@@ -70,6 +71,29 @@ pub enum AppError {
     /// A recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// A log, or its map's columns.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    /// Logs that do not come in the map's number.
+    #[error("{given} logs were given, expected {each} or a multiple of it: {} has as many [[file]]", map.display())]
+    Logs {
+        /// How many.
+        given: usize,
+        /// How many the map has.
+        each: usize,
+        /// The map.
+        map: std::path::PathBuf,
+    },
+    /// Two recordings of one name.
+    #[error("{} and {} would both be written to {}; expected logs of different names, or one command for each", one.display(), other.display(), out.display())]
+    SameOutput {
+        /// The first log.
+        one: std::path::PathBuf,
+        /// The second.
+        other: std::path::PathBuf,
+        /// The recording.
+        out: std::path::PathBuf,
+    },
     /// A design study.
     #[error(transparent)]
     Design(Box<DesignError>),

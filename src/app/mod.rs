@@ -10,6 +10,7 @@ mod edges;
 mod error;
 mod estimate_figure;
 mod files;
+mod import;
 mod output;
 mod picture;
 mod predict;

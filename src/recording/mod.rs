@@ -1,7 +1,7 @@
 //! Recordings: sampled signals of one run of the cell, simulated or real.
 //!
 //! A [`Recording`] is sample times, named channels in SI units and the phases of the job. It knows
-//! nothing of how it came about. [`parquet`] stores it as a table, [`csv`] reads that of a real rig, [`rerun`] draws it together with
+//! nothing of how it came about. [`parquet`] stores it as a table, [`csv`] reads that of a real rig, [`table`] any other's columns, [`rerun`] draws it together with
 //! a [`scene::Scene`], and [`schema`] lists the signals that the simulated cell writes.
 
 pub mod atomic;
@@ -12,6 +12,7 @@ pub mod rerun;
 pub mod samples;
 pub mod scene;
 pub mod schema;
+pub mod table;
 pub mod unit;
 
 pub use error::RecordingError;

@@ -1,0 +1,188 @@
+//! `idc import`: logs of a real device made into recordings, and what was understood of them.
+
+mod json;
+mod told;
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use super::cli::ImportArguments;
+use super::error::{AppError, ExitCode};
+use super::output::say;
+use crate::import::findings::same_data;
+use crate::import::{ImportMap, Imported, LogNote, import, load_map};
+use crate::recording::parquet::write_parquet;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  idc import assets/import/cylinder_friction.toml KDN_1bar.csv            what is in it
+  idc import assets/import/cylinder_friction.toml KDN_1bar.csv --out kdn_1.parquet
+  idc import assets/import/cylinder_friction.toml KDN_*.csv --out runs/kdn a recording of each, into a folder
+  idc import assets/import/contact_flange.toml run_force.csv run_velocity.csv --out run.parquet   two logs, one recording
+
+A map says which column is what:
+  schema = 1
+  title = \"A cylinder\"
+  [[file]]
+  form = \"text\"                    or parquet, mat5, mcap
+  separator = \";\"
+  time = { column = 1, unit = \"ms\" }
+  [[file.channel]]
+  quantity = \"force\"
+  column = \"F [V]\"
+  unit = \"N\"
+  gain = 50.0                      newtons of a volt
+assets/import/README.md lists every key, unit and form.";
+
+/// A recording to be, and where it goes.
+struct Job {
+    imported: Imported,
+    out: Option<PathBuf>,
+}
+
+/// Two logs that are the same data.
+struct Copies {
+    one: PathBuf,
+    other: PathBuf,
+    share: f64,
+}
+
+/// Imports logs, one recording for as many as the map has files.
+pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
+    let map = load_map(&arguments.map)?;
+    let each = map.files.len();
+    if !arguments.logs.len().is_multiple_of(each) {
+        return Err(AppError::Logs {
+            given: arguments.logs.len(),
+            each,
+            map: arguments.map.clone(),
+        });
+    }
+    let groups: Vec<&[PathBuf]> = if arguments.logs.is_empty() {
+        vec![&[]]
+    } else {
+        arguments.logs.chunks(each).collect()
+    };
+    let mut jobs: Vec<Job> = Vec::new();
+    for logs in &groups {
+        let imported = import(&map, logs)?;
+        let out = arguments.out.as_ref();
+        let out = out.map(|out| destination(out, &imported, groups.len()));
+        jobs.push(Job { imported, out });
+    }
+    check_destinations(&jobs)?;
+    let copies = copies(&jobs);
+    for job in &jobs {
+        let Some(path) = &job.out else { continue };
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|error| AppError::OutputFolder {
+                folder: folder.display().to_string(),
+                reason: error.to_string(),
+            })?;
+        }
+        write_parquet(
+            path,
+            &job.imported.recording,
+            &provenance(&job.imported, &map),
+        )?;
+    }
+    if arguments.json {
+        say(&json::report(&map, &jobs, &copies)?)?;
+    } else if !arguments.quiet {
+        say(&text(&map, &jobs, &copies))?;
+    }
+    Ok(ExitCode::Done)
+}
+
+/// Where a recording goes: into a folder, named by its first log, unless it is alone and the folder is none.
+fn destination(out: &Path, imported: &Imported, count: usize) -> PathBuf {
+    let is_folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with('/');
+    if count == 1 && !is_folder {
+        return out.to_owned();
+    }
+    // Not `with_extension`: the dots of a name such as `F35_v0.10` are its own.
+    let stem = imported.logs[0].file.file_stem();
+    let stem = stem.map_or_else(|| "recording".into(), |stem| stem.to_string_lossy());
+    out.join(format!("{stem}.parquet"))
+}
+
+/// Refuses recordings that would take each other's place, or a log's.
+fn check_destinations(jobs: &[Job]) -> Result<(), AppError> {
+    for (index, job) in jobs.iter().enumerate() {
+        let Some(out) = &job.out else { continue };
+        let same = jobs[..index].iter().find(|other| other.out == job.out);
+        if let Some(other) = same {
+            return Err(AppError::SameOutput {
+                one: other.imported.logs[0].file.clone(),
+                other: job.imported.logs[0].file.clone(),
+                out: out.clone(),
+            });
+        }
+        let itself = |path: &Path| std::fs::canonicalize(path).ok();
+        let mut logs = jobs.iter().flat_map(|job| &job.imported.logs);
+        if itself(out).is_some_and(|out| logs.any(|log| itself(&log.file).as_ref() == Some(&out))) {
+            return Err(AppError::Overwrites {
+                file: out.display().to_string(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn provenance(imported: &Imported, map: &ImportMap) -> BTreeMap<String, String> {
+    let files: Vec<String> = imported.logs.iter().map(|log| name(&log.file)).collect();
+    let mut pairs = BTreeMap::from([
+        ("title".to_owned(), map.title.clone()),
+        ("imported_from".to_owned(), files.join(", ")),
+        ("import_map".to_owned(), name(&map.path)),
+    ]);
+    if imported.origin != 0.0 {
+        let origin = format!("{:.0}", imported.origin);
+        pairs.insert("time_origin_unix_s".to_owned(), origin);
+    }
+    pairs
+}
+
+fn name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+fn text(map: &ImportMap, jobs: &[Job], copies: &[Copies]) -> String {
+    let mut text = String::new();
+    for job in jobs {
+        text += &told::described(&job.imported, map);
+    }
+    for Copies { one, other, share } in copies {
+        let _ = writeln!(
+            text,
+            "{} and {} are the same data: {:.0} % of their rows",
+            one.display(),
+            other.display(),
+            100.0 * share
+        );
+    }
+    for out in jobs.iter().filter_map(|job| job.out.as_ref()) {
+        let _ = writeln!(text, "written to {}", out.display());
+    }
+    text
+}
+
+/// Logs that are copies of one another.
+fn copies(jobs: &[Job]) -> Vec<Copies> {
+    let logs: Vec<&LogNote> = jobs.iter().flat_map(|job| &job.imported.logs).collect();
+    let mut found = Vec::new();
+    for (index, other) in logs.iter().enumerate() {
+        for one in &logs[..index] {
+            if let Some(share) = same_data(one, other) {
+                found.push(Copies {
+                    one: one.file.clone(),
+                    other: other.file.clone(),
+                    share,
+                });
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,137 @@
+//! What was understood of logs, for programs: `--json`. Numbers are in SI.
+
+use serde::Serialize;
+
+use super::told::remarks;
+use super::{Copies, Job};
+use crate::import::ImportMap;
+use crate::import::findings::{Finding, findings};
+
+/// All of it.
+#[derive(Debug, Serialize)]
+struct Report {
+    map: String,
+    title: String,
+    recordings: Vec<RecordingReport>,
+    same_data: Vec<SameReport>,
+}
+
+/// A recording.
+#[derive(Debug, Serialize)]
+struct RecordingReport {
+    written_to: Option<String>,
+    samples: usize,
+    from_s: f64,
+    to_s: f64,
+    /// What its times count from, in seconds since 1970; none where the logs' own start.
+    origin_unix_s: Option<f64>,
+    logs: Vec<LogReport>,
+    channels: Vec<ChannelReport>,
+}
+
+/// A log.
+#[derive(Debug, Serialize)]
+struct LogReport {
+    file: String,
+    remarks: Vec<String>,
+    clock_found: Option<ClockReport>,
+}
+
+/// A clock that was found.
+#[derive(Debug, Serialize)]
+struct ClockReport {
+    added_s: f64,
+    correlation: f64,
+    step_s: f64,
+}
+
+/// A channel.
+#[derive(Debug, Serialize)]
+struct ChannelReport {
+    quantity: String,
+    unit: &'static str,
+    logged_in: &'static str,
+    samples: usize,
+    missing: usize,
+    rate_hz: f64,
+    least: Option<f64>,
+    most: Option<f64>,
+    noise: Option<f64>,
+    step: Option<f64>,
+    cut_off_at: Vec<f64>,
+    gaps_s: Vec<[f64; 2]>,
+    doubts: Vec<String>,
+}
+
+/// Two logs that are the same data.
+#[derive(Debug, Serialize)]
+struct SameReport {
+    one: String,
+    other: String,
+    share: f64,
+}
+
+/// The report as JSON.
+pub(super) fn report(
+    map: &ImportMap,
+    jobs: &[Job],
+    copies: &[Copies],
+) -> Result<String, serde_json::Error> {
+    let recordings = jobs.iter().map(|job| recording(map, job));
+    let same = copies.iter().map(|copies| SameReport {
+        one: copies.one.display().to_string(),
+        other: copies.other.display().to_string(),
+        share: copies.share,
+    });
+    let report = Report {
+        map: map.path.display().to_string(),
+        title: map.title.clone(),
+        recordings: recordings.collect(),
+        same_data: same.collect(),
+    };
+    Ok(serde_json::to_string_pretty(&report)? + "\n")
+}
+
+fn recording(map: &ImportMap, job: &Job) -> RecordingReport {
+    let imported = &job.imported;
+    let time = imported.recording.time();
+    let logs = imported.logs.iter().map(|log| LogReport {
+        file: log.file.display().to_string(),
+        remarks: remarks(log),
+        clock_found: log.alignment.map(|found| ClockReport {
+            added_s: found.offset,
+            correlation: found.correlation,
+            step_s: found.step,
+        }),
+    });
+    RecordingReport {
+        written_to: job.out.as_ref().map(|path| path.display().to_string()),
+        samples: time.len(),
+        from_s: time[0],
+        to_s: time[time.len() - 1],
+        origin_unix_s: (imported.origin != 0.0).then_some(imported.origin),
+        logs: logs.collect(),
+        channels: findings(imported, map).into_iter().map(channel).collect(),
+    }
+}
+
+fn channel(finding: Finding) -> ChannelReport {
+    let [least, most] = finding
+        .range
+        .map(|value| value.is_finite().then_some(value));
+    ChannelReport {
+        quantity: finding.quantity,
+        unit: finding.unit.symbol(),
+        logged_in: finding.log_unit.name,
+        samples: finding.samples,
+        missing: finding.missing,
+        rate_hz: finding.rate,
+        least,
+        most,
+        noise: finding.noise,
+        step: finding.quantum,
+        cut_off_at: finding.cut_off_at,
+        gaps_s: finding.gaps,
+        doubts: finding.doubts,
+    }
+}

@@ -1,0 +1,180 @@
+//! What was understood of a log, for people.
+
+use std::fmt::Write;
+
+use super::name;
+use crate::import::findings::{Finding, findings};
+use crate::import::{ImportMap, Imported, LogNote, Remark};
+
+/// Gaps and rows that are listed, at most.
+const LISTED: usize = 3;
+
+/// What was understood of a recording.
+pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
+    let mut text = String::new();
+    let time = imported.recording.time();
+    let files: Vec<String> = imported
+        .logs
+        .iter()
+        .map(|log| log.file.display().to_string())
+        .collect();
+    let _ = writeln!(
+        text,
+        "{}: {} samples from {:.3} to {:.3} s",
+        files.join(" and "),
+        time.len(),
+        time[0],
+        time[time.len() - 1]
+    );
+    let found = findings(imported, map);
+    let wide = found.iter().map(|f| f.quantity.len()).max().unwrap_or(0);
+    for finding in &found {
+        let _ = writeln!(text, "  {}", line(finding, wide));
+        for doubt in &finding.doubts {
+            let _ = writeln!(text, "    doubtful: {doubt}");
+        }
+        for value in &finding.cut_off_at {
+            let _ = writeln!(
+                text,
+                "    stays at its extreme value {}: cut off there?",
+                shown(*value)
+            );
+        }
+    }
+    if imported.origin != 0.0 {
+        let _ = writeln!(
+            text,
+            "  its times count from {:.0} s since 1970",
+            imported.origin
+        );
+    }
+    for log in &imported.logs {
+        for remark in remarks(log) {
+            let _ = writeln!(text, "  {}: {remark}", name(&log.file));
+        }
+    }
+    let series = imported
+        .logs
+        .iter()
+        .zip(&map.files)
+        .flat_map(|(log, file)| {
+            let channel = log.series.iter().zip(&file.channels);
+            channel.map(|(series, channel)| (channel.quantity.as_str(), series))
+        });
+    let mut told: Vec<[f64; 2]> = Vec::new();
+    for ((quantity, _), finding) in series.zip(&found) {
+        for gap in finding
+            .gaps
+            .iter()
+            .filter(|gap| !told.contains(gap))
+            .take(LISTED)
+            .copied()
+            .collect::<Vec<_>>()
+        {
+            let _ = writeln!(
+                text,
+                "  gap of {:.3} s from {:.3} s in {quantity}{}",
+                gap[1] - gap[0],
+                gap[0],
+                match finding.gaps.len() {
+                    0..=LISTED => String::new(),
+                    count => format!(", one of {count}"),
+                }
+            );
+            told.push(gap);
+        }
+    }
+    text
+}
+
+/// A channel in a line.
+fn line(finding: &Finding, wide: usize) -> String {
+    let [low, high] = finding.range.map(shown);
+    let unit = finding.unit.symbol();
+    let mut text = format!(
+        "{:wide$}  {:.6} Hz, {low} to {high} {unit}",
+        finding.quantity,
+        shown(finding.rate)
+    );
+    if finding.log_unit.factor != 1.0 || finding.log_unit.zero != 0.0 {
+        let _ = write!(text, " (logged in {})", finding.log_unit.name);
+    }
+    match (finding.noise, finding.quantum) {
+        (Some(noise), Some(step)) if noise < step => {
+            let _ = write!(text, ", noise below its steps");
+        }
+        (Some(noise), _) => {
+            let _ = write!(text, ", noise {} {unit}", shown(noise));
+        }
+        (None, _) => {}
+    }
+    if let Some(step) = finding.quantum {
+        let _ = write!(text, ", in steps of {} {unit}", shown(step));
+    }
+    if finding.missing > 0 {
+        let _ = write!(
+            text,
+            ", {} of {} samples empty",
+            finding.missing, finding.samples
+        );
+    }
+    text
+}
+
+/// A number to four digits.
+fn shown(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = 3 - value.abs().log10().floor() as i32;
+    if (-2..=7).contains(&digits) {
+        let text = format!("{value:.*}", usize::try_from(digits.max(0)).unwrap_or(0));
+        if text.contains('.') {
+            return text.trim_end_matches('0').trim_end_matches('.').to_owned();
+        }
+        return text;
+    }
+    format!("{value:.3e}")
+}
+
+pub(super) fn remarks(log: &LogNote) -> Vec<String> {
+    let rows = |lines: &[u64]| {
+        let first: Vec<String> = lines.iter().take(LISTED).map(u64::to_string).collect();
+        let more = if lines.len() > LISTED { ", ..." } else { "" };
+        format!("{} (line {}{more})", lines.len(), first.join(", "))
+    };
+    let mut said: Vec<String> = log
+        .remarks
+        .iter()
+        .map(|remark| match remark {
+            Remark::Dropped([0, last]) => {
+                format!("the last {last} rows were dropped, as the map says")
+            }
+            Remark::Dropped([first, 0]) => {
+                format!("the first {first} rows were dropped, as the map says")
+            }
+            Remark::Dropped([first, last]) => {
+                format!("the first {first} and the last {last} rows were dropped, as the map says")
+            }
+            Remark::Repeated(lines) => format!(
+                "rows that repeat the one before them were left out: {}",
+                rows(lines)
+            ),
+            Remark::Stamped(lines) => format!(
+                "rows with the time of the one before them but other values were left out: {}",
+                rows(lines)
+            ),
+            Remark::Truncated(rest) => format!("{rest}; what is left was used, as the map accepts"),
+            Remark::Unended(line) => {
+                format!("its last line, {line}, does not end, and may lack the last digits of its last number")
+            }
+        })
+        .collect();
+    if let Some(found) = log.alignment {
+        said.push(format!(
+            "its clock was found: {:+.4} s to be added (correlation {:.3}, looked at every {:.4} s)",
+            found.offset, found.correlation, found.step
+        ));
+    }
+    said
+}

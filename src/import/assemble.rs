@@ -1,0 +1,188 @@
+//! Logs put together: one recording at the times of the first log, the others read off between their samples.
+
+use std::path::{Path, PathBuf};
+
+use super::clock::{self, Alignment};
+use super::error::ImportError;
+use super::log::{Remark, Series, read_log};
+use super::map::{Clock, ImportMap};
+use crate::recording::csv::median_step;
+use crate::recording::{Channel, Recording};
+
+/// Steps of a series beyond which nothing is read off between two of its samples.
+const GAP: f64 = 3.0;
+
+/// A recording with what its logs had to be told of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// The recording, at the first log's times.
+    pub recording: Recording,
+    /// What its times count from, in seconds since 1970; 0 where the logs' own start [s].
+    pub origin: f64,
+    /// The logs, in the map's order.
+    pub logs: Vec<LogNote>,
+}
+
+/// What there is to say of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LogNote {
+    /// Its file.
+    pub file: PathBuf,
+    /// What was left out.
+    pub remarks: Vec<Remark>,
+    /// Where its clock was found against the first log's.
+    pub alignment: Option<Alignment>,
+    /// Quantities that came from it.
+    pub quantities: Vec<String>,
+    /// Its own series, its clock set right.
+    pub series: Vec<Series>,
+}
+
+/// Reads the logs of a map, `files` in place of those that it names, and puts them together.
+///
+/// # Errors
+/// What a log lacks, a clock that cannot be found, logs that do not overlap in time.
+pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportError> {
+    let mut logs: Vec<LogNote> = Vec::new();
+    let mut origin = 0.0;
+    for (index, file_map) in map.files.iter().enumerate() {
+        let file = files.get(index).or(file_map.path.as_ref());
+        let Some(file) = file.cloned() else {
+            return Err(ImportError::NoFile {
+                map: map.path.clone(),
+                number: index + 1,
+            });
+        };
+        let log = read_log(&file, file_map)?;
+        if index == 0 {
+            origin = log.epoch;
+        }
+        let mut note = LogNote {
+            file,
+            remarks: log.remarks,
+            alignment: None,
+            quantities: file_map
+                .channels
+                .iter()
+                .map(|c| c.quantity.clone())
+                .collect(),
+            series: log.series,
+        };
+        // An unknown clock that counts from a start is no half century off one that counts from 1970, nor the other way round.
+        let is_unknown = matches!(file_map.clock, Clock::Unknown { .. });
+        if !is_unknown || (origin == 0.0) == (log.epoch == 0.0) {
+            let shift = log.epoch - origin;
+            let times = note.series.iter_mut().flat_map(|series| &mut series.time);
+            times.for_each(|time| *time += shift);
+        }
+        let offset = match &file_map.clock {
+            Clock::Shared { offset } => *offset,
+            Clock::Unknown { by, largest } => {
+                let first = series_of(&logs[0], &by[0]);
+                let own = series_of(&note, &by[1]);
+                let alignment = clock::align(first, own, *largest);
+                let alignment = alignment.map_err(|found| ImportError::Clock {
+                    file: note.file.clone(),
+                    first: by[0].clone(),
+                    own: by[1].clone(),
+                    correlation: found,
+                })?;
+                note.alignment = Some(alignment);
+                alignment.offset
+            }
+        };
+        for series in &mut note.series {
+            series.time.iter_mut().for_each(|time| *time += offset);
+        }
+        logs.push(note);
+    }
+    let time = logs[0].series[0].time.clone();
+    let mut channels = Vec::new();
+    for (log, file_map) in logs.iter().zip(&map.files) {
+        for (series, channel) in log.series.iter().zip(&file_map.channels) {
+            let values = if series.time == time {
+                series.values.clone()
+            } else {
+                check_overlap(&log.file, &series.time, &logs[0].file, &time)?;
+                read_off(series, &time)
+            };
+            channels.push(Channel::new(
+                channel.quantity.clone(),
+                channel.unit.si,
+                values,
+            ));
+        }
+    }
+    Ok(Imported {
+        recording: Recording::new(time, channels, Vec::new())?,
+        origin,
+        logs,
+    })
+}
+
+fn series_of<'a>(log: &'a LogNote, quantity: &str) -> &'a Series {
+    let index = log.quantities.iter().position(|own| own == quantity);
+    // A map whose clocks are aligned by what is not there was refused.
+    &log.series[index.unwrap_or(0)]
+}
+
+fn check_overlap(
+    file: &Path,
+    own: &[f64],
+    first_file: &Path,
+    first: &[f64],
+) -> Result<(), ImportError> {
+    let ends = |time: &[f64]| [time[0], time[time.len() - 1]];
+    let ([from, to], [first_from, first_to]) = (ends(own), ends(first));
+    if from < first_to && first_from < to {
+        return Ok(());
+    }
+    Err(ImportError::Apart {
+        file: file.to_owned(),
+        own: [from, to],
+        first_file: first_file.to_owned(),
+        first: [first_from, first_to],
+    })
+}
+
+/// Values of a series at other times, linear between its samples; NaN before the first, after the last, and in gaps.
+#[must_use]
+pub fn read_off(series: &Series, time: &[f64]) -> Vec<f64> {
+    let longest = GAP * median_step(&series.time);
+    let value = |t: &f64| {
+        let after = series.time.partition_point(|own| own < t);
+        let Some(&later) = series.time.get(after) else {
+            return f64::NAN;
+        };
+        if later == *t {
+            return series.values[after];
+        }
+        let Some(before) = after.checked_sub(1) else {
+            return f64::NAN;
+        };
+        let earlier = series.time[before];
+        if later - earlier > longest {
+            return f64::NAN;
+        }
+        let share = (t - earlier) / (later - earlier);
+        series.values[before] + share * (series.values[after] - series.values[before])
+    };
+    time.iter().map(value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_off_between_samples_but_not_across_gaps() {
+        let series = Series {
+            time: vec![0.0, 1.0, 2.0, 3.0, 10.0, 11.0],
+            values: vec![0.0, 10.0, 20.0, 30.0, 0.0, 1.0],
+        };
+        let read = read_off(&series, &[-0.1, 0.0, 0.25, 3.0, 5.0, 10.5, 11.0, 11.1]);
+        assert_eq!(read[1..4], [0.0, 2.5, 30.0]);
+        assert_eq!(read[5..7], [0.5, 1.0]);
+        assert!([0, 4, 7].iter().all(|i| read[*i].is_nan()));
+    }
+}

@@ -1,0 +1,170 @@
+//! What can be wrong with a log and its map.
+
+use std::path::PathBuf;
+
+use super::map::Column;
+use crate::recording::RecordingError;
+
+/// A log that cannot be imported.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImportError {
+    /// The file cannot be read at all.
+    #[error("cannot read {}: {cause}", file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        cause: String,
+    },
+    /// The map names a column that is not there.
+    #[error("{} has no {column}; there are {there}", file.display())]
+    NoColumn {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        column: Column,
+        /// What is there.
+        there: String,
+    },
+    /// A row with too few fields.
+    #[error("{}:{line}: {found} fields, expected at least {expected}, as the map's columns need", file.display())]
+    Fields {
+        /// The file.
+        file: PathBuf,
+        /// Its line, from 1.
+        line: u64,
+        /// Fields found.
+        found: usize,
+        /// Fields needed.
+        expected: usize,
+    },
+    /// A field that is no number.
+    #[error("{}:{line}: {column} is `{found}`, expected {expected}", file.display())]
+    Number {
+        /// The file.
+        file: PathBuf,
+        /// Its line, from 1.
+        line: u64,
+        /// The column.
+        column: Column,
+        /// What stands there.
+        found: String,
+        /// What would be right.
+        expected: String,
+    },
+    /// A log that is cut off.
+    #[error("{} is cut off: {found}; {rest}; {advice}", file.display())]
+    Truncated {
+        /// The file.
+        file: PathBuf,
+        /// How that shows.
+        found: String,
+        /// What of it can be read.
+        rest: String,
+        /// What would be right.
+        advice: String,
+    },
+    /// Times whose unit the map should give, or should not.
+    #[error("{}: {column} holds {found}, expected {expected}", file.display())]
+    TimeUnit {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        column: Column,
+        /// What it holds.
+        found: String,
+        /// What the map should say.
+        expected: String,
+    },
+    /// A column whose values are no numbers.
+    #[error("{}: {column} is {found}, expected {expected}", file.display())]
+    Kind {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        column: Column,
+        /// What it is.
+        found: String,
+        /// What would be right.
+        expected: String,
+    },
+    /// Columns of different lengths.
+    #[error("{}: {column} has {found} values, expected {expected}, as many as there are times", file.display())]
+    Length {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        column: Column,
+        /// Its values.
+        found: usize,
+        /// Times.
+        expected: usize,
+    },
+    /// A clock that stands still.
+    #[error("{}: all {rows} rows have the same time, expected it to increase", file.display())]
+    Still {
+        /// The file.
+        file: PathBuf,
+        /// Its rows.
+        rows: usize,
+    },
+    /// A time that goes back.
+    #[error("{}:{line}: time {found} s after {before} s, expected it to increase", file.display())]
+    Time {
+        /// The file.
+        file: PathBuf,
+        /// Its line, from 1.
+        line: u64,
+        /// The time [s].
+        found: f64,
+        /// The time before it [s].
+        before: f64,
+    },
+    /// Nothing is left.
+    #[error("{}: of {rows} rows the map drops {dropped}, expected 2 at least to be left", file.display())]
+    TooShort {
+        /// The file.
+        file: PathBuf,
+        /// Its rows.
+        rows: usize,
+        /// Those dropped.
+        dropped: usize,
+    },
+    /// The map names no file, and none was given.
+    #[error("{} names no file for its [[file]] number {number}: give one after the map", map.display())]
+    NoFile {
+        /// The map.
+        map: PathBuf,
+        /// Which of its files.
+        number: usize,
+    },
+    /// Two clocks that cannot be set against each other.
+    #[error("{}: its clock cannot be found: at no offset does its `{own}` rise and fall with `{first}` of the first file (correlation {correlation:.2} at best, 0.5 is needed)", file.display())]
+    Clock {
+        /// The file.
+        file: PathBuf,
+        /// Quantity of the first file.
+        first: String,
+        /// Quantity of this one.
+        own: String,
+        /// The best correlation [1].
+        correlation: f64,
+    },
+    /// Logs of different times.
+    #[error("{} goes from {:.3} to {:.3} s and does not overlap {}, from {:.3} to {:.3} s; `clock_offset_s` or `clock = \"unknown\"` sets its clock right",
+        file.display(), own[0], own[1], first_file.display(), first[0], first[1])]
+    Apart {
+        /// The file.
+        file: PathBuf,
+        /// From when to when it goes [s].
+        own: [f64; 2],
+        /// The first file.
+        first_file: PathBuf,
+        /// From when to when that goes [s].
+        first: [f64; 2],
+    },
+    /// What came together is no recording.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}

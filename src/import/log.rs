@@ -1,0 +1,262 @@
+//! The numbers of a log, whatever its form: series against their own times, in SI.
+
+use std::path::Path;
+
+use super::error::ImportError;
+use super::map::{Column, FileMap, Form};
+use super::{mat_log, mcap_log, parquet_log, text};
+
+/// Times from here on count from 1970, not from a start [s]: over three years.
+const EPOCH: f64 = 1e8;
+const NANOSECONDS: i64 = 1_000_000_000;
+/// Names that a message lists, at most.
+const LISTED: usize = 12;
+
+/// What a log holds of a map's channels.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Log {
+    /// One for each channel of the map, in its order.
+    pub series: Vec<Series>,
+    /// Whole seconds taken off its times, since 1970; 0 where they count from a start [s].
+    pub epoch: f64,
+    /// What was left out, or mended, for people.
+    pub remarks: Vec<Remark>,
+}
+
+/// Values against times.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// Times [s], increasing.
+    pub time: Vec<f64>,
+    /// Values [SI], NaN where the log has none.
+    pub values: Vec<f64>,
+}
+
+/// Something that a user should know of a log.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Remark {
+    /// Rows that were dropped as the map asks, at the start and at the end.
+    Dropped([usize; 2]),
+    /// Rows, from 1 in the file, that repeat the one before them.
+    Repeated(Vec<u64>),
+    /// Rows whose time is that of the row before them; the first of each counts.
+    Stamped(Vec<u64>),
+    /// It is cut off, and the map accepts what is left: what that is.
+    Truncated(String),
+    /// Its last line does not end, and its last number may have lost digits.
+    Unended(u64),
+}
+
+/// Times as they are written.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Times {
+    /// In the map's unit.
+    Numbers(Vec<f64>),
+    /// Stamps [ns].
+    Nanoseconds(Vec<i64>),
+}
+
+impl Default for Times {
+    fn default() -> Self {
+        Self::Numbers(Vec::new())
+    }
+}
+
+/// Rows of numbers as they are written, before units.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Rows {
+    /// Which of the map's channels they are.
+    pub channels: Vec<usize>,
+    /// Times.
+    pub time: Times,
+    /// Numbers of each of those channels.
+    pub columns: Vec<Vec<f64>>,
+    /// Where each row stands, from 1.
+    pub lines: Vec<u64>,
+    /// What was left out while reading.
+    pub remarks: Vec<Remark>,
+}
+
+/// Reads a log as its map says.
+///
+/// # Errors
+/// The file, its row and column that do not fit the map, and what would.
+pub fn read_log(path: &Path, map: &FileMap) -> Result<Log, ImportError> {
+    let groups = match &map.form {
+        Form::Text(form) => vec![text::read(path, form, map)?],
+        Form::Parquet => vec![parquet_log::read(path, map)?],
+        Form::Mat5 => vec![mat_log::read(path, map)?],
+        Form::Mcap => mcap_log::read(path, map)?,
+    };
+    let mut log = Log {
+        series: vec![Series::default(); map.channels.len()],
+        ..Log::default()
+    };
+    for (index, rows) in groups.into_iter().enumerate() {
+        let channels = rows.channels.clone();
+        let group = of_rows(path, map, rows)?;
+        if index == 0 {
+            log.epoch = group.epoch;
+        }
+        let shift = group.epoch - log.epoch;
+        for (channel, mut series) in channels.into_iter().zip(group.series) {
+            if shift != 0.0 {
+                series.time.iter_mut().for_each(|time| *time += shift);
+            }
+            log.series[channel] = series;
+        }
+        for remark in group.remarks {
+            if !log.remarks.contains(&remark) {
+                log.remarks.push(remark);
+            }
+        }
+    }
+    Ok(log)
+}
+
+/// Times in seconds, and the whole seconds since 1970 that were taken off them.
+fn seconds(map: &FileMap, times: Times) -> (Vec<f64>, f64) {
+    match times {
+        Times::Numbers(numbers) => {
+            let unit = map.time.as_ref().and_then(|time| time.unit);
+            let to_si = |number: &f64| unit.map_or(*number, |unit| unit.to_si(*number));
+            let time: Vec<f64> = numbers.iter().map(to_si).collect();
+            let epoch = match time.first() {
+                Some(first) if first.abs() > EPOCH => first.floor(),
+                _ => 0.0,
+            };
+            (time.iter().map(|t| t - epoch).collect(), epoch)
+        }
+        // Taken off before they are numbers: a double has steps of 0.2 us by now.
+        Times::Nanoseconds(stamps) => {
+            let epoch = match stamps.first() {
+                Some(first) if *first as f64 > EPOCH * 1e9 => first.div_euclid(NANOSECONDS),
+                _ => 0,
+            };
+            let since = |stamp: &i64| (stamp - epoch * NANOSECONDS) as f64 * 1e-9;
+            (stamps.iter().map(since).collect(), epoch as f64)
+        }
+    }
+}
+
+/// Rows in SI, those left out that the map drops or that say nothing new.
+fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
+    let Rows {
+        channels,
+        time,
+        columns,
+        lines,
+        mut remarks,
+    } = rows;
+    let (time, epoch) = seconds(map, time);
+    let [first, last] = map.dropped;
+    let count = time.len();
+    let kept = first..count.saturating_sub(last);
+    if kept.len() < 2 {
+        return Err(ImportError::TooShort {
+            file: path.to_owned(),
+            rows: count,
+            dropped: first + last,
+        });
+    }
+    if first + last > 0 {
+        remarks.push(Remark::Dropped([first, last]));
+    }
+    let (mut taken, mut repeated, mut stamped) = (Vec::new(), Vec::new(), Vec::new());
+    let same = |a: f64, b: f64| a == b || (a.is_nan() && b.is_nan());
+    for row in kept {
+        if let Some(&before) = taken.last() {
+            if time[row] < time[before] {
+                return Err(ImportError::Time {
+                    file: path.to_owned(),
+                    line: lines[row],
+                    found: time[row],
+                    before: time[before],
+                });
+            }
+            if time[row] == time[before] {
+                let repeats = columns.iter().all(|c| same(c[row], c[before]));
+                if repeats { &mut repeated } else { &mut stamped }.push(lines[row]);
+                continue;
+            }
+        }
+        taken.push(row);
+    }
+    if taken.len() < 2 {
+        return Err(ImportError::Still {
+            file: path.to_owned(),
+            rows: count - first - last,
+        });
+    }
+    if !repeated.is_empty() {
+        remarks.push(Remark::Repeated(repeated));
+    }
+    if !stamped.is_empty() {
+        remarks.push(Remark::Stamped(stamped));
+    }
+    let time: Vec<f64> = taken.iter().map(|row| time[*row]).collect();
+    let series = channels.iter().zip(&columns).map(|(channel, numbers)| {
+        let channel = &map.channels[*channel];
+        Series {
+            time: time.clone(),
+            values: taken
+                .iter()
+                .map(|row| channel.to_si(numbers[*row]))
+                // An overflow is no value.
+                .map(|value| if value.is_finite() { value } else { f64::NAN })
+                .collect(),
+        }
+    });
+    Ok(Log {
+        series: series.collect(),
+        epoch,
+        remarks,
+    })
+}
+
+/// Where a map's columns stand among named or numbered ones.
+pub(super) fn places(
+    path: &Path,
+    map: &FileMap,
+    names: Option<&[String]>,
+    count: usize,
+) -> Result<(Option<usize>, Vec<usize>), ImportError> {
+    let place = |column: &Column| match column {
+        Column::Number(number) if *number <= count => Ok(number - 1),
+        Column::Number(_) => Err(ImportError::NoColumn {
+            file: path.to_owned(),
+            column: column.clone(),
+            there: format!("{count} columns"),
+        }),
+        Column::Name(name) => {
+            let found = names.and_then(|names| names.iter().position(|known| known == name));
+            found.ok_or_else(|| ImportError::NoColumn {
+                file: path.to_owned(),
+                column: column.clone(),
+                there: match names {
+                    Some(names) => nearest_first(name, names),
+                    None => format!("{count} columns without names: `names_line` says where they stand, or give a number"),
+                },
+            })
+        }
+    };
+    let time = map.time.as_ref().map(|time| place(&time.column));
+    let channels = map.channels.iter().map(|channel| place(&channel.column));
+    Ok((time.transpose()?, channels.collect::<Result<_, _>>()?))
+}
+
+/// The names there are, the nearest first.
+pub(super) fn nearest_first(wanted: &str, names: &[String]) -> String {
+    let wanted = wanted.to_lowercase();
+    let mut sorted: Vec<&String> = names.iter().collect();
+    sorted.sort_by(|a, b| {
+        let near = |name: &str| strsim::jaro_winkler(&wanted, &name.to_lowercase());
+        near(b).total_cmp(&near(a))
+    });
+    let listed = sorted.iter().take(LISTED);
+    let mut quoted: Vec<String> = listed.map(|name| format!("`{name}`")).collect();
+    if sorted.len() > LISTED {
+        quoted.push(format!("{} more", sorted.len() - LISTED));
+    }
+    quoted.join(", ")
+}

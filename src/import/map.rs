@@ -1,0 +1,186 @@
+//! The import map: which column of a log is what. A small TOML file, one for all logs of a kind.
+//!
+//!     SI value = unit(gain * number + offset)          negated where `reversed`; absolute where a pressure was gauge
+
+use std::path::PathBuf;
+
+use super::units::LogUnit;
+
+/// What a quantity ends with whose pressure is above the atmosphere.
+pub const GAUGE: &str = "_gauge";
+
+/// A map, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImportMap {
+    /// File that it was read from.
+    pub path: PathBuf,
+    /// Name for people.
+    pub title: String,
+    /// The logs that make one recording, the one whose clock counts first.
+    pub files: Vec<FileMap>,
+}
+
+/// One log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileMap {
+    /// Where it is, if the map says so.
+    pub path: Option<PathBuf>,
+    /// How it is written.
+    pub form: Form,
+    /// Rows left out at either end.
+    pub dropped: [usize; 2],
+    /// Is what can be read of a log that is cut off to be used?
+    pub accepts_truncated: bool,
+    /// Its clock.
+    pub clock: Clock,
+    /// Its times; none for the times at which an MCAP's messages were logged.
+    pub time: Option<TimeMap>,
+    /// Its channels.
+    pub channels: Vec<ChannelMap>,
+}
+
+/// How a log is written.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Form {
+    /// Text, a row a line.
+    Text(TextForm),
+    /// Parquet.
+    Parquet,
+    /// MATLAB's MAT, version 5.
+    Mat5,
+    /// MCAP with ROS 2 messages.
+    Mcap,
+}
+
+/// How a text is written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextForm {
+    /// What stands between fields.
+    pub separator: Separator,
+    /// What stands before the decimals.
+    pub decimal_mark: char,
+    /// Lines before the first row.
+    pub header_lines: usize,
+    /// The one of them, from 1, that names the columns.
+    pub names_line: Option<usize>,
+}
+
+/// What stands between fields.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Separator {
+    /// A character of ASCII.
+    Character(u8),
+    /// Any number of spaces and tabs.
+    Whitespace,
+    /// Nothing: each field has a width, in characters.
+    Widths(Vec<usize>),
+}
+
+/// A log's clock against that of the first.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Clock {
+    /// The same but for an offset that is added [s].
+    Shared {
+        /// Added to its times [s].
+        offset: f64,
+    },
+    /// Off by what is to be found.
+    Unknown {
+        /// A quantity of the first log and one of this that rise and fall together.
+        by: [String; 2],
+        /// Largest offset that is looked at [s].
+        largest: f64,
+    },
+}
+
+/// A column by its number from 1, or by its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Column {
+    /// Number.
+    Number(usize),
+    /// Name.
+    Name(String),
+}
+
+impl std::fmt::Display for Column {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "column {number}"),
+            Self::Name(name) => write!(f, "column `{name}`"),
+        }
+    }
+}
+
+/// A log's times.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimeMap {
+    /// Where.
+    pub column: Column,
+    /// In what; none for stamps, which say it themselves.
+    pub unit: Option<&'static LogUnit>,
+    /// A mark that stands before every third digit and means nothing.
+    pub thousands_mark: Option<char>,
+}
+
+/// A log's channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelMap {
+    /// What it is; ends with `_gauge` where it is a pressure above the atmosphere.
+    pub quantity: String,
+    /// Where.
+    pub column: Column,
+    /// In what, after gain and offset.
+    pub unit: &'static LogUnit,
+    /// What a number is multiplied by, as of a sensor in volts.
+    pub gain: f64,
+    /// What is added then, in the unit.
+    pub offset: f64,
+    /// Is the log's sign the other one?
+    pub reversed: bool,
+    /// Against what the log's pressure is, where it is one.
+    pub pressure: Option<Pressure>,
+    /// What is added in SI: the atmosphere, or less it, where log and quantity differ [Pa].
+    pub above: f64,
+}
+
+/// Against what a pressure is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pressure {
+    /// The atmosphere.
+    Gauge,
+    /// Nothing.
+    Absolute,
+}
+
+impl ChannelMap {
+    /// A number of the log in SI.
+    #[must_use]
+    pub fn to_si(&self, number: f64) -> f64 {
+        let value = self.unit.to_si(self.gain * number + self.offset);
+        self.above + if self.reversed { -value } else { value }
+    }
+
+    /// Is a number taken as it stands, its unit apart?
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.gain == 1.0 && self.offset == 0.0
+    }
+}
+
+#[cfg(test)]
+impl ChannelMap {
+    /// A channel without gain, its pressure gauge, for tests.
+    pub(super) fn as_it_stands(quantity: &str, unit: &str) -> Self {
+        let unit = super::units::named(unit).expect("tests name units that are there");
+        Self {
+            quantity: quantity.to_owned(),
+            column: Column::Number(2),
+            unit,
+            gain: 1.0,
+            offset: 0.0,
+            reversed: false,
+            pressure: (unit.si == crate::recording::Unit::Pascal).then_some(Pressure::Gauge),
+            above: 0.0,
+        }
+    }
+}

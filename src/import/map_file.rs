@@ -1,0 +1,532 @@
+//! The import map's file: its keys, and what of them does not fit.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, Unexpected, Visitor};
+
+use super::kinds;
+use super::map::{
+    ChannelMap, Clock, Column, FileMap, Form, GAUGE, ImportMap, Pressure, Separator, TextForm,
+    TimeMap,
+};
+use super::units::{self, LogUnit};
+use crate::recording::Unit;
+use crate::scenario::ScenarioError;
+use crate::scenario::check::Section;
+use crate::scenario::document::{Document, read_text};
+use crate::scenario::sections::keys;
+
+/// Version of the format.
+const SCHEMA: u32 = 1;
+/// Atmosphere where the map says nothing [Pa].
+const STANDARD_ATMOSPHERE: f64 = 101_325.0;
+
+/// The file as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MapFile {
+    #[allow(dead_code, reason = "checked by Document::new")]
+    schema: u32,
+    title: String,
+    atmosphere_pa: Option<f64>,
+    file: Vec<FileKeys>,
+}
+
+/// `[[file]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileKeys {
+    path: Option<PathBuf>,
+    form: FormKey,
+    separator: Option<String>,
+    field_widths: Option<Vec<usize>>,
+    decimal_mark: Option<String>,
+    header_lines: Option<usize>,
+    names_line: Option<usize>,
+    drop_first_rows: Option<usize>,
+    drop_last_rows: Option<usize>,
+    accept_truncated: Option<bool>,
+    clock: Option<ClockKey>,
+    clock_offset_s: Option<f64>,
+    aligned_by: Option<[String; 2]>,
+    largest_offset_s: Option<f64>,
+    time: Option<TimeKeys>,
+    channel: Vec<ChannelKeys>,
+}
+
+/// `form`.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum FormKey {
+    Text,
+    Parquet,
+    Mat5,
+    Mcap,
+}
+
+/// `clock`.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum ClockKey {
+    Shared,
+    Unknown,
+}
+
+/// `[file.time]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TimeKeys {
+    column: ColumnKey,
+    unit: Option<String>,
+    thousands_mark: Option<String>,
+}
+
+/// `[[file.channel]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ChannelKeys {
+    quantity: String,
+    column: ColumnKey,
+    unit: String,
+    gain: Option<f64>,
+    offset: Option<f64>,
+    reversed: Option<bool>,
+    pressure: Option<PressureKey>,
+}
+
+/// A column by its number from 1, or by its name.
+#[derive(Debug)]
+struct ColumnKey(Column);
+
+impl<'de> Deserialize<'de> for ColumnKey {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ColumnVisitor)
+    }
+}
+
+/// Reads a column's number or name.
+struct ColumnVisitor;
+
+impl Visitor<'_> for ColumnVisitor {
+    type Value = ColumnKey;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a column's number from 1, or its name in quotes")
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<ColumnKey, E> {
+        match usize::try_from(number) {
+            Ok(number) if number > 0 => Ok(ColumnKey(Column::Number(number))),
+            _ => Err(E::invalid_value(Unexpected::Signed(number), &self)),
+        }
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<ColumnKey, E> {
+        if name.trim().is_empty() {
+            return Err(E::invalid_value(Unexpected::Str(name), &self));
+        }
+        Ok(ColumnKey(Column::Name(name.to_owned())))
+    }
+}
+
+/// `pressure`.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum PressureKey {
+    Gauge,
+    Absolute,
+}
+
+/// Reads and checks a map.
+///
+/// # Errors
+/// File, line, column and key of what is wrong, what was found and what was expected.
+pub fn load_map(path: &Path) -> Result<ImportMap, ScenarioError> {
+    let text = read_text(path)?;
+    let document = Document::new(path, &text, SCHEMA)?;
+    let keys: MapFile = document.parse(&sections())?;
+    let top = Section::new(&document, "");
+    let atmosphere = top.number_or(
+        "atmosphere_pa",
+        keys.atmosphere_pa,
+        STANDARD_ATMOSPHERE,
+        3e4..=1.2e5,
+    )?;
+    let mut files = Vec::new();
+    for (index, file) in keys.file.iter().enumerate() {
+        files.push(file_map(&document, index, file, atmosphere)?);
+    }
+    if files.is_empty() {
+        return Err(top.missing("file", "one [[file]] at least"));
+    }
+    let map = ImportMap {
+        path: path.to_owned(),
+        title: top.text("title", &keys.title)?,
+        files,
+    };
+    check_together(&document, &map)?;
+    Ok(map)
+}
+
+fn sections() -> Vec<(&'static str, &'static [&'static str])> {
+    vec![
+        ("", keys::<MapFile>()),
+        ("file", keys::<FileKeys>()),
+        ("file.time", keys::<TimeKeys>()),
+        ("file.channel", keys::<ChannelKeys>()),
+    ]
+}
+
+fn file_map(
+    document: &Document<'_>,
+    index: usize,
+    keys: &FileKeys,
+    atmosphere: f64,
+) -> Result<FileMap, ScenarioError> {
+    let table = format!("file[{index}]");
+    let section = Section::new(document, table.clone());
+    let time = keys
+        .time
+        .as_ref()
+        .map(|time| time_map(document, &table, keys.form, time))
+        .transpose()?;
+    if time.is_none() && !matches!(keys.form, FormKey::Mcap) {
+        return Err(section.missing("time", "the column that holds the times, and its unit"));
+    }
+    if keys.channel.is_empty() {
+        return Err(section.missing("channel", "one [[file.channel]] at least"));
+    }
+    if keys.accept_truncated.is_some() && matches!(keys.form, FormKey::Parquet) {
+        let reason = "a Parquet file that is cut off cannot be read at all".to_owned();
+        return Err(section.misplaced("accept_truncated", reason));
+    }
+    let channels = keys.channel.iter().enumerate();
+    Ok(FileMap {
+        path: keys.path.as_ref().map(|path| document.folder().join(path)),
+        form: form(&section, keys)?,
+        dropped: [
+            keys.drop_first_rows.unwrap_or(0),
+            keys.drop_last_rows.unwrap_or(0),
+        ],
+        accepts_truncated: keys.accept_truncated.unwrap_or(false),
+        clock: clock(&section, index, keys)?,
+        time,
+        channels: channels
+            .map(|(i, channel)| {
+                channel_map(
+                    document,
+                    format!("{table}.channel[{i}]"),
+                    channel,
+                    atmosphere,
+                )
+            })
+            .collect::<Result<_, _>>()?,
+    })
+}
+
+fn form(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
+    let of_text = [
+        ("separator", keys.separator.is_some()),
+        ("field_widths", keys.field_widths.is_some()),
+        ("decimal_mark", keys.decimal_mark.is_some()),
+        ("header_lines", keys.header_lines.is_some()),
+        ("names_line", keys.names_line.is_some()),
+    ];
+    let other = match keys.form {
+        FormKey::Text => return text_form(section, keys).map(Form::Text),
+        FormKey::Parquet => Form::Parquet,
+        FormKey::Mat5 => Form::Mat5,
+        FormKey::Mcap => Form::Mcap,
+    };
+    match of_text.iter().find(|(_, given)| *given) {
+        Some((key, _)) => Err(section.misplaced(key, "only a text has it".to_owned())),
+        None => Ok(other),
+    }
+}
+
+fn text_form(section: &Section<'_>, keys: &FileKeys) -> Result<TextForm, ScenarioError> {
+    let separator = match (&keys.separator, &keys.field_widths) {
+        (Some(_), Some(_)) => {
+            let reason = "fields have widths, or something between them".to_owned();
+            return Err(section.misplaced("field_widths", reason));
+        }
+        (None, Some(widths)) if widths.is_empty() || widths.contains(&0) => {
+            let expected = "a width of at least 1 for each field".to_owned();
+            return Err(section.refuse("field_widths", format!("{widths:?}"), expected));
+        }
+        (None, Some(widths)) => Separator::Widths(widths.clone()),
+        (None, None) => Separator::Character(b','),
+        (Some(name), None) => match name.as_str() {
+            "whitespace" => Separator::Whitespace,
+            "tab" => Separator::Character(b'\t'),
+            name => {
+                let character = single(section, "separator", name, "\"whitespace\" or \"tab\"")?;
+                Separator::Character(u8::try_from(character).map_err(|_| {
+                    let expected = "a character of ASCII".to_owned();
+                    section.refuse("separator", format!("{name:?}"), expected)
+                })?)
+            }
+        },
+    };
+    let header_lines = keys
+        .header_lines
+        .unwrap_or(usize::from(keys.names_line.is_some()));
+    if let Some(line) = keys.names_line {
+        section.count("names_line", line, 1..=header_lines.max(1))?;
+    }
+    let decimal_mark = match &keys.decimal_mark {
+        Some(mark) => single(section, "decimal_mark", mark, "such as \".\" or \",\"")?,
+        None => '.',
+    };
+    if u8::try_from(decimal_mark).is_ok_and(|mark| separator == Separator::Character(mark)) {
+        let expected = "another character than between fields".to_owned();
+        return Err(section.refuse("decimal_mark", format!("{decimal_mark:?}"), expected));
+    }
+    Ok(TextForm {
+        separator,
+        decimal_mark,
+        header_lines,
+        names_line: keys.names_line,
+    })
+}
+
+/// A text of one character.
+fn single(
+    section: &Section<'_>,
+    key: &str,
+    text: &str,
+    besides: &str,
+) -> Result<char, ScenarioError> {
+    let mut characters = text.chars();
+    match (characters.next(), characters.next()) {
+        (Some(character), None) => Ok(character),
+        _ => Err(section.refuse(
+            key,
+            format!("{text:?}"),
+            format!("one character, {besides}"),
+        )),
+    }
+}
+
+fn clock(section: &Section<'_>, index: usize, keys: &FileKeys) -> Result<Clock, ScenarioError> {
+    match keys.clock.unwrap_or(ClockKey::Shared) {
+        ClockKey::Shared => {
+            for (key, given) in [
+                ("aligned_by", keys.aligned_by.is_some()),
+                ("largest_offset_s", keys.largest_offset_s.is_some()),
+            ] {
+                if given {
+                    let reason = "the clock is shared; \"unknown\" has it found".to_owned();
+                    return Err(section.misplaced(key, reason));
+                }
+            }
+            let offset =
+                section.number_or("clock_offset_s", keys.clock_offset_s, 0.0, -1e9..=1e9)?;
+            Ok(Clock::Shared { offset })
+        }
+        ClockKey::Unknown if index == 0 => {
+            let reason = "the first file's clock is the recording's".to_owned();
+            Err(section.misplaced("clock", reason))
+        }
+        ClockKey::Unknown => {
+            if keys.clock_offset_s.is_some() {
+                let reason = "the clock is unknown; \"shared\" has an offset".to_owned();
+                return Err(section.misplaced("clock_offset_s", reason));
+            }
+            let Some(by) = keys.aligned_by.clone() else {
+                let expected =
+                    "a quantity of the first file and one of this that rise and fall together";
+                return Err(section.missing("aligned_by", expected));
+            };
+            let largest = section.number_or(
+                "largest_offset_s",
+                keys.largest_offset_s,
+                10.0,
+                1e-3..=3600.0,
+            )?;
+            Ok(Clock::Unknown { by, largest })
+        }
+    }
+}
+
+fn time_map(
+    document: &Document<'_>,
+    table: &str,
+    form: FormKey,
+    keys: &TimeKeys,
+) -> Result<TimeMap, ScenarioError> {
+    let section = Section::new(document, format!("{table}.time"));
+    if keys.unit.is_none() && matches!(form, FormKey::Text | FormKey::Mat5) {
+        let expected = format!("one of {}", units::of_kind(Unit::Second).join(", "));
+        return Err(section.missing("unit", &expected));
+    }
+    if keys.thousands_mark.is_some() && !matches!(form, FormKey::Text) {
+        return Err(section.misplaced("thousands_mark", "only a text has it".to_owned()));
+    }
+    let mark = |text: &String| single(&section, "thousands_mark", text, "such as \".\" or \"'\"");
+    Ok(TimeMap {
+        column: keys.column.0.clone(),
+        unit: match &keys.unit {
+            Some(name) => Some(unit(&section, name, Some(&[Unit::Second]))?),
+            None => None,
+        },
+        thousands_mark: keys.thousands_mark.as_ref().map(mark).transpose()?,
+    })
+}
+
+fn channel_map(
+    document: &Document<'_>,
+    table: String,
+    keys: &ChannelKeys,
+    atmosphere: f64,
+) -> Result<ChannelMap, ScenarioError> {
+    let section = Section::new(document, table);
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if keys.quantity.is_empty() || !keys.quantity.chars().all(plain) {
+        let expected = "a name of small letters, digits and underscores, without a unit".to_owned();
+        return Err(section.refuse("quantity", format!("{:?}", keys.quantity), expected));
+    }
+    let kinds = kinds::of_quantity(&keys.quantity);
+    let unit = unit(&section, &keys.unit, kinds.as_deref())?;
+    let gauge = keys.quantity.ends_with(GAUGE);
+    let above = match (unit.si, keys.pressure) {
+        (Unit::Pascal, None) => {
+            let expected = "\"gauge\" or \"absolute\": what the log holds";
+            return Err(section.missing("pressure", expected));
+        }
+        (Unit::Pascal, Some(PressureKey::Gauge)) if !gauge => atmosphere,
+        (Unit::Pascal, Some(PressureKey::Absolute)) if gauge => -atmosphere,
+        (Unit::Pascal, Some(_)) | (_, None) => 0.0,
+        (_, Some(_)) => {
+            let reason = format!("{} is no unit of a pressure", unit.name);
+            return Err(section.misplaced("pressure", reason));
+        }
+    };
+    Ok(ChannelMap {
+        quantity: keys.quantity.clone(),
+        column: keys.column.0.clone(),
+        unit,
+        gain: gain(&section, keys.gain)?,
+        offset: section.number_or("offset", keys.offset, 0.0, -1e12..=1e12)?,
+        reversed: keys.reversed.unwrap_or(false),
+        pressure: keys.pressure.map(|pressure| match pressure {
+            PressureKey::Gauge => Pressure::Gauge,
+            PressureKey::Absolute => Pressure::Absolute,
+        }),
+        above,
+    })
+}
+
+fn gain(section: &Section<'_>, given: Option<f64>) -> Result<f64, ScenarioError> {
+    match given {
+        Some(gain) if gain == 0.0 || !gain.is_finite() => Err(section.refuse(
+            "gain",
+            gain.to_string(),
+            "a number other than 0; `reversed = true` for the other sign".to_owned(),
+        )),
+        given => Ok(given.unwrap_or(1.0)),
+    }
+}
+
+/// A unit of one of these kinds, or of any.
+fn unit(
+    section: &Section<'_>,
+    name: &str,
+    kinds: Option<&[Unit]>,
+) -> Result<&'static LogUnit, ScenarioError> {
+    let known = units::named(name);
+    let fits = |unit: &&LogUnit| kinds.is_none_or(|kinds| kinds.contains(&unit.si));
+    known.filter(fits).ok_or_else(|| {
+        let of_kinds = |kinds: &[Unit]| {
+            kinds
+                .iter()
+                .flat_map(|kind| units::of_kind(*kind))
+                .collect()
+        };
+        let fitting: Vec<&str> = match kinds {
+            Some(kinds) => of_kinds(kinds),
+            None => units::UNITS.iter().map(|unit| unit.name).collect(),
+        };
+        let volts = match known {
+            Some(unit) if unit.si == Unit::Volt => {
+                "; of a sensor in volts the unit is what its `gain` makes of them"
+            }
+            _ => "",
+        };
+        let expected = format!("one of {}{volts}", fitting.join(", "));
+        section.refuse("unit", format!("{name:?}"), expected)
+    })
+}
+
+/// Every quantity once, and clocks aligned by quantities that are there.
+fn check_together(document: &Document<'_>, map: &ImportMap) -> Result<(), ScenarioError> {
+    let mut seen: Vec<&str> = Vec::new();
+    for (index, file) in map.files.iter().enumerate() {
+        let table = format!("file[{index}]");
+        for (i, channel) in file.channels.iter().enumerate() {
+            if seen.contains(&channel.quantity.as_str()) {
+                let section = Section::new(document, format!("{table}.channel[{i}]"));
+                let expected = "every quantity once".to_owned();
+                return Err(section.refuse(
+                    "quantity",
+                    format!("{:?}", channel.quantity),
+                    expected,
+                ));
+            }
+            seen.push(&channel.quantity);
+        }
+        let Clock::Unknown { by, .. } = &file.clock else {
+            continue;
+        };
+        for (k, (owner, name)) in [&map.files[0], file].into_iter().zip(by).enumerate() {
+            if !owner.channels.iter().any(|c| c.quantity == *name) {
+                let section = Section::new(document, table.clone());
+                let names: Vec<&str> = owner.channels.iter().map(|c| c.quantity.as_str()).collect();
+                let which = ["the first file", "this file"][k];
+                let expected = format!("a quantity of {which}: {}", names.join(", "));
+                return Err(section.refuse("aligned_by", format!("{name:?}"), expected));
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAGE: &str = include_str!("../../assets/import/README.md");
+
+    #[test]
+    fn the_page_of_maps_names_every_key_and_unit() {
+        for (table, keys) in sections() {
+            for key in keys {
+                assert!(PAGE.contains(&format!("`{key}`")), "{table}: {key}");
+            }
+        }
+        for unit in units::UNITS {
+            assert!(PAGE.contains(&format!("`{}`", unit.name)), "{}", unit.name);
+        }
+    }
+
+    #[test]
+    fn the_map_on_the_page_is_one() {
+        let start = PAGE.find("    schema = 1").unwrap();
+        let end = PAGE.find("    value in SI").unwrap();
+        let text: String = PAGE[start..end]
+            .lines()
+            .map(|line| line.trim_start().to_owned() + "\n")
+            .collect();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.toml");
+        std::fs::write(&path, text).unwrap();
+        let map = load_map(&path).unwrap_or_else(|error| panic!("{error}"));
+        let [file] = &map.files[..] else {
+            panic!("{map:?}")
+        };
+        // 50 N/V of 0.15 V less 2.5 N.
+        assert!((file.channels[0].to_si(0.15) - 5.0).abs() < 1e-12);
+        assert_eq!(file.channels[1].to_si(3.0), 3e5);
+    }
+}

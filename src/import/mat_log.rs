@@ -1,0 +1,207 @@
+//! A log as MATLAB's MAT file of version 5: arrays with names.
+//!
+//!     header of 128 bytes, then elements: kind [4 bytes], length [4 bytes], content; padded to 8 bytes unless it is compressed
+//!
+//! (MathWorks, MAT-File Format). The elements are told apart here, so that a file that is cut off is known as such and an array that cannot be
+//! read does not take the others with it; `matfile` reads each.
+
+use std::io::Read;
+use std::path::Path;
+
+use flate2::read::ZlibDecoder;
+use matfile::{MatFile, NumericData};
+
+use super::error::ImportError;
+use super::log::{Remark, Rows, Times, places};
+use super::map::{Column, FileMap};
+
+const HEADER: usize = 128;
+const TAG: usize = 8;
+/// Kind of an element that is a compressed one.
+const COMPRESSED: u32 = 15;
+
+/// A column of an array, with its name.
+struct NamedColumn {
+    name: String,
+    values: Vec<f64>,
+}
+
+/// What a file holds.
+#[derive(Default)]
+struct Contents {
+    columns: Vec<NamedColumn>,
+    /// Arrays that hold no numbers, or none that are read.
+    others: usize,
+    /// Does it end within an element?
+    torn: bool,
+}
+
+/// Reads the arrays of a file as columns.
+pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
+    let fail = |cause: String| ImportError::Read {
+        file: path.to_owned(),
+        cause,
+    };
+    let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
+    let contents = contents(&bytes).map_err(fail)?;
+    let names: Vec<String> = contents.columns.iter().map(|c| c.name.clone()).collect();
+    let mut remarks = Vec::new();
+    if contents.torn {
+        let found = "it ends within an array".to_owned();
+        let rest = match &names[..] {
+            [] => "no array before that can be read".to_owned(),
+            names => format!("{} can be read", names.join(", ")),
+        };
+        if !map.accepts_truncated {
+            return Err(ImportError::Truncated {
+                file: path.to_owned(),
+                found,
+                rest,
+                advice: "`accept_truncated = true` in the map's [[file]] uses them if they are all that it names"
+                    .to_owned(),
+            });
+        }
+        remarks.push(Remark::Truncated(format!("it is cut off: {found}; {rest}")));
+    }
+    let (time_place, channel_places) =
+        places(path, map, Some(&names), names.len()).map_err(|error| match error {
+            ImportError::NoColumn {
+                file,
+                column,
+                there,
+            } if contents.others > 0 => ImportError::NoColumn {
+                file,
+                column,
+                there: format!(
+                    "{there}, and {} that are no arrays of real numbers (structures, cells, texts, int32 or int64)",
+                    contents.others
+                ),
+            },
+            other => other,
+        })?;
+    let values = |place: usize| contents.columns[place].values.as_slice();
+    let time = time_place.map_or(&[][..], values);
+    let time_column = map.time.as_ref().map(|time| time.column.clone());
+    if let Some(row) = time.iter().position(|time| !time.is_finite()) {
+        return Err(ImportError::Number {
+            file: path.to_owned(),
+            line: row as u64 + 1,
+            column: time_column.unwrap_or(Column::Number(1)),
+            found: time[row].to_string(),
+            expected: "a time".to_owned(),
+        });
+    }
+    let mut columns = Vec::new();
+    for (place, channel) in channel_places.iter().zip(&map.channels) {
+        let values = values(*place);
+        if values.len() != time.len() {
+            return Err(ImportError::Length {
+                file: path.to_owned(),
+                column: channel.column.clone(),
+                found: values.len(),
+                expected: time.len(),
+            });
+        }
+        columns.push(values.to_vec());
+    }
+    Ok(Rows {
+        channels: (0..map.channels.len()).collect(),
+        lines: (1..=time.len() as u64).collect(),
+        time: Times::Numbers(time.to_vec()),
+        columns,
+        remarks,
+    })
+}
+
+/// Tells a file's elements apart and reads them one by one.
+fn contents(bytes: &[u8]) -> Result<Contents, String> {
+    let is_hdf = bytes.starts_with(b"\x89HDF") || bytes.get(512..516) == Some(b"\x89HDF");
+    if is_hdf || bytes.starts_with(b"MATLAB 7.3") {
+        return Err(
+            "it is of version 7.3, expected 5 to 7: in MATLAB, save(file, '-v7') writes that"
+                .to_owned(),
+        );
+    }
+    let number: fn([u8; 4]) -> u32 = match bytes.get(124..HEADER) {
+        Some([0, 1, b'I', b'M']) => u32::from_le_bytes,
+        Some([1, 0, b'M', b'I']) => u32::from_be_bytes,
+        _ => {
+            return Err("it is no MAT file of version 5: its header is not that of one".to_owned());
+        }
+    };
+    let header = &bytes[..HEADER];
+    let mut found = Contents::default();
+    let mut rest = &bytes[HEADER..];
+    while !rest.is_empty() {
+        let Some((tag, content)) = rest.split_at_checked(TAG) else {
+            found.torn = true;
+            break;
+        };
+        let word = |from: usize| number([tag[from], tag[from + 1], tag[from + 2], tag[from + 3]]);
+        let (kind, length) = (word(0), word(4) as usize);
+        let Some((own, after)) = content.split_at_checked(length) else {
+            found.torn = true;
+            break;
+        };
+        let padding = if kind == COMPRESSED {
+            0
+        } else {
+            length.next_multiple_of(8) - length
+        };
+        rest = after.get(padding..).unwrap_or_default();
+        let element = if kind == COMPRESSED {
+            let mut plain = Vec::new();
+            let read = ZlibDecoder::new(own).read_to_end(&mut plain);
+            read.map_err(|cause| format!("an array in it is damaged: {cause}"))?;
+            plain
+        } else {
+            [tag, own].concat()
+        };
+        note(&[header, &element].concat(), &mut found);
+    }
+    Ok(found)
+}
+
+/// Notes the columns of the one array in a file.
+fn note(file: &[u8], found: &mut Contents) {
+    let read = MatFile::parse(file).ok();
+    let Some(array) = read.as_ref().and_then(|file| file.arrays().first()) else {
+        found.others += 1;
+        return;
+    };
+    let Some(values) = numbers(array.data()) else {
+        found.others += 1;
+        return;
+    };
+    let name = array.name();
+    match array.size()[..] {
+        [rows, columns] if rows > 1 && columns > 1 => {
+            for (index, column) in values.chunks(rows).enumerate() {
+                found.columns.push(NamedColumn {
+                    name: format!("{name}(:,{})", index + 1),
+                    values: column.to_vec(),
+                });
+            }
+        }
+        [_, _] => found.columns.push(NamedColumn {
+            name: name.to_owned(),
+            values,
+        }),
+        _ => found.others += 1,
+    }
+}
+
+/// Numbers of an array; none where they are complex.
+fn numbers(data: &NumericData) -> Option<Vec<f64>> {
+    macro_rules! real {
+        ($($kind:ident),*) => {
+            match data {
+                $(NumericData::$kind { real, imag: None } => Some(real.iter().map(|v| f64::from(*v)).collect()),)*
+                NumericData::Int64 { real, imag: None } => Some(real.iter().map(|v| *v as f64).collect()),
+                NumericData::UInt64 { real, imag: None } => Some(real.iter().map(|v| *v as f64).collect()),
+                _ => None,
+            }
+        };
+    }
+    real!(Int8, UInt8, Int16, UInt16, Int32, UInt32, Single, Double)
+}

@@ -1,0 +1,299 @@
+//! Fields of ROS 2 messages by their path, and their values in a message as CDR writes it.
+
+use re_cdr::{BigEndian, CdrReader, LittleEndian};
+use re_ros_msg::MessageSchema;
+use re_ros_msg::deserialize::primitive_array::PrimitiveArray;
+use re_ros_msg::deserialize::{MapResolver, TypeResolver, Value, decode_message};
+use re_ros_msg::message_spec::{ArraySize, BuiltInType, MessageSpecification, Type};
+
+/// Elements that are named of a list whose length only its messages know.
+const NAMED: usize = 2;
+/// Elements that are named of any list, at most.
+const MOST_NAMED: usize = 64;
+/// Depth of a message in messages that nobody has.
+const DEEPEST: usize = 32;
+
+/// What a topic's messages are.
+pub(super) struct Definition {
+    schema: MessageSchema,
+}
+
+/// A way into a message.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Field(Vec<Step>);
+
+/// A step of it.
+#[derive(Debug, Clone, PartialEq)]
+enum Step {
+    /// To a field.
+    Name(String),
+    /// To an element of a list, from 0.
+    Index(usize),
+}
+
+/// What a field holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A number, or true or false.
+    Number,
+    /// Seconds and nanoseconds.
+    Stamp,
+    /// Something else.
+    Other(&'static str),
+}
+
+impl Kind {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Stamp => "a stamp",
+            Self::Other(what) => what,
+        }
+    }
+}
+
+/// A message, read.
+pub(super) struct Message(Value);
+
+impl Definition {
+    /// Reads the definition of the messages of this name.
+    pub fn parse(name: &str, text: &str) -> Result<Self, String> {
+        let schema = MessageSchema::parse(name, text).map_err(|cause| format!("{cause:#}"))?;
+        Ok(Self { schema })
+    }
+
+    fn resolver(&self) -> MapResolver<'_> {
+        // Some writers name a message `package/msg/Name`, where others leave out the middle.
+        let short = |spec: &MessageSpecification| spec.name.replace("/msg/", "/");
+        let all = self.schema.dependencies.iter();
+        MapResolver::new(all.flat_map(|spec| [(spec.name.clone(), spec), (short(spec), spec)]))
+    }
+
+    /// The field of a path, and what it holds.
+    pub fn field(&self, path: &str) -> Option<(Field, Kind)> {
+        let steps = steps(path)?;
+        let resolver = self.resolver();
+        let mut scope = &self.schema.spec;
+        let mut inside: Option<&Type> = None;
+        for step in &steps {
+            match (step, inside) {
+                (Step::Name(name), None) => {
+                    inside = Some(&scope.fields.iter().find(|f| f.name == *name)?.ty);
+                }
+                (Step::Index(index), Some(Type::Array { ty, size })) => {
+                    if matches!(size, ArraySize::Fixed(length) if index >= length) {
+                        return None;
+                    }
+                    inside = Some(ty);
+                }
+                (Step::Name(name), Some(Type::Complex(kind))) => {
+                    scope = resolver.resolve(scope, kind)?;
+                    inside = Some(&scope.fields.iter().find(|f| f.name == *name)?.ty);
+                }
+                _ => return None,
+            }
+        }
+        let kind = match inside? {
+            Type::BuiltIn(BuiltInType::String(_) | BuiltInType::WString(_)) => {
+                Kind::Other("a text")
+            }
+            Type::BuiltIn(_) => Kind::Number,
+            Type::Array { .. } => Kind::Other("a list"),
+            Type::Complex(kind) => {
+                let spec = resolver.resolve(scope, kind)?;
+                let names: Vec<&str> = spec.fields.iter().map(|f| f.name.as_str()).collect();
+                if names == ["sec", "nanosec"] {
+                    Kind::Stamp
+                } else {
+                    Kind::Other("a message")
+                }
+            }
+        };
+        Some((Field(steps), kind))
+    }
+
+    /// Paths of all numbers.
+    pub fn numbers(&self) -> Vec<String> {
+        self.paths()
+            .into_iter()
+            .filter(|path| {
+                self.field(path)
+                    .is_some_and(|(_, kind)| kind == Kind::Number)
+            })
+            .collect()
+    }
+
+    /// Paths of all stamps.
+    pub fn times(&self) -> Vec<String> {
+        self.paths()
+            .into_iter()
+            .filter(|path| {
+                self.field(path)
+                    .is_some_and(|(_, kind)| kind == Kind::Stamp)
+            })
+            .collect()
+    }
+
+    /// All paths, of lists of unknown length the first elements.
+    fn paths(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        let resolver = self.resolver();
+        for field in &self.schema.spec.fields {
+            let start = field.name.clone();
+            walk(
+                &resolver,
+                &self.schema.spec,
+                &field.ty,
+                start,
+                0,
+                &mut found,
+            );
+        }
+        found
+    }
+
+    /// Reads a message.
+    pub fn decode(&self, data: &[u8]) -> Result<Message, String> {
+        // The encapsulation header of CDR (OMG DDS-RTPS 2.5, 10.2): its second byte says the byte order.
+        let body = data.get(4..).ok_or("it has no header")?;
+        let (spec, resolver) = (&self.schema.spec, self.resolver());
+        let value = match data[..2] {
+            [0, 0] => decode_message(&mut CdrReader::<BigEndian>::new(body), spec, &resolver),
+            [0, 1] => decode_message(&mut CdrReader::<LittleEndian>::new(body), spec, &resolver),
+            _ => {
+                return Err(format!(
+                    "its header is {:02x?}, expected plain CDR",
+                    &data[..2]
+                ));
+            }
+        };
+        value.map(Message).map_err(|cause| cause.to_string())
+    }
+}
+
+fn walk(
+    resolver: &MapResolver<'_>,
+    scope: &MessageSpecification,
+    ty: &Type,
+    path: String,
+    depth: usize,
+    found: &mut Vec<String>,
+) {
+    match ty {
+        Type::BuiltIn(_) => found.push(path),
+        Type::Array { ty, size } => {
+            let count = match size {
+                ArraySize::Fixed(count) => (*count).min(MOST_NAMED),
+                ArraySize::Bounded(_) | ArraySize::Unbounded => NAMED,
+            };
+            for index in 0..count {
+                walk(
+                    resolver,
+                    scope,
+                    ty,
+                    format!("{path}[{index}]"),
+                    depth,
+                    found,
+                );
+            }
+        }
+        Type::Complex(kind) => {
+            found.push(path.clone());
+            let Some(spec) = resolver.resolve(scope, kind).filter(|_| depth < DEEPEST) else {
+                return;
+            };
+            for field in &spec.fields {
+                let inner = format!("{path}.{}", field.name);
+                walk(resolver, spec, &field.ty, inner, depth + 1, found);
+            }
+        }
+    }
+}
+
+/// `wrench.force.z`, `position[1]`.
+fn steps(path: &str) -> Option<Vec<Step>> {
+    let mut steps = Vec::new();
+    for part in path.split('.') {
+        let mut pieces = part.split('[');
+        let name = pieces.next().filter(|name| !name.is_empty())?;
+        steps.push(Step::Name(name.to_owned()));
+        for piece in pieces {
+            steps.push(Step::Index(piece.strip_suffix(']')?.parse().ok()?));
+        }
+    }
+    Some(steps)
+}
+
+impl Message {
+    fn value(&self, steps: &[Step]) -> Option<&Value> {
+        let mut value = &self.0;
+        for step in steps {
+            value = match (step, value) {
+                (Step::Name(name), Value::Message(fields)) => fields.get(name)?,
+                (Step::Index(index), Value::Array(all) | Value::Sequence(all)) => {
+                    all.get(*index)?
+                }
+                _ => return None,
+            };
+        }
+        Some(value)
+    }
+
+    /// A field's number; none where a list has no such element.
+    pub fn number(&self, field: &Field) -> Option<f64> {
+        if let Some((Step::Index(index), before)) = field.0.split_last()
+            && let Some(Value::PrimitiveArray(all) | Value::PrimitiveSeq(all)) = self.value(before)
+        {
+            return element(all, *index);
+        }
+        scalar(self.value(&field.0)?)
+    }
+
+    /// A field's stamp [ns].
+    pub fn stamp(&self, field: &Field) -> Option<i64> {
+        let Value::Message(fields) = self.value(&field.0)? else {
+            return None;
+        };
+        let whole = |name: &str| match fields.get(name)? {
+            Value::I32(v) => Some(i64::from(*v)),
+            Value::U32(v) => Some(i64::from(*v)),
+            _ => None,
+        };
+        Some(whole("sec")? * 1_000_000_000 + whole("nanosec")?)
+    }
+}
+
+fn scalar(value: &Value) -> Option<f64> {
+    Some(match value {
+        Value::Bool(v) => f64::from(u8::from(*v)),
+        Value::I8(v) => f64::from(*v),
+        Value::U8(v) => f64::from(*v),
+        Value::I16(v) => f64::from(*v),
+        Value::U16(v) => f64::from(*v),
+        Value::I32(v) => f64::from(*v),
+        Value::U32(v) => f64::from(*v),
+        Value::I64(v) => *v as f64,
+        Value::U64(v) => *v as f64,
+        Value::F32(v) => f64::from(*v),
+        Value::F64(v) => *v,
+        _ => return None,
+    })
+}
+
+fn element(all: &PrimitiveArray, index: usize) -> Option<f64> {
+    Some(match all {
+        PrimitiveArray::Bool(v) => f64::from(u8::from(*v.get(index)?)),
+        PrimitiveArray::I8(v) => f64::from(*v.get(index)?),
+        PrimitiveArray::U8(v) => f64::from(*v.get(index)?),
+        PrimitiveArray::I16(v) => f64::from(*v.get(index)?),
+        PrimitiveArray::U16(v) => f64::from(*v.get(index)?),
+        PrimitiveArray::I32(v) => f64::from(*v.get(index)?),
+        PrimitiveArray::U32(v) => f64::from(*v.get(index)?),
+        PrimitiveArray::I64(v) => *v.get(index)? as f64,
+        PrimitiveArray::U64(v) => *v.get(index)? as f64,
+        PrimitiveArray::F32(v) => f64::from(*v.get(index)?),
+        PrimitiveArray::F64(v) => *v.get(index)?,
+        PrimitiveArray::String(_) => return None,
+    })
+}

@@ -1,0 +1,22 @@
+//! Logs of real devices, as their makers wrote them, made into recordings: a map says which column is what.
+
+pub mod assemble;
+pub mod clock;
+pub mod doubts;
+pub mod error;
+pub mod findings;
+pub mod kinds;
+pub mod log;
+pub mod map;
+pub mod map_file;
+mod mat_log;
+mod mcap_log;
+mod parquet_log;
+mod text;
+pub mod units;
+
+pub use assemble::{Imported, LogNote, import};
+pub use error::ImportError;
+pub use log::{Log, Remark, Series, read_log};
+pub use map::ImportMap;
+pub use map_file::load_map;
