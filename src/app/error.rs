@@ -158,6 +158,14 @@ pub enum AppError {
         /// Which run, and what was expected.
         source: NoContact,
     },
+    /// A pattern that no recording fits.
+    #[error("{file}: `recordings.fit` has {pattern:?}, which no file beside it fits")]
+    NoneLike {
+        /// Rig file.
+        file: String,
+        /// The pattern.
+        pattern: String,
+    },
     /// A rig file that carries a term without a name already.
     #[error(
         "{file} holds [latent], a term that a diagnosis found; expected the rig file as believed, to diagnose from (idc predict takes this one)"

@@ -254,10 +254,40 @@ fn flange_work(rig: RigFile, folder: &Path) -> Result<Work, AppError> {
         Ok((name.clone(), run.shown().map_err(refused)?))
     };
     Ok(Work::Flange {
-        runs: rig.fit.iter().map(shown).collect::<Result<_, _>>()?,
+        runs: to_fit(&rig, folder)?
+            .iter()
+            .map(shown)
+            .collect::<Result<_, _>>()?,
         unseen: rig.predict.as_ref().map(shown).transpose()?,
         rig: Box::new(rig),
     })
+}
+
+/// Names of the recordings to diagnose from; one with a star stands for all in the folder that fit it, but the one to be predicted, in order.
+fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, AppError> {
+    let mut names: Vec<String> = Vec::new();
+    for name in &rig.fit {
+        let Some((before, after)) = name.split_once('*') else {
+            names.push(name.clone());
+            continue;
+        };
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut found: Vec<String> = entries
+            .filter_map(|entry| entry.file_name().into_string().ok())
+            .filter(|file| file.len() >= before.len() + after.len())
+            .filter(|file| file.starts_with(before) && file.ends_with(after))
+            .filter(|file| rig.predict.as_ref() != Some(file) && !names.contains(file))
+            .collect();
+        if found.is_empty() {
+            return Err(AppError::NoneLike {
+                file: rig.path.display().to_string(),
+                pattern: name.clone(),
+            });
+        }
+        found.sort_unstable();
+        names.append(&mut found);
+    }
+    Ok(names)
 }
 
 /// Writes what the runs of a contact flange show.
@@ -385,7 +415,10 @@ fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
             ))
             .collect(),
         noise: rig.noise,
-        recordings: rig.fit.iter().map(read).collect::<Result<_, _>>()?,
+        recordings: to_fit(rig, folder)?
+            .iter()
+            .map(read)
+            .collect::<Result<_, _>>()?,
         unseen: rig.predict.as_ref().map(read).transpose()?,
         candidates: candidates(rig.plant.chain),
         shown: Vec::new(),
