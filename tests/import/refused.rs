@@ -235,7 +235,9 @@ fn columns_that_a_parquet_or_a_mat_file_does_not_have() {
     refused(
         &folder,
         &["log.mat"],
-        &["no column `data`; there are `data(:,1)`, `data(:,2)`, `t`, and 1 that are no arrays"],
+        &[
+            "no column `data`; there are `data(:,1)`, `data(:,2)`, `t`, `u`, and 1 that are no arrays",
+        ],
     );
     folder.write("log.mat", b"MATLAB 7.3 MAT-file");
     refused(&folder, &["log.mat"], &["version 7.3", "'-v7'"]);
@@ -425,7 +427,7 @@ fn a_mat_file_that_is_cut_off() {
         &folder,
         &["log.mat"],
         &[
-            "log.mat is cut off: it ends within an array; t can be read",
+            "log.mat is cut off: it ends within an array; t, u can be read",
             "accept_truncated",
         ],
     );
