@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::There;
+use super::bag::{Message, There};
 use super::field::{Definition, Field, Kind};
 use crate::import::error::ImportError;
 use crate::import::log::{Remark, Rows, Times, nearest_first};
@@ -242,25 +242,20 @@ fn time_field(
 
 impl Topic {
     /// Reads the fields of a message.
-    pub fn take(
-        &mut self,
-        path: &Path,
-        number: u64,
-        message: &mcap::Message<'_>,
-    ) -> Result<(), ImportError> {
+    pub fn take(&mut self, path: &Path, message: &Message<'_>) -> Result<(), ImportError> {
         let fail = |cause: String| ImportError::Read {
             file: path.to_owned(),
             cause: format!(
-                "message {number}, of {}, does not fit its definition: {cause}",
-                self.name
+                "message {}, of {}, does not fit its definition: {cause}",
+                message.number, self.name
             ),
         };
-        let reading = self.definition.decode(&message.data).map_err(fail)?;
+        let reading = self.definition.decode(message.data).map_err(fail)?;
         let nanoseconds = |ns: u64| i64::try_from(ns).unwrap_or(i64::MAX);
         let (mut seconds, mut stamp) = (0.0, 0);
         match &self.time {
-            TimeField::Log => stamp = nanoseconds(message.log_time),
-            TimeField::Publish => stamp = nanoseconds(message.publish_time),
+            TimeField::Log => stamp = nanoseconds(message.logged),
+            TimeField::Publish => stamp = nanoseconds(message.published),
             TimeField::Stamp(field) => {
                 stamp = reading
                     .stamp(field)
@@ -274,7 +269,7 @@ impl Topic {
         let value = |field: &Field| reading.number(field).unwrap_or(f64::NAN);
         let values = self.fields.iter().map(value).collect();
         self.rows
-            .push((message.log_time, number, seconds, stamp, values));
+            .push((message.logged, message.number, seconds, stamp, values));
         Ok(())
     }
 
