@@ -209,10 +209,14 @@ fn a_mat_file_comes_back_packed_or_not() {
         files::mat5(&folder.path("log.mat"), packed);
         let channels =
             channel("force", "\"data(:,2)\"", "N") + &channel("stroke", "\"data(:,1)\"", "mm");
+        // Whole numbers of 32 bits, 30 mm less than the stroke.
+        let moved = "[[file.channel]]\nquantity = \"measured_stroke\"\ncolumn = \"u\"\nunit = \"um\"\noffset = 30000\n";
+        let channels = channels + moved;
         let keys = "form = \"mat5\"\ntime = { column = \"t\", unit = \"ms\" }\n";
         folder.map("map.toml", &(keys.to_owned() + &channels));
         let (stored, _) = folder.imported("map.toml", &["log.mat"]);
-        assert_planted(&stored.recording, &[FORCE, STROKE]);
+        let moved: Planted = ("measured_stroke", |t| t.stroke, 1e-12);
+        assert_planted(&stored.recording, &[FORCE, STROKE, moved]);
     }
 }
 

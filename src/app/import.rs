@@ -16,9 +16,9 @@ use crate::recording::parquet::write_parquet;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
-  idc import assets/import/cylinder_friction.toml KDN_1bar.csv            what is in it
+  idc import assets/import/cylinder_friction.toml KDN_1bar.csv                       what is in it
   idc import assets/import/cylinder_friction.toml KDN_1bar.csv --out kdn_1.parquet
-  idc import assets/import/cylinder_friction.toml KDN_*.csv --out runs/kdn a recording of each, into a folder
+  idc import assets/import/cylinder_friction.toml KDN_*.csv --out runs/kdn/      a recording of each, into a folder
   idc import assets/import/contact_flange.toml run_force.csv run_velocity.csv --out run.parquet   two logs, one recording
 
 A map says which column is what:
@@ -48,7 +48,7 @@ struct Copies {
     share: f64,
 }
 
-/// Imports logs, one recording for as many as the map has files.
+/// Imports logs, one recording for as many as the map has files; nothing is written before all of them have been read.
 pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     let map = load_map(&arguments.map)?;
     let each = map.files.len();

@@ -94,7 +94,8 @@ fn by_name(channel: &ChannelMap) -> Option<String> {
     let Column::Name(name) = &channel.column else {
         return None;
     };
-    let named = unit_of_name(name)?;
+    // `position[1]` is an element, and no unit.
+    let named = unit_of_name(name).filter(|unit| unit.si != Unit::One)?;
     let same = named.si == channel.unit.si
         && (named.factor / channel.unit.factor - 1.0).abs() < 1e-9
         && named.zero == channel.unit.zero;
@@ -389,6 +390,8 @@ mod tests {
             ("p_s", "bar"),
             ("v_tcp_m_s", "m/s"),
             ("contact_force_n", "N"),
+            ("/joint_states.effort[1]", "N"),
+            ("data(:,1)", "N"),
             ("V", "N"),
         ] {
             assert_eq!(by_name(&named(column, unit)), None, "{column}");

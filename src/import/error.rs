@@ -54,7 +54,7 @@ pub enum ImportError {
         expected: String,
     },
     /// A log that is cut off.
-    #[error("{} is cut off: {found}; {rest}; {advice}", file.display())]
+    #[error("{} is cut off or damaged: {found}; {rest}; {advice}", file.display())]
     Truncated {
         /// The file.
         file: PathBuf,

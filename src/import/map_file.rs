@@ -1,142 +1,25 @@
-//! The import map's file: its keys, and what of them does not fit.
+//! The import map's file, read and checked.
 
-use std::path::{Path, PathBuf};
-
-use serde::Deserialize;
-use serde::de::{Deserializer, Error, Unexpected, Visitor};
+use std::path::Path;
 
 use super::kinds;
 use super::map::{
-    ChannelMap, Clock, Column, FileMap, Form, GAUGE, ImportMap, Pressure, Separator, TextForm,
-    TimeMap,
+    ChannelMap, Clock, FileMap, Form, GAUGE, ImportMap, Pressure, Separator, TextForm, TimeMap,
 };
 use super::units::{self, LogUnit};
 use crate::recording::Unit;
 use crate::scenario::ScenarioError;
 use crate::scenario::check::Section;
 use crate::scenario::document::{Document, read_text};
-use crate::scenario::sections::keys;
+
+mod keys;
+
+use keys::{ChannelKeys, ClockKey, FileKeys, FormKey, MapFile, PressureKey, TimeKeys, sections};
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
 /// Atmosphere where the map says nothing [Pa].
 const STANDARD_ATMOSPHERE: f64 = 101_325.0;
-
-/// The file as it is written.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MapFile {
-    #[allow(dead_code, reason = "checked by Document::new")]
-    schema: u32,
-    title: String,
-    atmosphere_pa: Option<f64>,
-    file: Vec<FileKeys>,
-}
-
-/// `[[file]]`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileKeys {
-    path: Option<PathBuf>,
-    form: FormKey,
-    separator: Option<String>,
-    field_widths: Option<Vec<usize>>,
-    decimal_mark: Option<String>,
-    header_lines: Option<usize>,
-    names_line: Option<usize>,
-    drop_first_rows: Option<usize>,
-    drop_last_rows: Option<usize>,
-    accept_truncated: Option<bool>,
-    clock: Option<ClockKey>,
-    clock_offset_s: Option<f64>,
-    aligned_by: Option<[String; 2]>,
-    largest_offset_s: Option<f64>,
-    time: Option<TimeKeys>,
-    channel: Vec<ChannelKeys>,
-}
-
-/// `form`.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum FormKey {
-    Text,
-    Parquet,
-    Mat5,
-    Mcap,
-}
-
-/// `clock`.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum ClockKey {
-    Shared,
-    Unknown,
-}
-
-/// `[file.time]`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TimeKeys {
-    column: ColumnKey,
-    unit: Option<String>,
-    thousands_mark: Option<String>,
-}
-
-/// `[[file.channel]]`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ChannelKeys {
-    quantity: String,
-    column: ColumnKey,
-    unit: String,
-    gain: Option<f64>,
-    offset: Option<f64>,
-    reversed: Option<bool>,
-    pressure: Option<PressureKey>,
-}
-
-/// A column by its number from 1, or by its name.
-#[derive(Debug)]
-struct ColumnKey(Column);
-
-impl<'de> Deserialize<'de> for ColumnKey {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(ColumnVisitor)
-    }
-}
-
-/// Reads a column's number or name.
-struct ColumnVisitor;
-
-impl Visitor<'_> for ColumnVisitor {
-    type Value = ColumnKey;
-
-    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("a column's number from 1, or its name in quotes")
-    }
-
-    fn visit_i64<E: Error>(self, number: i64) -> Result<ColumnKey, E> {
-        match usize::try_from(number) {
-            Ok(number) if number > 0 => Ok(ColumnKey(Column::Number(number))),
-            _ => Err(E::invalid_value(Unexpected::Signed(number), &self)),
-        }
-    }
-
-    fn visit_str<E: Error>(self, name: &str) -> Result<ColumnKey, E> {
-        if name.trim().is_empty() {
-            return Err(E::invalid_value(Unexpected::Str(name), &self));
-        }
-        Ok(ColumnKey(Column::Name(name.to_owned())))
-    }
-}
-
-/// `pressure`.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum PressureKey {
-    Gauge,
-    Absolute,
-}
 
 /// Reads and checks a map.
 ///
@@ -167,15 +50,6 @@ pub fn load_map(path: &Path) -> Result<ImportMap, ScenarioError> {
     };
     check_together(&document, &map)?;
     Ok(map)
-}
-
-fn sections() -> Vec<(&'static str, &'static [&'static str])> {
-    vec![
-        ("", keys::<MapFile>()),
-        ("file", keys::<FileKeys>()),
-        ("file.time", keys::<TimeKeys>()),
-        ("file.channel", keys::<ChannelKeys>()),
-    ]
 }
 
 fn file_map(

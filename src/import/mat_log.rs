@@ -20,6 +20,12 @@ const TAG: usize = 8;
 /// Kind of an element that is a compressed one.
 const COMPRESSED: u32 = 15;
 
+/// Where an array's class stands behind the tags of the element and of its flags, and two classes. Numbers of an array of doubles may be stored as
+/// int32, which `matfile` reads; those of an array of int32 it takes for uint32 (0.5.0) and refuses.
+const CLASS: usize = 16;
+const INT32: u32 = 12;
+const DOUBLE: u8 = 6;
+
 /// A column of an array, with its name.
 struct NamedColumn {
     name: String,
@@ -73,7 +79,7 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
                 file,
                 column,
                 there: format!(
-                    "{there}, and {} that are no arrays of real numbers (structures, cells, texts, int32 or int64)",
+                    "{there}, and {} that are no arrays of real numbers (structures, cells, texts, int64)",
                     contents.others
                 ),
             },
@@ -149,7 +155,7 @@ fn contents(bytes: &[u8]) -> Result<Contents, String> {
             length.next_multiple_of(8) - length
         };
         rest = after.get(padding..).unwrap_or_default();
-        let element = if kind == COMPRESSED {
+        let mut element = if kind == COMPRESSED {
             let mut plain = Vec::new();
             let read = ZlibDecoder::new(own).read_to_end(&mut plain);
             read.map_err(|cause| format!("an array in it is damaged: {cause}"))?;
@@ -157,6 +163,12 @@ fn contents(bytes: &[u8]) -> Result<Contents, String> {
         } else {
             [tag, own].concat()
         };
+        if let Some(class) = element.get_mut(CLASS..CLASS + 4)
+            && number([class[0], class[1], class[2], class[3]]) & 0xff == INT32
+        {
+            let least = if number([1, 0, 0, 0]) == 1 { 0 } else { 3 };
+            class[least] = DOUBLE;
+        }
         note(&[header, &element].concat(), &mut found);
     }
     Ok(found)

@@ -114,7 +114,7 @@ pub fn parquet(path: &Path) {
     writer.close().unwrap();
 }
 
-/// A MAT file of version 5 (MathWorks, MAT-File Format) with `t` [ms] as whole numbers of 16 bits, `data` of two columns, stroke [mm] and force [N],
+/// A MAT file of version 5 (MathWorks, MAT-File Format) with `t` [ms] as whole numbers of 16 bits, `u` [um] as such of 32, `data` of two columns, stroke [mm] and force [N],
 /// and a text `note` that is no array of numbers.
 pub fn mat5(path: &Path, packed: bool) {
     let mut file = format!("{:<124}", "MATLAB 5.0 MAT-file, written by a test").into_bytes();
@@ -122,15 +122,19 @@ pub fn mat5(path: &Path, packed: bool) {
     let times: Vec<u8> = (0..ROWS)
         .flat_map(|row| (whole(row).0 as i16).to_le_bytes())
         .collect();
+    let ticks: Vec<u8> = (0..ROWS)
+        .flat_map(|row| (whole(row).1 as i32 - 30_000).to_le_bytes())
+        .collect();
     let numbers = |of: fn(usize) -> f64| (0..ROWS).flat_map(move |row| of(row).to_le_bytes());
     let data: Vec<u8> = numbers(|row| whole(row).1 as f64 * 1e-3)
         .chain(numbers(|row| truth(row).force))
         .collect();
     let note: Vec<u8> = "slow".bytes().flat_map(|c| [c, 0]).collect();
-    // Classes: 10 is int16, 4 characters, 6 double; kinds of data: 3 is int16, 4 uint16, 9 double.
+    // Classes: 10 is int16, 12 int32, 4 characters, 6 double; kinds of data: 3 is int16, 5 int32, 4 uint16, 9 double.
     for array in [
         matrix("t", 10, [ROWS, 1], 3, &times),
         matrix("note", 4, [1, 4], 4, &note),
+        matrix("u", 12, [1, ROWS], 5, &ticks),
         matrix("data", 6, [ROWS, 2], 9, &data),
     ] {
         if packed {

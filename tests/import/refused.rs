@@ -1,5 +1,7 @@
 //! Logs and maps that are refused: one line, exit code 2, nothing written.
 
+use idc_cell::recording::parquet::read_parquet;
+
 use super::files::{self, truth, whole};
 use super::{Folder, channel, plain};
 
@@ -235,7 +237,9 @@ fn columns_that_a_parquet_or_a_mat_file_does_not_have() {
     refused(
         &folder,
         &["log.mat"],
-        &["no column `data`; there are `data(:,1)`, `data(:,2)`, `t`, and 1 that are no arrays"],
+        &[
+            "no column `data`; there are `data(:,1)`, `data(:,2)`, `t`, `u`, and 1 that are no arrays",
+        ],
     );
     folder.write("log.mat", b"MATLAB 7.3 MAT-file");
     refused(&folder, &["log.mat"], &["version 7.3", "'-v7'"]);
@@ -338,7 +342,7 @@ fn a_text_with_a_torn_last_line() {
         &folder,
         &["log.csv"],
         &[
-            "log.csv is cut off: its last row, line 402, ends after 1 of 2 fields; the 400 rows before it can be read",
+            "log.csv is cut off or damaged: its last row, line 402, ends after 1 of 2 fields; the 400 rows before it can be read",
             "accept_truncated",
         ],
     );
@@ -379,7 +383,7 @@ fn a_bag_that_is_cut_off() {
             &folder,
             &["log.mcap"],
             &[
-                "log.mcap is cut off",
+                "log.mcap is cut off or damaged",
                 "messages can be read, the last of them 0.",
                 "`mcap recover`",
                 "accept_truncated",
@@ -391,24 +395,26 @@ fn a_bag_that_is_cut_off() {
 }
 
 #[test]
-fn a_bag_that_is_damaged_is_refused_even_where_less_is_accepted() {
+fn of_a_bag_that_is_damaged_nothing_is_read_but_what_was_written() {
     let folder = Folder::new();
     files::mcap(&folder.path("log.mcap"), None);
     let mut bytes = std::fs::read(folder.path("log.mcap")).unwrap();
-    let force = truth(7).force.to_le_bytes();
+    // A bit in the force of a message in the last chunks.
+    let force = truth(350).force.to_le_bytes();
     let place = bytes.windows(8).position(|window| window == force).unwrap();
     bytes[place + 3] ^= 1;
     folder.write("log.mcap", bytes);
-    let keys = "form = \"mcap\"\naccept_truncated = true\n".to_owned();
+    let keys = "form = \"mcap\"\ntime = { column = \"header.stamp\" }\n".to_owned();
     folder.map(
         "map.toml",
         &(keys + &channel("force", "\"/wrench.wrench.force.z\"", "N")),
     );
-    refused(
-        &folder,
-        &["log.mcap"],
-        &["cannot read log.mcap: it is damaged: Chunk CRC failed"],
-    );
+    refused(&folder, &["log.mcap"], &["Chunk CRC failed"]);
+    let samples = accepted(&folder, "log.mcap", "Chunk CRC failed");
+    assert!((100..350).contains(&samples), "{samples}");
+    let stored = read_parquet(&folder.path("out.parquet")).unwrap();
+    let read = stored.recording.values("force").unwrap();
+    assert!((0..samples).all(|row| read[row] == truth(row).force));
 }
 
 #[test]
@@ -425,7 +431,7 @@ fn a_mat_file_that_is_cut_off() {
         &folder,
         &["log.mat"],
         &[
-            "log.mat is cut off: it ends within an array; t can be read",
+            "log.mat is cut off or damaged: it ends within an array; t, u can be read",
             "accept_truncated",
         ],
     );

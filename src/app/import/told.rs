@@ -53,35 +53,28 @@ pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
             let _ = writeln!(text, "  {}: {remark}", name(&log.file));
         }
     }
-    let series = imported
-        .logs
-        .iter()
-        .zip(&map.files)
-        .flat_map(|(log, file)| {
-            let channel = log.series.iter().zip(&file.channels);
-            channel.map(|(series, channel)| (channel.quantity.as_str(), series))
-        });
+    text + &gaps(&found)
+}
+
+/// The longest gaps of each log, which its channels share.
+fn gaps(found: &[Finding]) -> String {
+    let mut text = String::new();
     let mut told: Vec<[f64; 2]> = Vec::new();
-    for ((quantity, _), finding) in series.zip(&found) {
-        for gap in finding
-            .gaps
-            .iter()
-            .filter(|gap| !told.contains(gap))
-            .take(LISTED)
-            .copied()
-            .collect::<Vec<_>>()
-        {
+    for finding in found {
+        let longest = finding.gaps.iter().take(LISTED);
+        let fresh: Vec<[f64; 2]> = longest.filter(|gap| !told.contains(gap)).copied().collect();
+        for [from, to] in fresh {
             let _ = writeln!(
                 text,
-                "  gap of {:.3} s from {:.3} s in {quantity}{}",
-                gap[1] - gap[0],
-                gap[0],
+                "  gap of {:.3} s from {from:.3} s in {}{}",
+                to - from,
+                finding.quantity,
                 match finding.gaps.len() {
                     0..=LISTED => String::new(),
                     count => format!(", one of {count}"),
                 }
             );
-            told.push(gap);
+            told.push([from, to]);
         }
     }
     text
@@ -137,6 +130,7 @@ fn shown(value: f64) -> String {
     format!("{value:.3e}")
 }
 
+/// What there is to say of a log's rows and clock.
 pub(super) fn remarks(log: &LogNote) -> Vec<String> {
     let rows = |lines: &[u64]| {
         let first: Vec<String> = lines.iter().take(LISTED).map(u64::to_string).collect();

@@ -1,0 +1,135 @@
+//! The keys of an import map, as they are written.
+
+use std::path::PathBuf;
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, Unexpected, Visitor};
+
+use crate::import::map::Column;
+use crate::scenario::sections::keys;
+
+/// The file as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MapFile {
+    #[allow(dead_code, reason = "checked by Document::new")]
+    pub schema: u32,
+    pub title: String,
+    pub atmosphere_pa: Option<f64>,
+    pub file: Vec<FileKeys>,
+}
+
+/// `[[file]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileKeys {
+    pub path: Option<PathBuf>,
+    pub form: FormKey,
+    pub separator: Option<String>,
+    pub field_widths: Option<Vec<usize>>,
+    pub decimal_mark: Option<String>,
+    pub header_lines: Option<usize>,
+    pub names_line: Option<usize>,
+    pub drop_first_rows: Option<usize>,
+    pub drop_last_rows: Option<usize>,
+    pub accept_truncated: Option<bool>,
+    pub clock: Option<ClockKey>,
+    pub clock_offset_s: Option<f64>,
+    pub aligned_by: Option<[String; 2]>,
+    pub largest_offset_s: Option<f64>,
+    pub time: Option<TimeKeys>,
+    pub channel: Vec<ChannelKeys>,
+}
+
+/// `form`.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum FormKey {
+    Text,
+    Parquet,
+    Mat5,
+    Mcap,
+}
+
+/// `clock`.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum ClockKey {
+    Shared,
+    Unknown,
+}
+
+/// `[file.time]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TimeKeys {
+    pub column: ColumnKey,
+    pub unit: Option<String>,
+    pub thousands_mark: Option<String>,
+}
+
+/// `[[file.channel]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ChannelKeys {
+    pub quantity: String,
+    pub column: ColumnKey,
+    pub unit: String,
+    pub gain: Option<f64>,
+    pub offset: Option<f64>,
+    pub reversed: Option<bool>,
+    pub pressure: Option<PressureKey>,
+}
+
+/// A column by its number from 1, or by its name.
+#[derive(Debug)]
+pub(super) struct ColumnKey(pub Column);
+
+impl<'de> Deserialize<'de> for ColumnKey {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ColumnVisitor)
+    }
+}
+
+/// Reads a column's number or name.
+struct ColumnVisitor;
+
+impl Visitor<'_> for ColumnVisitor {
+    type Value = ColumnKey;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a column's number from 1, or its name in quotes")
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<ColumnKey, E> {
+        match usize::try_from(number) {
+            Ok(number) if number > 0 => Ok(ColumnKey(Column::Number(number))),
+            _ => Err(E::invalid_value(Unexpected::Signed(number), &self)),
+        }
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<ColumnKey, E> {
+        if name.trim().is_empty() {
+            return Err(E::invalid_value(Unexpected::Str(name), &self));
+        }
+        Ok(ColumnKey(Column::Name(name.to_owned())))
+    }
+}
+
+/// `pressure`.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum PressureKey {
+    Gauge,
+    Absolute,
+}
+
+/// Tables of a map with their keys.
+pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
+    vec![
+        ("", keys::<MapFile>()),
+        ("file", keys::<FileKeys>()),
+        ("file.time", keys::<TimeKeys>()),
+        ("file.channel", keys::<ChannelKeys>()),
+    ]
+}

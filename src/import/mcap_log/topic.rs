@@ -1,0 +1,314 @@
+//! Topics of an MCAP: which of them a map's channels name, their fields and their times, and the rows that their messages make.
+
+use std::path::Path;
+
+use super::bag::{Message, There};
+use super::field::{Definition, Field, Kind};
+use crate::import::error::ImportError;
+use crate::import::log::{Remark, Rows, Times, nearest_first};
+use crate::import::map::{Column, FileMap};
+use crate::import::units;
+use crate::recording::Unit;
+
+/// Time columns that are no fields of a message.
+const LOG_TIME: &str = "log_time";
+const PUBLISH_TIME: &str = "publish_time";
+
+/// A topic's messages, their fields read.
+pub(super) struct Topic {
+    /// Its name.
+    pub name: String,
+    channels: Vec<usize>,
+    definition: Definition,
+    fields: Vec<Field>,
+    time: TimeField,
+    /// When each was logged, its number in the file, its time and its values.
+    rows: Vec<(u64, u64, f64, i64, Vec<f64>)>,
+}
+
+/// Where a message's time is taken from.
+enum TimeField {
+    Log,
+    Publish,
+    Stamp(Field),
+    Number(Field),
+}
+
+/// The topics that a map's channels name, with the fields to read of each.
+pub(super) fn topics(
+    path: &Path,
+    map: &FileMap,
+    there: &[There],
+) -> Result<Vec<Topic>, ImportError> {
+    let mut topics: Vec<Topic> = Vec::new();
+    for (index, channel) in map.channels.iter().enumerate() {
+        let (owner, field_path) = owner(path, &channel.column, there)?;
+        let known = topics.iter().position(|topic| topic.name == owner.topic);
+        let place = match known {
+            Some(place) => place,
+            None => {
+                let definition = definition(path, &channel.column, owner)?;
+                let time = time_field(path, map, &owner.topic, &definition)?;
+                topics.push(Topic {
+                    name: owner.topic.clone(),
+                    channels: Vec::new(),
+                    definition,
+                    fields: Vec::new(),
+                    time,
+                    rows: Vec::new(),
+                });
+                topics.len() - 1
+            }
+        };
+        let topic = &mut topics[place];
+        let (field, kind) = find(
+            path,
+            &channel.column,
+            &topic.name,
+            &topic.definition,
+            field_path,
+        )?;
+        if kind != Kind::Number {
+            return Err(ImportError::Kind {
+                file: path.to_owned(),
+                column: channel.column.clone(),
+                found: kind.words().to_owned(),
+                expected: format!(
+                    "a number: {}",
+                    numbers_of(&topic.name, &topic.definition, field_path)
+                ),
+            });
+        }
+        topic.channels.push(index);
+        topic.fields.push(field);
+    }
+    Ok(topics)
+}
+
+/// The topic of a column `topic.field`, and the field.
+fn owner<'a>(
+    path: &Path,
+    column: &'a Column,
+    there: &'a [There],
+) -> Result<(&'a There, &'a str), ImportError> {
+    let name = match column {
+        Column::Name(name) => name,
+        Column::Number(number) => {
+            return Err(ImportError::Kind {
+                file: path.to_owned(),
+                column: column.clone(),
+                found: format!("the number {number}"),
+                expected: "a topic and a field of its messages: \"/topic.field\"".to_owned(),
+            });
+        }
+    };
+    let fits = |there: &&There| {
+        let rest = name.strip_prefix(&there.topic)?;
+        rest.strip_prefix('.')
+    };
+    let longest = there
+        .iter()
+        .filter_map(|there| Some((there, fits(&there)?)))
+        .max_by_key(|(there, _)| there.topic.len());
+    longest.ok_or_else(|| {
+        let names: Vec<String> = there.iter().map(|there| there.topic.clone()).collect();
+        let wanted = name.split('.').next().unwrap_or(name);
+        ImportError::NoColumn {
+            file: path.to_owned(),
+            column: column.clone(),
+            there: match &names[..] {
+                [] => "no messages in it".to_owned(),
+                names => format!(
+                    "the topics {} (a column is \"/topic.field\")",
+                    nearest_first(wanted, names)
+                ),
+            },
+        }
+    })
+}
+
+fn definition(path: &Path, column: &Column, owner: &There) -> Result<Definition, ImportError> {
+    let refuse = |found: String| ImportError::Kind {
+        file: path.to_owned(),
+        column: column.clone(),
+        found,
+        expected: "messages of ROS 2: encoding `cdr`, their definition of encoding `ros2msg`"
+            .to_owned(),
+    };
+    match &owner.schema {
+        Some((name, encoding, data)) if encoding == "ros2msg" && owner.encoding == "cdr" => {
+            let text = String::from_utf8_lossy(data);
+            Definition::parse(name, &text).map_err(|cause| {
+                refuse(format!(
+                    "of messages whose definition cannot be read ({cause})"
+                ))
+            })
+        }
+        Some((_, encoding, _)) => Err(refuse(format!(
+            "of messages of encoding `{}` with a definition of encoding `{encoding}`",
+            owner.encoding
+        ))),
+        None => Err(refuse("of messages without a definition".to_owned())),
+    }
+}
+
+/// A field by its path, with the names there are where it is not.
+fn find(
+    path: &Path,
+    column: &Column,
+    topic: &str,
+    definition: &Definition,
+    field_path: &str,
+) -> Result<(Field, Kind), ImportError> {
+    definition
+        .field(field_path)
+        .ok_or_else(|| ImportError::NoColumn {
+            file: path.to_owned(),
+            column: column.clone(),
+            there: numbers_of(topic, definition, field_path),
+        })
+}
+
+/// Columns of a topic that are numbers, the nearest first.
+fn numbers_of(topic: &str, definition: &Definition, near: &str) -> String {
+    let fields = definition.numbers().into_iter();
+    let names: Vec<String> = fields.map(|field| format!("{topic}.{field}")).collect();
+    nearest_first(&format!("{topic}.{near}"), &names)
+}
+
+/// Where a topic's times stand.
+fn time_field(
+    path: &Path,
+    map: &FileMap,
+    topic: &str,
+    definition: &Definition,
+) -> Result<TimeField, ImportError> {
+    let Some(time) = &map.time else {
+        return Ok(TimeField::Log);
+    };
+    let refuse = |found: &str, expected: String| ImportError::TimeUnit {
+        file: path.to_owned(),
+        column: time.column.clone(),
+        found: found.to_owned(),
+        expected,
+    };
+    let no_unit = |field: TimeField| match time.unit {
+        Some(unit) => Err(refuse(
+            "stamps, which say their unit themselves",
+            format!("no `unit = \"{}\"` in [file.time]", unit.name),
+        )),
+        None => Ok(field),
+    };
+    let name = match &time.column {
+        Column::Name(name) => name,
+        Column::Number(_) => {
+            let expected = format!(
+                "`{LOG_TIME}`, `{PUBLISH_TIME}` or a field of every topic's messages, such as `header.stamp`"
+            );
+            return Err(refuse("no times of an MCAP", expected));
+        }
+    };
+    match name.as_str() {
+        LOG_TIME => return no_unit(TimeField::Log),
+        PUBLISH_TIME => return no_unit(TimeField::Publish),
+        _ => {}
+    }
+    let Some((field, kind)) = definition.field(name) else {
+        return Err(ImportError::NoColumn {
+            file: path.to_owned(),
+            column: time.column.clone(),
+            there: format!(
+                "{LOG_TIME}, {PUBLISH_TIME} and, in the messages of {topic}, {}",
+                match &definition.times()[..] {
+                    [] => "no stamps".to_owned(),
+                    stamps => nearest_first(name, stamps),
+                }
+            ),
+        });
+    };
+    match kind {
+        Kind::Stamp => no_unit(TimeField::Stamp(field)),
+        Kind::Number if time.unit.is_some() => Ok(TimeField::Number(field)),
+        Kind::Number => {
+            let units = units::of_kind(Unit::Second).join(", ");
+            Err(refuse(
+                "numbers",
+                format!("`unit` in [file.time]: one of {units}"),
+            ))
+        }
+        Kind::Other(what) => Err(refuse(what, "stamps or numbers".to_owned())),
+    }
+}
+
+impl Topic {
+    /// Reads the fields of a message.
+    pub fn take(&mut self, path: &Path, message: &Message<'_>) -> Result<(), ImportError> {
+        let fail = |cause: String| ImportError::Read {
+            file: path.to_owned(),
+            cause: format!(
+                "message {}, of {}, does not fit its definition: {cause}",
+                message.number, self.name
+            ),
+        };
+        let reading = self.definition.decode(message.data).map_err(fail)?;
+        let nanoseconds = |ns: u64| i64::try_from(ns).unwrap_or(i64::MAX);
+        let (mut seconds, mut stamp) = (0.0, 0);
+        match &self.time {
+            TimeField::Log => stamp = nanoseconds(message.logged),
+            TimeField::Publish => stamp = nanoseconds(message.published),
+            TimeField::Stamp(field) => {
+                stamp = reading
+                    .stamp(field)
+                    .ok_or_else(|| fail("it has no stamp".to_owned()))?;
+            }
+            TimeField::Number(field) => {
+                let time = reading.number(field).filter(|time| time.is_finite());
+                seconds = time.ok_or_else(|| fail("it has no time".to_owned()))?;
+            }
+        }
+        let value = |field: &Field| reading.number(field).unwrap_or(f64::NAN);
+        let values = self.fields.iter().map(value).collect();
+        self.rows
+            .push((message.logged, message.number, seconds, stamp, values));
+        Ok(())
+    }
+
+    /// Its rows, in the order in which they were logged: within a file they may stand in another.
+    pub fn into_rows(
+        mut self,
+        path: &Path,
+        map: &FileMap,
+        remarks: &[Remark],
+    ) -> Result<Rows, ImportError> {
+        self.rows.sort_by_key(|row| (row.0, row.1));
+        for (place, channel) in self.channels.iter().enumerate() {
+            let empty = self.rows.iter().all(|row| row.4[place].is_nan());
+            if empty && !self.rows.is_empty() {
+                return Err(ImportError::Kind {
+                    file: path.to_owned(),
+                    column: map.channels[*channel].column.clone(),
+                    found: format!(
+                        "in none of the {} messages of {}",
+                        self.rows.len(),
+                        self.name
+                    ),
+                    expected: "an element that their lists have, counted from 0".to_owned(),
+                });
+            }
+        }
+        let time = match self.time {
+            TimeField::Number(_) => Times::Numbers(self.rows.iter().map(|row| row.2).collect()),
+            _ => Times::Nanoseconds(self.rows.iter().map(|row| row.3).collect()),
+        };
+        let columns = (0..self.channels.len())
+            .map(|place| self.rows.iter().map(|row| row.4[place]).collect())
+            .collect();
+        Ok(Rows {
+            channels: self.channels,
+            time,
+            columns,
+            lines: self.rows.iter().map(|row| row.1).collect(),
+            remarks: remarks.to_vec(),
+        })
+    }
+}
