@@ -244,7 +244,7 @@ class Law:
 REGULATOR = ("1", "set", "p", "|set-p|", "sign(set-p)", "v")
 SENSOR = ("1", "depth", "depth^2", "depth_rate", "F'", "t")
 BALANCE_ALONE = ("1", "x", "v", "sign(v)", "v|v|", "p sol", "p (1-sol)", "sol", "p x sol", "depth", "depth_rate")
-BALANCE_LEFT = ("1", "x", "v", "sign(v)", "v|v|", "|dp| sign(v)", "dp", "a")
+BALANCE_LEFT = ("1", "x", "v", "sign(v)", "v|v|", "|dp| sign(v)", "dp")  # not v': its noise is in the target too
 
 
 def regulator_candidates(c):
@@ -293,7 +293,7 @@ def left_over(rig, channels):
         air = chambers[:, 1] * p[believed.AREA1] - chambers[:, 2] * p[believed.AREA2] - p[believed.AIR] * (p[believed.AREA1] - p[believed.AREA2])
         left = mass * (c.a - gravity) - air + c.force
         moving = between_stops(rig, c) & (np.abs(c.v) > SLOW)
-        z = np.column_stack([np.ones_like(c.t), c.x, c.v, sign_of(c.v), c.v * np.abs(c.v), np.abs(dp) * sign_of(c.v), dp, c.a])
+        z = np.column_stack([np.ones_like(c.t), c.x, c.v, sign_of(c.v), c.v * np.abs(c.v), np.abs(dp) * sign_of(c.v), dp])
         balance.append((z[moving], left[moving]))
         depth, _, depth_rate = contact_candidates(c.x, c.v, c.surface, c.surface_rate)
         sensor.append((sensor_candidates(c), c.force - np.maximum(k * depth * 1e-3 + damping * depth_rate * 1e-3, 0)))
@@ -318,7 +318,7 @@ def predicted(rig, laws, recording, discrepancy):
     surface_rate = np.gradient(surface, grid)
     outlet = par.copy()
     outlet[[believed.GAIN, believed.TAU]] = 1.0, 1e-6
-    state, x, v, p, force, before = believed.at_rest(par), min(0.0, mass * gravity / stop_k), 0.0, 0.0, 0.0, 0.0
+    state, x, v, p, force = believed.at_rest(par), min(0.0, mass * gravity / stop_k), 0.0, 0.0, 0.0
     lag = -laws["sensor"].weights[SENSOR.index("F'")]  # F = rest - lag F'
     weights = laws["sensor"].weights.copy()
     weights[SENSOR.index("F'")] = 0.0
@@ -337,7 +337,7 @@ def predicted(rig, laws, recording, discrepancy):
             touch = max(touch + reaction_weights @ candidates, 0.0) if depth > 0 else 0.0
             dp = (state[1] - state[2]) * 1e-5
             known = believed.force(state, par) + mass * gravity - touch + stop
-            a = (known + laws["balance"](1.0, x, v, sign, v * abs(v), abs(dp) * sign, dp, before)) / mass
+            a = (known + laws["balance"](1.0, x, v, sign, v * abs(v), abs(dp) * sign, dp)) / mass
         else:
             bar = p * 1e-5
             on = solenoid[i]
@@ -349,7 +349,6 @@ def predicted(rig, laws, recording, discrepancy):
         p_rate = laws["regulator"](1.0, command[i] * 1e-5, p * 1e-5, abs(ahead) * 1e-5, math.tanh(ahead / 2e3), v) * 1e5
         if discrepancy:
             p_rate += (par[believed.GAIN] * command[i] - p) / par[believed.TAU]
-        before = a
         p = min(max(p + STEP * p_rate, -1e5), 2e6)
         v = min(max(v + STEP * a, -20.0), 20.0)
         x = min(max(x + STEP * v, -BEYOND), BEYOND)
