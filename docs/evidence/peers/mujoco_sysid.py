@@ -375,23 +375,6 @@ def cell_parameters(rig, believed_only, delay=0.0):
     )
 
 
-NEUTRAL = {"force_gain": 1.0}  # of the extras; 0 for the others, and the tolerance band for what the rig states
-
-
-def departures(rig, row):
-    """What a reader would take from the parameters: those whose 95 % interval lies wholly outside what was believed."""
-    stated = {name: p for name, p in cell_parameters(rig, True).items()}
-    found = []
-    for name, p in row["parameters"].items():
-        if name in stated:
-            low, high = stated[name].min_value[0], stated[name].max_value[0]
-        else:
-            low = high = NEUTRAL.get(name, 0.0)
-        if p["value"] - p["half_width_95"] > high or p["value"] + p["half_width_95"] < low:
-            found.append(name)
-    return found
-
-
 def cell_control(recording):
     """Inputs on the simulation's grid: commands held from sample to sample, the surface between them."""
     t = recording["time_s"]
@@ -441,7 +424,7 @@ def one_case(args, kind, case):
         seen = predicted[0][0]
         at = np.clip(predict["time_s"], seen.times[0], seen.times[-1])  # a free delay takes the ends from the toolbox's window
         by_name = {name: np.interp(at, seen.times, seen.data[:, i]) for i, name in enumerate(SENSORS)}
-        row |= {"departures": departures(rig, row), "kind": kind, "truth": data.truth_of(args.concealed, case)}
+        row |= {"kind": kind, "truth": data.truth_of(args.concealed, case)}
         row |= data.judged(args.concealed, case, by_name)
         data.record(args.table, "mujoco", case, use, row)
 
