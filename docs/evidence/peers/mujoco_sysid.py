@@ -105,7 +105,7 @@ def tutorial(args):
 def slide_spec(mass, step, sensors, drive):
     """A slide `axis` of `mass` [kg], with the actuators and sensors given as MJCF. Dry friction is a soft constraint in MuJoCo: with the
     default solref its sign follows acceleration + 100/s velocity, and on a light body it saturates only above some mm/s. Here it is made
-    as crisp as the step allows (time constant of two steps), in favour of the toolbox: 13 % force error on emps became 4 to 8 %."""
+    as crisp as the step allows (time constant of two steps), in favour of the toolbox: force error on emps 9.0 to 4.4 %, in the loop 11.9 to 6.4 %."""
     crisp = f'solreffriction="{2 * step} 1" solimpfriction="0.99 0.999 0.001"'
     return mujoco.MjSpec.from_string(f"""
 <mujoco><option timestep="{step}" integrator="implicitfast" gravity="0 0 0"><flag contact="disable"/></option><worldbody><body name="carriage">
@@ -358,7 +358,8 @@ def likely_delay(rig, recordings):
 
 def cell_parameters(rig, believed_only, delay=0.0):
     """Multipliers of the believed values within their tolerance; or, with the rest of what MJCF and SignalTransform offer, a factor of five
-    about them (fifty for the contact, whose order one may not know). Extras start just off their bound, which the toolbox asks for."""
+    about them (fifty for the contact, whose order one may not know). What would start on its bound, dry and viscous friction, is moved off
+    it by `move_off_bounds`, as the toolbox asks; started nearer to it, case-19 stalls with 0.5 N of friction for 15."""
     stated = {
         "moving_mass": rig["cylinder"]["moving_mass_kg"], "dead_volume": rig["cylinder"]["dead_volume_m3"],
         "regulator_gain": rig["regulator"]["gain"], "regulator_time_constant": rig["regulator"]["time_constant_s"],
@@ -367,12 +368,13 @@ def cell_parameters(rig, believed_only, delay=0.0):
     }
     if believed_only:
         return parameters(*(parameter(name, 1.0, 1 - v["tolerance"], 1 + v["tolerance"]) for name, v in stated.items()))
-    return parameters(
+    freed = parameters(
         *(parameter(name, 1.0, 0.02, 50.0) if name.startswith("contact") else parameter(name, 1.0, 0.2, 5.0) for name in stated),
-        parameter("frictionloss_n", 0.2, 0.0, 100.0), parameter("damping_n_s_per_m", 2.0, 0.0, 1000.0),
-        parameter("spring_n_per_m", 10.0, 0.0, 5000.0), parameter("command_delay_s", max(delay, 0.001), 0.0, 0.5),
-        parameter("force_delay_s", 0.0005, 0.0, 0.1), parameter("force_gain", 1.0, 0.5, 2.0), parameter("force_bias_n", 0.0, -50.0, 50.0),
+        parameter("frictionloss_n", 0.0, 0.0, 100.0), parameter("damping_n_s_per_m", 0.0, 0.0, 1000.0),
+        parameter("spring_n_per_m", 0.0, -5000.0, 5000.0), parameter("command_delay_s", delay, -0.05, 0.5),
+        parameter("force_delay_s", 0.0, -0.02, 0.1), parameter("force_gain", 1.0, 0.5, 2.0), parameter("force_bias_n", 0.0, -50.0, 50.0),
     )
+    return freed.move_off_bounds()
 
 
 def cell_control(recording):
@@ -430,7 +432,7 @@ def one_case(args, kind, case):
 
 
 # The recordings hold impacts, where a millisecond is a hundred standard deviations: the manual's robust loss, which its scipy backends have.
-ROBUST = {"optimizer": "scipy_parallel_fd", "loss": "soft_l1", "x_scale": "jac", "diff_step": 1e-4, "max_iters": 40}
+ROBUST = {"optimizer": "scipy_parallel_fd", "loss": "soft_l1", "x_scale": "jac", "max_iters": 40}
 
 SUBJECTS = {"tutorial": tutorial, "emps": emps, "cylinder": cylinder, "concealed": concealed}
 
