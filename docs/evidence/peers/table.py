@@ -1,4 +1,4 @@
-"""Prints the table of PEERS.md from results.json: `table.py > rows.md`. Standard library only.
+"""Writes the two tables of PEERS.md, between its `<!-- ... -->` lines, from results.json. Standard library only.
 
 Neither peer says by itself what is missing; what a reader takes from it is read off by one rule for all:
     MuJoCo    a parameter whose 95 % interval lies wholly outside the tolerance believed; of the extras one whose interval excludes its
@@ -6,8 +6,11 @@ Neither peer says by itself what is missing; what a reader takes from it is read
     PySINDy   a term of the discovered equation whose bagged 95 % spread leaves its sign sure, in the equations of what is left over
 A name is right when it is the concealed effect's own (NAMES), and every other name beside it is counted as false.
 """
+import contextlib
+import io
 import json
 import pathlib
+import re
 
 # What in each tool's own words is the concealed effect; empty where the tool has no word for it.
 NAMES = {
@@ -77,11 +80,22 @@ def case_row(results, tool, case, use):
 
 
 def main():
-    results = json.loads((pathlib.Path(__file__).parent / "results.json").read_text())
-    mujoco, pysindy = results["mujoco"], results["pysindy"]
-    cases = sorted((c for c in mujoco if c.startswith("case")), key=lambda c: list(NAMES).index(mujoco[c]["believed"]["kind"]))
-    empty = " | | | |"
+    here = pathlib.Path(__file__).resolve().parent
+    results = json.loads((here / "results.json").read_text())
+    cases = sorted((c for c in results["mujoco"] if c.startswith("case")), key=lambda c: list(NAMES).index(results["mujoco"][c]["believed"]["kind"]))
+    page = (here.parent / "PEERS.md").read_text()
+    for name, table in (("side", side_by_side), ("all", every_use)):
+        with contextlib.redirect_stdout(io.StringIO()) as rows:
+            table(results, cases)
+        filled = f"<!-- {name}: by peers/table.py -->\n\n{rows.getvalue()}\n<!-- end of {name} -->"
+        page, found = re.subn(f"<!-- {name}: .*?<!-- end of {name} -->", lambda _: filled, page, flags=re.S)
+        assert found == 1, f"PEERS.md has no place for the table `{name}`"
+    (here.parent / "PEERS.md").write_text(page)
 
+
+def side_by_side(results, cases):
+    """The best use of each tool, one row a subject; the last three columns are for ours."""
+    mujoco, pysindy, empty = results["mujoco"], results["pysindy"], " | | | |"
     print("| subject | MuJoCo sysid names | error on unseen data | s CPU | PySINDy names | error on unseen data | s CPU | ours names | error on unseen data | time |")
     print("| --- " * 10 + "|")
     m, p = mujoco["emps"]["mjcf"], pysindy["emps"]["polynomials and signs"]
