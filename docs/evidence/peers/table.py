@@ -113,7 +113,10 @@ def side_by_side(results, cases):
             cells += [f"{said}: **{right}**", error, f"{results[tool][case][use]['cpu_s']:.0f}"]
         print("| " + " | ".join(cells) + empty)
 
-    print("\n| subject | tool, use | parameters with 95 % half widths, or the equation | in sample / unseen | the tool's own messages | wall / CPU s |")
+
+def every_use(results, cases):
+    """All uses with all figures."""
+    print("| subject | tool, use | parameters with 95 % half widths, or the equation | in sample / unseen | the tool's own messages | wall / CPU s |")
     print("| --- " * 6 + "|")
     for tool in ("mujoco", "pysindy"):
         for use, uses in results[tool]["emps"].items():
