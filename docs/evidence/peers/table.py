@@ -29,11 +29,16 @@ SMALL = {
 }
 
 
+def half_width(p):
+    """Half the 95 % interval; infinite where the toolbox says so (null in JSON)."""
+    return float("inf") if p["half_width_95"] is None else p["half_width_95"]
+
+
 def departures(row, believed):
     """Names of the parameters of `row` that depart from what the row of the first use was allowed."""
     found = []
     for name, p in row["parameters"].items():
-        low, high = p["value"] - p["half_width_95"], p["value"] + p["half_width_95"]
+        low, high = p["value"] - half_width(p), p["value"] + half_width(p)
         if name in believed["parameters"]:
             stated = believed["parameters"][name]
             if low > stated["high"] or high < stated["low"]:
@@ -65,7 +70,7 @@ def named_list(names):
 
 
 def numbers(parameters):
-    return ", ".join(f"{k} {v['value']:.4g} ± {v['half_width_95']:.2g}" for k, v in parameters.items())
+    return ", ".join(f"{k} {v['value']:.4g} ± {half_width(v):.2g}" for k, v in parameters.items())
 
 
 def case_row(results, tool, case, use):
