@@ -92,7 +92,8 @@ def main():
     for name, table in (("side", side_by_side), ("all", every_use)):
         with contextlib.redirect_stdout(io.StringIO()) as rows:
             table(results, cases)
-        filled = f"<!-- {name}: by peers/table.py -->\n\n{rows.getvalue()}\n<!-- end of {name} -->"
+        rows = re.sub(r"(?<=[\w(])\|(\w+)\|", r"\\|\1\\|", re.sub(r"(?<=[` ])\|dp\| sign", r"\\|dp\\| sign", rows.getvalue()))  # v|v| and |dp| are no columns
+        filled = f"<!-- {name}: by peers/table.py -->\n\n{rows}\n<!-- end of {name} -->"
         page, found = re.subn(f"<!-- {name}: .*?<!-- end of {name} -->", lambda _: filled, page, flags=re.S)
         assert found == 1, f"PEERS.md has no place for the table `{name}`"
     (here.parent / "PEERS.md").write_text(page)
