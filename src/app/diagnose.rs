@@ -4,6 +4,7 @@ mod all;
 mod arm_prediction;
 mod cell;
 mod cell_account;
+mod fit_picture;
 mod one;
 mod progress;
 mod unlisted_picture;

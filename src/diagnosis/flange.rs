@@ -63,8 +63,11 @@ const CONTACT: (f64, f64) = (10.0, 2.0);
 const APPROACH: (f64, f64) = (0.06, 0.01);
 /// Time after contact in which the impact's peak lies [s].
 const IMPACT: f64 = 0.1;
-/// Frequencies in which the ringing is looked for [Hz].
-const RINGING: (f64, f64) = (15.0, 300.0);
+/// Frequencies in which the ringing is looked for: below, the arm's own control moves the force [Hz].
+const RINGING: (f64, f64) = (40.0, 300.0);
+/// How long it is looked at [s], and how long after the last bounce it begins [s].
+const RUNG: f64 = 0.4;
+const SOON: f64 = 0.01;
 /// Speed from which the arm moves [m/s].
 const MOVES: f64 = 0.01;
 /// Time that is left to a force to settle at most [s].
@@ -135,7 +138,12 @@ impl Run {
         let settling = outside.map_or(0.0, |i| time[hold.start + i] - contact);
         let impact = between(contact - 2e-3, contact + IMPACT);
         let peak = force[impact].iter().copied().fold(f64::MIN, f64::max);
-        let rings = between(contact + 0.05, contact + 0.6);
+        // While the tool still bounces it rings nowhere: after it was off for the last time.
+        let bounced = between(contact, contact + RUNG)
+            .rev()
+            .find(|i| force[*i] < limit)
+            .map_or(contact, |i| time[i]);
+        let rings = between(bounced + SOON, bounced + SOON + RUNG);
         let frequency = loudest(&time[rings.clone()], &force[rings.clone()]);
         let moving: Vec<usize> = (leaves..time.len())
             .filter(|i| {
@@ -175,6 +183,18 @@ impl Shown {
     /// Growth of the peak with the speed of approach: sqrt(k m) [N s/m].
     pub fn impedance(&self) -> f64 {
         (self.peak - self.before) / self.approach
+    }
+}
+
+/// The geometric mean of values above zero with its 95 % interval from how their logarithms differ; of one value alone, twice and half of it.
+pub fn spread_of_sizes(values: &[f64]) -> [f64; 3] {
+    let logarithms: Vec<f64> = values
+        .iter()
+        .map(|v| v.max(f64::MIN_POSITIVE).ln())
+        .collect();
+    match values {
+        [one] => [*one, 0.5 * one, 2.0 * one],
+        _ => spread(&logarithms).map(f64::exp),
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
 use super::details::{Details, ForetoldRun, RunShown};
-use super::flange::{AVERAGED, BAND, Shown, spread};
+use super::flange::{AVERAGED, BAND, Shown, spread, spread_of_sizes};
 use super::words::wrapped;
 
 /// What is known of a flange from its runs.
@@ -23,7 +23,7 @@ pub struct FlangeDiagnosis {
 impl FlangeDiagnosis {
     fn of(&self, value: impl Fn(&Shown) -> f64) -> [f64; 3] {
         let values: Vec<f64> = self.runs.iter().map(|(_, shown)| value(shown)).collect();
-        spread(&values)
+        spread_of_sizes(&values)
     }
 
     /// Growth of the peak with the speed [N s/m] with its interval.
@@ -38,7 +38,16 @@ impl FlangeDiagnosis {
     /// Peak [N] and settling [s] of a run at another speed.
     fn foretold(&self, shown: &Shown) -> (f64, f64) {
         let peak = shown.before + shown.approach * self.impedance()[0];
-        (peak, self.of(|s| s.settling)[0])
+        // What settles is the flange's control: as in the runs of the nearest desired force.
+        let away = |s: &Shown| (s.desired / shown.desired).ln().abs();
+        let nearest = (self.runs.iter())
+            .map(|(_, s)| away(s))
+            .fold(f64::INFINITY, f64::min);
+        let alike: Vec<f64> = (self.runs.iter())
+            .filter(|(_, s)| away(s) < nearest + 0.05)
+            .map(|(_, s)| s.settling)
+            .collect();
+        (peak, spread_of_sizes(&alike)[0])
     }
 
     /// diagnosis.json.
@@ -60,7 +69,7 @@ impl FlangeDiagnosis {
         let mut ringing = vec![("frequency_hz", estimate(self.of(|s| s.frequency)))];
         let decays = self.decays();
         if !decays.is_empty() {
-            ringing.push(("decay_1_per_s", estimate(spread(&decays))));
+            ringing.push(("decay_1_per_s", estimate(spread_of_sizes(&decays))));
         }
         let steady: Vec<f64> = self.runs.iter().map(|(_, s)| s.steady).collect();
         let [least, most] = extremes(&steady);
@@ -95,7 +104,7 @@ impl FlangeDiagnosis {
             effects.push(effect(
                 "force_error_while_moving",
                 "force_balance",
-                vec![("rms_n", estimate(spread(&moving)))],
+                vec![("rms_n", estimate(spread_of_sizes(&moving)))],
             ));
         }
         let causes = [
@@ -171,7 +180,7 @@ impl FlangeDiagnosis {
         let dies = if decays.is_empty() {
             "; in no run does it stand out long enough for its damping".to_owned()
         } else {
-            let [d, d_low, d_high] = spread(&decays);
+            let [d, d_low, d_high] = spread_of_sizes(&decays);
             format!(
                 " and dies away at {d:.1} 1/s ({d_low:.1} to {d_high:.1}; a damping ratio of {:.3})",
                 d / (std::f64::consts::TAU * f)
@@ -204,7 +213,7 @@ impl FlangeDiagnosis {
         let moving: Vec<f64> = self.runs.iter().filter_map(|(_, s)| s.moving).collect();
         if !moving.is_empty() {
             let lost = self.runs.iter().map(|(_, s)| s.lost).fold(0.0, f64::max);
-            let [m, ..] = spread(&moving);
+            let [m, ..] = spread_of_sizes(&moving);
             part(
                 "While the arm moves",
                 &format!(

@@ -8,6 +8,7 @@ use super::super::files::OutputFolder;
 use super::super::recordings::read_rig;
 use super::cell;
 use super::cell_account::cell_account;
+use super::fit_picture;
 use super::unlisted_picture::picture;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
@@ -35,7 +36,16 @@ const PREDICTION: &str = "prediction.csv";
 const DIAGNOSIS: &str = "diagnosis.json";
 /// Shape of physics without a name, where there is such.
 const PICTURE: &str = "unlisted.svg";
-const NAMES: [&str; 5] = [ACCOUNT, IMPROVED, PREDICTION, PICTURE, DIAGNOSIS];
+/// Before and after, of a part of the device.
+const FIT_PICTURE: &str = "fit.svg";
+const NAMES: [&str; 6] = [
+    ACCOUNT,
+    IMPROVED,
+    PREDICTION,
+    PICTURE,
+    FIT_PICTURE,
+    DIAGNOSIS,
+];
 
 /// What becomes of a diagnosis that stands where a new one is to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -173,6 +183,7 @@ impl Prepared {
         };
         let prediction = prediction(&case, &plant)?;
         let picture = picture(&diagnosis)?;
+        let fit_picture = fit_picture::picture(&diagnosis)?;
         let mut answer = diagnosis.answer(start.elapsed().as_secs_f64());
         if let Model::Cell { of_arm, .. } = &model {
             answer.details.prediction.extend(of_arm.iter().cloned());
@@ -192,7 +203,12 @@ impl Prepared {
             }
         }
         let mut files = vec![(ACCOUNT, account.as_str()), (IMPROVED, improved.as_str())];
-        for (name, text) in [(PREDICTION, &prediction), (PICTURE, &picture)] {
+        let optional = [
+            (PREDICTION, &prediction),
+            (PICTURE, &picture),
+            (FIT_PICTURE, &fit_picture),
+        ];
+        for (name, text) in optional {
             match text {
                 Some(text) => files.push((name, text.as_str())),
                 // That of another diagnosis would pass for one of this.
@@ -317,7 +333,7 @@ fn flange(
             improved += &format!("# {key} = {value:.5e}   # {low:.3e} to {high:.3e}\n");
         }
     }
-    for absent in [PREDICTION, PICTURE] {
+    for absent in [PREDICTION, PICTURE, FIT_PICTURE] {
         folder.discard(absent)?;
     }
     let files = [
