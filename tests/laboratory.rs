@@ -11,7 +11,8 @@ use idc_cell::physics::regulator::{RateLimit, RegulatorParameters, SecondOrder};
 use idc_cell::physics::seal_friction::SealFriction;
 use idc_cell::physics::supply_reservoir::SupplyReservoir;
 use idc_cell::plant::{
-    ContactLaw, ContactParameters, Periodic, PlantInputs, PlantParameters, SensorErrors, simulate,
+    Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, PlantInputs, PlantParameters,
+    SensorErrors, simulate,
 };
 
 /// The same device in the simulator's own description.

@@ -20,6 +20,7 @@ mod layers;
 mod own_cell;
 mod paper_deviation;
 mod paper_page;
+mod parts;
 mod planted;
 mod predict;
 mod program;

@@ -117,17 +117,16 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     } = prepared;
     let remaining = (case.believed.chain.output())
         .map(|channel| Remaining::of(&search_of(case, &evidence), channel, say))
-        .filter(|remaining| !remaining.is_noise());
+        .filter(|(remaining, _)| !remaining.is_noise());
     let (ranked, evidence, remaining) = match remaining {
         None => {
             let search = search_of(case, &evidence);
             (rank(&search, search.run(say)), evidence, None)
         }
-        Some(first) => {
-            let mut remaining = first;
+        Some((mut remaining, mut seed)) => {
             let mut rounds = 0;
             loop {
-                let (ranked, whole) = against(case, &remaining, &evidence, say);
+                let (mut ranked, whole) = against(case, &remaining, &seed, &evidence, say);
                 let best = &ranked[0].hypothesis.fit.prediction;
                 let left = Remaining::left_by(best, &evidence, remaining.channel);
                 rounds += 1;
@@ -136,6 +135,7 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
                 }
                 // The first look was too rough: what it left would hide what is still to be found.
                 remaining = left;
+                seed = ranked.swap_remove(0).hypothesis;
             }
         }
     };
@@ -181,12 +181,22 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
 fn against(
     case: &Case,
     remaining: &Remaining,
+    seed: &Hypothesis,
     evidence: &Evidence,
     say: &mut dyn FnMut(&str),
 ) -> (Vec<Ranked>, Evidence) {
     let independent = remaining.independent(evidence);
     let search = search_of(case, &independent);
-    let mut ranked = rank(&search, search.run(say));
+    let mut found = search.run(say);
+    // What the first look came to may be out of the search's sight: laws that do nothing but together.
+    let seeded = search.refine(seed, FULL, 40);
+    if !found.iter().any(|h| h.names() == seeded.names()) {
+        let mut seeded = vec![seeded];
+        search.eliminate(&mut seeded, say);
+        found.append(&mut seeded);
+        found.sort_by(|a, b| search.score(a).total_cmp(&search.score(b)));
+    }
+    let mut ranked = rank(&search, found);
     let whole = remaining.whole(evidence);
     let search = search_of(case, &whole);
     let all_samples = &FULL[FULL.len() - 1..];

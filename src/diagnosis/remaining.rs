@@ -9,6 +9,7 @@
 
 use super::evidence::{Evidence, Measured, Prediction};
 use super::hypothesis::Hypothesis;
+use super::ruled_out::{exchanges, variant};
 use super::search::Search;
 use crate::plant::{CHANNELS, Channel};
 
@@ -37,8 +38,12 @@ pub struct Remaining {
 }
 
 impl Remaining {
-    /// What the best laws that a search can find leave of its evidence.
-    pub fn of(search: &Search<'_>, channel: Channel, say: &mut dyn FnMut(&str)) -> Self {
+    /// What the best laws leave that a search can find in its evidence at a first look, with those laws.
+    pub fn of(
+        search: &Search<'_>,
+        channel: Channel,
+        say: &mut dyn FnMut(&str),
+    ) -> (Self, Hypothesis) {
         let evidence = search.evidence;
         let every = evidence.count().div_ceil(FIRST_LOOK);
         let first = thinned(evidence, |_| every, evidence.noise);
@@ -50,7 +55,7 @@ impl Remaining {
             say,
         );
         let prediction = evidence.predict(&best.fit.prediction.plant, true, None);
-        Self::left_by(&prediction, evidence, channel)
+        (Self::left_by(&prediction, evidence, channel), best)
     }
 
     /// What a model leaves.
@@ -168,7 +173,18 @@ fn greedy(search: &Search<'_>, say: &mut dyn FnMut(&str)) -> Hypothesis {
     const TRIED: usize = 5;
     let stages = super::fit::ROUGH;
     let mut best = search.baseline();
-    while best.effects.len() < search.most_effects {
+    loop {
+        let exchanged = exchanged(search, &best);
+        if let Some(other) = exchanged.filter(|h| h.fit.rough < (1.0 - WORTH) * best.fit.rough) {
+            say(&format!(
+                "  exchanged: {:?} {:.0}",
+                other.effects, other.fit.rough
+            ));
+            best = other;
+        }
+        if best.effects.len() == search.most_effects {
+            break;
+        }
         let candidates = search.screen(&best, stages, f64::INFINITY);
         let mut refined: Vec<Hypothesis> = (candidates.iter().take(TRIED))
             .map(|candidate| search.refine(candidate, stages, 30))
@@ -187,6 +203,20 @@ fn greedy(search: &Search<'_>, say: &mut dyn FnMut(&str)) -> Hypothesis {
         best = more;
     }
     best
+}
+
+/// The best explanation with another law in the place of one that it excludes.
+fn exchanged(search: &Search<'_>, best: &Hypothesis) -> Option<Hypothesis> {
+    let others = exchanges(search, best).into_iter();
+    let fitted = others.filter_map(|effects| {
+        let fit = variant(search, &effects, super::fit::ROUGH)?;
+        Some(Hypothesis {
+            effects,
+            fit,
+            depends_on: Vec::new(),
+        })
+    });
+    fitted.min_by(|a, b| a.fit.rough.total_cmp(&b.fit.rough))
 }
 
 #[cfg(test)]

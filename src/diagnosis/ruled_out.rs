@@ -1,6 +1,6 @@
 //! What an explanation of a part of the device is worth: the same without each of its effects, and with the laws that could stand in an effect's place.
 
-use super::fit::{Effort, FULL, fit};
+use super::fit::{Effort, FULL, Fit, Stage, fit};
 use super::free::free_of;
 use super::hypothesis::Hypothesis;
 use super::search::Search;
@@ -20,11 +20,27 @@ pub struct RuledOut {
 
 /// Variants of an explanation, the best first.
 pub fn ruled_out(search: &Search<'_>, best: &Hypothesis, channel: Channel) -> Vec<RuledOut> {
-    let mut variants: Vec<Vec<&'static Effect>> = Vec::new();
-    for (place, effect) in best.effects.iter().enumerate() {
+    let mut variants = exchanges(search, best);
+    for place in 0..best.effects.len() {
         let mut without = best.effects.clone();
         without.remove(place);
         variants.push(without);
+    }
+    let mut found: Vec<RuledOut> = variants
+        .into_iter()
+        .filter_map(|effects| {
+            let fit = variant(search, &effects, &FULL[FULL.len() - 1..])?;
+            Some(described(search, &effects, &fit, channel))
+        })
+        .collect();
+    found.sort_by(|a, b| a.rms.total_cmp(&b.rms));
+    found
+}
+
+/// The effects of an explanation with another law in the place of one that it excludes.
+pub(super) fn exchanges(search: &Search<'_>, best: &Hypothesis) -> Vec<Vec<&'static Effect>> {
+    let mut variants = Vec::new();
+    for (place, effect) in best.effects.iter().enumerate() {
         let rivals = search.candidates.iter().copied();
         for rival in rivals.filter(|rival| rival.excludes(effect) && rival.name != effect.name) {
             let mut other = best.effects.clone();
@@ -32,20 +48,15 @@ pub fn ruled_out(search: &Search<'_>, best: &Hypothesis, channel: Channel) -> Ve
             variants.push(other);
         }
     }
-    let mut found: Vec<RuledOut> = variants
-        .into_iter()
-        .filter_map(|effects| variant(search, effects, channel))
-        .collect();
-    found.sort_by(|a, b| a.rms.total_cmp(&b.rms));
-    found
+    variants
 }
 
-/// A set of effects, fitted from each start of the last one that is new.
-fn variant(
+/// A set of effects, fitted from each start of each.
+pub(super) fn variant(
     search: &Search<'_>,
-    effects: Vec<&'static Effect>,
-    channel: Channel,
-) -> Option<RuledOut> {
+    effects: &[&'static Effect],
+    stages: &[Stage],
+) -> Option<Fit> {
     let believed = &search.believed;
     let clues = Clues {
         plant: believed,
@@ -53,10 +64,9 @@ fn variant(
         periodic: &[],
         bumps: &[],
     };
-    // Each effect's starts in turn, the others at their first.
+    // Each effect's starts in turn, the others at their last where they have less.
     let starts: Vec<Vec<Vec<f64>>> = effects.iter().map(|e| (e.starts)(&clues)).collect();
     let most = starts.iter().map(Vec::len).max().unwrap_or(1);
-    let stages = &FULL[FULL.len() - 1..];
     let tried = (0..most).map(|turn| {
         let mut free = search.tolerated.clone();
         for (effect, starts) in effects.iter().zip(&starts) {
@@ -74,15 +84,23 @@ fn variant(
         };
         fit(search.evidence, believed, &free, effort, None)
     });
-    let best = tried.min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
+    tried.min_by(|a, b| a.cost().total_cmp(&b.cost()))
+}
+
+fn described(
+    search: &Search<'_>,
+    effects: &[&'static Effect],
+    best: &Fit,
+    channel: Channel,
+) -> RuledOut {
     let index = channel as usize;
     let (mut squares, mut count) = (0.0, 0.0);
-    for (measured, course) in search
+    let courses = search
         .evidence
         .recordings
         .iter()
-        .zip(&best.prediction.courses)
-    {
+        .zip(&best.prediction.courses);
+    for (measured, course) in courses {
         for (m, p) in measured.readings[index].iter().zip(&course.readings[index]) {
             if (m - p).is_finite() {
                 squares += (m - p).powi(2);
@@ -95,11 +113,11 @@ fn variant(
         .iter()
         .zip(&best.values)
         .skip(search.tolerated.len());
-    Some(RuledOut {
+    RuledOut {
         effects: effects.iter().map(|effect| effect.name).collect(),
         rms: (squares / f64::max(count, 1.0)).sqrt(),
         numbers: own
             .map(|(free, value)| (free.quantity.name, *value))
             .collect(),
-    })
+    }
 }

@@ -86,7 +86,7 @@ fn the_published_mat_file_is_the_text_that_was_made_of_it() {
     }
     for (a, b) in mat.channels().iter().zip(text.channels()) {
         assert_eq!((&a.quantity, a.unit), (&b.quantity, b.unit));
-        let digits = if a.quantity == "drive_force" {
+        let digits = if a.quantity == "measured_force" {
             2e-8
         } else {
             5.1e-10
@@ -115,12 +115,12 @@ fn volts_taken_for_newtons_are_doubted() {
         let map = load_map(&path).unwrap();
         let imported = import(&map, &logs(&folder, end)).unwrap();
         let all = findings(&imported, &map);
-        let force = all.iter().find(|f| f.quantity == "drive_force").unwrap();
+        let force = all.iter().find(|f| f.quantity == "measured_force").unwrap();
         let said = force.doubts.join("\n");
         assert!(said.contains("controller's output in volts"), "{said}");
         assert!(
             all.iter()
-                .filter(|f| f.quantity != "drive_force")
+                .filter(|f| f.quantity != "measured_force")
                 .all(|f| f.doubts.is_empty())
         );
     }

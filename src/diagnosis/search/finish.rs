@@ -96,7 +96,11 @@ impl Search<'_> {
 
     /// Takes effects out of the best hypothesis as long as it scores better without, the last one too: a rough fit of the believed model may have come to
     /// rest where an effect of no size let a full one go on.
-    pub(super) fn eliminate(&self, full: &mut Vec<Hypothesis>, say: &mut dyn FnMut(&str)) {
+    pub(in crate::diagnosis) fn eliminate(
+        &self,
+        full: &mut Vec<Hypothesis>,
+        say: &mut dyn FnMut(&str),
+    ) {
         while let Some(best) = full.first()
             && best.effects.len() > self.shown.len()
         {

@@ -45,8 +45,12 @@ pub fn candidates(chain: Chain) -> Vec<&'static Effect> {
     };
     match chain {
         Chain::Whole => CATALOGUE.iter().collect(),
-        Chain::MovedPiston | Chain::DrivenSlide => {
-            of(&[Subsystem::ForceBalance, Subsystem::Sensors])
+        Chain::MovedPiston => of(&[Subsystem::ForceBalance, Subsystem::Sensors]),
+        Chain::DrivenSlide => {
+            let mut effects = of(&[Subsystem::ForceBalance, Subsystem::Sensors]);
+            // There is no pressure.
+            effects.retain(|effect| effect.name != "pressure_dependent_friction");
+            effects
         }
         Chain::ClosedChamber => {
             let mut effects = of(&[Subsystem::Chambers, Subsystem::Sensors]);

@@ -21,6 +21,10 @@ pub(super) fn base(
         refuse_unknown(document, table, numbers)?;
     }
     plant.chain = chain(document, keys)?;
+    if plant.chain == Chain::MovedPiston {
+        // The rig carries the piston: what it weighs does not show unless it is given.
+        plant.device.moving_mass = LIGHT;
+    }
     let stands = |table: &str, key: &str| {
         let tables = keys.tables();
         let numbers = tables.iter().find(|(name, _)| *name == table);
@@ -68,6 +72,9 @@ fn split(dotted: &'static str) -> (&'static str, &'static str) {
         .split_once('.')
         .expect("every number of the rig stands in a table")
 }
+
+/// A mass that makes no force [kg].
+const LIGHT: f64 = 1e-3;
 
 /// How much of the device there is.
 fn chain(document: &Document<'_>, keys: &RigKeys) -> Result<Chain, ScenarioError> {
