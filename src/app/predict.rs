@@ -6,7 +6,7 @@ use std::path::Path;
 use super::cli::PredictArguments;
 use super::error::{AppError, ExitCode};
 use super::output::say;
-use super::recordings::read_rig;
+use super::recordings::{read_rig, shown_columns};
 use crate::diagnosis::clean::clean;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::plant::simulate;
@@ -39,11 +39,7 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
             });
         }
     }
-    let columns: Vec<(&str, &[f64])> = COLUMNS
-        .into_iter()
-        .zip(&predicted)
-        .map(|(column, values)| (column, values.as_slice()))
-        .collect();
+    let columns = shown_columns(rig.plant.chain, &predicted);
     write_csv(&arguments.out, time, &columns)?;
     if arguments.quiet {
         return Ok(ExitCode::Done);

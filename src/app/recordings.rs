@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::plant::Chain;
+use crate::diagnosis::recorded::COLUMNS;
+use crate::plant::{CHANNELS, Chain};
 use crate::recording::csv::{read_csv, read_readings};
 use crate::recording::parquet::read_parquet;
 use crate::recording::{Recording, RecordingError};
@@ -24,4 +25,17 @@ pub(super) fn read_rig(chain: Chain, path: &Path) -> Result<Recording, Recording
         read_readings(path)?
     };
     Ok(read.recording)
+}
+
+/// The columns of a prediction: all of a whole device's, that of the output of a part.
+pub(super) fn shown_columns(
+    chain: Chain,
+    predicted: &[Vec<f64>; CHANNELS.len()],
+) -> Vec<(&'static str, &[f64])> {
+    let output = chain.output().map(|channel| channel as usize);
+    let columns = COLUMNS.into_iter().zip(predicted).enumerate();
+    columns
+        .filter(|(place, _)| output.is_none_or(|output| output == *place))
+        .map(|(_, (column, values))| (column, values.as_slice()))
+        .collect()
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::super::error::AppError;
 use super::super::files::OutputFolder;
-use super::super::recordings::read_rig;
+use super::super::recordings::{read_rig, shown_columns};
 use super::cell;
 use super::cell_account::cell_account;
 use super::fit_picture;
@@ -21,7 +21,7 @@ use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of, run_of};
 use crate::diagnosis::servo::ServoLink;
 use crate::effects::candidates;
-use crate::plant::{CHANNELS, Chain, PlantParameters, simulate};
+use crate::plant::{Chain, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::replay::LoadedCell;
 use crate::scenario::RecordedCell;
@@ -244,8 +244,7 @@ fn prediction(case: &Case, plant: &PlantParameters) -> Result<Option<String>, Ap
             });
         }
     }
-    let columns: [(&str, &[f64]); CHANNELS.len()] =
-        std::array::from_fn(|channel| (COLUMNS[channel], predicted[channel].as_slice()));
+    let columns = shown_columns(plant.chain, &predicted);
     Ok(Some(columns_text(&inputs.time, &columns)?))
 }
 
