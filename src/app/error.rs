@@ -145,7 +145,7 @@ pub enum AppError {
         reason: String,
     },
     /// A rig file that names nothing to diagnose from.
-    #[error("{file}: `recordings.fit` names no recording, expected the CSV files to diagnose from")]
+    #[error("{file}: `recordings.fit` names no recording, expected the files to diagnose from")]
     NoRecordings {
         /// Rig file.
         file: String,

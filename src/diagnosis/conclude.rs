@@ -284,7 +284,8 @@ impl Diagnosis {
             own += m * m;
             count += 1.0;
         }
-        ((left / f64::max(count, 1.0)).sqrt(), (left / own).sqrt())
+        let share = (left / f64::max(own, f64::MIN_POSITIVE)).sqrt();
+        ((left / f64::max(count, 1.0)).sqrt(), share)
     }
 
     /// Root mean square of what the best explanation leaves of a channel, in its unit.

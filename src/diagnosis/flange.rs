@@ -39,6 +39,8 @@ pub struct Shown {
     pub settling: f64,
     /// Frequency at which the force rings after the impact [Hz].
     pub frequency: f64,
+    /// Its amplitude as it begins [N].
+    pub ringing: f64,
     /// Rate at which that dies away [1/s]; none where it does not stand out long enough.
     pub decay: Option<f64>,
     /// Mean of force less desired force once settled, while the arm stands [N].
@@ -73,29 +75,51 @@ const MOVES: f64 = 0.01;
 /// Time that is left to a force to settle at most [s].
 const LONGEST: f64 = 6.0;
 
-/// A run that shows no contact.
+/// Time for which a run must go on after contact [s].
+const PRESSED: f64 = 1.5;
+
+/// A run that shows nothing of a contact.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error(
-    "{run}: the force never rises beyond {limit:.1} N after a time without contact; expected a run that begins in free air and ends pressing"
-)]
-pub struct NoContact {
-    /// File name.
-    pub run: String,
-    /// Force from which there would be contact [N].
-    pub limit: f64,
+pub enum NoContact {
+    /// It never touches, or does from the start.
+    #[error(
+        "{run}: the force never rises beyond {limit:.1} N after a time without contact; expected a run that begins in free air and ends pressing"
+    )]
+    Never {
+        /// File name.
+        run: String,
+        /// Force from which there would be contact [N].
+        limit: f64,
+    },
+    /// It ends too early.
+    #[error("{run}: it ends {left:.2} s after contact, expected at least {PRESSED} s")]
+    Short {
+        /// File name.
+        run: String,
+        /// How long it goes on [s].
+        left: f64,
+    },
+    /// Nothing is desired.
+    #[error("{run}: the force desired after contact is {desired:.2} N, expected one above zero")]
+    Undesired {
+        /// File name.
+        run: String,
+        /// The force [N].
+        desired: f64,
+    },
 }
 
 impl Run {
     /// What it shows.
     ///
     /// # Errors
-    /// There is no contact, or it is there from the start.
+    /// There is no contact, it is there from the start, or the run ends soon after it; nothing is desired.
     pub fn shown(&self) -> Result<Shown, NoContact> {
         let (time, force) = (&self.time, &self.force);
         let free = force.len().min(200);
         let noise = deviation(&force[..free / 2]);
         let limit = CONTACT.1.max(CONTACT.0 * noise);
-        let refused = || NoContact {
+        let refused = || NoContact::Never {
             run: self.name.clone(),
             limit,
         };
@@ -110,9 +134,18 @@ impl Run {
         }
         let approach = mean(&self.speed[approaching.clone()]);
         let before = median(&self.desired[approaching]);
+        let left = time[time.len() - 1] - contact;
+        if left < PRESSED {
+            let run = self.name.clone();
+            return Err(NoContact::Short { run, left });
+        }
         // The arm stands from when it has come to rest until it moves again, or another force is desired.
         let held = between(contact, contact + LONGEST);
         let desired = median(&self.desired[between(contact + 0.3, contact + 1.5)]);
+        if desired.is_nan() || desired <= 0.0 {
+            let run = self.name.clone();
+            return Err(NoContact::Undesired { run, desired });
+        }
         let rests = held
             .clone()
             .find(|i| time[*i] > contact + 0.3 && self.speed[*i].abs() < MOVES)
@@ -145,6 +178,7 @@ impl Run {
             .map_or(contact, |i| time[i]);
         let rings = between(bounced + SOON, bounced + SOON + RUNG);
         let frequency = loudest(&time[rings.clone()], &force[rings.clone()]);
+        let ringing = power_at(&time[rings.clone()], &force[rings.clone()], frequency).sqrt();
         let moving: Vec<usize> = (leaves..time.len())
             .filter(|i| {
                 self.speed[*i].abs() > 3.0 * MOVES
@@ -166,6 +200,7 @@ impl Run {
             settling,
             decay: decay(&time[rings.clone()], &force[rings], frequency),
             frequency,
+            ringing,
             steady: mean(&errors),
             unrest: deviation(&errors),
             moving: (count > 50.0).then(|| (squares / count).sqrt()),

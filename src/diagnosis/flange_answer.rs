@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
 use super::details::{Details, ForetoldRun, RunShown};
 use super::flange::{AVERAGED, BAND, Shown, spread, spread_of_sizes};
-use super::words::wrapped;
+use super::words::{listed, wrapped};
 
 /// What is known of a flange from its runs.
 #[derive(Debug, Clone)]
@@ -18,12 +18,44 @@ pub struct FlangeDiagnosis {
     pub unseen: Option<(String, Shown)>,
     /// Moving mass [kg].
     pub mass: f64,
+    /// Time constant with which the contact force is believed to follow the desired one [s].
+    pub time_constant: f64,
+    /// Standard deviation of the force sensor's noise [N].
+    pub noise: f64,
 }
+
+/// Multiples of the noise from which a force is there [1].
+const THERE: f64 = 5.0;
+/// Times as long as believed from which settling is a finding [1].
+const LATE: f64 = 1.5;
 
 impl FlangeDiagnosis {
     fn of(&self, value: impl Fn(&Shown) -> f64) -> [f64; 3] {
         let values: Vec<f64> = self.runs.iter().map(|(_, shown)| value(shown)).collect();
         spread_of_sizes(&values)
+    }
+
+    /// What the runs show that the believed first order does not, by name; nothing of a flange that is as believed.
+    #[must_use]
+    pub fn missing(&self) -> Vec<&'static str> {
+        let limit = THERE * self.noise;
+        let any = |shows: &dyn Fn(&Shown) -> bool| self.runs.iter().any(|(_, s)| shows(s));
+        let believed = self.time_constant * (1.0 / BAND).ln() + AVERAGED;
+        let shown = [
+            (
+                "contact_impact",
+                any(&|s| s.peak > s.desired.max(s.before) * (1.0 + BAND) + limit),
+            ),
+            ("contact_ringing", any(&|s| s.ringing > limit)),
+            ("settling", any(&|s| s.settling > LATE * believed)),
+            ("steady_force_error", any(&|s| s.steady.abs() > limit)),
+            (
+                "force_error_while_moving",
+                any(&|s| s.moving.is_some_and(|rms| rms > limit)),
+            ),
+        ];
+        let shown = shown.into_iter().filter(|(_, shows)| *shows);
+        shown.map(|(name, _)| name).collect()
     }
 
     /// Growth of the peak with the speed [N s/m] with its interval.
@@ -107,6 +139,9 @@ impl FlangeDiagnosis {
                 vec![("rms_n", estimate(spread_of_sizes(&moving)))],
             ));
         }
+        let missing = self.missing();
+        effects.retain(|effect| missing.contains(&effect.name.as_str()));
+        let unsteady = missing.contains(&"steady_force_error");
         let causes = [
             "regulator_hysteresis",
             "regulator_gain_error",
@@ -115,9 +150,12 @@ impl FlangeDiagnosis {
         ];
         Answer {
             schema: SCHEMA,
-            verdict: Verdict::Explained,
-            effects,
+            verdict: match effects.is_empty() {
+                true => Verdict::NothingMissing,
+                false => Verdict::Explained,
+            },
             mismatch: (self.runs.iter())
+                .filter(|_| !effects.is_empty())
                 .map(|(name, shown)| Mismatch {
                     recording: name.clone(),
                     channel: "force_n".to_owned(),
@@ -125,14 +163,19 @@ impl FlangeDiagnosis {
                     end_s: shown.contact + shown.settling,
                 })
                 .collect(),
+            effects,
             seconds,
-            alternatives: causes
+            alternatives: (causes.into_iter())
+                .filter(|_| unsteady)
                 .map(|cause| Alternative {
                     effects: vec![cause.to_owned()],
                     odds: 1.0,
                 })
-                .into(),
-            notes: vec![CANNOT_TELL.to_owned()],
+                .collect(),
+            notes: unsteady
+                .then(|| CANNOT_TELL.to_owned())
+                .into_iter()
+                .collect(),
             details: Details {
                 runs: self
                     .runs
@@ -158,17 +201,23 @@ impl FlangeDiagnosis {
     /// The account.
     #[must_use]
     pub fn account(&self) -> String {
-        let mut text = format!(
-            "{}: missing: contact_impact, contact_ringing, settling and steady_force_error\n",
-            self.name
-        );
-        let mut part = |title: &str, paragraph: &str| {
+        let missing = self.missing();
+        let names: Vec<String> = missing.iter().map(|name| (*name).to_owned()).collect();
+        let mut text = match names.is_empty() {
+            true => format!("{}: nothing is missing\n", self.name),
+            false => format!("{}: missing: {}\n", self.name, listed(&names)),
+        };
+        let mut part = |name: &str, title: &str, paragraph: &str| {
+            if !name.is_empty() && !missing.contains(&name) {
+                return;
+            }
             // Writing into a text cannot fail.
             let _ = write!(text, "\n{title}\n{}", wrapped("  ", paragraph));
         };
         let [z, z_low, z_high] = self.impedance();
         let [k, low, high] = [z, z_low, z_high].map(|z| z.max(0.0).powi(2) / self.mass * 1e-3);
         part(
+            "contact_impact",
             "Impact",
             &format!(
                 "The tool of {} kg meets the surface and the force peaks at {z:.0} N for each m/s of approach ({z_low:.0} to {z_high:.0}) over what was desired before, as on a spring of {k:.0} N/mm ({low:.0} to {high:.0}). The believed first order has no impact. The intervals are those of 95 %, from how the runs differ.",
@@ -187,6 +236,7 @@ impl FlangeDiagnosis {
             )
         };
         part(
+            "contact_ringing",
             "Ringing",
             &format!(
                 "After the impact the force rings at {f:.1} Hz ({f_low:.1} to {f_high:.1}){dies}."
@@ -194,6 +244,7 @@ impl FlangeDiagnosis {
         );
         let [s, s_low, s_high] = self.of(|s| s.settling);
         part(
+            "settling",
             "Settling",
             &format!(
                 "The force, averaged over {:.0} ms, stays within {:.0} % of the desired force about its later level {s:.2} s after contact ({s_low:.2} to {s_high:.2}).",
@@ -204,10 +255,15 @@ impl FlangeDiagnosis {
         let steady: Vec<f64> = self.runs.iter().map(|(_, s)| s.steady).collect();
         let [least, most] = extremes(&steady);
         let unrest = self.of(|s| s.unrest)[0];
+        let off = match steady.len() {
+            1 => format!("{least:+.2} N"),
+            _ => format!("{least:+.2} to {most:+.2} N from run to run"),
+        };
         part(
+            "steady_force_error",
             "Steady error",
             &format!(
-                "Once settled, with the arm at rest, the force is off by {least:+.2} to {most:+.2} N from run to run, where within a run it wanders by {unrest:.2} N. {CANNOT_TELL}"
+                "Once settled, with the arm at rest, the force is off by {off}, where within a run it wanders by {unrest:.2} N. {CANNOT_TELL}."
             ),
         );
         let moving: Vec<f64> = self.runs.iter().filter_map(|(_, s)| s.moving).collect();
@@ -215,6 +271,7 @@ impl FlangeDiagnosis {
             let lost = self.runs.iter().map(|(_, s)| s.lost).fold(0.0, f64::max);
             let [m, ..] = spread_of_sizes(&moving);
             part(
+                "force_error_while_moving",
                 "While the arm moves",
                 &format!(
                     "In contact and moving, the force is off by {m:.1} N RMS, and contact is lost for up to {:.1} % of a run's time.",
@@ -225,6 +282,7 @@ impl FlangeDiagnosis {
         if let Some((name, shown)) = &self.unseen {
             let (peak, settling) = self.foretold(shown);
             part(
+                "",
                 "A run that it never saw",
                 &format!(
                     "{name} comes at {:.3} m/s. Foretold: a peak of {peak:.0} N, settled after {settling:.2} s; measured: {:.0} N ({:+.0} %) and {:.2} s ({:+.0} %).",
@@ -271,5 +329,86 @@ fn report(name: &str, shown: &Shown) -> RunShown {
         wander_n: shown.unrest,
         moving_rms_n: shown.moving,
         contact_lost: shown.lost,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::flange::Run;
+    use super::*;
+
+    /// A flange that is as believed: the force rises first order from contact on.
+    fn as_believed() -> Run {
+        let time: Vec<f64> = (0..6000).map(|i| -0.5 + 8e-4 * f64::from(i)).collect();
+        // Noise of a computer: what matters is that it is there.
+        let noise = |i: usize| 0.08 * ((i * 7919 % 101) as f64 / 50.0 - 1.0);
+        let force = |t: f64| {
+            if t < 0.0 {
+                0.0
+            } else {
+                50.0 * (1.0 - (-t / 0.05).exp())
+            }
+        };
+        Run {
+            name: "run".to_owned(),
+            force: time
+                .iter()
+                .enumerate()
+                .map(|(i, t)| force(*t) + noise(i))
+                .collect(),
+            desired: time
+                .iter()
+                .map(|t| if *t < 0.0 { 0.0 } else { 50.0 })
+                .collect(),
+            speed: time
+                .iter()
+                .map(|t| if *t < 0.0 { 0.02 } else { 0.0 })
+                .collect(),
+            time,
+        }
+    }
+
+    fn of(run: &Run) -> FlangeDiagnosis {
+        FlangeDiagnosis {
+            name: "flange".to_owned(),
+            runs: vec![(run.name.clone(), run.shown().unwrap())],
+            unseen: None,
+            mass: 3.0,
+            time_constant: 0.05,
+            noise: 0.085,
+        }
+    }
+
+    #[test]
+    fn a_flange_that_is_as_believed_lacks_nothing_and_one_that_is_off_lacks_that_alone() {
+        let mut run = as_believed();
+        let answer = of(&run).answer(0.0);
+        assert_eq!(
+            answer.verdict,
+            Verdict::NothingMissing,
+            "{:?}",
+            answer.effects
+        );
+        assert!(of(&run).account().contains("nothing is missing"));
+        for (force, time) in run.force.iter_mut().zip(&run.time) {
+            *force += if *time < 0.0 { 0.0 } else { 1.5 };
+        }
+        assert_eq!(of(&run).missing(), ["steady_force_error"]);
+        assert!(of(&run).answer(0.0).text().is_ok());
+    }
+
+    #[test]
+    fn a_run_that_ends_soon_after_contact_is_refused() {
+        let mut run = as_believed();
+        for values in [
+            &mut run.time,
+            &mut run.force,
+            &mut run.desired,
+            &mut run.speed,
+        ] {
+            values.truncate(1000);
+        }
+        let refused = run.shown().unwrap_err().to_string();
+        assert!(refused.contains("expected at least 1.5 s"), "{refused}");
     }
 }

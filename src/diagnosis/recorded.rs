@@ -89,20 +89,21 @@ pub enum RecordedError {
     },
 }
 
+/// Values of a channel that must be there.
+fn values_of(file: &str, recording: &Recording, quantity: &str) -> Result<Vec<f64>, RecordedError> {
+    let values = recording.values(quantity).map(<[f64]>::to_vec);
+    values.map_err(|source| RecordedError::Missing {
+        file: file.to_owned(),
+        source: Box::new(source),
+    })
+}
+
 /// Takes a recording apart. Commands that were lost are held, a surface that is lost for a moment is filled in.
 ///
 /// # Errors
 /// An input is absent.
 pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedError> {
-    let values = |quantity: &str| {
-        recording
-            .values(quantity)
-            .map(<[f64]>::to_vec)
-            .map_err(|source| RecordedError::Missing {
-                file: file.to_owned(),
-                source: Box::new(source),
-            })
-    };
+    let values = |quantity: &str| values_of(file, recording, quantity);
     let mut set_pressure = values(schema::SET_PRESSURE_GAUGE)?;
     let mut valve = values(schema::VALVE_EXTENDS)?;
     let mut surface = values(schema::SURFACE_POSITION)?;
@@ -145,15 +146,7 @@ pub fn recorded_of(
     let Some(output) = chain.output() else {
         return recorded(file, recording);
     };
-    let values = |quantity: &str| {
-        recording
-            .values(quantity)
-            .map(<[f64]>::to_vec)
-            .map_err(|source| RecordedError::Missing {
-                file: file.to_owned(),
-                source: Box::new(source),
-            })
-    };
+    let values = |quantity: &str| values_of(file, recording, quantity);
     let time = recording.time().to_vec();
     let count = time.len();
     let mut readings: [Vec<f64>; CHANNELS.len()] = std::array::from_fn(|_| vec![f64::NAN; count]);
@@ -200,13 +193,7 @@ pub fn recorded_of(
 /// One of them is absent.
 pub fn run_of(file: &str, name: &str, recording: &Recording) -> Result<Run, RecordedError> {
     let values = |quantity: &str| {
-        let mut values = recording
-            .values(quantity)
-            .map(<[f64]>::to_vec)
-            .map_err(|source| RecordedError::Missing {
-                file: file.to_owned(),
-                source: Box::new(source),
-            })?;
+        let mut values = values_of(file, recording, quantity)?;
         hold(&mut values);
         // What was lost before the first value is as that.
         let first = values.iter().copied().find(|value| value.is_finite());

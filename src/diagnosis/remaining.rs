@@ -46,7 +46,7 @@ impl Remaining {
     ) -> (Self, Hypothesis) {
         let evidence = search.evidence;
         let every = evidence.count().div_ceil(FIRST_LOOK);
-        let first = thinned(evidence, |_| every, evidence.noise);
+        let first = thinned(evidence, every, evidence.noise);
         let best = greedy(
             &Search {
                 evidence: &first,
@@ -73,8 +73,9 @@ impl Remaining {
             count += own;
             let time = &measured.inputs.time;
             let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-            weighted += own * alike(&left);
-            seconds += own * alike(&left) * step;
+            let alike = alike(&left);
+            weighted += own * alike;
+            seconds += own * alike * step;
         }
         Self {
             channel,
@@ -108,28 +109,23 @@ impl Remaining {
         let alike = (self.alike / every as f64).max(1.0);
         let mut noise = self.taken_as_noise(evidence);
         noise[self.channel as usize] *= alike.sqrt();
-        let mut thinned = thinned(evidence, |_| every, noise);
+        let mut thinned = thinned(evidence, every, noise);
         thinned.worth = 1.0 / alike;
         thinned
     }
 
     /// The evidence with all samples, against what is left.
     pub fn whole(&self, evidence: &Evidence) -> Evidence {
-        let mut whole = thinned(evidence, |_| 1, self.taken_as_noise(evidence));
+        let mut whole = thinned(evidence, 1, self.taken_as_noise(evidence));
         whole.block = whole.block.max(2.0 * self.time);
         whole
     }
 }
 
-/// The evidence with every so many-th reading, by the number of a recording's samples, and another noise.
-fn thinned(
-    evidence: &Evidence,
-    every: impl Fn(usize) -> usize,
-    noise: [f64; CHANNELS.len()],
-) -> Evidence {
+/// The evidence with every so many-th reading and another noise.
+fn thinned(evidence: &Evidence, every: usize, noise: [f64; CHANNELS.len()]) -> Evidence {
     let thin = |measured: &Measured| {
         let mut kept = measured.clone();
-        let every = every(measured.inputs.time.len());
         for readings in &mut kept.readings {
             for (i, reading) in readings.iter_mut().enumerate() {
                 if i % every != every / 2 {

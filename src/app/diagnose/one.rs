@@ -21,7 +21,7 @@ use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of, run_of};
 use crate::diagnosis::servo::ServoLink;
 use crate::effects::candidates;
-use crate::plant::{Chain, PlantParameters, simulate};
+use crate::plant::{Chain, Channel, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::replay::LoadedCell;
 use crate::scenario::RecordedCell;
@@ -319,6 +319,8 @@ fn flange(
         runs,
         unseen,
         mass: rig.plant.device.moving_mass,
+        time_constant: rig.plant.device.regulator.time_constant,
+        noise: rig.noise[Channel::Force as usize],
     };
     let answer = diagnosis.answer(start.elapsed().as_secs_f64());
     let account = diagnosis.account();

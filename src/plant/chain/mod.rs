@@ -76,15 +76,15 @@ impl Chain {
     }
 }
 
-/// What really happens in a rig with a part of the device.
-pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
-    match plant.chain {
-        Chain::Whole => Trajectory::default(),
+/// What really happens in a rig with a part of the device; none of a whole one.
+pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Option<Trajectory> {
+    Some(match plant.chain {
+        Chain::Whole => return None,
         Chain::MovedPiston | Chain::DrivenSlide => moved::trajectory(plant, inputs),
         Chain::ClosedChamber => closed_chamber::trajectory(plant, inputs),
         Chain::Regulator => regulator_alone::trajectory(plant, inputs),
         Chain::ContactFlange => flange::trajectory(plant, inputs),
-    }
+    })
 }
 
 impl Trajectory {
