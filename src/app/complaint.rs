@@ -59,7 +59,9 @@ fn place(error: &AppError) -> Option<Place> {
         }
         AppError::Cell(
             CellError::EdgeUnknown { file, .. } | CellError::EdgeNotConvex { file, .. },
-        ) => of_key(file, "workpiece.edge"),
+        ) => ["edge", "loop"]
+            .into_iter()
+            .find_map(|key| of_key(file, &format!("workpiece.edge.{key}"))),
         AppError::Cell(CellError::JointStiffness { file, .. }) => {
             of_key(file, "joints.stiffness_n_m_per_rad")
         }

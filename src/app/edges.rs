@@ -3,6 +3,7 @@
 use super::cli::{EdgesArguments, MeshUnit};
 use super::error::{AppError, ExitCode};
 use super::output::say;
+use super::progress;
 use crate::workpiece::{
     Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, list_edges, load_mesh,
 };
@@ -22,12 +23,14 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
             expected: "1 to 170",
         });
     }
+    let spinner = progress::spinner("looking for edges", arguments.json);
     let mesh = load_mesh(&arguments.mesh, scale)?;
     let search = EdgeSearch {
         sharp_angle: angle.to_radians(),
         ..EdgeSearch::default()
     };
     let list = list_edges(&mesh, &search);
+    spinner.finish_and_clear();
     say(&if arguments.json {
         json(arguments, &list)
     } else {

@@ -74,7 +74,7 @@ Examples:
       assets/proof/cases/case-03/ride.csv --out runs/believed.csv
   # The same as numbers for a program.
   idc predict assets/proof/cases/case-03/rig.toml \\
-      assets/proof/cases/case-03/ride.csv --out runs/believed.csv --force --json";
+      assets/proof/cases/case-03/ride.csv --out runs/again.csv --json";
 
 /// `idc import`.
 pub(super) const IMPORT: &str = "\
