@@ -96,7 +96,8 @@ Examples:
   # One case: its rig.toml names its recordings.
   idc diagnose assets/proof/cases/case-03 --out runs/cases/case-03
   # What was found, for a program; the diagnosis that stands is kept.
-  idc diagnose assets/proof/cases/case-03 --out runs/cases/case-03 --resume --json
+  idc diagnose assets/proof/cases/case-03 --out runs/cases/case-03 \\
+      --resume --json
   # Every case below a folder, going on where it was stopped. (takes minutes)
   idc diagnose assets/proof/cases --all --out runs/cases --resume
   # Cases of a robot cell: the scenario is what is believed. (takes minutes)
