@@ -4,8 +4,10 @@ mod all;
 mod arm_prediction;
 mod cell;
 mod cell_account;
+mod comparison_files;
 mod fit_picture;
 mod one;
+mod outputs;
 mod progress;
 mod unlisted_picture;
 

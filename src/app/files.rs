@@ -108,11 +108,21 @@ impl OutputFolder {
         &self,
         files: &[(&'static str, &str)],
     ) -> Result<Vec<&'static str>, AppError> {
+        self.write_with(|folder| {
+            for (name, text) in files {
+                write_text(&folder.join(name), text)?;
+            }
+            Ok(files.iter().map(|(name, _)| *name).collect())
+        })
+    }
+
+    /// Lets files be written into a folder of their own, and moves those that are named here, the last one last; returns their names.
+    pub(super) fn write_with(
+        &self,
+        write: impl FnOnce(&Path) -> Result<Vec<&'static str>, AppError>,
+    ) -> Result<Vec<&'static str>, AppError> {
         let unfinished = UnfinishedFolder::within(&self.path)?;
-        for (name, text) in files {
-            write_text(&unfinished.path().join(name), text)?;
-        }
-        let names: Vec<&'static str> = files.iter().map(|(name, _)| *name).collect();
+        let names = write(unfinished.path())?;
         unfinished.finish(&names)?;
         Ok(names)
     }

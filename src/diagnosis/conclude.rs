@@ -181,7 +181,7 @@ impl Diagnosis {
         (0..CHANNELS.len()).filter_map(of_channel).collect()
     }
 
-    fn by_channel<'a>(
+    pub(super) fn by_channel<'a>(
         &'a self,
         residuals: &'a [f64],
     ) -> impl Iterator<Item = (usize, crate::plant::Channel, &'a [f64])> {
@@ -198,6 +198,7 @@ impl Diagnosis {
     #[must_use]
     pub fn details(&self) -> Details {
         Details {
+            account: self.account(),
             noise: self.noises(),
             misfit: self.misfits(),
             parts: self

@@ -2,12 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::account::Account;
 use super::answer::Estimate;
+use crate::recording::provenance::Provenance;
 
 /// All of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Details {
+    /// Name of the case.
+    pub case: String,
+    /// What account.txt says.
+    pub account: Account,
+    /// What it was made with and of.
+    pub provenance: Provenance,
     /// Standard deviation of the noise that each channel was given, by column.
     pub noise: Vec<ChannelNoise>,
     /// How far each channel of each recording is from the models.
