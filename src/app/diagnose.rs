@@ -13,6 +13,9 @@ mod unlisted_picture;
 
 use std::path::Path;
 
+pub(super) use comparison_files::read_comparison;
+pub(super) use outputs::DIAGNOSIS;
+
 use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};
 use super::output::say;

@@ -140,7 +140,10 @@ fn on_all_places(drawn: &[Drawn<'_>]) -> (Vec<f64>, Vec<Vec<f64>>) {
     for (row, (_, owner, index)) in places.iter().enumerate() {
         columns[*owner][row] = drawn[*owner].values[*index];
     }
-    (places.into_iter().map(|(place, ..)| place).collect(), columns)
+    (
+        places.into_iter().map(|(place, ..)| place).collect(),
+        columns,
+    )
 }
 
 /// Little-endian `f32` in base64.
@@ -179,8 +182,11 @@ mod tests {
         let signal = |values: Vec<f64>| {
             Series::new("a", time.clone(), values, Role::Measured, Stroke::Plain)
         };
-        let (told, count) =
-            chart(vec![signal(vec![1.0, 2.0, 3.0]), signal(vec![4.0, 5.0, f64::NAN])]).told(100);
+        let (told, count) = chart(vec![
+            signal(vec![1.0, 2.0, 3.0]),
+            signal(vec![4.0, 5.0, f64::NAN]),
+        ])
+        .told(100);
         assert_eq!(count, [3, 3]);
         assert_eq!(unpacked(&told["at"]), [0.0, 0.5, 1.0]);
         assert_eq!(unpacked(&told["series"][0]["values"]), [1.0, 2.0, 3.0]);

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::files::OutputFolder;
+use super::super::report::{REPORT, of_diagnosis};
 use super::comparison_files::{BALANCE, COMPARISON, write_balances, write_recordings};
 use super::one::Finished;
 use crate::diagnosis::answer::Answer;
@@ -19,7 +20,7 @@ const PICTURE: &str = "unlisted.svg";
 const FIT_PICTURE: &str = "fit.svg";
 pub(in super::super) const DIAGNOSIS: &str = "diagnosis.json";
 /// All that a diagnosis may write.
-pub(super) const NAMES: [&str; 8] = [
+pub(super) const NAMES: [&str; 9] = [
     ACCOUNT,
     IMPROVED,
     PREDICTION,
@@ -27,6 +28,7 @@ pub(super) const NAMES: [&str; 8] = [
     FIT_PICTURE,
     COMPARISON,
     BALANCE,
+    REPORT,
     DIAGNOSIS,
 ];
 
@@ -80,9 +82,13 @@ impl Outputs<'_> {
             }
             write_recordings(&unfinished.join(COMPARISON), self.comparison)?;
             write_balances(&unfinished.join(BALANCE), self.comparison)?;
+            let report = of_diagnosis(&self.answer, self.comparison);
+            write_text(&unfinished.join(REPORT), &report)?;
             write_text(&unfinished.join(DIAGNOSIS), &document)?;
             let names = texts.iter().map(|(name, _)| *name);
-            Ok(names.chain([COMPARISON, BALANCE, DIAGNOSIS]).collect())
+            Ok(names
+                .chain([COMPARISON, BALANCE, REPORT, DIAGNOSIS])
+                .collect())
         })?;
         Ok(Finished {
             answer: self.answer,
