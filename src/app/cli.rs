@@ -58,6 +58,9 @@ enum Command {
     /// Write report.html of a folder with results: one page for a browser.
     #[command(after_help = super::report::EXAMPLES)]
     Report(super::report::ReportArguments),
+    /// Compare runs, or diagnoses: numbers side by side, signals over one another.
+    #[command(after_help = super::compare::EXAMPLES)]
+    Compare(super::compare::CompareArguments),
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
     #[command(after_help = super::prove::PROVE_EXAMPLES)]
     Prove(ProveArguments),
@@ -274,6 +277,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
         Command::Report(arguments) => super::report::run(arguments),
+        Command::Compare(arguments) => super::compare::run(arguments),
         Command::Prove(arguments) => super::prove::run_prove(arguments),
         Command::Sweep(arguments) => super::prove::run_sweep(arguments),
         Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),

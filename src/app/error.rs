@@ -68,6 +68,20 @@ pub enum AppError {
         /// The folder.
         folder: String,
     },
+    /// Folders of runs and of diagnoses.
+    #[error("{diagnosis} holds a diagnosis and the others runs, expected all of one kind")]
+    MixedResults {
+        /// A folder with a diagnosis.
+        diagnosis: String,
+    },
+    /// A file that stands where one is to be written.
+    #[error(
+        "{path} exists already, expected another name, or --force to put a new one in its place"
+    )]
+    Standing {
+        /// The file.
+        path: String,
+    },
     /// A bound on a metric.
     #[error("{file}: {source}")]
     Metrics {

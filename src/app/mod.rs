@@ -4,6 +4,7 @@ mod bench;
 mod bench_figures;
 mod bench_picture;
 mod cli;
+mod compare;
 mod design;
 mod diagnose;
 mod edges;

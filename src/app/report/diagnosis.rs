@@ -87,7 +87,7 @@ fn facts(answer: &Answer) -> Vec<Fact> {
         .prediction
         .iter()
         .max_by(|a, b| a.before_sigmas.total_cmp(&b.before_sigmas));
-    if let Some(error) = worst {
+    if let Some(error) = worst.filter(|_| answer.verdict != Verdict::NothingMissing) {
         let (words, unit, factor) = of_column(&error.channel);
         add(
             &format!("error of {words}, not fitted to"),
@@ -242,11 +242,19 @@ fn before_and_after<'a>(answer: &Answer, comparison: &'a Comparison) -> Option<S
             .collect()
     };
     let mut order: Vec<&Compared> = comparison.recordings.iter().collect();
-    // What was not fitted to is the proof: it comes first.
-    order.sort_by_key(|recording| !recording.unseen);
-    let mut blocks = vec![Block::Hint(
-        "Shaded times are those of the strips above. Draw over a chart to zoom it, and all of its recording; a double click shows all.".to_owned(),
-    )];
+    // What was measured and not fitted to is the proof: it comes first; what was not measured, last.
+    let measured = |of: &Compared| {
+        let values = of.channels.iter().flat_map(|channel| &channel.measured);
+        values.copied().any(f64::is_finite)
+    };
+    order.sort_by_key(|recording| (!measured(recording), !recording.unseen));
+    let shaded = match answer.mismatch.is_empty() {
+        true => "",
+        false => "Shaded times are those of the strips above. ",
+    };
+    let mut blocks = vec![Block::Hint(format!(
+        "{shaded}Draw over a chart to zoom it, and all of its recording; a double click shows all."
+    ))];
     for (place, recording) in order.into_iter().enumerate() {
         let kept = match recording.unseen {
             true => "kept from the fit",
