@@ -133,7 +133,7 @@
       width: place.clientWidth, height: 280,
       cursor: { sync: told.group ? { key: told.group, setSeries: false } : undefined, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
       legend: { live: true },
-      scales: { x: { time: false }, y: { range: (_, min, max) => (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
+      scales: { x: { time: false }, y: { range: (_, min, max) => told.within ?? (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
       axes: [{ ...axis, label: told.x, values: plain, size: 30, labelSize: 18 }, { ...axis, label: told.y, values: plain, size: (u, values) => (values ? 22 + 7 * largest(values.map(Number)) : 60) }],
       series: [{ label: told.x, value: (_, v) => shown(v) }, ...told.series.map(series)],
       bands: told.areas.map(([low, high]) => ({ series: [high + 1, low + 1], fill: () => faded("Band", 0.3) })),

@@ -111,6 +111,19 @@ fn variable(name: &str) -> (&str, &'static str, f64) {
     }
 }
 
+/// Where nearly all values lie, with some room; none where there are none. At an impact a few are ten times as large.
+fn most_of(values: &[f64]) -> Option<[f64; 2]> {
+    const BEYOND: f64 = 0.01;
+    const ROOM: f64 = 0.35;
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().checked_sub(1)?;
+    let at = |share: f64| sorted[(share * last as f64).round() as usize];
+    let (low, high) = (at(BEYOND).min(0.0), at(1.0 - BEYOND).max(0.0));
+    let room = ROOM * (high - low);
+    (room > 0.0).then_some([low - room, high + room])
+}
+
 /// What a link lacks against the variable that says when, before and after.
 pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
     let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
@@ -137,6 +150,7 @@ pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
             ],
             ..Panel::default()
         },
+        within: most_of(&balance.before).map(|ends| ends.map(|end| factor * end)),
         ..Chart::default()
     }
 }
