@@ -42,6 +42,7 @@ pub(super) fn channel<'a>(
         },
         spans: spans.clone(),
         group: recording.name.clone(),
+        within: None,
     };
     let words = capital(CHANNEL_WORDS[index]);
     let models = [
