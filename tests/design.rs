@@ -56,7 +56,10 @@ fn run(bench: &Bench, threads: Option<&str>) -> Outcome {
         .map(|count| ("RAYON_NUM_THREADS", count))
         .into_iter()
         .collect();
-    bench.idc(&["design", "study.toml", "--out", "out"], &environment)
+    bench.idc(
+        &["design", "study.toml", "--out", "out", "--force"],
+        &environment,
+    )
 }
 
 /// design.json of a study that is done.
@@ -201,7 +204,10 @@ fn refused(spoil: impl Fn(&Bench), code: i32, words: &str) {
     let line = outcome.only_line("error: ");
     assert!(line.starts_with(&format!("error: {words}")), "{line}");
     assert_eq!(outcome.code, code, "{line}");
-    assert_eq!((outcome.err.trim_end(), outcome.out.as_str()), (line, ""));
+    assert_eq!(
+        (outcome.sentences().as_str(), outcome.out.as_str()),
+        (line, "")
+    );
     if code == 2 {
         assert!(before == bench.contents(), "files changed: {line}");
     }

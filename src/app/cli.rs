@@ -1,18 +1,17 @@
 //! The command line.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
-use super::files::{OutputFolder, RUN_NAMES, RunOutput, SummaryDocument};
+use super::files::{OutputFolder, RUN_NAMES, RunOutput, Standing, SummaryDocument};
+use super::help;
 use super::output::say;
 use super::picture::scene_of;
 use super::run::run_cell;
-use super::{bench, bench_figures, bench_picture};
+use super::{bench, bench_figures, bench_picture, progress};
 use crate::cell::Cell;
 use crate::metrics::{self, Verdict};
 use crate::recording::rerun::Opening;
@@ -20,40 +19,48 @@ use crate::report::{Style, bench_markdown, bench_text, markdown, text};
 use crate::rig::Rig;
 use crate::scenario::{self, AnyScenario, BenchScenario};
 
-/// Simulate a robot deburring cell with a pneumatic constant-force end effector.
+/// Simulate a robot deburring cell with a pneumatic constant-force end effector, and find out what physics recordings of a real one contain
+/// that its model leaves out.
 #[derive(Debug, Parser)]
 #[command(
     name = "idc",
     version,
-    about,
-    after_help = "Exit codes: 0 done, 1 a result lies outside the scenario's [expect] bounds \
-or no design keeps the study's [limits], \
-2 bad input, 3 the physics stopped the run (the recording up to there is kept)."
+    max_term_width = 100,
+    after_help = help::PROGRAM
 )]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// When to print in colours.
+    #[command(flatten)]
+    pub colour: colorchoice_clap::Color,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a scenario: simulate, record, print how uniform the contact force was.
-    #[command(after_help = "Example: idc run scenarios/plate_edge.toml --out runs/first")]
+    #[command(after_help = help::RUN)]
     Run(RunArguments),
+    /// Explain a file without running it: what it describes, what would be done, what is missing.
+    #[command(after_help = super::check::EXAMPLES)]
+    Check(super::check::CheckArguments),
+    /// Write a commented file to start from: a cell, a rig file or an import map.
+    #[command(after_help = super::new::EXAMPLES)]
+    New(super::new::NewArguments),
     /// Do a design study: find the device that keeps the contact force most uniform under limits.
-    #[command(after_help = "Example: idc design scenarios/studies/device_design.toml")]
+    #[command(after_help = help::DESIGN)]
     Design(DesignArguments),
     /// List the sharp edges of a part and the outlines of its faces.
-    #[command(after_help = "Example: idc edges assets/bracket.stl")]
+    #[command(after_help = help::EDGES)]
     Edges(EdgesArguments),
     /// Make a recording of the logs of a real device, as a map says what their columns are.
-    #[command(after_help = super::import::EXAMPLES)]
+    #[command(after_help = help::IMPORT)]
     Import(ImportArguments),
     /// Say what a rig file, believed or improved, predicts for the inputs of a recording.
-    #[command(after_help = "Example: idc predict improved.toml predict.csv --out prediction.csv")]
+    #[command(after_help = help::PREDICT)]
     Predict(PredictArguments),
     /// Find what physics the recordings of a rig contain that its model leaves out.
-    #[command(after_help = super::diagnose::EXAMPLES)]
+    #[command(after_help = help::DIAGNOSE)]
     Diagnose(DiagnoseArguments),
     /// Write report.html of a folder with results: one page for a browser.
     #[command(after_help = super::report::EXAMPLES)]
@@ -62,13 +69,23 @@ enum Command {
     #[command(after_help = super::compare::EXAMPLES)]
     Compare(super::compare::CompareArguments),
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
-    #[command(after_help = super::prove::PROVE_EXAMPLES)]
+    #[command(after_help = help::PROVE)]
     Prove(ProveArguments),
     /// Try the diagnosis on every effect, from its largest size down to where it is lost, and on devices with nothing missing.
-    #[command(after_help = super::prove::SWEEP_EXAMPLES)]
+    #[command(after_help = help::SWEEP)]
     Sweep(SweepArguments),
     /// Write the cases that come with the project, with their sealed truth, as the laboratory makes them.
+    #[command(after_help = help::LABORATORY)]
     Laboratory(LaboratoryArguments),
+    /// Print the JSON Schema of a file, for editors.
+    #[command(after_help = super::schema::EXAMPLES)]
+    Schema(super::schema::SchemaArguments),
+    /// Print what a shell needs to complete commands and options.
+    #[command(after_help = super::manual::COMPLETION_EXAMPLES)]
+    Completions(super::manual::CompletionArguments),
+    /// Print the manual page, or write one of each command.
+    #[command(after_help = super::manual::MAN_EXAMPLES)]
+    Man(super::manual::ManArguments),
 }
 
 #[derive(Debug, Args)]
@@ -76,13 +93,16 @@ struct RunArguments {
     /// Scenario file.
     scenario: PathBuf,
     /// Folder for recording.rrd, samples.parquet and summary.json [default: runs/<scenario name>].
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     quiet: bool,
     /// Print what summary.json holds instead of the table.
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
     /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
     #[arg(long, hide = true)]
@@ -96,13 +116,16 @@ pub(super) struct ImportArguments {
     /// Logs in place of those that the map names, in its order; several times as many make several recordings.
     pub(super) logs: Vec<PathBuf>,
     /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) out: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
     /// Print what was understood as JSON.
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     pub(super) json: bool,
 }
 
@@ -111,13 +134,19 @@ struct DesignArguments {
     /// Study file.
     study: PathBuf,
     /// Folder for design.json, override.toml and front.svg [default: runs/<study name>].
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     quiet: bool,
+    /// Most designs that are tried, in place of what the study says.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]
+    evaluations: Option<u32>,
     /// Print what design.json holds instead of the table.
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
 }
 
@@ -131,6 +160,9 @@ pub(super) struct EdgesArguments {
     /// Dihedral angle above which an edge counts as sharp [deg].
     #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
     pub(super) sharp_angle_deg: f64,
+    /// Print them as JSON.
+    #[arg(long, help_heading = "Output")]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -140,11 +172,17 @@ pub(super) struct PredictArguments {
     /// Recording whose inputs drive the rig; what it holds of measured columns is compared.
     pub(super) inputs: PathBuf,
     /// File for the predicted columns.
-    #[arg(long, default_value = "prediction.csv")]
+    #[arg(long, default_value = "prediction.csv", help_heading = "Output")]
     pub(super) out: PathBuf,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
+    /// Print as JSON how far off the prediction is.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -159,20 +197,23 @@ pub(super) struct ProveArguments {
     #[arg(long, num_args = 1..)]
     pub(super) only: Vec<String>,
     /// Folder for the answers.
-    #[arg(long, default_value = "runs/proof")]
+    #[arg(long, default_value = "runs/proof", help_heading = "Output")]
     pub(super) out: PathBuf,
     /// Cases at a time [default: as many as there are processors].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) jobs: Option<u16>,
     /// Print the score as JSON.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) json: bool,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SweepArguments {
     /// Folder for the outcomes, one file for each case.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) out: PathBuf,
     /// Effects by name, divided by commas [default: all of the vocabulary].
     #[arg(long, value_delimiter = ',')]
@@ -199,11 +240,17 @@ pub(super) struct SweepArguments {
     #[arg(long)]
     pub(super) resume: bool,
     /// File for the tables [default: CONFUSION.md in the output folder].
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) page: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, conflicts_with = "resume", help_heading = "Output")]
+    pub(super) force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
+    /// Print the outcomes as JSON.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    pub(super) json: bool,
 }
 
 /// Length of a recording [s].
@@ -220,8 +267,17 @@ fn duration(text: &str) -> Result<f64, String> {
 #[derive(Debug, Args)]
 pub(super) struct LaboratoryArguments {
     /// Folder for `cases` and `sealed`.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) out: PathBuf,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    pub(super) quiet: bool,
+    /// Print as JSON which cases were written.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -229,7 +285,7 @@ pub(super) struct DiagnoseArguments {
     /// Folder with rig.toml and the recordings that it names; with --all, a folder of such folders.
     pub(super) case: PathBuf,
     /// Folder for diagnosis.json, prediction.csv, improved.toml and account.txt [default: runs/<name of the case's folder>].
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) out: Option<PathBuf>,
     /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
     #[arg(long)]
@@ -241,19 +297,19 @@ pub(super) struct DiagnoseArguments {
     #[arg(long, conflicts_with = "force")]
     pub(super) resume: bool,
     /// Put new diagnoses in place of old ones.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) force: bool,
     /// Cases at a time with --all [default: 1, on all processors]; the processors are shared among them, and results do not depend on it.
     #[arg(long, requires = "all", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) jobs: Option<u16>,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
     /// Print on stderr what the search tries, and what each explanation would cost.
     #[arg(long, conflicts_with_all = ["quiet", "all"])]
     pub(super) verbose: bool,
     /// Print what diagnosis.json holds instead of the account; with --all, one line for each case.
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     pub(super) json: bool,
 }
 
@@ -271,6 +327,8 @@ pub(super) enum MeshUnit {
 pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
         Command::Run(arguments) => run(arguments),
+        Command::Check(arguments) => super::check::run(arguments),
+        Command::New(arguments) => super::new::run(arguments),
         Command::Design(arguments) => design(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
         Command::Import(arguments) => super::import::run(arguments),
@@ -281,6 +339,9 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Prove(arguments) => super::prove::run_prove(arguments),
         Command::Sweep(arguments) => super::prove::run_sweep(arguments),
         Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),
+        Command::Schema(arguments) => super::schema::run(arguments),
+        Command::Completions(arguments) => super::manual::completions(arguments),
+        Command::Man(arguments) => super::manual::man(arguments),
     }
 }
 
@@ -299,6 +360,7 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let folder = OutputFolder::prepare(
         &output_folder(arguments.out.as_ref(), &arguments.scenario),
         &RUN_NAMES,
+        Standing::of(arguments.force),
     )?;
     let quiet = arguments.quiet || arguments.json;
     if !quiet {
@@ -306,11 +368,8 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
             eprintln!("note: {note}");
         }
     }
-    let bar = progress("simulating", quiet);
-    let finished = run_cell(&cell, &mut |done, total| {
-        bar.set_length(total as u64);
-        bar.set_position(done as u64);
-    });
+    let bar = progress::bar("simulating", quiet);
+    let finished = run_cell(&cell, &mut |done, total| progress::tell(&bar, done, total));
     bar.finish_and_clear();
     let finished = finished?;
     let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect)
@@ -350,12 +409,10 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
     let folder = OutputFolder::prepare(
         &output_folder(arguments.out.as_ref(), &arguments.scenario),
         &RUN_NAMES,
+        Standing::of(arguments.force),
     )?;
-    let bar = progress("simulating", arguments.quiet || arguments.json);
-    let finished = bench::run_rig(&rig, &mut |done, total| {
-        bar.set_length(total as u64);
-        bar.set_position(done as u64);
-    });
+    let bar = progress::bar("simulating", arguments.quiet || arguments.json);
+    let finished = bench::run_rig(&rig, &mut |done, total| progress::tell(&bar, done, total));
     bar.finish_and_clear();
     let finished = finished?;
     let scenario = &rig.scenario;
@@ -381,12 +438,14 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
 
 fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {
     let out = output_folder(arguments.out.as_ref(), &arguments.study);
-    let study = PreparedStudy::new(&arguments.study, &out)?;
-    let bar = progress("searching", arguments.quiet || arguments.json);
-    let finished = study.run(&|done, most| {
-        bar.set_length(most as u64);
-        bar.set_position(done as u64);
-    });
+    let study = PreparedStudy::new(
+        &arguments.study,
+        arguments.evaluations,
+        &out,
+        Standing::of(arguments.force),
+    )?;
+    let bar = progress::bar("searching", arguments.quiet || arguments.json);
+    let finished = study.run(&|done, most| progress::tell(&bar, done, most));
     bar.finish_and_clear();
     let finished = finished?;
     show(
@@ -458,8 +517,10 @@ fn judge(verdicts: &[Verdict]) -> ExitCode {
 }
 
 fn style() -> Style {
-    let plain = !std::io::stdout().is_terminal() || std::env::var_os("NO_COLOR").is_some();
-    if plain { Style::Plain } else { Style::Coloured }
+    match anstream::AutoStream::choice(&std::io::stdout()) {
+        anstream::ColorChoice::Never => Style::Plain,
+        _ => Style::Coloured,
+    }
 }
 
 fn opening(arguments: &RunArguments) -> Opening {
@@ -475,15 +536,4 @@ fn opening(arguments: &RunArguments) -> Opening {
 pub(super) fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
     let default = || Path::new("runs").join(input.file_stem().unwrap_or_default());
     out.cloned().unwrap_or_else(default)
-}
-
-fn progress(verb: &str, quiet: bool) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(0);
-    let template = format!("{verb} {{wide_bar}} {{percent:>3}} %, {{eta}} left");
-    let style = ProgressStyle::with_template(&template);
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }

@@ -129,6 +129,42 @@ pub enum AppError {
         /// Why.
         reason: String,
     },
+    /// Results stand where new ones are to go.
+    #[error(
+        "{folder} holds results already ({name}); expected another folder (--out), or --force to put new ones in their place"
+    )]
+    FolderStands {
+        /// The folder.
+        folder: String,
+        /// A file that stands in it.
+        name: String,
+    },
+    /// A file that describes nothing.
+    #[error(
+        "{file}: expected a scenario, a rig file, an import map, a study or a device model (a .toml), or a folder with a rig.toml; idc import reads logs"
+    )]
+    NoDescription {
+        /// The file.
+        file: String,
+    },
+    /// A file stands where one is to go.
+    #[error(
+        "{file} is there already; expected another name (--out), or --force to put a new one in its place"
+    )]
+    FileStands {
+        /// The file.
+        file: String,
+    },
+    /// An output file that cannot be.
+    #[error(
+        "cannot write {file}: {reason}; expected a file, in a folder that can be written (--out names another)"
+    )]
+    OutputFile {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
     /// A number on the command line.
     #[error("--{option} is {value}, expected {expected}")]
     Option {
