@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::diagnose::DIAGNOSIS;
 use super::error::{AppError, ExitCode};
-use super::files::SUMMARY;
+use super::files::{SUMMARY, Standing, prepare_file};
 use super::output::say;
 use super::report::{RunResult, chart_groups, labels, read_json, read_run};
 use crate::diagnosis::answer::Answer;
@@ -19,11 +19,17 @@ use crate::recording::atomic::write_text;
 use crate::recording::schema;
 
 /// For the help.
-pub(super) const EXAMPLES: &str = "Examples:
-  idc compare runs/plate runs/slow --out runs/compare.html      two runs over one another, numbers side by side
-  idc compare runs/plate runs/slow --json                       the same numbers for a program
+pub(super) const EXAMPLES: &str = "\
+Numbers of the second and further folders stand beside their change against the
+first. Folders hold runs, or diagnoses, not both.
 
-Numbers of the second and further folders stand beside their change against the first. Folders hold runs, or diagnoses, not both.";
+Examples:
+  # two runs: numbers side by side, and a page with signals over one another
+  idc run scenarios/paper_step.toml --out runs/step --quiet
+  idc run scenarios/hand_push.toml --out runs/push --quiet
+  idc compare runs/step runs/push --out runs/step_and_push.html
+  # the same numbers for a program
+  idc compare runs/step runs/push --json";
 
 /// Colours of runs over one another, in order; there are no more.
 const COLOURS: [Role; 7] = [
@@ -84,13 +90,8 @@ struct Compared {
 
 /// Compares and prints.
 pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
-    if let Some(out) = &arguments.out
-        && out.exists()
-        && !arguments.force
-    {
-        return Err(AppError::Standing {
-            path: out.display().to_string(),
-        });
+    if let Some(out) = &arguments.out {
+        prepare_file(out, Standing::of(arguments.force))?;
     }
     let compared = read(&arguments.folders)?;
     if let Some(out) = &arguments.out {

@@ -13,8 +13,8 @@ mod unlisted_picture;
 use std::path::Path;
 
 pub(super) use comparison_files::read_comparison;
-pub(super) use outputs::DIAGNOSIS;
 pub(super) use one::{rig_of, to_fit};
+pub(super) use outputs::DIAGNOSIS;
 
 use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};

@@ -74,14 +74,6 @@ pub enum AppError {
         /// A folder with a diagnosis.
         diagnosis: String,
     },
-    /// A file that stands where one is to be written.
-    #[error(
-        "{path} exists already, expected another name, or --force to put a new one in its place"
-    )]
-    Standing {
-        /// The file.
-        path: String,
-    },
     /// A bound on a metric.
     #[error("{file}: {source}")]
     Metrics {
