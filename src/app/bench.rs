@@ -5,8 +5,10 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::error::AppError;
+use super::files::provenance;
 use crate::metrics::{BenchLimits, BenchSummary, Timing, Verdict, summarise_bench};
 use crate::recording::Recording;
+use crate::recording::provenance::Provenance;
 use crate::rig::{Rig, RigError};
 use crate::scenario::BenchScenario;
 use crate::scenario::bench::LoadScenario;
@@ -86,6 +88,7 @@ pub(super) fn document(
         summary: &'a BenchSummary,
         expectations: &'a [Verdict],
         samples: usize,
+        provenance: Provenance,
     }
     Ok(serde_json::to_string_pretty(&Document {
         schema: 1,
@@ -96,5 +99,6 @@ pub(super) fn document(
         summary: &finished.summary,
         expectations,
         samples: finished.recording.sample_count(),
+        provenance: provenance(&[&scenario.path, &scenario.device.model], scenario.seed)?,
     })?)
 }

@@ -62,6 +62,12 @@ enum Command {
     /// Find what physics the recordings of a rig contain that its model leaves out.
     #[command(after_help = help::DIAGNOSE)]
     Diagnose(DiagnoseArguments),
+    /// Write report.html of a folder with results: one page for a browser.
+    #[command(after_help = super::report::EXAMPLES)]
+    Report(super::report::ReportArguments),
+    /// Compare runs, or diagnoses: numbers side by side, signals over one another.
+    #[command(after_help = super::compare::EXAMPLES)]
+    Compare(super::compare::CompareArguments),
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
     #[command(after_help = help::PROVE)]
     Prove(ProveArguments),
@@ -328,6 +334,8 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Import(arguments) => super::import::run(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
+        Command::Report(arguments) => super::report::run(arguments),
+        Command::Compare(arguments) => super::compare::run(arguments),
         Command::Prove(arguments) => super::prove::run_prove(arguments),
         Command::Sweep(arguments) => super::prove::run_sweep(arguments),
         Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),
@@ -367,7 +375,8 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect)
         .map_err(metrics_error)?;
     let title = &cell.scenario.title;
-    let document = SummaryDocument::new(&cell, &finished, &verdicts).text()?;
+    let document = SummaryDocument::new(&cell, &finished, &verdicts)?.text()?;
+    let report = super::report::page_of_run(&document, &finished.recording)?;
     let names = folder.write(&RunOutput {
         title,
         recording: &finished.recording,
@@ -376,6 +385,7 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
         opening: opening(arguments),
         summary: &document,
         figures: None,
+        report: &report,
     })?;
     let table = text(title, &finished.summary, &verdicts, style());
     let output = [arguments.quiet, arguments.json];
@@ -409,6 +419,7 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
     let verdicts = metrics::check(metrics::BENCH_METRICS, &finished.summary, &scenario.expect)
         .map_err(metrics_error)?;
     let document = bench::document(scenario, &finished, &verdicts)?;
+    let report = super::report::page_of_run(&document, &finished.recording)?;
     let names = folder.write(&RunOutput {
         title: &scenario.title,
         recording: &finished.recording,
@@ -417,6 +428,7 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
         opening: opening(arguments),
         summary: &document,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
+        report: &report,
     })?;
     let table = bench_text(&scenario.title, &finished.summary, &verdicts, style());
     let output = [arguments.quiet, arguments.json];

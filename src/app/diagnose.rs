@@ -4,14 +4,18 @@ mod all;
 mod arm_prediction;
 mod cell;
 mod cell_account;
+mod comparison_files;
 mod fit_picture;
 mod one;
+mod outputs;
 mod stages;
 mod unlisted_picture;
 
 use std::path::Path;
 
+pub(super) use comparison_files::read_comparison;
 pub(super) use one::{rig_of, to_fit};
+pub(super) use outputs::DIAGNOSIS;
 
 use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};

@@ -60,6 +60,20 @@ pub enum AppError {
         /// The first.
         first: String,
     },
+    /// A folder without results.
+    #[error(
+        "{folder}: there are no results in it, expected the folder of a run (summary.json), a diagnosis (diagnosis.json) or a study (design.json)"
+    )]
+    NoResults {
+        /// The folder.
+        folder: String,
+    },
+    /// Folders of runs and of diagnoses.
+    #[error("{diagnosis} holds a diagnosis and the others runs, expected all of one kind")]
+    MixedResults {
+        /// A folder with a diagnosis.
+        diagnosis: String,
+    },
     /// A bound on a metric.
     #[error("{file}: {source}")]
     Metrics {

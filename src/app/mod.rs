@@ -5,6 +5,7 @@ mod bench_figures;
 mod bench_picture;
 mod check;
 mod cli;
+mod compare;
 mod complaint;
 mod design;
 mod diagnose;
@@ -22,6 +23,7 @@ mod predict;
 mod progress;
 mod prove;
 mod recordings;
+mod report;
 mod run;
 mod schema;
 
