@@ -4,8 +4,8 @@
 /// After the list of commands.
 pub(super) const PROGRAM: &str = "\
 The usual order:
-  look       idc run scenarios/plate_edge.toml, then its report.html in a browser
-             and its recording in Rerun; idc compare sets runs side by side
+  look       idc run scenarios/plate_edge.toml, then report.html in a browser
+             and recording.rrd in Rerun; idc compare sets runs side by side
   own cell   idc new cell, idc check, idc run, idc design
   own rig    idc new import, idc import, idc new rig, idc check, idc diagnose
   proof      idc prove, idc sweep
