@@ -109,11 +109,6 @@ fn facts(answer: &Answer) -> Vec<Fact> {
             format!("{samples} readings"),
         );
     }
-    add(
-        "time taken",
-        format!("{} s", figures(answer.seconds, 2)),
-        String::new(),
-    );
     facts
 }
 
