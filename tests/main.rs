@@ -30,6 +30,7 @@ mod predict;
 mod program;
 mod real_robots;
 mod recorded_cell;
+mod report;
 mod rig_file;
 mod schemas;
 mod standing;

@@ -141,4 +141,9 @@ fn note(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
 }
 
 /// The three files of a run.
-pub const FILES: [&str; 3] = ["recording.rrd", "samples.parquet", "summary.json"];
+pub const FILES: [&str; 4] = [
+    "recording.rrd",
+    "report.html",
+    "samples.parquet",
+    "summary.json",
+];

@@ -11,6 +11,13 @@ use crate::page::Chart;
 /// Standard deviations to either end of a 95 % band [1].
 const BAND: f64 = 1.959_964;
 
+/// What is taken from the times of a recording [s]: nothing, unless they are those of a clock, which single precision cannot tell apart.
+pub(super) fn origin(recording: &Compared) -> f64 {
+    const CLOCK: f64 = 1e4;
+    let start = recording.time.first().copied().unwrap_or(0.0);
+    if start.abs() > CLOCK { start } else { 0.0 }
+}
+
 /// A channel of a recording: as measured and by the models; and what they leave, with the band of the sensor's noise.
 pub(super) fn channel<'a>(
     answer: &Answer,
@@ -19,7 +26,7 @@ pub(super) fn channel<'a>(
 ) -> [Chart<'a>; 2] {
     let index = channel.channel as usize;
     let (unit, factor) = CHANNEL_UNITS[index];
-    let start = recording.time.first().copied().unwrap_or(0.0);
+    let start = origin(recording);
     let from_start = |t: f64| t - start;
     let time: Vec<f64> = recording.time.iter().map(|t| from_start(*t)).collect();
     let scaled = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| v * factor).collect() };
@@ -45,13 +52,11 @@ pub(super) fn channel<'a>(
         within: None,
     };
     let words = capital(CHANNEL_WORDS[index]);
+    // Of what cannot be simulated there is what was desired.
+    let simulated = channel.improved.iter().any(|v| v.is_finite());
+    let believed = if simulated { "as believed" } else { "desired" };
     let models = [
-        (
-            &channel.believed,
-            "as believed",
-            Role::Command,
-            Stroke::Dashed,
-        ),
+        (&channel.believed, believed, Role::Command, Stroke::Dashed),
         (&channel.improved, "improved", Role::Estimate, Stroke::Plain),
     ];
     let models = models
