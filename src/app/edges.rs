@@ -1,6 +1,9 @@
 //! `idc edges`: what edges a part has.
 
-use super::cli::{EdgesArguments, MeshUnit};
+use std::path::PathBuf;
+
+use clap::Args;
+
 use super::error::{AppError, ExitCode};
 use super::output::say;
 use super::progress;
@@ -8,6 +11,28 @@ use crate::workpiece::{
     Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, list_edges, load_mesh,
 };
 use glam::DVec3;
+
+#[derive(Debug, Args)]
+pub(super) struct EdgesArguments {
+    /// Mesh file: STL, OBJ or COLLADA.
+    mesh: PathBuf,
+    /// Unit of the mesh file: mm, m or inch.
+    #[arg(long, default_value = "mm")]
+    unit: MeshUnit,
+    /// Dihedral angle above which an edge counts as sharp [deg].
+    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
+    sharp_angle_deg: f64,
+    /// Print them as JSON.
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum MeshUnit {
+    Mm,
+    M,
+    Inch,
+}
 
 pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     let scale = match arguments.unit {

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::cli::ImportArguments;
+use clap::Args;
+
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
@@ -15,6 +16,26 @@ use super::progress;
 use crate::import::findings::same_data;
 use crate::import::{ImportMap, Imported, LogNote, import, load_map};
 use crate::recording::parquet::write_parquet;
+
+#[derive(Debug, Args)]
+pub(super) struct ImportArguments {
+    /// Import map.
+    map: PathBuf,
+    /// Logs in place of those that the map names, in its order; several times as many make several recordings.
+    logs: Vec<PathBuf>,
+    /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print what was understood as JSON.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
 
 /// A recording to be, and where it goes.
 struct Job {
