@@ -109,7 +109,7 @@ fn damaged_folders_are_refused_by_one_message_and_keep_their_page() {
     );
     bench.write(
         "found/diagnosis.json",
-        "{\"schema\": 1, \"verdict\"".to_owned(),
+        "{\"schema\": 1, \"verdict\"",
     );
     let outcome = bench.idc(&["report", "found"], &[]);
     assert_eq!(outcome.code, 2);
