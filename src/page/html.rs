@@ -100,8 +100,8 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
     markup! {
         @match block_of {
             Block::Heading(text) => h3 { (text) },
-            Block::Paragraph(text) => p { (text) },
-            Block::Hint(text) => p.hint { (text) },
+            Block::Paragraph(text) => p { (bound(text)) },
+            Block::Hint(text) => p.hint { (bound(text)) },
             Block::Table(of) => (table(of)),
             Block::Chart(of) => (chart(of, budget)),
             Block::Strip(of) => (strip(of)),
@@ -179,6 +179,11 @@ fn strip(strip: &Strip) -> Markup {
             span.ends { span { (format!("{first:.1} s")) } span { (format!("{last:.1} s")) } }
         }
     }
+}
+
+/// A text in which a number stays with its percent sign.
+fn bound(text: &str) -> String {
+    text.replace(" %", "\u{a0}%")
 }
 
 /// A heading as an address within the page.
