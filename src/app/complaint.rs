@@ -59,10 +59,21 @@ fn place(error: &AppError) -> Option<Place> {
         }
         AppError::Cell(
             CellError::EdgeUnknown { file, .. } | CellError::EdgeNotConvex { file, .. },
-        ) => of_key(file, "workpiece.edge"),
+        ) => ["edge", "loop"]
+            .into_iter()
+            .find_map(|key| of_key(file, &format!("workpiece.edge.{key}"))),
         AppError::Cell(CellError::JointStiffness { file, .. }) => {
             of_key(file, "joints.stiffness_n_m_per_rad")
         }
+        AppError::Cell(CellError::Supply { file, .. }) => of_key(file, "process.force_n"),
+        AppError::Cell(CellError::SeedPosture { file, .. }) => of_key(file, "arm.seed_posture_deg"),
+        AppError::Cell(CellError::EdgeStretch { file, key, .. }) => {
+            of_key(file, &format!("workpiece.edge.{key}"))
+        }
+        AppError::Cell(CellError::Effect { file, effect }) => {
+            of_key(file, &format!("effect.{effect}"))
+        }
+        AppError::Cell(CellError::Burr { file, .. }) => of_key(file, "workpiece.burr.kind"),
         AppError::Design(error) => match &**error {
             DesignError::File(error) => error.place().cloned(),
             DesignError::Variable { place, .. } | DesignError::UnknownMetric { place, .. } => {
