@@ -150,17 +150,23 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
         let (words, unit, factor) = spoken(name);
         let number = |v: f64| Cell::from(figures(factor * v, 4));
         let [low, high] = relative(estimate);
+        // Which joint is known or not; it has no interval.
+        let certain = estimate.low == estimate.high;
+        let unless_certain = |cell: Cell| if certain { Cell::from("") } else { cell };
         vec![
             Cell::from(effect.name.replace('_', " ")),
             Cell::from(effect.subsystem.replace('_', " ")),
             Cell::from(percent(effect.confidence)),
             Cell::from(words),
-            number(estimate.value),
-            number(estimate.low),
-            number(estimate.high),
+            match certain && estimate.value.fract() == 0.0 {
+                true => Cell::from(format!("{}", estimate.value)),
+                false => number(estimate.value),
+            },
+            unless_certain(number(estimate.low)),
+            unless_certain(number(estimate.high)),
             Cell::from(unit),
             match low.is_finite() && high.is_finite() {
-                true => Cell::Interval([-widest, low, 0.0, high, widest]),
+                true => unless_certain(Cell::Interval([-widest, low, 0.0, high, widest])),
                 false => Cell::from(""),
             },
         ]
