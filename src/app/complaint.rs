@@ -81,12 +81,10 @@ fn place(error: &AppError) -> Option<Place> {
             }
             _ => None,
         },
-        AppError::Metrics { file, source } => match source {
-            MetricsError::UnknownMetric { metric, .. } | MetricsError::Bound { metric, .. } => {
-                of_key(Path::new(file), &format!("expect.{metric}"))
-            }
-            _ => None,
-        },
+        AppError::Metrics {
+            file,
+            source: MetricsError::UnknownMetric { metric, .. } | MetricsError::Bound { metric, .. },
+        } => of_key(Path::new(file), &format!("expect.{metric}")),
         _ => None,
     }
 }
@@ -97,7 +95,7 @@ fn excerpt(place: &Place) -> Option<String> {
     let excerpt = place.excerpt.as_ref()?;
     let file = place.file.display().to_string();
     let snippet = Snippet::source(&excerpt.line)
-        .line_start(line)
+        .line_start(line as usize)
         .path(file)
         .annotation(AnnotationKind::Primary.span(excerpt.meant.clone()));
     let group = Group::with_level(Level::ERROR).element(snippet);

@@ -134,8 +134,8 @@ impl<'a> Document<'a> {
         Place {
             file: self.file.to_owned(),
             position: Some((
-                before.matches('\n').count() + 1,
-                before[line_start..].chars().count() + 1,
+                before.matches('\n').count() as u32 + 1,
+                before[line_start..].chars().count() as u32 + 1,
             )),
             excerpt: Some(Box::new(Excerpt {
                 line: line.to_owned(),
