@@ -73,7 +73,7 @@ fn the_page_of_a_run_comes_again_and_names_bounds_that_were_not_kept() {
     let before = scenario.split("[expect]").next().unwrap().to_owned();
     bench.write(
         "scenario.toml",
-        before + "[expect]\nforce_mean_n = { max = 1.0 }\n",
+        before + "\n[expect]\nforce_mean_n = { max = 1.0 }\n",
     );
     let words = ["run", "scenario.toml", "--out", "broken", "--quiet"];
     assert_eq!(bench.idc(&words, &[]).code, 1);
