@@ -17,6 +17,8 @@ mod predict;
 mod prove;
 mod recordings;
 mod run;
+mod view;
+mod viewer;
 
 pub use bench::{FinishedBench, run_rig};
 pub use cli::{Cli, execute};
@@ -24,3 +26,4 @@ pub use design::ScenarioEvaluator;
 pub use error::{AppError, ExitCode};
 pub use picture::scene_of;
 pub use run::{Finished, run_cell};
+pub use viewer::ViewerError;
