@@ -66,9 +66,8 @@ pub(super) fn run(arguments: &ViewArguments) -> Result<ExitCode, AppError> {
 /// Why there is a web page in place of a window.
 fn why_web(error: &ViewerError) -> String {
     let text = error.to_string();
-    let reason = text.split(" (--web").next().unwrap_or_default();
-    let reason = reason.split("; --web").next().unwrap_or_default();
-    format!("served as a web page: {reason}")
+    let reason = text.split("; the web viewer").next().unwrap_or_default();
+    format!("shown as a web page, as {reason}")
 }
 
 fn show_native(arguments: &ViewArguments, viewer: &NativeViewer) -> Result<ExitCode, AppError> {

@@ -19,13 +19,13 @@ pub enum ViewerError {
     File(#[from] RrdFault),
     /// No native viewer.
     #[error(
-        "no program `rerun` was found on the PATH; expected Rerun's viewer {version}: pip install rerun-sdk=={version} (--web serves the recording without it)",
+        "no program `rerun` was found on the PATH; expected Rerun's viewer {version}: pip install rerun-sdk=={version}",
         version = viewer_version()
     )]
     NotInstalled,
     /// A native viewer that does not fit.
     #[error(
-        "{program} is Rerun {found}, expected {version}: pip install rerun-sdk=={version} (--web serves the recording without it)",
+        "{program} is Rerun {found}, expected {version}: pip install rerun-sdk=={version}",
         version = viewer_version()
     )]
     OtherVersion {
@@ -36,7 +36,7 @@ pub enum ViewerError {
     },
     /// A program of that name that is something else.
     #[error(
-        "{program} --version does not answer as Rerun's viewer does; expected `rerun-cli {version}`: pip install rerun-sdk=={version} (--web serves the recording without it)",
+        "{program} --version does not answer as Rerun's viewer does; expected `rerun-cli {version}`: pip install rerun-sdk=={version}",
         version = viewer_version()
     )]
     NotRerun {
@@ -45,11 +45,13 @@ pub enum ViewerError {
     },
     /// Nowhere to open a window.
     #[error(
-        "there is no display to open a window on: neither DISPLAY nor WAYLAND_DISPLAY is set; --web serves the recording as a web page"
+        "there is no display to open a window on: neither DISPLAY nor WAYLAND_DISPLAY is set; the web viewer needs none (view --web, run --view=web)"
     )]
     NoDisplay,
     /// The native viewer does not start, or gives up.
-    #[error("{program} cannot show the recording: {reason}; --web serves it as a web page")]
+    #[error(
+        "{program} cannot show the recording: {reason}; the web viewer may (view --web, run --view=web)"
+    )]
     Failed {
         /// The program.
         program: String,

@@ -22,6 +22,9 @@ use ::rerun::{
 
 use super::footer::sort_footer;
 
+/// Memory that a file gets at the start [bytes]: that of a minute of a cell. It is touched only as it is filled.
+const FILE_CAPACITY: usize = 16 << 20;
+
 /// How long a viewer that listens may take to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -75,7 +78,10 @@ impl RrdWriter {
         recording_id: &str,
         id_seed: u64,
     ) -> Result<Self, RrdError> {
-        Self::begin_at(Outlet::File(Encoder::local()?), kind, recording_id, id_seed)
+        let options = EncodingOptions::PROTOBUF_COMPRESSED;
+        let file = Vec::with_capacity(FILE_CAPACITY);
+        let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, file)?;
+        Self::begin_at(Outlet::File(encoder), kind, recording_id, id_seed)
     }
 
     /// Starts a stream in the same way.

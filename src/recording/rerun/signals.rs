@@ -10,6 +10,9 @@ use super::rrd::{RrdError, RrdWriter};
 use super::timelines::Axes;
 use crate::recording::Recording;
 
+/// Rows of a chunk of signals: as many as Rerun itself puts into one, and few enough to stay in the processor's cache while they are encoded.
+const CHUNK_ROWS: usize = 4096;
+
 /// Writes how a plot's lines look.
 pub(super) fn write_looks(rrd: &mut RrdWriter, plot: &Plot) -> Result<(), RrdError> {
     let signals: Vec<&Series> = plot.signals().collect();
@@ -32,14 +35,15 @@ fn look(series: &[&Series]) -> SeriesLines {
 /// Writes a plot's lines: those of the signals together, so that their times are stored once.
 pub(super) fn write_values(rrd: &mut RrdWriter, plot: &Plot, axes: &Axes) -> Result<(), RrdError> {
     let signals: Vec<&[f64]> = plot.signals().map(|series| &series.values[..]).collect();
-    if let Some(first) = signals.first() {
-        let rows = 0..first.len();
+    let count = signals.first().map_or(0, |values| values.len());
+    for start in (0..count).step_by(CHUNK_ROWS) {
+        let rows = start..count.min(start + CHUNK_ROWS);
         let row_by_row = rows
             .clone()
             .flat_map(|row| signals.iter().map(move |values| values[row]));
         let scalars = Scalars::new(row_by_row);
         let columns = scalars.columns(std::iter::repeat_n(signals.len(), rows.len()))?;
-        rrd.add_columns(plot.entity, axes.all_columns(), columns)?;
+        rrd.add_columns(plot.entity, axes.range(rows), columns)?;
     }
     for guide in plot.guides() {
         let times = match guide.values.len() {

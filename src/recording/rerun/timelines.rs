@@ -1,5 +1,7 @@
 //! The two axes along which a recording can be watched: simulated time and path length.
 
+use std::ops::Range;
+
 use ::rerun::log::TimeColumn;
 
 use crate::recording::scene::Scene;
@@ -54,12 +56,21 @@ impl Axes {
 
     /// Time columns of the samples of these indices.
     pub(super) fn columns(&self, indices: &[usize]) -> Vec<TimeColumn> {
-        let picked = |column: &TimeColumn| {
-            let times = column.times_raw();
-            let times = indices.iter().map(|&index| times[index]);
-            TimeColumn::new(None, *column.timeline(), times.collect::<Vec<_>>().into())
-        };
-        self.whole.iter().map(picked).collect()
+        self.picked(|times| indices.iter().map(|&index| times[index]).collect())
+    }
+
+    /// Time columns of the samples in this range.
+    pub(super) fn range(&self, range: Range<usize>) -> Vec<TimeColumn> {
+        self.picked(|times| times[range.clone()].to_vec())
+    }
+
+    fn picked(&self, pick: impl Fn(&[i64]) -> Vec<i64>) -> Vec<TimeColumn> {
+        let columns = self.whole.iter();
+        let picked = columns.map(|column| {
+            let times = pick(column.times_raw());
+            TimeColumn::new(None, *column.timeline(), times.into())
+        });
+        picked.collect()
     }
 
     /// Time columns of all samples.
