@@ -37,6 +37,7 @@ pub mod figure;
 pub mod import;
 pub mod laboratory;
 pub mod metrics;
+pub mod page;
 pub mod path;
 pub mod physics;
 pub mod plant;

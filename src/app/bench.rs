@@ -6,9 +6,11 @@ use serde::Serialize;
 
 use super::bench_picture::scene_of;
 use super::error::AppError;
+use super::files::provenance;
 use super::viewer::{PART_INTERVAL, Watch};
 use crate::metrics::{BenchLimits, BenchSummary, Timing, Verdict, summarise_bench};
 use crate::recording::Recording;
+use crate::recording::provenance::Provenance;
 use crate::rig::{Rig, RigError};
 use crate::scenario::BenchScenario;
 use crate::scenario::bench::LoadScenario;
@@ -107,6 +109,7 @@ pub(super) fn document(
         summary: &'a BenchSummary,
         expectations: &'a [Verdict],
         samples: usize,
+        provenance: Provenance,
     }
     Ok(serde_json::to_string_pretty(&Document {
         schema: 1,
@@ -117,5 +120,6 @@ pub(super) fn document(
         summary: &finished.summary,
         expectations,
         samples: finished.recording.sample_count(),
+        provenance: provenance(&[&scenario.path, &scenario.device.model], scenario.seed)?,
     })?)
 }

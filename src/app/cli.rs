@@ -59,6 +59,9 @@ enum Command {
     /// Find what physics the recordings of a rig contain that its model leaves out.
     #[command(after_help = super::diagnose::EXAMPLES)]
     Diagnose(DiagnoseArguments),
+    /// Write report.html of a folder with results: one page for a browser.
+    #[command(after_help = super::report::EXAMPLES)]
+    Report(super::report::ReportArguments),
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
     #[command(after_help = super::prove::PROVE_EXAMPLES)]
     Prove(ProveArguments),
@@ -278,6 +281,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Import(arguments) => super::import::run(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
+        Command::Report(arguments) => super::report::run(arguments),
         Command::Prove(arguments) => super::prove::run_prove(arguments),
         Command::Sweep(arguments) => super::prove::run_sweep(arguments),
         Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),
@@ -320,7 +324,8 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect)
         .map_err(metrics_error)?;
     let title = &cell.scenario.title;
-    let document = SummaryDocument::new(&cell, &finished, &verdicts).text()?;
+    let document = SummaryDocument::new(&cell, &finished, &verdicts)?.text()?;
+    let report = super::report::page_of_run(&document, &finished.recording)?;
     let scene = scene_of(&cell, &finished.recording, &finished.frames)?;
     let names = folder.write(&RunOutput {
         title,
@@ -330,6 +335,7 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
         opening: opening(arguments),
         summary: &document,
         figures: None,
+        report: &report,
     })?;
     let table = text(title, &finished.summary, &verdicts, style());
     let output = [arguments.quiet, arguments.json];
@@ -377,6 +383,7 @@ fn run_bench(
     let verdicts = metrics::check(metrics::BENCH_METRICS, &finished.summary, &scenario.expect)
         .map_err(metrics_error)?;
     let document = bench::document(scenario, &finished, &verdicts)?;
+    let report = super::report::page_of_run(&document, &finished.recording)?;
     let scene = bench_picture::scene_of(scenario, &finished.recording)?;
     let names = folder.write(&RunOutput {
         title: &scenario.title,
@@ -386,6 +393,7 @@ fn run_bench(
         opening: opening(arguments),
         summary: &document,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
+        report: &report,
     })?;
     let table = bench_text(&scenario.title, &finished.summary, &verdicts, style());
     let output = [arguments.quiet, arguments.json];

@@ -4,12 +4,17 @@ mod all;
 mod arm_prediction;
 mod cell;
 mod cell_account;
+mod comparison_files;
 mod fit_picture;
 mod one;
+mod outputs;
 mod progress;
 mod unlisted_picture;
 
 use std::path::Path;
+
+pub(super) use comparison_files::read_comparison;
+pub(super) use outputs::DIAGNOSIS;
 
 use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};

@@ -60,6 +60,14 @@ pub enum AppError {
         /// The first.
         first: String,
     },
+    /// A folder without results.
+    #[error(
+        "{folder}: there are no results in it, expected the folder of a run (summary.json), a diagnosis (diagnosis.json) or a study (design.json)"
+    )]
+    NoResults {
+        /// The folder.
+        folder: String,
+    },
     /// A bound on a metric.
     #[error("{file}: {source}")]
     Metrics {

@@ -1,25 +1,27 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, and figures.svg of a bench; those of a study: design.json, override.toml,
-//! front.svg. All appear, or none.
+//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, and figures.svg of a bench; those of a study: design.json, override.toml,
+//! front.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::error::AppError;
+use super::report::REPORT;
 use super::run::Finished;
 use crate::cell::Cell;
 use crate::metrics::{Summary, Verdict};
 use crate::recording::Recording;
 use crate::recording::atomic::{UnfinishedFolder, write_text};
 use crate::recording::parquet::write_parquet;
+use crate::recording::provenance::Provenance;
 use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::recording::scene::Scene;
 
 const RECORDING: &str = "recording.rrd";
-const SAMPLES: &str = "samples.parquet";
-const SUMMARY: &str = "summary.json";
+pub(super) const SAMPLES: &str = "samples.parquet";
+pub(super) const SUMMARY: &str = "summary.json";
 const FIGURES: &str = "figures.svg";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 4] = [RECORDING, SAMPLES, SUMMARY, FIGURES];
+pub(super) const RUN_NAMES: [&str; 5] = [RECORDING, SAMPLES, SUMMARY, FIGURES, REPORT];
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
 pub(super) const FRONT: &str = "front.svg";
@@ -81,7 +83,8 @@ impl OutputFolder {
             &options,
         )?;
         write_text(&unfinished.path().join(SUMMARY), output.summary)?;
-        let mut names = vec![RECORDING, SAMPLES, SUMMARY];
+        write_text(&unfinished.path().join(REPORT), output.report)?;
+        let mut names = vec![RECORDING, SAMPLES, SUMMARY, REPORT];
         if let Some(figures) = output.figures {
             write_text(&unfinished.path().join(FIGURES), figures)?;
             names.push(FIGURES);
@@ -108,14 +111,34 @@ impl OutputFolder {
         &self,
         files: &[(&'static str, &str)],
     ) -> Result<Vec<&'static str>, AppError> {
+        self.write_with(|folder| {
+            for (name, text) in files {
+                write_text(&folder.join(name), text)?;
+            }
+            Ok(files.iter().map(|(name, _)| *name).collect())
+        })
+    }
+
+    /// Lets files be written into a folder of their own, and moves those that are named here, the last one last; returns their names.
+    pub(super) fn write_with(
+        &self,
+        write: impl FnOnce(&Path) -> Result<Vec<&'static str>, AppError>,
+    ) -> Result<Vec<&'static str>, AppError> {
         let unfinished = UnfinishedFolder::within(&self.path)?;
-        for (name, text) in files {
-            write_text(&unfinished.path().join(name), text)?;
-        }
-        let names: Vec<&'static str> = files.iter().map(|(name, _)| *name).collect();
+        let names = write(unfinished.path())?;
         unfinished.finish(&names)?;
         Ok(names)
     }
+}
+
+/// Where the results of a run come from: files by their paths as the scenario has them.
+pub(super) fn provenance(files: &[&PathBuf], seed: u64) -> Result<Provenance, AppError> {
+    let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
+    let files = names
+        .iter()
+        .zip(files)
+        .map(|(name, path)| (name.as_str(), path.as_path()));
+    Ok(Provenance::of(files, Some(seed))?)
 }
 
 /// What a run leaves behind.
@@ -134,6 +157,8 @@ pub(super) struct RunOutput<'a> {
     pub summary: &'a str,
     /// figures.svg.
     pub figures: Option<&'a str>,
+    /// report.html.
+    pub report: &'a str,
 }
 
 /// What summary.json holds, and `--json` prints.
@@ -149,12 +174,25 @@ pub(super) struct SummaryDocument<'a> {
     joint_names: Vec<&'a str>,
     samples: usize,
     notes: &'a [String],
+    provenance: Provenance,
 }
 
 impl<'a> SummaryDocument<'a> {
     /// The document of a run.
-    pub(super) fn new(cell: &'a Cell, finished: &'a Finished, expectations: &'a [Verdict]) -> Self {
-        Self {
+    pub(super) fn new(
+        cell: &'a Cell,
+        finished: &'a Finished,
+        expectations: &'a [Verdict],
+    ) -> Result<Self, AppError> {
+        let scenario = &cell.scenario;
+        let files = [
+            &scenario.path,
+            &scenario.device.model,
+            &scenario.arm.urdf,
+            &scenario.workpiece.mesh,
+        ];
+        Ok(Self {
+            provenance: provenance(&files, scenario.simulation.seed)?,
             schema: 1,
             scenario: cell.scenario.path.display().to_string(),
             title: &cell.scenario.title,
@@ -170,7 +208,7 @@ impl<'a> SummaryDocument<'a> {
                 .collect(),
             samples: finished.recording.sample_count(),
             notes: &cell.notes,
-        }
+        })
     }
 
     /// As JSON.

@@ -16,6 +16,7 @@ mod picture;
 mod predict;
 mod prove;
 mod recordings;
+mod report;
 mod run;
 mod view;
 mod viewer;

@@ -6,6 +6,8 @@ mod parting;
 mod rivals;
 mod unlisted;
 
+use serde::{Deserialize, Serialize};
+
 use super::answer::UNLISTED;
 use super::diagnose::{Diagnosis, names_of};
 use super::words::{listed, wrapped};
@@ -13,26 +15,78 @@ use super::words::{listed, wrapped};
 /// Other channels that part from the model, named at most.
 const MOST_OTHERS: usize = 3;
 
-impl Diagnosis {
-    /// The account of a case by its name.
+/// An account: what account.txt says, and a page.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Account {
+    /// What it comes to.
+    pub headline: String,
+    /// Its parts, in order.
+    pub sections: Vec<Section>,
+}
+
+/// A part of an account.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Section {
+    /// What it is about.
+    pub title: String,
+    /// A paragraph each.
+    pub paragraphs: Vec<String>,
+    /// Lines that stand as they are, below the paragraphs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<String>,
+}
+
+impl Account {
+    /// Adds a part, if it says anything.
+    pub fn add(&mut self, title: &str, paragraphs: Vec<String>) {
+        let paragraphs: Vec<String> = paragraphs.into_iter().filter(|p| !p.is_empty()).collect();
+        if !paragraphs.is_empty() {
+            self.sections.push(Section {
+                title: title.to_owned(),
+                paragraphs,
+                table: None,
+            });
+        }
+    }
+
+    /// As text, under the name of the case.
     #[must_use]
-    pub fn account(&self, case: &str) -> String {
-        let mut text = format!("{case}: {}\n", self.headline());
-        let mut part = |title, paragraphs: &[String]| add(&mut text, title, paragraphs);
-        part("Where it parts", &self.where_it_parts());
-        part("Which link", &self.which_link());
-        part("What is missing", &self.what_is_missing());
-        text.push_str(&self.shape_table().unwrap_or_default());
-        let mut part = |title, paragraphs: &[String]| add(&mut text, title, paragraphs);
-        part("What is left", &self.what_is_left());
-        part("What was ruled out", &[self.what_was_ruled_out()]);
-        let title = "What the recordings do not tell apart";
-        part(title, &self.not_told_apart());
-        part("What to record next", &[self.what_next()]);
-        part("The rig file's own numbers", &[self.own_numbers()]);
-        let notes: Vec<String> = self.notes.iter().map(|n| format!("{n}.")).collect();
-        part("The recordings", &notes);
+    pub fn text(&self, case: &str) -> String {
+        let mut text = format!("{case}: {}\n", self.headline);
+        for section in &self.sections {
+            text.push_str(&format!("\n{}\n", section.title));
+            for paragraph in &section.paragraphs {
+                text.push_str(&wrapped("  ", paragraph));
+            }
+            text.push_str(section.table.as_deref().unwrap_or_default());
+        }
         text
+    }
+}
+
+impl Diagnosis {
+    /// The account.
+    #[must_use]
+    pub fn account(&self) -> Account {
+        let mut account = Account {
+            headline: self.headline(),
+            sections: Vec::new(),
+        };
+        account.add("Where it parts", self.where_it_parts());
+        account.add("Which link", self.which_link());
+        account.add("What is missing", self.what_is_missing());
+        if let Some(section) = account.sections.last_mut() {
+            section.table = self.shape_table();
+        }
+        account.add("What is left", self.what_is_left());
+        account.add("What was ruled out", vec![self.what_was_ruled_out()]);
+        let title = "What the recordings do not tell apart";
+        account.add(title, self.not_told_apart());
+        account.add("What to record next", vec![self.what_next()]);
+        account.add("The rig file's own numbers", vec![self.own_numbers()]);
+        let notes = self.notes.iter().map(|n| format!("{n}."));
+        account.add("The recordings", notes.collect());
+        account
     }
 
     fn headline(&self) -> String {
@@ -49,17 +103,5 @@ impl Diagnosis {
 
     fn name(&self, recording: usize) -> &str {
         &self.evidence.recordings[recording].name
-    }
-}
-
-/// Adds paragraphs under a title, where there are any.
-fn add(text: &mut String, title: &str, paragraphs: &[String]) {
-    let mut paragraphs = paragraphs.iter().filter(|p| !p.is_empty()).peekable();
-    if paragraphs.peek().is_none() {
-        return;
-    }
-    text.push_str(&format!("\n{title}\n"));
-    for paragraph in paragraphs {
-        text.push_str(&wrapped("  ", paragraph));
     }
 }

@@ -4,7 +4,7 @@ use super::answer::{
     Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, UNLISTED, Verdict,
 };
 use super::details::{
-    ChannelMisfit, ChannelNoise, Details, LinkReport, NextExperiment, PredictionError,
+    ChannelMisfit, ChannelNoise, Considered, Details, LinkReport, NextExperiment, PredictionError,
     RegimeReport, RemainingReport, RuledOutReport, ToleratedNumber,
 };
 use super::diagnose::{Diagnosis, names_of};
@@ -22,6 +22,8 @@ use crate::plant::{CHANNELS, Chain, Channel};
 
 /// Variables named at most for a link.
 const MOST_REGIMES: usize = 5;
+/// Explanations that were not given, named at most.
+const MOST_CONSIDERED: usize = 8;
 /// Stands for each recording in turn.
 pub const IN_TURN: &str = "left out in turn";
 
@@ -181,7 +183,7 @@ impl Diagnosis {
         (0..CHANNELS.len()).filter_map(of_channel).collect()
     }
 
-    fn by_channel<'a>(
+    pub(super) fn by_channel<'a>(
         &'a self,
         residuals: &'a [f64],
     ) -> impl Iterator<Item = (usize, crate::plant::Channel, &'a [f64])> {
@@ -198,6 +200,7 @@ impl Diagnosis {
     #[must_use]
     pub fn details(&self) -> Details {
         Details {
+            account: self.account(),
             noise: self.noises(),
             misfit: self.misfits(),
             parts: self
@@ -214,6 +217,7 @@ impl Diagnosis {
             links: self.link_reports(),
             explained_share: self.explained_share(),
             remaining: self.remaining_report(),
+            considered: self.considered(),
             ruled_out: (self.ruled_out.iter())
                 .map(|variant| RuledOutReport {
                     effects: variant
@@ -232,6 +236,18 @@ impl Diagnosis {
             next_experiment: self.next_experiment(),
             ..Details::default()
         }
+    }
+
+    fn considered(&self) -> Vec<Considered> {
+        let best = self.ranked[0].score;
+        let others = self.ranked[1..].iter().take(MOST_CONSIDERED);
+        others
+            .map(|ranked| Considered {
+                effects: names_of(&ranked.hypothesis),
+                log10_odds: -0.5 * (ranked.score - best) / std::f64::consts::LN_10,
+                explained_share: self.share_explained_by(&ranked.hypothesis),
+            })
+            .collect()
     }
 
     fn noises(&self) -> Vec<ChannelNoise> {

@@ -2,12 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::account::Account;
 use super::answer::Estimate;
+use crate::recording::provenance::Provenance;
 
 /// All of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Details {
+    /// Name of the case.
+    pub case: String,
+    /// What account.txt says.
+    pub account: Account,
+    /// What it was made with and of.
+    pub provenance: Provenance,
     /// Standard deviation of the noise that each channel was given, by column.
     pub noise: Vec<ChannelNoise>,
     /// How far each channel of each recording is from the models.
@@ -20,6 +28,8 @@ pub struct Details {
     pub explained_share: Option<f64>,
     /// What no law explains, where it is more than noise and everything was judged against it.
     pub remaining: Option<RemainingReport>,
+    /// Other explanations that were fitted in full, the best first.
+    pub considered: Vec<Considered>,
     /// Variants of the explanation of a part of the device, the best first.
     pub ruled_out: Vec<RuledOutReport>,
     /// What each run of a contact flange shows.
@@ -101,6 +111,17 @@ pub struct RemainingReport {
     pub alike_s: f64,
     /// Variables that say when it appears.
     pub regimes: Vec<RegimeReport>,
+}
+
+/// An explanation that was fitted in full, and not given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Considered {
+    /// Its effects.
+    pub effects: Vec<String>,
+    /// Its odds against the answer given, as a power of ten [1].
+    pub log10_odds: f64,
+    /// Share of the mismatch that it explains [1]; none where there is none.
+    pub explained_share: Option<f64>,
 }
 
 /// A variant of an explanation: without one of its effects, or with another law in an effect's place.

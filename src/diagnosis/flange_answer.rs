@@ -1,17 +1,14 @@
 //! From what the runs of a contact flange show to an answer.
 
-use std::fmt::Write as _;
-
+use super::account::Account;
 use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
 use super::details::{Details, ForetoldRun, RunShown};
 use super::flange::{AVERAGED, BAND, Shown, spread, spread_of_sizes};
-use super::words::{listed, wrapped};
+use super::words::listed;
 
 /// What is known of a flange from its runs.
 #[derive(Debug, Clone)]
 pub struct FlangeDiagnosis {
-    /// Case.
-    pub name: String,
     /// Runs by their names, with what they show.
     pub runs: Vec<(String, Shown)>,
     /// The run to be foretold: its speed of approach, force before and after contact, and what it shows.
@@ -177,6 +174,7 @@ impl FlangeDiagnosis {
                 .into_iter()
                 .collect(),
             details: Details {
+                account: self.account(),
                 runs: self
                     .runs
                     .iter()
@@ -200,19 +198,20 @@ impl FlangeDiagnosis {
 
     /// The account.
     #[must_use]
-    pub fn account(&self) -> String {
+    pub fn account(&self) -> Account {
         let missing = self.missing();
         let names: Vec<String> = missing.iter().map(|name| (*name).to_owned()).collect();
-        let mut text = match names.is_empty() {
-            true => format!("{}: nothing is missing\n", self.name),
-            false => format!("{}: missing: {}\n", self.name, listed(&names)),
+        let mut account = Account {
+            headline: match names.is_empty() {
+                true => "nothing is missing".to_owned(),
+                false => format!("missing: {}", listed(&names)),
+            },
+            sections: Vec::new(),
         };
         let mut part = |name: &str, title: &str, paragraph: &str| {
-            if !name.is_empty() && !missing.contains(&name) {
-                return;
+            if name.is_empty() || missing.contains(&name) {
+                account.add(title, vec![paragraph.to_owned()]);
             }
-            // Writing into a text cannot fail.
-            let _ = write!(text, "\n{title}\n{}", wrapped("  ", paragraph));
         };
         let [z, z_low, z_high] = self.impedance();
         let [k, low, high] = [z, z_low, z_high].map(|z| z.max(0.0).powi(2) / self.mass * 1e-3);
@@ -297,13 +296,13 @@ impl FlangeDiagnosis {
         let runs: Vec<String> = (self.runs.iter())
             .map(|(name, s)| {
                 format!(
-                    "  {name}: {:.3} m/s, {:.0} N desired; peak {:.0} N, ringing {:.1} Hz, settled after {:.2} s, steady error {:+.2} N\n",
+                    "{name}: {:.3} m/s, {:.0} N desired; peak {:.0} N, ringing {:.1} Hz, settled after {:.2} s, steady error {:+.2} N",
                     s.approach, s.desired, s.peak, s.frequency, s.settling, s.steady
                 )
             })
             .collect();
-        let _ = write!(text, "\nThe runs\n{}", runs.concat());
-        text
+        account.add("The runs", runs);
+        account
     }
 }
 
@@ -370,7 +369,6 @@ mod tests {
 
     fn of(run: &Run) -> FlangeDiagnosis {
         FlangeDiagnosis {
-            name: "flange".to_owned(),
             runs: vec![(run.name.clone(), run.shown().unwrap())],
             unseen: None,
             mass: 3.0,
@@ -389,7 +387,7 @@ mod tests {
             "{:?}",
             answer.effects
         );
-        assert!(of(&run).account().contains("nothing is missing"));
+        assert_eq!(of(&run).account().headline, "nothing is missing");
         for (force, time) in run.force.iter_mut().zip(&run.time) {
             *force += if *time < 0.0 { 0.0 } else { 1.5 };
         }

@@ -8,7 +8,7 @@ use super::evidence::{Evidence, Measured, Prediction};
 use super::fit::with_values;
 use super::free::Free;
 use super::localise::{by_channel, robust_rms};
-use crate::plant::{CHANNELS, Channel, PlantParameters, Trajectory};
+use crate::plant::{CHANNELS, Channel, PlantCourse, PlantParameters, Trajectory, readings};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -148,6 +148,41 @@ fn unit(link: Link, evidence: &Evidence, plant: &PlantParameters) -> f64 {
         Link::Piston => force.hypot(plant.device.moving_mass * acceleration),
         Link::Contact => force,
     }
+}
+
+/// What a link leaves of a prediction with the piston held to its measured motion, in standard deviations; what sensors add beyond those of `plain` is
+/// taken from the readings first.
+pub fn left_by(
+    link: Link,
+    evidence: &Evidence,
+    held: &Prediction,
+    plain: &PlantParameters,
+) -> Vec<f64> {
+    let plain = PlantParameters {
+        sensors: plain.sensors.clone(),
+        ..held.plant.clone()
+    };
+    if link == Link::Regulator || plain.sensors == held.plant.sensors {
+        return residuals(link, evidence, held);
+    }
+    let without = |(measured, course): (&Measured, &PlantCourse)| {
+        let mut measured = measured.clone();
+        let plain = readings(&plain, &measured.inputs, &course.truth);
+        for ((corrected, read), plain) in measured
+            .readings
+            .iter_mut()
+            .zip(&course.readings)
+            .zip(&plain)
+        {
+            for ((corrected, read), plain) in corrected.iter_mut().zip(read).zip(plain) {
+                *corrected -= read - plain;
+            }
+        }
+        measured
+    };
+    let recordings = evidence.recordings.iter().zip(&held.courses);
+    let corrected = Evidence::new(recordings.map(without).collect(), evidence.noise);
+    residuals(link, &corrected, held)
 }
 
 fn residuals(link: Link, evidence: &Evidence, held: &Prediction) -> Vec<f64> {

@@ -5,6 +5,7 @@ pub mod answer;
 pub mod bumps;
 pub mod case;
 pub mod clean;
+pub mod comparison;
 pub mod conclude;
 mod covariance;
 pub mod details;

@@ -63,6 +63,17 @@ pub fn regimes(
     found
 }
 
+/// Values of a variable by its name, one per sample, recording by recording; none where there is no such variable.
+pub fn values_of(
+    variable: &str,
+    evidence: &Evidence,
+    plant: &PlantParameters,
+    courses: &[PlantCourse],
+) -> Option<Vec<f64>> {
+    let place = VARIABLES.iter().position(|name| *name == variable)?;
+    Some(variables(evidence, plant, courses).swap_remove(place))
+}
+
 /// Values of the variables, in their order.
 fn variables(
     evidence: &Evidence,

@@ -7,7 +7,9 @@
 pub mod atomic;
 pub mod csv;
 mod error;
+pub mod long_table;
 pub mod parquet;
+pub mod provenance;
 pub mod rerun;
 pub mod samples;
 pub mod scene;

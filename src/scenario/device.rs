@@ -46,6 +46,7 @@ pub(super) fn load_with_overrides(
             .collect(),
     };
     let device = DeviceScenario {
+        model: path.to_path_buf(),
         parameters: model.parameters()?,
         locked: false,
         moving_centre_of_mass: model.number(

@@ -147,6 +147,8 @@ pub struct ServoScenario {
 /// The device and its tool.
 #[derive(Debug, Clone)]
 pub struct DeviceScenario {
+    /// File that it was read from.
+    pub model: PathBuf,
     /// Pneumatics.
     pub parameters: DeviceParameters,
     /// Is the slide clamped at the working stroke?

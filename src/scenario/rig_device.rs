@@ -60,6 +60,7 @@ pub(super) fn bench_device(
     refuse_without_counterpart(section, &rig.plant)?;
     Ok(BenchDevice {
         device: DeviceScenario {
+            model,
             parameters: rig.plant.device,
             locked: keys.locked.unwrap_or(false),
             // Of its tool a rig file says nothing; it is drawn as that of models/device.toml.

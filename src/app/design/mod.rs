@@ -12,10 +12,11 @@ pub use evaluate::ScenarioEvaluator;
 
 use super::error::AppError;
 use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder};
+use super::report::{REPORT, of_design};
 use crate::design::{self, Study, StudyResult};
 
 /// All that a study may write.
-const NAMES: [&str; 3] = [DESIGN, OVERRIDE, FRONT];
+const NAMES: [&str; 4] = [DESIGN, OVERRIDE, FRONT, REPORT];
 
 /// A study that can be done, and a folder that its files can go to.
 pub(super) struct PreparedStudy {
@@ -65,6 +66,8 @@ impl PreparedStudy {
             (DESIGN, document.as_str()),
             (OVERRIDE, override_text.as_str()),
         ];
+        let report = of_design(&serde_json::from_str(&document)?, front.as_deref());
+        files.push((REPORT, report.as_str()));
         files.extend(front.as_deref().map(|svg| (FRONT, svg)));
         let names = self.folder.write_texts(&files)?;
         if front.is_none() {

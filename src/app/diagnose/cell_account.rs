@@ -1,7 +1,6 @@
 //! What the account of a cell says besides: which joint, and where on the path.
 
-use std::fmt::Write as _;
-
+use crate::diagnosis::account::Account;
 use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::diagnose::Diagnosis;
 use crate::diagnosis::joint_friction::JointFriction;
@@ -12,42 +11,39 @@ use crate::effects::vocabulary;
 use crate::plant::{Channel, simulate};
 use crate::replay::LoadedCell;
 
-/// Joints, servos and places.
-pub(super) fn cell_account(
+/// Adds joints, servos and places.
+pub(super) fn add_cell(
+    account: &mut Account,
     cell: &LoadedCell,
     servo: Option<&ServoLink>,
     frictions: &[JointFriction],
     of_arm: &[PredictionError],
     diagnosis: &Diagnosis,
-) -> String {
-    let mut text = String::from("\nThe arm\n");
-    // Writing into a text cannot fail.
+) {
+    let mut arm = Vec::new();
     for effect in &diagnosis.best().effects {
         if let (name, Some(joint)) = vocabulary(effect.name) {
-            let _ = writeln!(
-                text,
-                "  {name} is about joint {joint} from the base, `{}` of {}.",
+            arm.push(format!(
+                "{name} is about joint {joint} from the base, `{}` of {}.",
                 cell.joints[joint - 1],
                 cell.scenario.arm.urdf.display()
-            );
+            ));
         }
     }
     match servo {
         Some(servo) if cell.scenario.own && !servo.differs() => {
             let left: Vec<String> = servo.left.iter().map(|l| format!("{l:.1}")).collect();
-            let _ = writeln!(
-                text,
-                "  From their commands to their encoders the joints answer without a lag beyond that of their servos; what loads push them aside by is {} times\n  the encoders' noise of joints 1 to {}.",
+            arm.push(format!(
+                "From their commands to their encoders the joints answer without a lag beyond that of their servos; what loads push them aside by is {} times the encoders' noise of joints 1 to {}.",
                 left.join(", "),
                 servo.left.len(),
-            );
+            ));
         }
-        None => text.push_str("  No encoder was recorded: nothing is said of the servos.\n"),
+        None => arm.push("No encoder was recorded: nothing is said of the servos.".to_owned()),
         Some(servo) => {
             let left: Vec<String> = servo.left.iter().map(|l| format!("{l:.3}")).collect();
-            let _ = writeln!(
-                text,
-                "  From their commands to their encoders the joints answer at {:.3} Hz ({:.3} to {:.3}), {}; what is left of joints 1 to {} is {} times\n  the encoders' noise.",
+            arm.push(format!(
+                "From their commands to their encoders the joints answer at {:.3} Hz ({:.3} to {:.3}), {}; what is left of joints 1 to {} is {} times the encoders' noise.",
                 servo.bandwidth,
                 servo.bandwidth - 1.96 * servo.deviation,
                 servo.bandwidth + 1.96 * servo.deviation,
@@ -58,13 +54,12 @@ pub(super) fn cell_account(
                 },
                 servo.left.len(),
                 left.join(", ")
-            );
+            ));
         }
     }
     for friction in frictions {
-        let _ = writeln!(
-            text,
-            "  By its drive's torque joint {} rubs with {:.2} N m ({:.2} to {:.2}), believed {:.2}{}.",
+        arm.push(format!(
+            "By its drive's torque joint {} rubs with {:.2} N m ({:.2} to {:.2}), believed {:.2}{}.",
             friction.joint + 1,
             friction.friction,
             friction.friction - 1.96 * friction.deviation,
@@ -75,26 +70,21 @@ pub(super) fn cell_account(
             } else {
                 ""
             }
-        );
+        ));
     }
     for error in of_arm {
-        let _ = writeln!(
-            text,
-            "  Error of {} in {}, which was not looked at: {:.3e} as believed, {:.3e} improved.",
+        arm.push(format!(
+            "Error of {} in {}, which was not looked at: {:.3e} as believed, {:.3e} improved.",
             error.channel, error.recording, error.before, error.after
-        );
+        ));
     }
-    let places = places(diagnosis);
-    if !places.is_empty() {
-        text.push_str("\nWhere on the path\n");
-        text.push_str(&places);
-    }
-    text
+    account.add("The arm", arm);
+    account.add("Where on the path", places(diagnosis));
 }
 
 /// Where the effects act, along the edge, and where they act most.
-fn places(diagnosis: &Diagnosis) -> String {
-    let mut text = String::new();
+fn places(diagnosis: &Diagnosis) -> Vec<String> {
+    let mut places = Vec::new();
     let bare = without_effects(&diagnosis.believed, diagnosis.best());
     for (recording, measured) in diagnosis.evidence.recordings.iter().enumerate() {
         let Some(course) = &measured.inputs.cell else {
@@ -132,17 +122,16 @@ fn places(diagnosis: &Diagnosis) -> String {
                 Channel::Force => ("N", 1.0),
                 _ => ("Pa", 1.0),
             };
-            let _ = writeln!(
-                text,
-                "  {}, {}: along the edge at {}; most, {:+.3} {unit}, at {:.1} mm ({:.3} s).",
+            places.push(format!(
+                "{}, {}: along the edge at {}; most, {:+.3} {unit}, at {:.1} mm ({:.3} s).",
                 measured.name,
                 COLUMNS[index],
                 spans.join(", "),
                 factor * moved(largest),
                 1e3 * course.edge[largest].station,
                 measured.inputs.time[largest]
-            );
+            ));
         }
     }
-    text
+    places
 }

@@ -7,15 +7,17 @@ use super::super::error::AppError;
 use super::super::files::OutputFolder;
 use super::super::recordings::{read_rig, shown_columns};
 use super::cell;
-use super::cell_account::cell_account;
+use super::cell_account::add_cell;
 use super::fit_picture;
+use super::outputs::{DIAGNOSIS, IMPROVED, NAMES, Outputs, stands_complete};
 use super::unlisted_picture::picture;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
+use crate::diagnosis::comparison::of_flange;
 use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::diagnose::{Diagnosis, diagnose};
 use crate::diagnosis::estimate::Number;
-use crate::diagnosis::flange::{NoContact, Shown};
+use crate::diagnosis::flange::{NoContact, Run, Shown};
 use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of, run_of};
@@ -23,29 +25,13 @@ use crate::diagnosis::servo::ServoLink;
 use crate::effects::candidates;
 use crate::plant::{Chain, Channel, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
+use crate::recording::provenance::Provenance;
 use crate::replay::LoadedCell;
 use crate::scenario::RecordedCell;
 use crate::scenario::recorded_cell::{FoundNumbers, improved_cell_text};
 use crate::scenario::rig_file::{ImprovedEffect, RigFile, from_text, improved_text, load_rig};
 
 const RIG: &str = "rig.toml";
-const ACCOUNT: &str = "account.txt";
-const IMPROVED: &str = "improved.toml";
-const PREDICTION: &str = "prediction.csv";
-/// Written last: where it stands, the others do.
-const DIAGNOSIS: &str = "diagnosis.json";
-/// Shape of physics without a name, where there is such.
-const PICTURE: &str = "unlisted.svg";
-/// Before and after, of a part of the device.
-const FIT_PICTURE: &str = "fit.svg";
-const NAMES: [&str; 6] = [
-    ACCOUNT,
-    IMPROVED,
-    PREDICTION,
-    PICTURE,
-    FIT_PICTURE,
-    DIAGNOSIS,
-];
 
 /// What becomes of a diagnosis that stands where a new one is to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,6 +59,8 @@ enum Model {
 pub(super) struct Prepared {
     name: String,
     work: Work,
+    /// Files that it was read from, by their names for people.
+    sources: Vec<(String, PathBuf)>,
     folder: OutputFolder,
 }
 
@@ -87,8 +75,8 @@ enum Work {
     /// A contact flange, seen from outside.
     Flange {
         rig: Box<RigFile>,
-        runs: Vec<(String, Shown)>,
-        unseen: Option<(String, Shown)>,
+        runs: Vec<(Run, Shown)>,
+        unseen: Option<(Run, Shown)>,
     },
 }
 
@@ -113,9 +101,7 @@ pub(super) fn is_case(folder: &Path) -> bool {
 pub(super) fn complete(folder: &Path) -> Option<Answer> {
     let text = std::fs::read_to_string(folder.join(DIAGNOSIS)).ok()?;
     let answer: Answer = serde_json::from_str(&text).ok()?;
-    let others = [ACCOUNT, IMPROVED];
-    let stand = others.iter().all(|name| folder.join(name).is_file());
-    stand.then_some(answer)
+    stands_complete(folder).then_some(answer)
 }
 
 impl Prepared {
@@ -150,6 +136,7 @@ impl Prepared {
         let own = own.as_deref().unwrap_or(folder);
         Ok(Self {
             name: own.file_name().unwrap_or_default().display().to_string(),
+            sources: sources(folder, cell, &work),
             folder: OutputFolder::prepare(out, &NAMES)?,
             work,
         })
@@ -160,6 +147,7 @@ impl Prepared {
         let start = Instant::now();
         // An old diagnosis beside new files would pass for theirs.
         self.folder.discard(DIAGNOSIS)?;
+        let provenance = provenance(&self.sources)?;
         let (model, case, recordings) = match self.work {
             Work::Plant {
                 model,
@@ -167,7 +155,8 @@ impl Prepared {
                 recordings,
             } => (model, case, recordings),
             Work::Flange { rig, runs, unseen } => {
-                return flange(&self.name, &self.folder, &rig, runs, unseen, start);
+                let of = (self.name.as_str(), provenance);
+                return flange(of, &self.folder, &rig, runs, unseen, start);
             }
         };
         let diagnosis = diagnose(&case, recordings, say);
@@ -188,8 +177,8 @@ impl Prepared {
         if let Model::Cell { of_arm, .. } = &model {
             answer.details.prediction.extend(of_arm.iter().cloned());
         }
-        let document = answer.text()?;
-        let mut account = diagnosis.account(&self.name);
+        answer.details.case.clone_from(&self.name);
+        answer.details.provenance = provenance;
         if let Model::Cell {
             cell,
             servo,
@@ -197,33 +186,52 @@ impl Prepared {
             of_arm,
         } = &model
         {
-            account += &cell_account(cell, servo.as_ref(), frictions, of_arm, &diagnosis);
+            let account = &mut answer.details.account;
+            add_cell(account, cell, servo.as_ref(), frictions, of_arm, &diagnosis);
             if diagnosis.shape.is_some() {
-                account += "\nA cell's improved.toml has no place for a term without a name: it stands in prediction.csv alone.\n";
+                let place = "A cell's improved.toml has no place for a term without a name: it stands in prediction.csv alone.";
+                account.add("What improved.toml leaves out", vec![place.to_owned()]);
             }
         }
-        let mut files = vec![(ACCOUNT, account.as_str()), (IMPROVED, improved.as_str())];
-        let optional = [
-            (PREDICTION, &prediction),
-            (PICTURE, &picture),
-            (FIT_PICTURE, &fit_picture),
-        ];
-        for (name, text) in optional {
-            match text {
-                Some(text) => files.push((name, text.as_str())),
-                // That of another diagnosis would pass for one of this.
-                None => self.folder.discard(name)?,
-            }
-        }
-        files.push((DIAGNOSIS, document.as_str()));
-        let names = self.folder.write_texts(&files)?;
-        Ok(Finished {
+        let outputs = Outputs {
             answer,
-            document,
-            account,
-            names,
-        })
+            improved: &improved,
+            prediction: prediction.as_deref(),
+            picture: picture.as_deref(),
+            fit_picture: fit_picture.as_deref(),
+            comparison: &diagnosis.comparison(&case, &plant),
+        };
+        outputs.write(&self.folder)
     }
+}
+
+/// The files that a case is read from.
+fn sources(folder: &Path, cell: Option<&LoadedCell>, work: &Work) -> Vec<(String, PathBuf)> {
+    let within = |name: &str| (name.to_owned(), folder.join(name));
+    let first = match cell {
+        Some(cell) => {
+            let path = &cell.scenario.path;
+            (path.display().to_string(), path.clone())
+        }
+        None => within(RIG),
+    };
+    let names: Vec<&str> = match work {
+        Work::Plant { case, .. } => (case.recordings.iter().chain(&case.unseen))
+            .map(|recording| recording.name.as_str())
+            .collect(),
+        Work::Flange { runs, unseen, .. } => (runs.iter().chain(unseen))
+            .map(|(run, _)| run.name.as_str())
+            .collect(),
+    };
+    let recordings = names.into_iter().map(within);
+    std::iter::once(first).chain(recordings).collect()
+}
+
+fn provenance(sources: &[(String, PathBuf)]) -> Result<Provenance, AppError> {
+    let sources = sources
+        .iter()
+        .map(|(name, path)| (name.as_str(), path.as_path()));
+    Ok(Provenance::of(sources, None)?)
 }
 
 /// prediction.csv: what the improved model says of the recording that is to be predicted.
@@ -258,7 +266,7 @@ fn plant_work((model, case): (Model, Case)) -> Result<Work, AppError> {
 
 /// The runs of a contact flange.
 fn flange_work(rig: RigFile, folder: &Path) -> Result<Work, AppError> {
-    let shown = |name: &String| -> Result<(String, Shown), AppError> {
+    let shown = |name: &String| -> Result<(Run, Shown), AppError> {
         let path = folder.join(name);
         let file = path.display().to_string();
         let run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
@@ -266,7 +274,8 @@ fn flange_work(rig: RigFile, folder: &Path) -> Result<Work, AppError> {
             folder: folder.display().to_string(),
             source,
         };
-        Ok((name.clone(), run.shown().map_err(refused)?))
+        let shown = run.shown().map_err(refused)?;
+        Ok((run, shown))
     };
     Ok(Work::Flange {
         runs: to_fit(&rig, folder)?
@@ -307,24 +316,26 @@ fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, AppError> {
 
 /// Writes what the runs of a contact flange show.
 fn flange(
-    name: &str,
+    (name, provenance): (&str, Provenance),
     folder: &OutputFolder,
     rig: &RigFile,
-    runs: Vec<(String, Shown)>,
-    unseen: Option<(String, Shown)>,
+    runs: Vec<(Run, Shown)>,
+    unseen: Option<(Run, Shown)>,
     start: Instant,
 ) -> Result<Finished, AppError> {
+    let (runs, shown): (Vec<Run>, Vec<Shown>) = runs.into_iter().unzip();
+    let (unseen, foretold) = unseen.unzip();
+    let named = |(run, shown): (&Run, Shown)| (run.name.clone(), shown);
     let diagnosis = FlangeDiagnosis {
-        name: name.to_owned(),
-        runs,
-        unseen,
+        runs: runs.iter().zip(shown).map(named).collect(),
+        unseen: unseen.as_ref().zip(foretold).map(named),
         mass: rig.plant.device.moving_mass,
         time_constant: rig.plant.device.regulator.time_constant,
         noise: rig.noise[Channel::Force as usize],
     };
-    let answer = diagnosis.answer(start.elapsed().as_secs_f64());
-    let account = diagnosis.account();
-    let document = answer.text()?;
+    let mut answer = diagnosis.answer(start.elapsed().as_secs_f64());
+    answer.details.case = name.to_owned();
+    answer.details.provenance = provenance;
     // What was found cannot be simulated from outside: it stands in the file as a comment.
     let mut improved = improved_text(rig, &[], &[], None);
     for effect in &answer.effects {
@@ -334,21 +345,15 @@ fn flange(
             improved += &format!("# {key} = {value:.5e}   # {low:.3e} to {high:.3e}\n");
         }
     }
-    for absent in [PREDICTION, PICTURE, FIT_PICTURE] {
-        folder.discard(absent)?;
-    }
-    let files = [
-        (ACCOUNT, account.as_str()),
-        (IMPROVED, improved.as_str()),
-        (DIAGNOSIS, document.as_str()),
-    ];
-    let names = folder.write_texts(&files)?;
-    Ok(Finished {
+    let outputs = Outputs {
         answer,
-        document,
-        account,
-        names,
-    })
+        improved: &improved,
+        prediction: None,
+        picture: None,
+        fit_picture: None,
+        comparison: &of_flange(&runs, unseen.as_ref()),
+    };
+    outputs.write(folder)
 }
 
 /// The rig file of a case.

@@ -1,0 +1,166 @@
+// Charts of a page: uPlot from the numbers that stand beside each. Nothing is fetched.
+"use strict";
+(() => {
+  const root = document.documentElement;
+  const stored = () => { try { return localStorage.getItem("idc-theme"); } catch { return null; } };
+  const preferred = () => stored() ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+  const charts = [];
+  const setTheme = (theme) => {
+    root.dataset.theme = theme;
+    for (const chart of charts) chart.plot?.redraw(false, true);
+  };
+  setTheme(preferred());
+  document.getElementById("theme").addEventListener("click", () => {
+    const theme = root.dataset.theme === "dark" ? "light" : "dark";
+    try { localStorage.setItem("idc-theme", theme); } catch { /* the page stands in a place without storage */ }
+    setTheme(theme);
+  });
+  const colour = (name) => getComputedStyle(root).getPropertyValue("--" + name).trim();
+  const faded = (name, share) => colour(name) + Math.round(255 * share).toString(16).padStart(2, "0");
+
+  // Little-endian Float32 in base64; NaN is no value.
+  const numbers = (text) => {
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    return Array.from(new Float32Array(bytes.buffer), (value) => (Number.isNaN(value) ? null : value));
+  };
+  const shown = (value) => (value == null ? "–" : String(Number(value.toPrecision(5))));
+
+  const strokes = {
+    Plain: { width: 1.5 }, Dashed: { width: 1.5, dash: [6, 4] }, Raw: { width: 1, share: 0.7 }, Truth: { width: 2.2 },
+    Points: { points: true }, Area: { width: 0.5, share: 0.6 },
+  };
+  const series = (told) => {
+    const stroke = strokes[told.stroke];
+    const paint = () => (stroke.share ? faded(told.role, stroke.share) : colour(told.role));
+    const built = { label: told.label, stroke: paint, width: stroke.width, dash: stroke.dash, spanGaps: told.joined, value: (_, v) => shown(v), scale: "y" };
+    if (stroke.points) {
+      built.paths = () => null;
+      built.points = { show: true, size: 4, width: 0, stroke: paint, fill: () => faded(told.role, 0.55), filter: null };
+    } else {
+      built.points = { show: false };
+      if (told.stepwise) built.paths = uPlot.paths.stepped({ align: 1 });
+    }
+    return built;
+  };
+
+  // Horizontal bands, flagged times and event lines, behind the signals.
+  const backdrop = (told) => (u) => {
+    const { ctx, bbox } = u;
+    const ratio = uPlot.pxRatio;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    for (const span of told.spans) {
+      const [from, to] = [u.valToPos(span[0], "x", true), u.valToPos(span[1], "x", true)];
+      ctx.fillStyle = faded("bad", 0.12);
+      ctx.fillRect(from, bbox.top, Math.max(to - from, ratio), bbox.height);
+    }
+    for (const band of told.bands) {
+      const [top, bottom] = [u.valToPos(band.to, "y", true), u.valToPos(band.from, "y", true)];
+      ctx.fillStyle = faded("Band", 0.25);
+      ctx.fillRect(bbox.left, top, bbox.width, Math.max(bottom - top, ratio));
+    }
+    ctx.font = `${11 * ratio}px system-ui, sans-serif`;
+    ctx.strokeStyle = ctx.fillStyle = colour("quiet");
+    ctx.lineWidth = ratio;
+    for (const marker of told.markers) {
+      const at = u.valToPos(marker.at, "x", true);
+      ctx.beginPath();
+      ctx.setLineDash([3 * ratio, 3 * ratio]);
+      ctx.moveTo(at, bbox.top);
+      ctx.lineTo(at, bbox.top + bbox.height);
+      ctx.stroke();
+      ctx.fillText(marker.label, at + 4 * ratio, bbox.top + 12 * ratio);
+    }
+    ctx.restore();
+  };
+
+  // Two fingers zoom and move, a double tap shows all.
+  const touch = (u) => {
+    let start = null;
+    let tapped = 0;
+    const span = (touches) => {
+      const left = u.over.getBoundingClientRect().left;
+      return [...touches].map((finger) => finger.clientX - left).sort((a, b) => a - b);
+    };
+    u.over.addEventListener("touchstart", (event) => {
+      if (event.touches.length === 2) {
+        event.preventDefault();
+        start = span(event.touches).map((x) => u.posToVal(x, "x"));
+      } else if (event.timeStamp - tapped < 300) { all(u); } else { tapped = event.timeStamp; }
+    }, { passive: false });
+    u.over.addEventListener("touchmove", (event) => {
+      if (!start || event.touches.length !== 2) return;
+      event.preventDefault();
+      const [left, right] = span(event.touches);
+      const scale = (start[1] - start[0]) / Math.max(right - left, 10);
+      const min = start[0] - left * scale;
+      u.setScale("x", { min, max: min + u.over.clientWidth * scale });
+    }, { passive: false });
+    u.over.addEventListener("touchend", () => { start = null; });
+  };
+  const ends = (u) => [u.data[0][0], u.data[0].at(-1)];
+  const all = (u) => { const [min, max] = ends(u); u.setScale("x", { min, max }); };
+
+  let following = false;
+  const zoomed = (chart) => (u, scale) => {
+    if (scale !== "x" || !chart.plot) return;
+    const { min, max } = u.scales.x;
+    const [first, last] = ends(u);
+    const is = min > first + 1e-9 * (last - first) || max < last - 1e-9 * (last - first);
+    chart.figure.classList.toggle("zoomed", is);
+    if (following || !chart.told.group) return;
+    following = true;
+    for (const other of charts) {
+      if (other !== chart && other.plot && other.told.group === chart.told.group) other.plot.setScale("x", { min, max });
+    }
+    following = false;
+  };
+
+  const build = (chart) => {
+    if (chart.plot) return;
+    const told = chart.told;
+    const place = chart.figure.querySelector(".plot");
+    const axis = { stroke: () => colour("quiet"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { stroke: () => colour("grid"), width: 1 }, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 20 };
+    const largest = (values) => Math.max(...values.map((v) => String(Number((v ?? 0).toPrecision(6))).length));
+    const plain = (_, values) => values.map((v) => String(Number(v.toPrecision(6))));
+    const options = {
+      width: place.clientWidth, height: 280,
+      cursor: { sync: told.group ? { key: told.group, setSeries: false } : undefined, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
+      legend: { live: true },
+      scales: { x: { time: false }, y: { range: (_, min, max) => (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
+      axes: [{ ...axis, label: told.x, values: plain }, { ...axis, label: told.y, values: plain, size: (u, values) => (values ? 22 + 7 * largest(values.map(Number)) : 60) }],
+      series: [{ label: told.x, value: (_, v) => shown(v) }, ...told.series.map(series)],
+      bands: told.areas.map(([low, high]) => ({ series: [high + 1, low + 1], fill: () => faded("Band", 0.3) })),
+      hooks: { drawClear: [backdrop(told)], setScale: [zoomed(chart)], init: [touch] },
+    };
+    const data = [numbers(told.at), ...told.series.map((one) => numbers(one.values))];
+    chart.plot = new uPlot(options, data, place);
+    place.setAttribute("data-drawn", "");
+    new ResizeObserver(() => chart.plot.setSize({ width: place.clientWidth, height: 280 })).observe(place);
+    chart.figure.querySelector(".reset").addEventListener("click", () => all(chart.plot));
+  };
+
+  for (const figure of document.querySelectorAll("figure.chart")) {
+    charts.push({ figure, told: JSON.parse(figure.querySelector("script").textContent), plot: null });
+  }
+  // Those out of sight wait.
+  const watch = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      if (entry.isIntersecting) build(charts.find((chart) => chart.figure === entry.target));
+    }
+  }, { rootMargin: "400px" });
+  for (const chart of charts) watch.observe(chart.figure);
+  let before = null;
+  const light = () => {
+    before = root.dataset.theme;
+    for (const details of document.querySelectorAll("details")) details.open = true;
+    charts.forEach(build);
+    setTheme("light");
+  };
+  addEventListener("beforeprint", light);
+  addEventListener("afterprint", () => { if (before) setTheme(before); });
+  // For tests: what is drawn, and how far it is zoomed.
+  window.idcCharts = charts;
+})();

@@ -1,0 +1,100 @@
+//! The files of a diagnosis. All appear, or none; diagnosis.json is the last, so that where it stands the others do.
+
+use std::path::Path;
+
+use super::super::error::AppError;
+use super::super::files::OutputFolder;
+use super::super::report::{REPORT, of_diagnosis};
+use super::comparison_files::{BALANCE, COMPARISON, write_balances, write_recordings};
+use super::one::Finished;
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::comparison::Comparison;
+use crate::recording::atomic::write_text;
+
+const ACCOUNT: &str = "account.txt";
+pub(super) const IMPROVED: &str = "improved.toml";
+const PREDICTION: &str = "prediction.csv";
+/// Shape of physics without a name, where there is such.
+const PICTURE: &str = "unlisted.svg";
+/// Before and after, of a part of the device.
+const FIT_PICTURE: &str = "fit.svg";
+pub(in super::super) const DIAGNOSIS: &str = "diagnosis.json";
+/// All that a diagnosis may write.
+pub(super) const NAMES: [&str; 9] = [
+    ACCOUNT,
+    IMPROVED,
+    PREDICTION,
+    PICTURE,
+    FIT_PICTURE,
+    COMPARISON,
+    BALANCE,
+    REPORT,
+    DIAGNOSIS,
+];
+
+/// Does a folder hold what every diagnosis has?
+pub(super) fn stands_complete(folder: &Path) -> bool {
+    let all = [ACCOUNT, IMPROVED, COMPARISON, BALANCE, DIAGNOSIS];
+    all.iter().all(|name| folder.join(name).is_file())
+}
+
+/// What a diagnosis leaves behind.
+pub(super) struct Outputs<'a> {
+    /// What was found.
+    pub answer: Answer,
+    /// improved.toml.
+    pub improved: &'a str,
+    /// prediction.csv.
+    pub prediction: Option<&'a str>,
+    /// unlisted.svg.
+    pub picture: Option<&'a str>,
+    /// fit.svg.
+    pub fit_picture: Option<&'a str>,
+    /// Recordings beside models.
+    pub comparison: &'a Comparison,
+}
+
+impl Outputs<'_> {
+    /// Writes all of it.
+    pub(super) fn write(self, folder: &OutputFolder) -> Result<Finished, AppError> {
+        let document = self.answer.text()?;
+        let details = &self.answer.details;
+        let account = details.account.text(&details.case);
+        let optional = [
+            (PREDICTION, self.prediction),
+            (PICTURE, self.picture),
+            (FIT_PICTURE, self.fit_picture),
+        ];
+        for (name, text) in optional {
+            if text.is_none() {
+                // That of another diagnosis would pass for one of this.
+                folder.discard(name)?;
+            }
+        }
+        let texts = [(ACCOUNT, account.as_str()), (IMPROVED, self.improved)];
+        let optional = optional
+            .into_iter()
+            .filter_map(|(name, text)| Some((name, text?)));
+        let texts: Vec<(&'static str, &str)> = texts.into_iter().chain(optional).collect();
+        let names = folder.write_with(|unfinished| {
+            for (name, text) in &texts {
+                write_text(&unfinished.join(name), text)?;
+            }
+            write_recordings(&unfinished.join(COMPARISON), self.comparison)?;
+            write_balances(&unfinished.join(BALANCE), self.comparison)?;
+            let report = of_diagnosis(&self.answer, self.comparison);
+            write_text(&unfinished.join(REPORT), &report)?;
+            write_text(&unfinished.join(DIAGNOSIS), &document)?;
+            let names = texts.iter().map(|(name, _)| *name);
+            Ok(names
+                .chain([COMPARISON, BALANCE, REPORT, DIAGNOSIS])
+                .collect())
+        })?;
+        Ok(Finished {
+            answer: self.answer,
+            document,
+            account,
+            names,
+        })
+    }
+}

@@ -1,0 +1,155 @@
+//! report.html: what a folder of results holds, as one file for a browser.
+
+mod charts;
+mod design;
+mod diagnosis;
+mod run;
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::diagnose::{DIAGNOSIS, read_comparison};
+use super::error::{AppError, ExitCode};
+use super::files::{DESIGN, FRONT, SAMPLES, SUMMARY};
+use super::output::say;
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::comparison::Comparison;
+use crate::page::html;
+use crate::recording::atomic::write_text;
+use crate::recording::parquet::read_parquet;
+use crate::recording::provenance::Provenance;
+use crate::recording::{Recording, RecordingError};
+
+pub(super) use run::{RunResult, chart_groups, labels};
+
+/// Its name.
+pub(super) const REPORT: &str = "report.html";
+
+/// For the help.
+pub(super) const EXAMPLES: &str = "Examples:
+  idc run scenarios/plate_edge.toml --out runs/plate    writes runs/plate/report.html at its end
+  idc report runs/plate                                 writes it anew from the other files
+  idc report runs/plate --out plate.html                elsewhere
+
+The folder is one that run, diagnose or design wrote. The page is one file that needs no network: it can be mailed, printed, and opened on a phone.";
+
+#[derive(Debug, Args)]
+pub(super) struct ReportArguments {
+    /// Folder with the results of a run, a diagnosis or a study.
+    folder: PathBuf,
+    /// File for the page [default: report.html in the folder].
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(long)]
+    quiet: bool,
+    /// Print what was written as JSON.
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+/// Writes the page of a folder.
+pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
+    let folder = &arguments.folder;
+    let (kind, text) = if folder.join(DIAGNOSIS).is_file() {
+        let answer: Answer = read_json(&folder.join(DIAGNOSIS))?;
+        (
+            "diagnosis",
+            of_diagnosis(&answer, &read_comparison(folder)?),
+        )
+    } else if folder.join(SUMMARY).is_file() {
+        ("run", of_run(&read_run(folder)?))
+    } else if folder.join(DESIGN).is_file() {
+        let document = read_json(&folder.join(DESIGN))?;
+        let front = std::fs::read_to_string(folder.join(FRONT)).ok();
+        ("study", of_design(&document, front.as_deref()))
+    } else {
+        return Err(AppError::NoResults {
+            folder: folder.display().to_string(),
+        });
+    };
+    let default = || folder.join(REPORT);
+    let out = arguments.out.clone().unwrap_or_else(default);
+    write_text(&out, &text)?;
+    if arguments.json {
+        let told = serde_json::json!({"kind": kind, "file": out, "bytes": text.len()});
+        say(&format!("{told}\n"))?;
+    } else if !arguments.quiet {
+        let size = text.len() as f64 / 1e6;
+        say(&format!(
+            "page of the {kind} written to {} ({size:.1} MB)\n",
+            out.display()
+        ))?;
+    }
+    Ok(ExitCode::Done)
+}
+
+/// The page of a diagnosis.
+pub(super) fn of_diagnosis(answer: &Answer, comparison: &Comparison) -> String {
+    html(&diagnosis::page(answer, comparison))
+}
+
+/// The page of a run.
+pub(super) fn of_run(run: &RunResult<'_>) -> String {
+    html(&run::page(run))
+}
+
+/// The page of a run that has just ended: summary.json and its signals.
+pub(super) fn page_of_run(document: &str, recording: &Recording) -> Result<String, AppError> {
+    Ok(of_run(&RunResult {
+        document: serde_json::from_str(document)?,
+        recording: Cow::Borrowed(recording),
+    }))
+}
+
+/// The page of a design study: design.json, and front.svg where there is one.
+pub(super) fn of_design(document: &serde_json::Value, front: Option<&str>) -> String {
+    html(&design::page(document, front))
+}
+
+/// A run as its folder has it.
+pub(super) fn read_run(folder: &Path) -> Result<RunResult<'static>, AppError> {
+    Ok(RunResult {
+        document: read_json(&folder.join(SUMMARY))?,
+        recording: Cow::Owned(read_parquet(&folder.join(SAMPLES))?.recording),
+    })
+}
+
+pub(super) fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, AppError> {
+    let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
+    let read = serde_json::from_str(&text);
+    Ok(read.map_err(|e| RecordingError::read(path, e))?)
+}
+
+/// The part of a page that says where all comes from.
+fn provenance(from: &Provenance) -> crate::page::Section<'static> {
+    use crate::page::{Block, Cell, Section, Table};
+    let mut made = format!("Made by {}", from.program);
+    if !from.libraries.is_empty() {
+        made += &format!(" with {}", from.libraries.join(", "));
+    }
+    made += &match from.seed {
+        Some(seed) => format!("; seed {seed}."),
+        None => "; nothing is drawn at random.".to_owned(),
+    };
+    let rows = from.files.iter().map(|file| {
+        vec![
+            Cell::from(file.file.clone()),
+            Cell::from(file.bytes.to_string()),
+            Cell::Hash(file.sha256.clone()),
+        ]
+    });
+    Section::new(
+        "Provenance",
+        vec![
+            Block::Paragraph(made),
+            Block::Table(Table::new(
+                "Files that were read",
+                &["file", "#bytes", "SHA-256"],
+                rows.collect(),
+            )),
+        ],
+    )
+}

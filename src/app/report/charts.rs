@@ -1,0 +1,182 @@
+//! The charts of a diagnosis: recordings beside models, and what links lack.
+
+use crate::diagnosis::answer::{Answer, Mismatch};
+use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel};
+use crate::diagnosis::recorded::COLUMNS;
+use crate::diagnosis::unlisted::report::UnlistedReport;
+use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken};
+use crate::figure::{Band, Horizontal, Panel, Role, Series, Stroke};
+use crate::page::Chart;
+
+/// Standard deviations to either end of a 95 % band [1].
+const BAND: f64 = 1.959_964;
+
+/// A channel of a recording: as measured and by the models; and what they leave, with the band of the sensor's noise.
+pub(super) fn channel<'a>(
+    answer: &Answer,
+    recording: &'a Compared,
+    channel: &'a ComparedChannel,
+) -> [Chart<'a>; 2] {
+    let index = channel.channel as usize;
+    let (unit, factor) = CHANNEL_UNITS[index];
+    let start = recording.time.first().copied().unwrap_or(0.0);
+    let from_start = |t: f64| t - start;
+    let time: Vec<f64> = recording.time.iter().map(|t| from_start(*t)).collect();
+    let scaled = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| v * factor).collect() };
+    let series = |values: Vec<f64>, label: &str, role, stroke| {
+        Series::new(label, time.clone(), values, role, stroke)
+    };
+    let own = |m: &&Mismatch| m.recording == recording.name && m.channel == COLUMNS[index];
+    let spans = answer.mismatch.iter().filter(own);
+    let spans: Vec<[f64; 2]> = spans
+        .map(|m| [from_start(m.start_s), from_start(m.end_s)])
+        .collect();
+    let chart = |title: String, series, bands| Chart {
+        panel: Panel {
+            title,
+            vertical_label: format!("{} [{unit}]", CHANNEL_WORDS[index]),
+            horizontal: Horizontal::Time,
+            series,
+            bands,
+            markers: Vec::new(),
+        },
+        spans: spans.clone(),
+        group: recording.name.clone(),
+    };
+    let words = capital(CHANNEL_WORDS[index]);
+    let models = [
+        (
+            &channel.believed,
+            "as believed",
+            Role::Command,
+            Stroke::Dashed,
+        ),
+        (&channel.improved, "improved", Role::Estimate, Stroke::Plain),
+    ];
+    let models = models
+        .into_iter()
+        .filter(|(values, ..)| values.iter().any(|v| v.is_finite()));
+    let known = channel.measured.iter().any(|v| v.is_finite());
+    let measured = known.then(|| {
+        let values = scaled(&channel.measured);
+        series(values, "measured", Role::Measured, Stroke::Plain)
+    });
+    let lines = models.clone();
+    let lines =
+        lines.map(|(values, label, role, stroke)| series(scaled(values), label, role, stroke));
+    let values = chart(
+        words.clone(),
+        measured.into_iter().chain(lines).collect(),
+        Vec::new(),
+    );
+    let left = models.filter(|_| known).map(|(values, label, role, _)| {
+        let pairs = channel.measured.iter().zip(values);
+        let left: Vec<f64> = pairs.map(|(m, v)| factor * (m - v)).collect();
+        let stroke = match role {
+            Role::Command => Stroke::Raw,
+            _ => Stroke::Plain,
+        };
+        series(left, &format!("measured less {label}"), role, stroke)
+    });
+    let noise = answer.details.noise.iter();
+    let noise = noise.filter(|n| n.channel == COLUMNS[index]).map(|n| {
+        let half = BAND * factor * n.standard_deviation;
+        Band {
+            label: "noise".to_owned(),
+            from: -half,
+            to: half,
+        }
+    });
+    let title = format!("{words}: what is left; the band holds 95 % of the noise");
+    [values, chart(title, left.collect(), noise.collect())]
+}
+
+/// A variable for people: words, unit and what a value in SI is multiplied by.
+fn variable(name: &str) -> (&str, &'static str, f64) {
+    match name {
+        "time" => ("time", "s", 1.0),
+        "stroke_m" => ("stroke", "mm", 1e3),
+        "velocity" => ("speed of extension", "mm/s", 1e3),
+        "velocity_sign" => ("direction of motion", "1", 1.0),
+        "acceleration" => ("acceleration", "m/s2", 1.0),
+        "chamber_pressure" => ("pressure in chamber 1", "bar absolute", 1e-5),
+        "pressure_difference" => ("pressure difference across the piston", "bar", 1e-5),
+        "pressure_rate" => ("rate of pressure in chamber 1", "bar/s", 1e-5),
+        "mass_flow" => ("flow of air into chamber 1", "g/s", 1e3),
+        "set_pressure" => ("set pressure", "bar", 1e-5),
+        "surface_m" => ("place of the surface", "mm", 1e3),
+        "contact_force" => ("contact force", "N", 1.0),
+        "phase" => ("touching (2) and told to extend (1)", "1", 1.0),
+        other => (other, "", 1.0),
+    }
+}
+
+/// What a link lacks against the variable that says when, before and after.
+pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
+    let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
+    let (words, of, scale) = variable(&balance.variable);
+    let lacking = match balance.link.as_str() {
+        "regulator" => "pressure at the regulator's outlet",
+        "piston" => "force on the piston",
+        "contact" => "contact force",
+        _ => CHANNEL_WORDS[balance.channel as usize],
+    };
+    let places: Vec<f64> = balance.values.iter().map(|v| v * scale).collect();
+    let cloud = |values: &[f64], label: &str, role| {
+        let values: Vec<f64> = values.iter().map(|v| v * factor).collect();
+        Series::new(label, places.clone(), values, role, Stroke::Points)
+    };
+    Chart {
+        panel: Panel {
+            title: format!("{}: what it lacks", capital(lacking)),
+            vertical_label: format!("lacking [{unit}]"),
+            horizontal: Horizontal::Quantity(format!("{words} [{of}]")),
+            series: vec![
+                cloud(&balance.before, "as believed", Role::Command),
+                cloud(&balance.after, "improved", Role::Estimate),
+            ],
+            ..Panel::default()
+        },
+        ..Chart::default()
+    }
+}
+
+/// Physics without a name against its variable.
+pub(super) fn unlisted<'a>(report: &UnlistedReport) -> Chart<'a> {
+    let (_, at_unit, at) = spoken(&format!("x_{}", report.at_unit));
+    let (_, unit, of) = spoken(&format!("x_{}", report.value_unit));
+    // Where nothing was recorded the interval is wider than all that the term does: not drawn.
+    let known =
+        |row: &&crate::diagnosis::unlisted::report::ShapeRow| row.half_width < report.peak_to_peak;
+    let rows: Vec<_> = report.shape.iter().filter(known).collect();
+    let edge = |side: f64| {
+        let rows = rows.iter();
+        rows.map(move |r| (at * r.at, of * (r.value + side * r.half_width)))
+    };
+    let (places, values): (Vec<f64>, Vec<f64>) = edge(-1.0).chain(edge(1.0).rev()).unzip();
+    let all = report.shape.iter().map(|r| (at * r.at, of * r.value));
+    let (along, term): (Vec<f64>, Vec<f64>) = all.unzip();
+    let over = match report.period_s {
+        Some(_) => "time within the period".to_owned(),
+        None => variable(&report.variable).0.replace('_', " "),
+    };
+    Chart {
+        panel: Panel {
+            title: format!("The term: {}", report.port.replace('_', " ")),
+            vertical_label: format!("{} [{unit}]", report.port.replace('_', " ")),
+            horizontal: Horizontal::Quantity(format!("{over} [{at_unit}]")),
+            series: vec![
+                Series::new("95 % band", places, values, Role::Band, Stroke::Area),
+                Series::new(
+                    "fitted in the simulator",
+                    along,
+                    term,
+                    Role::Estimate,
+                    Stroke::Truth,
+                ),
+            ],
+            ..Panel::default()
+        },
+        ..Chart::default()
+    }
+}

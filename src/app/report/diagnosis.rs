@@ -1,0 +1,442 @@
+//! The page of a diagnosis.
+
+use super::charts::{balance, channel, unlisted};
+use super::provenance;
+use crate::diagnosis::account::Section as Told;
+use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict};
+use crate::diagnosis::comparison::{Compared, Comparison};
+use crate::diagnosis::recorded::COLUMNS;
+use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, percent, spoken};
+use crate::effects::meaning;
+use crate::page::{Block, Cell, Fact, Page, Section, Strip, Table, Tone};
+
+/// Recordings that are shown at once; the others are folded away.
+const SHOWN: usize = 2;
+
+/// The page.
+pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> {
+    let details = &answer.details;
+    let headline = details.account.headline.replace('_', " ");
+    let sections = [
+        what_is_missing(answer),
+        where_it_shows(answer, comparison),
+        before_and_after(answer, comparison),
+        balances(comparison),
+        how_well(answer),
+        own_numbers(answer),
+        ruled_out(answer),
+        told(answer, "What to record next", "What to record next"),
+        account(answer),
+    ];
+    let sections = sections.into_iter().flatten();
+    Page {
+        title: format!("Diagnosis of {}", details.case),
+        verdict: format!("{}.", capital(&headline)),
+        tone: match answer.verdict {
+            Verdict::Explained => Tone::Found,
+            Verdict::NothingMissing => Tone::Good,
+            Verdict::Unlisted => Tone::Open,
+        },
+        lead: lead(answer),
+        facts: facts(answer),
+        sections: sections.chain([provenance(&details.provenance)]).collect(),
+        footer: "Made by idc, which simulates the device and its cell, and finds what physics recordings contain that the model leaves out. Zoom a chart by drawing over it, or with two fingers; a double click shows all.".to_owned(),
+    }
+}
+
+/// A part of the account by its title.
+fn part<'a>(answer: &'a Answer, title: &str) -> Option<&'a Told> {
+    let mut sections = answer.details.account.sections.iter();
+    sections.find(|section| section.title == title)
+}
+
+fn told<'a>(answer: &Answer, title: &str, heading: &str) -> Option<Section<'a>> {
+    let paragraphs = part(answer, title)?.paragraphs.iter();
+    let blocks = paragraphs.map(|text| Block::Paragraph(text.clone()));
+    Some(Section::new(heading, blocks.collect()))
+}
+
+/// What each effect is, in words.
+fn lead(answer: &Answer) -> Vec<String> {
+    let words = |effect: &FoundEffect| {
+        let meaning = meaning(&effect.name);
+        (!meaning.is_empty()).then(|| capital(meaning) + ".")
+    };
+    let known = answer.effects.iter().filter(|e| e.name != UNLISTED);
+    let mut lead: Vec<String> = known.filter_map(words).collect();
+    if answer.verdict == Verdict::NothingMissing {
+        lead.push("What the recordings show lies within the sensors' noise and the tolerances of the rig file.".to_owned());
+    }
+    lead
+}
+
+fn facts(answer: &Answer) -> Vec<Fact> {
+    let details = &answer.details;
+    let mut facts = Vec::new();
+    let mut add = |name: &str, value: String, remark: String| {
+        facts.push(Fact {
+            name: name.to_owned(),
+            value,
+            remark,
+        });
+    };
+    if let Some(share) = details.explained_share {
+        add("of the mismatch explained", percent(share), String::new());
+    }
+    let worst = details
+        .prediction
+        .iter()
+        .max_by(|a, b| a.before_sigmas.total_cmp(&b.before_sigmas));
+    if let Some(error) = worst {
+        let (words, unit, factor) = of_column(&error.channel);
+        add(
+            &format!("error of {words}, not fitted to"),
+            format!(
+                "{} → {} {unit}",
+                figures(factor * error.before, 3),
+                figures(factor * error.after, 3)
+            ),
+            format!("sensor's noise {} {unit}", figures(factor * error.noise, 2)),
+        );
+    }
+    let count = details.misfit.iter().map(|m| &m.recording);
+    let recordings: std::collections::BTreeSet<_> = count.collect();
+    let samples: usize = details.misfit.iter().map(|m| m.samples).sum();
+    if samples > 0 {
+        add(
+            "recordings",
+            recordings.len().to_string(),
+            format!("{samples} readings"),
+        );
+    }
+    add(
+        "time taken",
+        format!("{} s", figures(answer.seconds, 2)),
+        String::new(),
+    );
+    facts
+}
+
+/// A channel's column for people.
+fn of_column(column: &str) -> (&str, &'static str, f64) {
+    match COLUMNS.iter().position(|own| *own == column) {
+        Some(index) => {
+            let (unit, factor) = CHANNEL_UNITS[index];
+            (CHANNEL_WORDS[index], unit, factor)
+        }
+        None => (column, "", 1.0),
+    }
+}
+
+fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let mut blocks = Vec::new();
+    let found = answer
+        .effects
+        .iter()
+        .flat_map(|effect| effect.parameters.iter().map(move |p| (effect, p)));
+    let known: Vec<(&FoundEffect, &(String, Estimate))> = found.collect();
+    // Intervals relative to their values, on one scale.
+    let relative = |e: &Estimate| [e.low, e.high].map(|end| (end - e.value) / e.value.abs());
+    let ends = known.iter().flat_map(|(_, (_, e))| relative(e));
+    let widest = ends
+        .filter(|e| e.is_finite())
+        .fold(0.0, |most: f64, e| most.max(e.abs()));
+    let widest = widest.clamp(1e-6, 1.0);
+    let rows = known.iter().map(|(effect, (name, estimate))| {
+        let (words, unit, factor) = spoken(name);
+        let number = |v: f64| Cell::from(figures(factor * v, 4));
+        let [low, high] = relative(estimate);
+        vec![
+            Cell::from(effect.name.replace('_', " ")),
+            Cell::from(effect.subsystem.replace('_', " ")),
+            Cell::from(percent(effect.confidence)),
+            Cell::from(words),
+            number(estimate.value),
+            number(estimate.low),
+            number(estimate.high),
+            Cell::from(unit),
+            match low.is_finite() && high.is_finite() {
+                true => Cell::Interval([-widest, low, 0.0, high, widest]),
+                false => Cell::from(""),
+            },
+        ]
+    });
+    let rows: Vec<Vec<Cell>> = rows.collect();
+    if !rows.is_empty() {
+        let scale = format!("{} %", figures(100.0 * widest, 2));
+        let columns = [
+            "effect",
+            "where",
+            "#probability",
+            "parameter",
+            "#value",
+            "#low",
+            "#high",
+            "unit",
+            "interval",
+        ];
+        let caption = format!(
+            "Intervals are those of 95 %; drawn relative to the value, from -{scale} to +{scale}."
+        );
+        blocks.push(Block::Table(Table::new(&caption, &columns, rows)));
+    }
+    for effect in &answer.effects {
+        if let Some(report) = &effect.unlisted {
+            blocks.push(Block::Chart(unlisted(report)));
+        }
+    }
+    let told = part(answer, "What is missing");
+    let paragraphs = told.into_iter().flat_map(|told| &told.paragraphs);
+    blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    (!blocks.is_empty()).then(|| Section::new("What is missing", blocks))
+}
+
+/// Strips of the times in which the effects show.
+fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Section<'a>> {
+    let mut blocks: Vec<Block<'a>> = Vec::new();
+    let told = ["Where it parts", "Which link"].map(|title| part(answer, title));
+    for told in told.into_iter().flatten() {
+        let paragraphs = told.paragraphs.iter();
+        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    }
+    let mut subsystems: Vec<&str> = answer
+        .effects
+        .iter()
+        .map(|e| e.subsystem.as_str())
+        .collect();
+    subsystems.dedup();
+    for recording in &comparison.recordings {
+        let own = |column: &str| -> Vec<[f64; 2]> {
+            let own = answer.mismatch.iter();
+            let own = own.filter(|m| m.recording == recording.name && m.channel == column);
+            own.map(|m| [m.start_s, m.end_s]).collect()
+        };
+        let rows = COLUMNS.iter().zip(CHANNEL_WORDS);
+        let rows = rows.map(|(column, words)| (words.to_owned(), own(column)));
+        let rows: Vec<_> = rows.filter(|(_, spans)| !spans.is_empty()).collect();
+        if let (false, [first, .., last]) = (rows.is_empty(), recording.time.as_slice()) {
+            blocks.push(Block::Heading(recording.name.clone()));
+            blocks.push(Block::Strip(Strip {
+                span: [*first, *last],
+                rows,
+            }));
+        }
+    }
+    if !answer.mismatch.is_empty() {
+        let hint = format!(
+            "The strips show when the found effects ({}) move a channel by more than three standard deviations of its sensor.",
+            subsystems.join(", ").replace('_', " ")
+        );
+        blocks.push(Block::Hint(hint));
+    }
+    (!blocks.is_empty()).then(|| Section::new("Where it shows", blocks))
+}
+
+fn before_and_after<'a>(answer: &Answer, comparison: &'a Comparison) -> Option<Section<'a>> {
+    let charts = |recording: &'a Compared| -> Vec<Block<'a>> {
+        let channels = recording.channels.iter();
+        let charts = channels.flat_map(|of| channel(answer, recording, of));
+        charts
+            .filter(|chart| !chart.panel.series.is_empty())
+            .map(Block::Chart)
+            .collect()
+    };
+    let mut order: Vec<&Compared> = comparison.recordings.iter().collect();
+    // What was not fitted to is the proof: it comes first.
+    order.sort_by_key(|recording| !recording.unseen);
+    let mut blocks = vec![Block::Hint(
+        "Shaded times are those of the strips above. Draw over a chart to zoom it, and all of its recording; a double click shows all.".to_owned(),
+    )];
+    for (place, recording) in order.into_iter().enumerate() {
+        let kept = match recording.unseen {
+            true => "kept from the fit",
+            false => "diagnosed from",
+        };
+        let title = format!("{} ({kept})", recording.name);
+        if place < SHOWN {
+            blocks.push(Block::Heading(title));
+            blocks.extend(charts(recording));
+        } else {
+            blocks.push(Block::Folded(title, charts(recording)));
+        }
+    }
+    (blocks.len() > 1).then(|| Section::new("Before and after", blocks))
+}
+
+fn balances<'a>(comparison: &Comparison) -> Option<Section<'a>> {
+    let mut blocks = vec![Block::Hint("What closes each balance along the measured motion, against the variable that says most about it: a law shows as a curve, what is explained lies flat.".to_owned())];
+    blocks.extend(comparison.balances.iter().map(|b| Block::Chart(balance(b))));
+    (blocks.len() > 1).then(|| Section::new("What each link lacks", blocks))
+}
+
+fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let details = &answer.details;
+    let mut blocks = Vec::new();
+    let row = |m: &crate::diagnosis::details::ChannelMisfit| {
+        let (words, unit, factor) = of_column(&m.channel);
+        let sigmas = |v: f64| Cell::from(figures(v, 3));
+        vec![
+            Cell::from(m.recording.clone()),
+            Cell::from(words),
+            Cell::from(m.samples.to_string()),
+            Cell::from(format!("{} {unit}", figures(factor * m.believed_rms, 3))),
+            Cell::from(format!("{} {unit}", figures(factor * m.improved_rms, 3))),
+            sigmas(m.believed_sigmas),
+            sigmas(m.tolerated_sigmas),
+            sigmas(m.improved_sigmas),
+            m.left_out_sigmas.map_or(Cell::from("–"), sigmas),
+        ]
+    };
+    if !details.misfit.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "What the models leave of each channel: root mean square, then in multiples of the sensor's noise (1 is noise). The last column is a fit to the other recordings.",
+            &["recording", "channel", "#readings", "#believed", "#improved", "#believed, σ", "#within tolerances, σ", "#improved, σ", "#not fitted to, σ"],
+            details.misfit.iter().map(row).collect(),
+        )));
+    }
+    let row = |e: &crate::diagnosis::details::PredictionError| {
+        let (words, unit, factor) = of_column(&e.channel);
+        let number = |v: f64| Cell::from(format!("{} {unit}", figures(factor * v, 3)));
+        vec![
+            Cell::from(e.recording.clone()),
+            Cell::from(words),
+            number(e.before),
+            number(e.after),
+            number(e.noise),
+            Cell::from(figures(e.after_sigmas, 3)),
+        ]
+    };
+    if !details.prediction.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "Errors on what was not fitted to.",
+            &[
+                "recording",
+                "channel",
+                "#before",
+                "#after",
+                "#sensor's noise",
+                "#after, σ",
+            ],
+            details.prediction.iter().map(row).collect(),
+        )));
+    }
+    for told in ["What is left", "A run that it never saw", "The runs"] {
+        let paragraphs = part(answer, told).into_iter().flat_map(|t| &t.paragraphs);
+        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    }
+    (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
+}
+
+fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let tolerated = &answer.details.tolerated;
+    let row = |number: &crate::diagnosis::details::ToleratedNumber| {
+        let (words, unit, factor) = spoken(&number.key);
+        let found = number.found;
+        let shift = 100.0 * (found.value / number.believed - 1.0);
+        vec![
+            Cell::from(words),
+            Cell::from(figures(factor * number.believed, 4)),
+            Cell::from(figures(factor * found.value, 4)),
+            Cell::from(figures(factor * found.low, 4)),
+            Cell::from(figures(factor * found.high, 4)),
+            Cell::from(unit),
+            Cell::from(match shift.is_finite() {
+                true => format!("{shift:+.1} %"),
+                false => String::new(),
+            }),
+        ]
+    };
+    let rows: Vec<Vec<Cell>> = tolerated.iter().map(row).collect();
+    let table = Table::new(
+        "The rig file's own numbers, moved within their tolerances.",
+        &[
+            "number",
+            "#believed",
+            "#found",
+            "#low",
+            "#high",
+            "unit",
+            "#change",
+        ],
+        rows,
+    );
+    (!tolerated.is_empty())
+        .then(|| Section::new("The rig's own numbers", vec![Block::Table(table)]))
+}
+
+fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let details = &answer.details;
+    let mut blocks = Vec::new();
+    let names = |effects: &[String]| {
+        let names: Vec<String> = effects.iter().map(|name| name.replace('_', " ")).collect();
+        match names.is_empty() {
+            true => "nothing missing".to_owned(),
+            false => names.join(" and "),
+        }
+    };
+    let row = |other: &crate::diagnosis::details::Considered| {
+        let against = match other.log10_odds {
+            odds if odds > -2.0 => Cell::Judged("not ruled out".to_owned(), false),
+            odds if odds > -15.0 => Cell::from(format!("1 to {}", figures(10f64.powf(-odds), 2))),
+            odds => Cell::from(format!("1 to 10^{:.0}", -odds)),
+        };
+        vec![
+            Cell::from(names(&other.effects)),
+            against,
+            Cell::from(other.explained_share.map_or("–".to_owned(), percent)),
+        ]
+    };
+    if !details.considered.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "Other explanations that were fitted in full, against the one given.",
+            &["explanation", "#odds", "#of the mismatch explained"],
+            details.considered.iter().map(row).collect(),
+        )));
+    }
+    let unit = details
+        .remaining
+        .as_ref()
+        .map_or("", |r| r.channel.as_str());
+    let (_, unit, factor) = of_column(unit);
+    let row = |variant: &crate::diagnosis::details::RuledOutReport| {
+        vec![
+            Cell::from(names(&variant.effects)),
+            Cell::from(format!("{} {unit}", figures(factor * variant.rms, 3))),
+        ]
+    };
+    if !details.ruled_out.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "Variants of the answer, fitted anew: without one of its effects, or with another law in its place.",
+            &["explanation", "#leaves, RMS"],
+            details.ruled_out.iter().map(row).collect(),
+        )));
+    }
+    let title = "What the recordings do not tell apart";
+    let paragraphs = part(answer, title).into_iter().flat_map(|t| &t.paragraphs);
+    blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    (!blocks.is_empty()).then(|| Section::new("What was ruled out", blocks))
+}
+
+/// All that the account says, folded away.
+fn account<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let text = answer.details.account.text(&answer.details.case);
+    let notes = part(answer, "The recordings")
+        .into_iter()
+        .flat_map(|t| &t.paragraphs);
+    let mut blocks: Vec<Block<'a>> = notes.map(|text| Block::Paragraph(text.clone())).collect();
+    let others = [
+        "The arm",
+        "Where on the path",
+        "What improved.toml leaves out",
+    ];
+    for told in others.into_iter().filter_map(|title| part(answer, title)) {
+        blocks.push(Block::Heading(told.title.clone()));
+        let paragraphs = told.paragraphs.iter();
+        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    }
+    blocks.push(Block::Folded(
+        "account.txt".to_owned(),
+        vec![Block::Lines(text)],
+    ));
+    Some(Section::new("The account", blocks))
+}

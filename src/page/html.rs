@@ -1,0 +1,221 @@
+//! A page as one HTML document.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+
+use super::{Block, Cell, Chart, Page, Section, Strip, Table, Tone};
+
+const STYLE: &str = include_str!("../../assets/page/page.css");
+const CHART_STYLE: &str = include_str!("../../assets/page/uplot/uPlot.min.css");
+const CHART_SCRIPT: &str = include_str!("../../assets/page/uplot/uPlot.iife.min.js");
+const SCRIPT: &str = include_str!("../../assets/page/page.js");
+/// Nothing may be asked for over a network.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+/// Numbers on a page at most: four bytes and a third of text each, so that the page stays below 3 MB.
+const MOST_NUMBERS: usize = 350_000;
+/// Numbers of a chart that are always shown.
+const LEAST_NUMBERS: usize = 4000;
+
+/// What the parts of a page share.
+struct Budget {
+    /// Share of its numbers that a chart may keep [1].
+    share: f64,
+}
+
+/// The page as a document.
+#[must_use]
+pub fn html(page: &Page<'_>) -> String {
+    let all: usize = page.sections.iter().map(|s| numbers(&s.blocks)).sum();
+    let budget = Budget {
+        share: (MOST_NUMBERS as f64 / all.max(1) as f64).min(1.0),
+    };
+    let tone = match page.tone {
+        Tone::Plain => "verdict",
+        Tone::Good => "verdict good",
+        Tone::Found => "verdict found",
+        Tone::Open => "verdict open",
+        Tone::Bad => "verdict bad",
+    };
+    markup! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (page.title) }
+                link rel="icon" href="data:,";
+                style { (PreEscaped(CHART_STYLE)) (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    div.top { h1 { (page.title) } button #theme type="button" { "Light or dark" } }
+                    p class=(tone) { (page.verdict) }
+                    @for text in &page.lead { p.lead { (text) } }
+                    @if !page.facts.is_empty() {
+                        dl.facts { @for fact in &page.facts {
+                            div { dt { (fact.name) } dd { (fact.value) @if !fact.remark.is_empty() { small { (fact.remark) } } } }
+                        } }
+                    }
+                    nav aria-label="Contents" { @for section in &page.sections {
+                        a href={ "#" (anchor(&section.title)) } { (section.title) }
+                    } }
+                    noscript { p { "The charts need JavaScript; all numbers stand in the tables." } }
+                }
+                main { @for part in &page.sections { (section(part, &budget)) } }
+                footer { (page.footer) }
+                script { (PreEscaped(CHART_SCRIPT)) }
+                script { (PreEscaped(SCRIPT)) }
+            }
+        }
+    }
+    .into_string()
+}
+
+fn numbers(blocks: &[Block<'_>]) -> usize {
+    let of = |block: &Block<'_>| match block {
+        Block::Chart(chart) => chart.samples(),
+        Block::Folded(_, blocks) => numbers(blocks),
+        _ => 0,
+    };
+    blocks.iter().map(of).sum()
+}
+
+fn section(part: &Section<'_>, budget: &Budget) -> Markup {
+    markup! {
+        section id=(anchor(&part.title)) {
+            h2 { (part.title) }
+            @for one in &part.blocks { (block(one, budget)) }
+        }
+    }
+}
+
+fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
+    markup! {
+        @match block_of {
+            Block::Heading(text) => h3 { (text) },
+            Block::Paragraph(text) => p { (text) },
+            Block::Hint(text) => p.hint { (text) },
+            Block::Table(of) => (table(of)),
+            Block::Chart(of) => (chart(of, budget)),
+            Block::Strip(of) => (strip(of)),
+            Block::Lines(text) => pre { (text) },
+            // Drawn by src/figure, whose texts are escaped.
+            Block::Picture(svg) => div.picture { (PreEscaped(svg)) },
+            Block::Folded(summary, blocks) => details {
+                summary { (summary) }
+                @for one in blocks { (block(one, budget)) }
+            },
+        }
+    }
+}
+
+fn chart(chart: &Chart<'_>, budget: &Budget) -> Markup {
+    let series = chart.panel.series.len().max(1);
+    let most = (budget.share * chart.samples() as f64).max(LEAST_NUMBERS as f64) as usize / series;
+    let (told, [kept, of]) = chart.told(most);
+    // `</script>` within a text would end it.
+    let told = told.to_string().replace("</", "<\\/");
+    markup! {
+        figure.chart aria-label={ (chart.panel.title) ": " (chart.panel.vertical_label) } {
+            figcaption {
+                span { (chart.panel.title) @if kept < of { small { " (" (kept) " of " (of) " samples: the extremes of each stretch)" } } }
+                button.reset type="button" { "Show all" }
+            }
+            div.plot {}
+            script type="application/json" { (PreEscaped(told)) }
+        }
+    }
+}
+
+fn table(table: &Table) -> Markup {
+    let numeric = |index: usize| table.columns[index].1.then_some("number");
+    markup! {
+        div.scroll { table {
+            @if !table.caption.is_empty() { caption { (table.caption) } }
+            thead { tr { @for (name, number) in &table.columns { th class=[number.then_some("number")] scope="col" { (name) } } } }
+            tbody { @for row in &table.rows { tr { @for (index, cell) in row.iter().enumerate() {
+                @match cell {
+                    Cell::Text(text) => td class=[numeric(index)] { (text) },
+                    Cell::Judged(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
+                    Cell::Hash(text) => td.hash { (text) },
+                    Cell::Interval(ends) => td { (interval(*ends)) },
+                }
+            } } } }
+        } }
+    }
+}
+
+/// A bar from low to high, the value a line in it, over all that is drawn beside it.
+fn interval([least, low, value, high, most]: [f64; 5]) -> Markup {
+    let width = (most - least).max(f64::MIN_POSITIVE);
+    let at = |v: f64| 100.0 * ((v - least) / width).clamp(0.0, 1.0);
+    let bar = format!("left:{:.2}%;width:{:.2}%", at(low), at(high) - at(low));
+    let line = format!("left:{:.2}%", at(value));
+    markup! { span.interval role="img" aria-label="interval" { i style=(bar) {} b style=(line) {} } }
+}
+
+fn strip(strip: &Strip) -> Markup {
+    let [first, last] = strip.span;
+    let width = (last - first).max(f64::MIN_POSITIVE);
+    let place = |[from, to]: [f64; 2]| {
+        let at = |t: f64| 100.0 * ((t - first) / width).clamp(0.0, 1.0);
+        format!("left:{:.3}%;width:{:.3}%", at(from), at(to) - at(from))
+    };
+    markup! {
+        div.strip {
+            @for (name, spans) in &strip.rows {
+                span.name { (name) }
+                span.bar { @for span in spans { i style=(place(*span)) title={ (format!("{:.2} to {:.2} s", span[0], span[1])) } {} } }
+            }
+            span {}
+            span.ends { span { (format!("{first:.1} s")) } span { (format!("{last:.1} s")) } }
+        }
+    }
+}
+
+/// A heading as an address within the page.
+fn anchor(title: &str) -> String {
+    let letter = |c: char| match c.is_ascii_alphanumeric() {
+        true => c.to_ascii_lowercase(),
+        false => '-',
+    };
+    title.chars().map(letter).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Panel, Role, Series, Stroke};
+
+    #[test]
+    fn a_page_holds_all_and_asks_for_nothing() {
+        let long = || -> Vec<f64> { (0..600_000).map(|i| f64::from(i % 977)).collect() };
+        let chart = Chart {
+            panel: Panel {
+                title: "</script><b>".to_owned(),
+                series: vec![Series::new("x", long(), long(), Role::Force, Stroke::Plain)],
+                ..Panel::default()
+            },
+            ..Chart::default()
+        };
+        let page = Page {
+            title: "A & B".to_owned(),
+            sections: vec![Section::new("All of it", vec![Block::Chart(chart)])],
+            ..Page::default()
+        };
+        let text = html(&page);
+        assert!(text.len() < 3_000_000, "{}", text.len());
+        assert!(text.contains("A &amp; B") && text.contains("id=\"all-of-it\""));
+        assert!(!text.contains("</script><b>"));
+        let fetched = ["src=\"http", "href=\"http", "url(http", "@import"];
+        assert!(fetched.iter().all(|way| !text.contains(way)));
+        assert_eq!(text, html(&page));
+    }
+
+    #[test]
+    fn an_interval_stands_where_its_numbers_are() {
+        let drawn = interval([0.0, 2.0, 3.0, 4.0, 10.0]).into_string();
+        assert!(drawn.contains("left:20.00%;width:20.00%") && drawn.contains("left:30.00%"));
+    }
+}

@@ -1,0 +1,160 @@
+//! Pages for a browser: one HTML file with everything in it, for people who have nothing else installed.
+//!
+//! A [`Page`] is plain data. Its charts are drawn in the browser by uPlot (`assets/page/uplot/`), which stands in the file; the page may ask for nothing
+//! over a network, and says so to the browser (Content-Security-Policy). The same page gives the same bytes.
+
+mod chart;
+mod html;
+mod thin;
+
+pub use chart::Chart;
+pub use html::html;
+
+/// A page.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Page<'a> {
+    /// What it is about: `Diagnosis of case-14`.
+    pub title: String,
+    /// What it comes to, in a sentence.
+    pub verdict: String,
+    /// How that is to be taken.
+    pub tone: Tone,
+    /// Below the verdict, a paragraph each.
+    pub lead: Vec<String>,
+    /// Key numbers.
+    pub facts: Vec<Fact>,
+    /// Its parts.
+    pub sections: Vec<Section<'a>>,
+    /// Last line.
+    pub footer: String,
+}
+
+/// How a verdict is to be taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tone {
+    /// Said, not judged.
+    #[default]
+    Plain,
+    /// All is as it should be.
+    Good,
+    /// Something was found.
+    Found,
+    /// A question is left.
+    Open,
+    /// Something is not as it should be.
+    Bad,
+}
+
+/// A key number.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Fact {
+    /// What it is.
+    pub name: String,
+    /// Value and unit.
+    pub value: String,
+    /// What belongs to it; may be empty.
+    pub remark: String,
+}
+
+/// A part of a page.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section<'a> {
+    /// Heading, and name in the list of contents.
+    pub title: String,
+    /// What stands in it.
+    pub blocks: Vec<Block<'a>>,
+}
+
+/// Something in a section.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block<'a> {
+    /// A heading within the section.
+    Heading(String),
+    /// A paragraph.
+    Paragraph(String),
+    /// A paragraph that helps to read what follows.
+    Hint(String),
+    /// Rows and columns.
+    Table(Table),
+    /// A chart.
+    Chart(Chart<'a>),
+    /// Times in which something is so, over a span that all rows share.
+    Strip(Strip),
+    /// Lines as they are.
+    Lines(String),
+    /// A picture, an SVG document of our own.
+    Picture(String),
+    /// What is folded away until it is asked for: a summary and blocks.
+    Folded(String, Vec<Block<'a>>),
+}
+
+/// Rows and columns.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// What it shows; may be empty.
+    pub caption: String,
+    /// Names of the columns, and whether they hold numbers.
+    pub columns: Vec<(String, bool)>,
+    /// As many cells a row as there are columns.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// A cell of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    /// Words or a number.
+    Text(String),
+    /// Words that are good news, or bad news.
+    Judged(String, bool),
+    /// Hexadecimal digits.
+    Hash(String),
+    /// An interval with the value in it, drawn between what all of them span: `[least, low, value, high, most]`.
+    Interval([f64; 5]),
+}
+
+/// Times in which something is so.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Strip {
+    /// First and last time [s].
+    pub span: [f64; 2],
+    /// A name each, and its times [s].
+    pub rows: Vec<(String, Vec<[f64; 2]>)>,
+}
+
+impl<'a> Section<'a> {
+    /// A section with blocks.
+    pub fn new(title: &str, blocks: Vec<Block<'a>>) -> Self {
+        Self {
+            title: title.to_owned(),
+            blocks,
+        }
+    }
+}
+
+impl Table {
+    /// A table; columns that begin with `#` hold numbers.
+    #[must_use]
+    pub fn new(caption: &str, columns: &[&str], rows: Vec<Vec<Cell>>) -> Self {
+        let column = |name: &&str| match name.strip_prefix('#') {
+            Some(name) => (name.to_owned(), true),
+            None => ((*name).to_owned(), false),
+        };
+        Self {
+            caption: caption.to_owned(),
+            columns: columns.iter().map(column).collect(),
+            rows,
+        }
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}

@@ -1,0 +1,98 @@
+//! What a result was made with and of: programs by version, files by their hash (SHA-256), seeds.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::RecordingError;
+
+/// Libraries whose version decides about numbers, as Cargo.toml pins them.
+const LIBRARIES: [(&str, &str); 2] = [("rapier3d-f64", "0.36.1"), ("rerun", "0.36.3")];
+
+/// Where a result comes from.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// The program with its version.
+    pub program: String,
+    /// Libraries with their versions.
+    pub libraries: Vec<String>,
+    /// Files that were read.
+    pub files: Vec<SourceFile>,
+    /// Seed of what is drawn at random; none where nothing is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+}
+
+/// A file that was read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SourceFile {
+    /// Its name, as it was called by.
+    pub file: String,
+    /// Its length [byte].
+    pub bytes: u64,
+    /// Its hash, hexadecimal.
+    pub sha256: String,
+}
+
+impl Provenance {
+    /// That of a result of this program, of files by their names for people and where they are.
+    ///
+    /// # Errors
+    /// [`RecordingError::Read`] for a file that is gone.
+    pub fn of<'a>(
+        files: impl IntoIterator<Item = (&'a str, &'a Path)>,
+        seed: Option<u64>,
+    ) -> Result<Self, RecordingError> {
+        let files = files.into_iter().map(|(name, path)| source(name, path));
+        Ok(Self {
+            program: concat!("idc ", env!("CARGO_PKG_VERSION")).to_owned(),
+            libraries: LIBRARIES
+                .map(|(name, version)| format!("{name} {version}"))
+                .to_vec(),
+            files: files.collect::<Result<_, _>>()?,
+            seed,
+        })
+    }
+}
+
+fn source(name: &str, path: &Path) -> Result<SourceFile, RecordingError> {
+    let bytes = std::fs::read(path).map_err(|e| RecordingError::read(path, e))?;
+    let mut sha256 = String::with_capacity(64);
+    for byte in Sha256::digest(&bytes) {
+        // Writing into a text cannot fail.
+        let _ = write!(sha256, "{byte:02x}");
+    }
+    Ok(SourceFile {
+        file: name.to_owned(),
+        bytes: bytes.len() as u64,
+        sha256,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_has_its_published_hash() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("abc");
+        std::fs::write(&path, "abc").unwrap();
+        let provenance = Provenance::of([("abc", path.as_path())], Some(7)).unwrap();
+        // FIPS 180-2, appendix B.1.
+        let published = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(provenance.files[0].sha256, published);
+        assert_eq!(provenance.files[0].bytes, 3);
+    }
+
+    #[test]
+    fn libraries_are_those_that_are_pinned() {
+        let manifest = include_str!("../../Cargo.toml");
+        for (name, version) in LIBRARIES {
+            let line = manifest.lines().find(|line| line.contains(name)).unwrap();
+            assert!(line.contains(&format!("={version}")), "{line}");
+        }
+    }
+}
