@@ -2,6 +2,7 @@
 
 mod all;
 mod arm_prediction;
+mod board;
 mod cell;
 mod cell_account;
 mod comparison_files;

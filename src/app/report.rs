@@ -22,6 +22,7 @@ use crate::recording::parquet::read_parquet;
 use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
 
+pub(super) use charts::{lacking, variable};
 pub(super) use run::{RunResult, chart_groups, labels};
 
 /// Its name.

@@ -200,6 +200,7 @@ impl Prepared {
             picture: picture.as_deref(),
             fit_picture: fit_picture.as_deref(),
             comparison: &diagnosis.comparison(&case, &plant),
+            scene: None,
         };
         outputs.write(&self.folder)
     }
@@ -352,6 +353,7 @@ fn flange(
         picture: None,
         fit_picture: None,
         comparison: &of_flange(&runs, unseen.as_ref()),
+        scene: None,
     };
     outputs.write(folder)
 }

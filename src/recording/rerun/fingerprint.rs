@@ -14,36 +14,57 @@ const SEEDS: [u64; LANES] = [
 ];
 const PRIME: u64 = 0x0000_0100_0000_01b3;
 
-/// A number that follows from the content (FNV-1a, word by word): two recordings open in one viewer are told apart, the same recording written twice
-/// is the same.
-pub(super) fn fingerprint(recording: &Recording, scene: &Scene, options: &RerunOptions) -> u64 {
-    let mut lanes = SEEDS;
-    for text in [&scene.title, &options.summary_markdown] {
+/// A number that follows from content (FNV-1a, word by word): two recordings open in one viewer are told apart, the same recording written twice is
+/// the same.
+pub(super) struct Fingerprint {
+    lanes: [u64; LANES],
+}
+
+impl Default for Fingerprint {
+    fn default() -> Self {
+        Self { lanes: SEEDS }
+    }
+}
+
+impl Fingerprint {
+    /// Takes in a text.
+    pub(super) fn text(&mut self, text: &str) {
         for (index, byte) in text.bytes().enumerate() {
-            add(&mut lanes[index % LANES], u64::from(byte));
+            add(&mut self.lanes[index % LANES], u64::from(byte));
         }
     }
-    let channels = recording.channels().iter();
-    for values in channels
-        .map(|channel| &channel.values[..])
-        .chain([recording.time()])
-    {
+
+    /// Takes in values.
+    pub(super) fn values(&mut self, values: &[f64]) {
         let groups = values.chunks_exact(LANES);
         let rest = groups.remainder();
-        for group in groups {
-            for (lane, value) in lanes.iter_mut().zip(group) {
+        for group in groups.chain([rest]) {
+            for (lane, value) in self.lanes.iter_mut().zip(group) {
                 add(lane, value.to_bits());
             }
         }
-        for (lane, value) in lanes.iter_mut().zip(rest) {
-            add(lane, value.to_bits());
+    }
+
+    /// The number.
+    pub(super) fn finish(self) -> u64 {
+        let mut hash = SEEDS[0];
+        for lane in self.lanes {
+            add(&mut hash, lane);
         }
+        hash
     }
-    let mut hash = SEEDS[0];
-    for lane in lanes {
-        add(&mut hash, lane);
+}
+
+/// The number of a recording with its scene.
+pub(super) fn fingerprint(recording: &Recording, scene: &Scene, options: &RerunOptions) -> u64 {
+    let mut hash = Fingerprint::default();
+    hash.text(&scene.title);
+    hash.text(&options.summary_markdown);
+    for channel in recording.channels() {
+        hash.values(&channel.values);
     }
-    hash
+    hash.values(recording.time());
+    hash.finish()
 }
 
 /// Takes in a word. Its high half is folded down: a product carries only upwards, and values differ mostly in their high bits.

@@ -6,6 +6,7 @@
 //! simulated time or along path length. Equal input gives equal bytes.
 
 mod blueprint;
+mod board;
 mod cell;
 mod check;
 mod colours;
@@ -20,6 +21,7 @@ mod signals;
 mod timelines;
 mod view_box;
 
+pub use board::write_board;
 pub use check::{RrdFault, check_rrd, viewer_version};
 pub use live::{LiveOutlet, LiveRecording};
 pub use rrd::LiveWriter;
@@ -153,16 +155,14 @@ fn write_data(
     Ok(())
 }
 
-/// Letters, digits and dashes of a title.
+/// Letters and digits of a title, other stretches as a dash each.
 fn slug(title: &str) -> String {
-    let keep = |c: char| {
-        if c.is_ascii_alphanumeric() {
-            c.to_ascii_lowercase()
-        } else {
-            '-'
-        }
-    };
-    title.chars().map(keep).collect()
+    let words = title.split(|letter: char| !letter.is_ascii_alphanumeric());
+    let words: Vec<String> = words
+        .filter(|word| !word.is_empty())
+        .map(str::to_ascii_lowercase)
+        .collect();
+    words.join("-")
 }
 
 #[cfg(test)]

@@ -1,0 +1,95 @@
+//! The words on the screen of a diagnosis, in Markdown.
+
+use std::fmt::Write as _;
+
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::recorded::COLUMNS;
+use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, percent, spoken};
+
+/// Verdict, numbers, prediction, and the account.
+pub(super) fn markdown(answer: &Answer, left_out: usize, thinned: bool) -> String {
+    let account = &answer.details.account;
+    let headline = account.headline.replace('_', " ");
+    let mut text = format!("# {}\n", capital(&headline));
+    text += &effects(answer);
+    text += &predictions(answer);
+    for section in &account.sections {
+        text += &format!("\n## {}\n", section.title);
+        for paragraph in &section.paragraphs {
+            text += &format!("\n{}\n", paragraph.replace('_', "\\_"));
+        }
+        if let Some(table) = &section.table {
+            text += &format!("\n```\n{}\n```\n", table.trim_end());
+        }
+    }
+    let mut notes = Vec::new();
+    if left_out > 0 {
+        notes.push(format!("{left_out} more recordings are not drawn"));
+    }
+    if thinned {
+        notes.push(
+            "of long recordings the least and the largest value of each stretch are drawn"
+                .to_owned(),
+        );
+    }
+    if !notes.is_empty() {
+        let notes = capital(&notes.join("; "));
+        text += &format!("\n*{notes}: comparison.parquet holds every sample.*\n");
+    }
+    text
+}
+
+/// The numbers of what was found.
+fn effects(answer: &Answer) -> String {
+    let mut rows = String::new();
+    for effect in &answer.effects {
+        for (name, estimate) in &effect.parameters {
+            let (words, unit, factor) = spoken(name);
+            let number = |value: f64| figures(factor * value, 4);
+            // A string takes whatever is written to it.
+            let _ = writeln!(
+                rows,
+                "| {} | {words} | {} {unit} | {} to {} {unit} | {} |",
+                effect.name.replace('_', " "),
+                number(estimate.value),
+                number(estimate.low),
+                number(estimate.high),
+                percent(effect.confidence)
+            );
+        }
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    format!("\n| effect | number | value | 95 % | probability |\n|---|---|---|---|---|\n{rows}")
+}
+
+/// Errors of prediction on what was not fitted to.
+fn predictions(answer: &Answer) -> String {
+    let mut rows = String::new();
+    for error in &answer.details.prediction {
+        let place = COLUMNS.iter().position(|column| *column == error.channel);
+        let (words, unit, factor) = match place {
+            Some(index) => {
+                let (unit, factor) = CHANNEL_UNITS[index];
+                (CHANNEL_WORDS[index].to_owned(), unit, factor)
+            }
+            None => spoken(&error.channel),
+        };
+        let number = |value: f64| figures(factor * value, 2);
+        let _ = writeln!(
+            rows,
+            "| {} | {words} [{unit}] | {} | {} | {} |",
+            error.recording.replace('_', "\\_"),
+            number(error.before),
+            number(error.after),
+            number(error.noise)
+        );
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    format!(
+        "\n| error of prediction (RMS) | of | as believed | improved | noise |\n|---|---|---|---|---|\n{rows}"
+    )
+}
