@@ -5,6 +5,7 @@ mod arm_prediction;
 mod board;
 mod cell;
 mod cell_account;
+mod cell_scene;
 mod comparison_files;
 mod fit_picture;
 mod one;

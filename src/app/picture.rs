@@ -3,6 +3,7 @@
 use glam::DVec3;
 use glamx::DPose3;
 
+use crate::arm::Arm;
 use crate::arm::urdf::VisualShape;
 use crate::cell::Cell;
 use crate::recording::scene::{
@@ -32,7 +33,7 @@ pub fn scene_of(
 ) -> Result<Scene, RecordingError> {
     let mut scene = motion_of(cell, frames);
     for (index, body) in scene.bodies.iter_mut().enumerate() {
-        body.shapes.extend(arm_shapes(cell, index));
+        body.shapes.extend(visual_shapes(&cell.arm, index));
     }
     scene.bodies.push(part(cell));
     scene.edge_path = edge_path(cell, recording)?;
@@ -88,8 +89,8 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
 }
 
 /// What a link of the arm looks like; nothing beyond the last.
-fn arm_shapes(cell: &Cell, link: usize) -> impl Iterator<Item = SceneShape> {
-    let visuals = cell.arm.visuals.iter();
+pub(super) fn visual_shapes(arm: &Arm, link: usize) -> impl Iterator<Item = SceneShape> {
+    let visuals = arm.visuals.iter();
     visuals
         .filter(move |visual| visual.link_index == link)
         .map(|visual| SceneShape {

@@ -54,6 +54,8 @@ pub struct SheetPlot {
     pub lines: Vec<BoardLine>,
     /// Horizontal lines, with a label.
     pub guides: Vec<(String, f64)>,
+    /// Range of the vertical axis; `None` fits the data.
+    pub range: Option<[f64; 2]>,
 }
 
 /// A line.

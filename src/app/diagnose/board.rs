@@ -21,6 +21,13 @@ const MOST_SHEETS: usize = 10;
 const MOST_SAMPLES: usize = 60_000;
 /// Standard deviations to either end of a 95 % band [1].
 const BAND: f64 = 1.959_964;
+/// Noise bands that a plot of what is left shows at least [1].
+const BANDS_SHOWN: f64 = 2.5;
+/// Share of the samples that such a plot holds at least, and the room beyond them [1].
+const USUAL: f64 = 0.96;
+const ROOM: f64 = 1.5;
+/// Share of a cloud's points to either side that its axes need not reach [1].
+const OUTERMOST: f64 = 0.005;
 /// The part of the device that each channel tells of.
 const SUBSYSTEMS: [&str; CHANNELS.len()] = ["regulator", "piston", "contact", "piston"];
 
@@ -37,7 +44,15 @@ pub(super) fn board(answer: &Answer, comparison: &Comparison, scene: Option<Scen
     let effects = answer.effects.iter();
     let unlisted = effects.filter_map(|effect| effect.unlisted.as_deref());
     let clouds = unlisted.map(of_unlisted);
-    let clouds = clouds.chain(comparison.balances.iter().map(of_balance));
+    // The link that lacks most in front.
+    let lacking = |balance: &&Balance| {
+        let mut links = answer.details.links.iter();
+        let own = links.find(|link| link.link == balance.link);
+        own.map_or(0.0, |link| link.sigmas)
+    };
+    let mut balances: Vec<&Balance> = comparison.balances.iter().collect();
+    balances.sort_by(|a, b| lacking(b).total_cmp(&lacking(a)));
+    let clouds = clouds.chain(balances.into_iter().map(of_balance));
     Board {
         title: format!("Diagnosis of {}", answer.details.case),
         text: text::markdown(answer, left_out, thinned),
@@ -109,26 +124,43 @@ fn row(
     let mut plots = vec![SheetPlot {
         title: format!("{words} [{unit}]"),
         lines: own.into_iter().chain(lines).collect(),
-        guides: Vec::new(),
+        ..SheetPlot::default()
     }];
     if measured {
         let left = models.map(|(values, label, role)| {
             let left = |i: usize| channel.measured[i] - values[i];
             line(&format!("measured less {label}"), role, &left)
         });
+        let left: Vec<BoardLine> = left.collect();
         let noise = answer.details.noise.iter();
         let noise = noise.filter(|noise| noise.channel == COLUMNS[index]);
         let guides = noise.flat_map(|noise| {
             let half = BAND * factor * noise.standard_deviation;
             [half, -half].map(|end| (format!("95 % of the noise [{unit}]"), end))
         });
+        let guides: Vec<(String, f64)> = guides.collect();
         plots.push(SheetPlot {
             title: format!("{words}: what is left [{unit}]"),
-            lines: left.collect(),
-            guides: guides.collect(),
+            range: usual_range(&left, &guides),
+            lines: left,
+            guides,
         });
     }
     plots
+}
+
+/// A range in which what is left can be read beside its noise: an impact may be a hundred times as high.
+fn usual_range(lines: &[BoardLine], guides: &[(String, f64)]) -> Option<[f64; 2]> {
+    let band = guides.iter().map(|(_, value)| value.abs());
+    let mut most = BANDS_SHOWN * band.fold(0.0, f64::max);
+    for line in lines {
+        let mut sizes: Vec<f64> = line.values.iter().map(|value| value.abs()).collect();
+        sizes.retain(|size| size.is_finite());
+        sizes.sort_by(f64::total_cmp);
+        let usual = sizes.get((USUAL * sizes.len() as f64) as usize);
+        most = most.max(ROOM * usual.copied().unwrap_or_default());
+    }
+    (most > 0.0).then_some([-most, most])
 }
 
 /// When the channels part from the believed model, a lane for each.
@@ -165,16 +197,23 @@ fn lanes(answer: &Answer, recording: &Compared, start: f64) -> Vec<Lane> {
 fn of_balance(balance: &Balance) -> Cloud {
     let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
     let (words, of, scale) = variable(&balance.variable);
-    let places = balance.values.iter().map(|value| scale * value);
-    let group = |label: &str, role, values: &[f64]| CloudGroup {
-        label: label.to_owned(),
-        role,
-        points: places
-            .clone()
-            .zip(values)
-            .map(|(x, value)| [x, factor * value])
-            .collect(),
-        joined: false,
+    let mut sorted = balance.values.clone();
+    sorted.sort_by(f64::total_cmp);
+    let outermost = (OUTERMOST * sorted.len() as f64) as usize;
+    let low = sorted.get(outermost).copied().unwrap_or_default();
+    let high = sorted.iter().rev().nth(outermost).copied();
+    let high = high.unwrap_or_default();
+    let group = |label: &str, role, lacking: &[f64]| {
+        let pairs = balance.values.iter().zip(lacking);
+        let within = pairs.filter(|(value, _)| (low..=high).contains(*value));
+        CloudGroup {
+            label: label.to_owned(),
+            role,
+            points: within
+                .map(|(value, lacking)| [scale * value, factor * lacking])
+                .collect(),
+            joined: false,
+        }
     };
     Cloud {
         title: capital(lacking(balance)),

@@ -1,8 +1,9 @@
 //! The screen on which findings open: left the words and below them space and quantities against one another, right the signals.
 
 use ::rerun::AsComponents;
+use ::rerun::components::Range1D;
 use ::rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, PlotLegend, TimeAxis, TimePanelBlueprint, VisualBounds2D,
+    Background, PlotLegend, ScalarAxis, TimeAxis, TimePanelBlueprint, VisualBounds2D,
 };
 use ::rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LinkAxis, PanelState, PlayState, TimeRange, TimelineName,
@@ -22,6 +23,8 @@ use crate::recording::rerun::view_box::cell_box;
 
 /// Share of the longest recording that each must last for all to have one time axis.
 const ALIKE: f64 = 0.8;
+/// Shares of a plot's width and height that its legend takes.
+const LEGEND: [f64; 2] = [0.35, 0.45];
 
 /// The panels of the screen.
 pub(super) fn screen(board: &Board, options: &RerunOptions) -> Panel {
@@ -94,7 +97,7 @@ fn sheet_panel(index: usize, sheet: &Sheet, linked: bool) -> Panel {
     if !sheet.lanes.is_empty() {
         let lanes = sheet::lanes_entity(&entity);
         let name = "Where the recording parts from the believed model";
-        let share = 0.18 + 0.14 * sheet.lanes.len() as f32;
+        let share = 0.3 + 0.22 * sheet.lanes.len() as f32;
         rows.push((share, plain_view(ViewKind::StateTimeline, name, &lanes)));
     }
     for row in &sheet.rows {
@@ -104,6 +107,44 @@ fn sheet_panel(index: usize, sheet: &Sheet, linked: bool) -> Panel {
         rows.push((1.0, Panel::row(plots.collect())));
     }
     Panel::named(&sheet.title, Panel::column(rows))
+}
+
+/// The corner in which fewest samples lie.
+fn empty_corner(plot: &SheetPlot) -> Corner2D {
+    let values = || plot.lines.iter().flat_map(|line| &line.values);
+    let [low, high] = plot.range.unwrap_or_else(|| {
+        let fold = |start: f64, of: fn(f64, f64) -> f64| values().copied().fold(start, of);
+        [
+            fold(f64::INFINITY, f64::min),
+            fold(f64::NEG_INFINITY, f64::max),
+        ]
+    });
+    let within = |right: bool, top: bool| {
+        let lines = plot.lines.iter().map(|line| {
+            let count = line.values.len();
+            let part = (LEGEND[0] * count as f64) as usize;
+            let side = if right {
+                &line.values[count - part..]
+            } else {
+                &line.values[..part]
+            };
+            let height = |value: &f64| (value - low) / (high - low);
+            let inside = |value: &&f64| match top {
+                true => height(value) > 1.0 - LEGEND[1],
+                false => height(value) < LEGEND[1],
+            };
+            side.iter().filter(inside).count()
+        });
+        lines.sum::<usize>()
+    };
+    let corners = [
+        (Corner2D::RightTop, within(true, true)),
+        (Corner2D::RightBottom, within(true, false)),
+        (Corner2D::LeftTop, within(false, true)),
+        (Corner2D::LeftBottom, within(false, false)),
+    ];
+    let best = corners.into_iter().min_by_key(|(_, count)| *count);
+    best.map_or(Corner2D::RightTop, |(corner, _)| corner)
 }
 
 fn plot_view(entity: &str, sheet: &Sheet, plot: &SheetPlot, linked: bool) -> Panel {
@@ -118,11 +159,15 @@ fn plot_view(entity: &str, sheet: &Sheet, plot: &SheetPlot, linked: bool) -> Pan
         let end = nanoseconds(sheet.time.last());
         TimeAxis::new().with_view_range(TimeRange(Range { start, end }))
     };
-    let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-    let properties: Vec<(&'static str, Box<dyn AsComponents>)> = vec![
+    let legend = PlotLegend::new().with_corner(empty_corner(plot));
+    let mut properties: Vec<(&'static str, Box<dyn AsComponents>)> = vec![
         ("TimeAxis", Box::new(axis)),
         ("PlotLegend", Box::new(legend)),
     ];
+    if let Some(range) = plot.range {
+        let range = ScalarAxis::new().with_range(Range1D::from(range));
+        properties.push(("ScalarAxis", Box::new(range)));
+    }
     Panel::View(View {
         kind: ViewKind::TimeSeries,
         name: plot.title.clone(),

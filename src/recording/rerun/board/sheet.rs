@@ -68,9 +68,11 @@ fn write_lines(
     if lines.is_empty() {
         return Ok(());
     }
+    // Lines that lie on one another are seen all the same: each is narrower than the one below it.
     let width = |role| match role {
-        BoardRole::Measured => 2.0,
-        _ => 1.3,
+        BoardRole::Measured => 4.0,
+        BoardRole::Believed => 2.0,
+        BoardRole::Improved | BoardRole::Guide => 1.0,
     };
     let look = SeriesLines::new()
         .with_names(lines.iter().map(|line| line.label.clone()))

@@ -18,6 +18,7 @@ fn board() -> Board {
             line("improved [N]", BoardRole::Improved, [1.5, f64::NAN, 3.5]),
         ],
         guides: vec![("noise".to_owned(), 0.25)],
+        range: None,
     };
     let lane = Lane {
         name: "force".to_owned(),
