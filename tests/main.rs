@@ -30,3 +30,4 @@ mod rig_file;
 mod stiff_reference;
 mod stops;
 mod uniformity;
+mod view;

@@ -46,14 +46,19 @@ fn effects(answer: &Answer) -> String {
         for (name, estimate) in &effect.parameters {
             let (words, unit, factor) = spoken(name);
             let number = |value: f64| figures(factor * value, 4);
+            let [low, value, high] = [estimate.low, estimate.value, estimate.high];
+            // Which of several it is, such as a joint, has no interval.
+            let (value, interval) = if low == high {
+                (format!("{}", factor * value), String::new())
+            } else {
+                let interval = format!("{} to {} {unit}", number(low), number(high));
+                (number(value), interval)
+            };
             // A string takes whatever is written to it.
             let _ = writeln!(
                 rows,
-                "| {} | {words} | {} {unit} | {} to {} {unit} | {} |",
+                "| {} | {words} | {value} {unit} | {interval} | {} |",
                 effect.name.replace('_', " "),
-                number(estimate.value),
-                number(estimate.low),
-                number(estimate.high),
                 percent(effect.confidence)
             );
         }

@@ -9,9 +9,10 @@ use crate::recording::board::{BoardRole, Lane, Sheet, SheetPlot};
 use crate::recording::rerun::colours::{VERMILLION, rerun_colour};
 use crate::recording::rerun::rrd::{RrdError, RrdWriter};
 use crate::recording::rerun::slug;
+use crate::recording::rerun::timelines::SIM_TIME;
 
-/// Timeline of the recordings' own times.
-pub(super) const TIME: &str = "time";
+/// Timeline of the recordings' times: that of all of our files.
+pub(super) const TIME: &str = SIM_TIME;
 
 /// Entity of a sheet.
 pub(super) fn entity(sheet: usize) -> String {

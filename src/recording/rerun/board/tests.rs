@@ -74,7 +74,7 @@ fn lines_lanes_and_clouds_are_there_and_bytes_repeat() {
     assert_eq!(rows[0], [1.0, 1.5]);
     assert_eq!(rows[2], [3.0, 3.5]);
     let lane = moving("/recording_1/parts_from_the_model/force");
-    let times = lane.timelines()[&"time".into()].times_raw().to_vec();
+    let times = lane.timelines()[&"sim_time".into()].times_raw().to_vec();
     assert_eq!(times, [0, 500_000_000, 1_000_000_000, 2_000_000_000]);
     let states = lane.iter_slices::<String>(StateChange::descriptor_state().component);
     let states: Vec<String> = states.map(|row| row[0].to_string()).collect();
