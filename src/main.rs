@@ -2,21 +2,22 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use idc_cell::app::{Cli, ExitCode as Code, execute};
+use clap::{CommandFactory, FromArgMatches};
+use idc_cell::app::{Cli, complain, execute, wants_json};
 
 fn main() -> ExitCode {
-    match execute(&Cli::parse()) {
+    let matches = Cli::command().get_matches();
+    let json = wants_json(&matches);
+    let cli = match Cli::from_arg_matches(&matches) {
+        Ok(cli) => cli,
+        Err(error) => error.exit(),
+    };
+    cli.colour.write_global();
+    match execute(&cli) {
         Ok(code) => code.into(),
         Err(error) => {
-            let code = error.exit_code();
-            let word = if code == Code::Stopped {
-                "stopped"
-            } else {
-                "error"
-            };
-            eprintln!("{word}: {error}");
-            code.into()
+            complain(&error, json);
+            error.exit_code().into()
         }
     }
 }

@@ -34,7 +34,7 @@ fn check_of(scenario: &str, refusals: &[Refusal]) {
             assert!(line.contains(words), "{line}\nlacks {words:?}");
         }
         assert_eq!(outcome.code, 2, "{line}");
-        assert_eq!(outcome.err.trim_end(), line, "more than the one line");
+        assert_eq!(outcome.sentences(), line, "more than the one line");
         assert_eq!(outcome.out, "", "{line}");
         assert!(before == bench.contents(), "files changed: {line}");
     }

@@ -14,7 +14,10 @@ fn a_result_outside_its_bounds_is_named_and_kept() {
         "force_mean_n = { min = 1, max = 100 }",
     );
     for flag in ["--quiet", "--json"] {
-        let outcome = bench.idc(&["run", "scenario.toml", "--out", "out", flag], &[]);
+        let outcome = bench.idc(
+            &["run", "scenario.toml", "--out", "out", "--force", flag],
+            &[],
+        );
         assert_eq!(outcome.code, 1);
         let line = outcome.only_line("outside its bounds: force_mean_n is 1");
         assert!(

@@ -56,7 +56,10 @@ fn run(bench: &Bench, threads: Option<&str>) -> Outcome {
         .map(|count| ("RAYON_NUM_THREADS", count))
         .into_iter()
         .collect();
-    bench.idc(&["design", "study.toml", "--out", "out"], &environment)
+    bench.idc(
+        &["design", "study.toml", "--out", "out", "--force"],
+        &environment,
+    )
 }
 
 /// design.json of a study that is done.
@@ -123,7 +126,10 @@ fn a_study_gives_the_same_bytes_again_and_on_one_thread() {
         let outcome = run(&bench, threads);
         assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
         let names = bench.names_in("out");
-        assert_eq!(names, ["design.json", "front.svg", "override.toml"]);
+        assert_eq!(
+            names,
+            ["design.json", "front.svg", "override.toml", "report.html"]
+        );
         let read = |name: &String| std::fs::read(bench.path("out").join(name)).unwrap();
         (names.iter().map(read).collect::<Vec<_>>(), outcome.out)
     };
@@ -201,7 +207,10 @@ fn refused(spoil: impl Fn(&Bench), code: i32, words: &str) {
     let line = outcome.only_line("error: ");
     assert!(line.starts_with(&format!("error: {words}")), "{line}");
     assert_eq!(outcome.code, code, "{line}");
-    assert_eq!((outcome.err.trim_end(), outcome.out.as_str()), (line, ""));
+    assert_eq!(
+        (outcome.sentences().as_str(), outcome.out.as_str()),
+        (line, "")
+    );
     if code == 2 {
         assert!(before == bench.contents(), "files changed: {line}");
     }
@@ -286,7 +295,7 @@ fn the_picture_of_another_study_does_not_stay() {
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
     assert_eq!(
         bench.names_in("out"),
-        ["design.json", "mine.txt", "override.toml"]
+        ["design.json", "mine.txt", "override.toml", "report.html"]
     );
     let document = std::fs::read_to_string(bench.path("out/design.json")).unwrap();
     assert_eq!(outcome.out.trim_end(), document.trim_end());

@@ -9,7 +9,7 @@ fn files(bench: &Bench, threads: Option<&str>) -> Vec<(String, Vec<u8>)> {
         .into_iter()
         .collect();
     let outcome = bench.idc(
-        &["run", "scenario.toml", "--out", "out", "--quiet"],
+        &["run", "scenario.toml", "--out", "out", "--force", "--quiet"],
         &environment,
     );
     assert_eq!(outcome.code, 0, "{}", outcome.err);

@@ -58,9 +58,12 @@ fn a_planted_force_is_found_told_of_and_kept() {
         bench.names_in("out"),
         [
             "account.txt",
+            "balance.parquet",
+            "comparison.parquet",
             "diagnosis.json",
             "improved.toml",
-            "prediction.csv"
+            "prediction.csv",
+            "report.html"
         ]
     );
     let answer = json(&bench.path("out/diagnosis.json"));

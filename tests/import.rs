@@ -53,7 +53,7 @@ impl Folder {
 
     /// Imports logs and reads what was written.
     fn imported(&self, map: &str, logs: &[&str]) -> (StoredRecording, String) {
-        let outcome = self.idc(&[&[map], logs, &["--out", "out.parquet"]].concat());
+        let outcome = self.idc(&[&[map], logs, &["--out", "out.parquet", "--force"]].concat());
         assert_eq!(
             (outcome.code, outcome.err.as_str()),
             (0, ""),

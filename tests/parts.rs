@@ -296,7 +296,10 @@ fn a_part_that_is_unknown_or_a_pattern_that_nothing_fits_is_refused() {
             .unwrap();
         let err = String::from_utf8_lossy(&program.stderr);
         assert_eq!(program.status.code(), Some(2), "{err}");
-        assert!(err.contains(expected) && err.lines().count() == 1, "{err}");
+        assert!(
+            err.contains(expected) && err.matches("error: ").count() == 1,
+            "{err}"
+        );
         assert!(!out.exists());
     }
 }

@@ -65,7 +65,14 @@ fn folder() -> Bench {
 
 fn predict(bench: &Bench) -> Outcome {
     bench.idc(
-        &["predict", "rig.toml", "inputs.csv", "--out", "out.csv"],
+        &[
+            "predict",
+            "rig.toml",
+            "inputs.csv",
+            "--out",
+            "out.csv",
+            "--force",
+        ],
         &[],
     )
 }

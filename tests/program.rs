@@ -30,6 +30,18 @@ impl Outcome {
     }
 }
 
+impl Outcome {
+    /// Standard error without the lines of a file that it shows below a sentence.
+    pub fn sentences(&self) -> String {
+        let shown = |line: &&str| {
+            let rest = line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit());
+            rest.starts_with('|') || rest.starts_with("--> ")
+        };
+        let told: Vec<&str> = self.err.lines().filter(|line| !shown(line)).collect();
+        told.join("\n")
+    }
+}
+
 /// A folder with a job in it.
 pub struct Bench {
     folder: tempfile::TempDir,
@@ -87,9 +99,9 @@ impl Bench {
         }
     }
 
-    /// Runs the job, its files going to `out`.
+    /// Runs the job, its files going to `out`, in place of what is there.
     pub fn run(&self) -> Outcome {
-        self.idc(&["run", "scenario.toml", "--out", "out"], &[])
+        self.idc(&["run", "scenario.toml", "--out", "out", "--force"], &[])
     }
 
     /// Every file and folder with its content.
@@ -129,4 +141,9 @@ fn note(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
 }
 
 /// The three files of a run.
-pub const FILES: [&str; 3] = ["recording.rrd", "samples.parquet", "summary.json"];
+pub const FILES: [&str; 4] = [
+    "recording.rrd",
+    "report.html",
+    "samples.parquet",
+    "summary.json",
+];

@@ -64,6 +64,8 @@
     ctx.font = `${11 * ratio}px system-ui, sans-serif`;
     ctx.strokeStyle = ctx.fillStyle = colour("quiet");
     ctx.lineWidth = ratio;
+    // A label that would lie on the one before goes a line lower.
+    let taken = [-Infinity, 0];
     for (const marker of told.markers) {
       const at = u.valToPos(marker.at, "x", true);
       ctx.beginPath();
@@ -71,7 +73,9 @@
       ctx.moveTo(at, bbox.top);
       ctx.lineTo(at, bbox.top + bbox.height);
       ctx.stroke();
-      ctx.fillText(marker.label, at + 4 * ratio, bbox.top + 12 * ratio);
+      const line = at < taken[0] ? (taken[1] + 1) % 3 : 0;
+      taken = [at + 10 * ratio + ctx.measureText(marker.label).width, line];
+      ctx.fillText(marker.label, at + 4 * ratio, bbox.top + (12 + 13 * line) * ratio);
     }
     ctx.restore();
   };
@@ -129,8 +133,8 @@
       width: place.clientWidth, height: 280,
       cursor: { sync: told.group ? { key: told.group, setSeries: false } : undefined, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
       legend: { live: true },
-      scales: { x: { time: false }, y: { range: (_, min, max) => (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
-      axes: [{ ...axis, label: told.x, values: plain }, { ...axis, label: told.y, values: plain, size: (u, values) => (values ? 22 + 7 * largest(values.map(Number)) : 60) }],
+      scales: { x: { time: false }, y: { range: (_, min, max) => told.within ?? (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
+      axes: [{ ...axis, label: told.x, values: plain, size: 30, labelSize: 18 }, { ...axis, label: told.y, values: plain, size: (u, values) => (values ? 22 + 7 * largest(values.map(Number)) : 60) }],
       series: [{ label: told.x, value: (_, v) => shown(v) }, ...told.series.map(series)],
       bands: told.areas.map(([low, high]) => ({ series: [high + 1, low + 1], fill: () => faded("Band", 0.3) })),
       hooks: { drawClear: [backdrop(told)], setScale: [zoomed(chart)], init: [touch] },

@@ -1,19 +1,18 @@
 //! The command line.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
-use super::files::{OutputFolder, RUN_NAMES, RunOutput, SummaryDocument};
+use super::files::{OutputFolder, RUN_NAMES, RunOutput, Standing, SummaryDocument};
+use super::help;
 use super::output::say;
 use super::picture::scene_of;
 use super::run::run_watched;
 use super::viewer::{Viewing, Watch};
-use super::{bench, bench_figures, bench_picture};
+use super::{bench, bench_figures, bench_picture, progress};
 use crate::cell::Cell;
 use crate::metrics::{self, Verdict};
 use crate::recording::rerun::Opening;
@@ -21,55 +20,76 @@ use crate::report::{Style, bench_markdown, bench_text, markdown, text};
 use crate::rig::Rig;
 use crate::scenario::{self, AnyScenario, BenchScenario};
 
-/// Simulate a robot deburring cell with a pneumatic constant-force end effector.
+/// Simulate a robot deburring cell with a pneumatic constant-force end effector, and find out what physics recordings of a real one contain
+/// that its model leaves out.
 #[derive(Debug, Parser)]
 #[command(
     name = "idc",
     version,
-    about,
-    after_help = "Exit codes: 0 done, 1 a result lies outside the scenario's [expect] bounds \
-or no design keeps the study's [limits], \
-2 bad input, 3 the physics stopped the run (the recording up to there is kept)."
+    max_term_width = 100,
+    after_help = help::PROGRAM
 )]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// When to print in colours.
+    #[command(flatten)]
+    pub colour: colorchoice_clap::Color,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a scenario: simulate, record, print how uniform the contact force was.
-    #[command(after_help = "Example: idc run scenarios/plate_edge.toml --out runs/first")]
+    #[command(after_help = help::RUN)]
     Run(RunArguments),
+    /// Explain a file without running it: what it describes, what would be done, what is missing.
+    #[command(after_help = super::check::EXAMPLES)]
+    Check(super::check::CheckArguments),
+    /// Write a commented file to start from: a cell, a rig file or an import map.
+    #[command(after_help = super::new::EXAMPLES)]
+    New(super::new::NewArguments),
     /// Do a design study: find the device that keeps the contact force most uniform under limits.
-    #[command(after_help = "Example: idc design scenarios/studies/device_design.toml")]
+    #[command(after_help = help::DESIGN)]
     Design(DesignArguments),
     /// Look at recordings, in Rerun's native viewer where it is installed, otherwise as a web page.
     #[command(after_help = super::view::EXAMPLES)]
     View(super::view::ViewArguments),
     /// List the sharp edges of a part and the outlines of its faces.
-    #[command(after_help = "Example: idc edges assets/bracket.stl")]
+    #[command(after_help = help::EDGES)]
     Edges(EdgesArguments),
     /// Make a recording of the logs of a real device, as a map says what their columns are.
-    #[command(after_help = super::import::EXAMPLES)]
+    #[command(after_help = help::IMPORT)]
     Import(ImportArguments),
     /// Say what a rig file, believed or improved, predicts for the inputs of a recording.
-    #[command(after_help = "Example: idc predict improved.toml predict.csv --out prediction.csv")]
+    #[command(after_help = help::PREDICT)]
     Predict(PredictArguments),
     /// Find what physics the recordings of a rig contain that its model leaves out.
-    #[command(after_help = super::diagnose::EXAMPLES)]
+    #[command(after_help = help::DIAGNOSE)]
     Diagnose(DiagnoseArguments),
     /// Write report.html of a folder with results: one page for a browser.
     #[command(after_help = super::report::EXAMPLES)]
     Report(super::report::ReportArguments),
+    /// Compare runs, or diagnoses: numbers side by side, signals over one another.
+    #[command(after_help = super::compare::EXAMPLES)]
+    Compare(super::compare::CompareArguments),
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
-    #[command(after_help = super::prove::PROVE_EXAMPLES)]
+    #[command(after_help = help::PROVE)]
     Prove(ProveArguments),
     /// Try the diagnosis on every effect, from its largest size down to where it is lost, and on devices with nothing missing.
-    #[command(after_help = super::prove::SWEEP_EXAMPLES)]
+    #[command(after_help = help::SWEEP)]
     Sweep(SweepArguments),
     /// Write the cases that come with the project, with their sealed truth, as the laboratory makes them.
+    #[command(after_help = help::LABORATORY)]
     Laboratory(LaboratoryArguments),
+    /// Print the JSON Schema of a file, for editors.
+    #[command(after_help = super::schema::EXAMPLES)]
+    Schema(super::schema::SchemaArguments),
+    /// Print what a shell needs to complete commands and options.
+    #[command(after_help = super::manual::COMPLETION_EXAMPLES)]
+    Completions(super::manual::CompletionArguments),
+    /// Print the manual page, or write one of each command.
+    #[command(after_help = super::manual::MAN_EXAMPLES)]
+    Man(super::manual::ManArguments),
 }
 
 #[derive(Debug, Args)]
@@ -77,16 +97,19 @@ struct RunArguments {
     /// Scenario file.
     scenario: PathBuf,
     /// Folder for recording.rrd, samples.parquet and summary.json [default: runs/<scenario name>].
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
     /// Watch the run while it goes on: `native` or `web` viewer, `web:PORT`, or the address at which one listens [default: native where it is installed, otherwise web].
     #[arg(long, value_name = "WHERE", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     view: Option<String>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     quiet: bool,
     /// Print what summary.json holds instead of the table.
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
     /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
     #[arg(long, hide = true)]
@@ -100,13 +123,16 @@ pub(super) struct ImportArguments {
     /// Logs in place of those that the map names, in its order; several times as many make several recordings.
     pub(super) logs: Vec<PathBuf>,
     /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) out: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
     /// Print what was understood as JSON.
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     pub(super) json: bool,
 }
 
@@ -115,13 +141,19 @@ struct DesignArguments {
     /// Study file.
     study: PathBuf,
     /// Folder for design.json, override.toml and front.svg [default: runs/<study name>].
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     quiet: bool,
+    /// Most designs that are tried, in place of what the study says.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]
+    evaluations: Option<u32>,
     /// Print what design.json holds instead of the table.
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
 }
 
@@ -135,6 +167,9 @@ pub(super) struct EdgesArguments {
     /// Dihedral angle above which an edge counts as sharp [deg].
     #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
     pub(super) sharp_angle_deg: f64,
+    /// Print them as JSON.
+    #[arg(long, help_heading = "Output")]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -144,11 +179,17 @@ pub(super) struct PredictArguments {
     /// Recording whose inputs drive the rig; what it holds of measured columns is compared.
     pub(super) inputs: PathBuf,
     /// File for the predicted columns.
-    #[arg(long, default_value = "prediction.csv")]
+    #[arg(long, default_value = "prediction.csv", help_heading = "Output")]
     pub(super) out: PathBuf,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
+    /// Print as JSON how far off the prediction is.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -163,20 +204,23 @@ pub(super) struct ProveArguments {
     #[arg(long, num_args = 1..)]
     pub(super) only: Vec<String>,
     /// Folder for the answers.
-    #[arg(long, default_value = "runs/proof")]
+    #[arg(long, default_value = "runs/proof", help_heading = "Output")]
     pub(super) out: PathBuf,
     /// Cases at a time [default: as many as there are processors].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) jobs: Option<u16>,
     /// Print the score as JSON.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) json: bool,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SweepArguments {
     /// Folder for the outcomes, one file for each case.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) out: PathBuf,
     /// Effects by name, divided by commas [default: all of the vocabulary].
     #[arg(long, value_delimiter = ',')]
@@ -203,11 +247,17 @@ pub(super) struct SweepArguments {
     #[arg(long)]
     pub(super) resume: bool,
     /// File for the tables [default: CONFUSION.md in the output folder].
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) page: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, conflicts_with = "resume", help_heading = "Output")]
+    pub(super) force: bool,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
+    /// Print the outcomes as JSON.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    pub(super) json: bool,
 }
 
 /// Length of a recording [s].
@@ -224,8 +274,17 @@ fn duration(text: &str) -> Result<f64, String> {
 #[derive(Debug, Args)]
 pub(super) struct LaboratoryArguments {
     /// Folder for `cases` and `sealed`.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) out: PathBuf,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    pub(super) quiet: bool,
+    /// Print as JSON which cases were written.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -233,7 +292,7 @@ pub(super) struct DiagnoseArguments {
     /// Folder with rig.toml and the recordings that it names; with --all, a folder of such folders.
     pub(super) case: PathBuf,
     /// Folder for diagnosis.json, prediction.csv, improved.toml and account.txt [default: runs/<name of the case's folder>].
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) out: Option<PathBuf>,
     /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
     #[arg(long)]
@@ -245,19 +304,19 @@ pub(super) struct DiagnoseArguments {
     #[arg(long, conflicts_with = "force")]
     pub(super) resume: bool,
     /// Put new diagnoses in place of old ones.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) force: bool,
     /// Cases at a time with --all [default: 1, on all processors]; the processors are shared among them, and results do not depend on it.
     #[arg(long, requires = "all", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) jobs: Option<u16>,
     /// Print nothing but errors.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
     /// Print on stderr what the search tries, and what each explanation would cost.
     #[arg(long, conflicts_with_all = ["quiet", "all"])]
     pub(super) verbose: bool,
     /// Print what diagnosis.json holds instead of the account; with --all, one line for each case.
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     pub(super) json: bool,
 }
 
@@ -275,6 +334,8 @@ pub(super) enum MeshUnit {
 pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
         Command::Run(arguments) => run(arguments),
+        Command::Check(arguments) => super::check::run(arguments),
+        Command::New(arguments) => super::new::run(arguments),
         Command::Design(arguments) => design(arguments),
         Command::View(arguments) => super::view::run(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
@@ -282,9 +343,13 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
         Command::Report(arguments) => super::report::run(arguments),
+        Command::Compare(arguments) => super::compare::run(arguments),
         Command::Prove(arguments) => super::prove::run_prove(arguments),
         Command::Sweep(arguments) => super::prove::run_sweep(arguments),
         Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),
+        Command::Schema(arguments) => super::schema::run(arguments),
+        Command::Completions(arguments) => super::manual::completions(arguments),
+        Command::Man(arguments) => super::manual::man(arguments),
     }
 }
 
@@ -305,6 +370,7 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let folder = OutputFolder::prepare(
         &output_folder(arguments.out.as_ref(), &arguments.scenario),
         &RUN_NAMES,
+        Standing::of(arguments.force),
     )?;
     let quiet = arguments.quiet || arguments.json;
     if !quiet {
@@ -313,11 +379,8 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
         }
     }
     let watch = open_watch(viewing, arguments.quiet)?;
-    let bar = progress("simulating", quiet);
-    let told = &mut |done, total| {
-        bar.set_length(total as u64);
-        bar.set_position(done as u64);
-    };
+    let bar = progress::bar("simulating", quiet);
+    let told = &mut |done, total| progress::tell(&bar, done, total);
     let finished = run_watched(&cell, told, watch.as_ref());
     bar.finish_and_clear();
     let finished = finished?;
@@ -368,14 +431,12 @@ fn run_bench(
     let folder = OutputFolder::prepare(
         &output_folder(arguments.out.as_ref(), &arguments.scenario),
         &RUN_NAMES,
+        Standing::of(arguments.force),
     )?;
     let quiet = arguments.quiet || arguments.json;
     let watch = open_watch(viewing, arguments.quiet)?;
-    let bar = progress("simulating", quiet);
-    let told = &mut |done, total| {
-        bar.set_length(total as u64);
-        bar.set_position(done as u64);
-    };
+    let bar = progress::bar("simulating", quiet);
+    let told = &mut |done, total| progress::tell(&bar, done, total);
     let finished = bench::run_watched(&rig, told, watch.as_ref());
     bar.finish_and_clear();
     let finished = finished?;
@@ -418,12 +479,14 @@ fn open_watch(viewing: Option<Viewing>, quiet: bool) -> Result<Option<Watch>, Ap
 
 fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {
     let out = output_folder(arguments.out.as_ref(), &arguments.study);
-    let study = PreparedStudy::new(&arguments.study, &out)?;
-    let bar = progress("searching", arguments.quiet || arguments.json);
-    let finished = study.run(&|done, most| {
-        bar.set_length(most as u64);
-        bar.set_position(done as u64);
-    });
+    let study = PreparedStudy::new(
+        &arguments.study,
+        arguments.evaluations,
+        &out,
+        Standing::of(arguments.force),
+    )?;
+    let bar = progress::bar("searching", arguments.quiet || arguments.json);
+    let finished = study.run(&|done, most| progress::tell(&bar, done, most));
     bar.finish_and_clear();
     let finished = finished?;
     show(
@@ -495,8 +558,10 @@ fn judge(verdicts: &[Verdict]) -> ExitCode {
 }
 
 fn style() -> Style {
-    let plain = !std::io::stdout().is_terminal() || std::env::var_os("NO_COLOR").is_some();
-    if plain { Style::Plain } else { Style::Coloured }
+    match anstream::AutoStream::choice(&std::io::stdout()) {
+        anstream::ColorChoice::Never => Style::Plain,
+        _ => Style::Coloured,
+    }
 }
 
 fn opening(arguments: &RunArguments) -> Opening {
@@ -512,15 +577,4 @@ fn opening(arguments: &RunArguments) -> Opening {
 pub(super) fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
     let default = || Path::new("runs").join(input.file_stem().unwrap_or_default());
     out.cloned().unwrap_or_else(default)
-}
-
-fn progress(verb: &str, quiet: bool) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(0);
-    let template = format!("{verb} {{wide_bar}} {{percent:>3}} %, {{eta}} left");
-    let style = ProgressStyle::with_template(&template);
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }

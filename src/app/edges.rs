@@ -3,7 +3,10 @@
 use super::cli::{EdgesArguments, MeshUnit};
 use super::error::{AppError, ExitCode};
 use super::output::say;
-use crate::workpiece::{EdgeSearch, list_edges, load_mesh};
+use crate::workpiece::{
+    Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, list_edges, load_mesh,
+};
+use glam::DVec3;
 
 pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     let scale = match arguments.unit {
@@ -24,6 +27,46 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
         sharp_angle: angle.to_radians(),
         ..EdgeSearch::default()
     };
-    say(&list_edges(&mesh, &search).table())?;
+    let list = list_edges(&mesh, &search);
+    say(&if arguments.json {
+        json(arguments, &list)
+    } else {
+        list.table()
+    })?;
     Ok(ExitCode::Done)
+}
+
+/// The list for a program, in the part's frame.
+fn json(arguments: &EdgesArguments, list: &EdgeList) -> String {
+    let document = serde_json::json!({
+        "mesh": arguments.mesh,
+        "sharp_angle_deg": arguments.sharp_angle_deg,
+        "edges": list.edges.iter().map(described).collect::<Vec<_>>(),
+        "loops": list.loops.iter().map(described).collect::<Vec<_>>(),
+    });
+    format!("{document:#}\n")
+}
+
+fn described(curve: &EdgeCurve) -> serde_json::Value {
+    let millimetres = |point: Option<&DVec3>| point.map(|point| (*point * 1e3).to_array());
+    let kind = match curve.kind {
+        CurveKind::Straight => "straight",
+        CurveKind::Arc { .. } => "arc",
+        CurveKind::Polyline => "polyline",
+    };
+    let convexity = match curve.convexity {
+        Convexity::Convex => "convex",
+        Convexity::Concave => "concave",
+        Convexity::Mixed => "mixed",
+    };
+    serde_json::json!({
+        "id": curve.id,
+        "kind": kind,
+        "length_mm": curve.length * 1e3,
+        "start_mm": millimetres(curve.points.first()),
+        "end_mm": millimetres(curve.points.last()),
+        "convexity": convexity,
+        "closed": curve.closed,
+        "corners": curve.corners.len(),
+    })
 }

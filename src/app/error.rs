@@ -68,6 +68,12 @@ pub enum AppError {
         /// The folder.
         folder: String,
     },
+    /// Folders of runs and of diagnoses.
+    #[error("{diagnosis} holds a diagnosis and the others runs, expected all of one kind")]
+    MixedResults {
+        /// A folder with a diagnosis.
+        diagnosis: String,
+    },
     /// A bound on a metric.
     #[error("{file}: {source}")]
     Metrics {
@@ -112,6 +118,42 @@ pub enum AppError {
     OutputFolder {
         /// The folder.
         folder: String,
+        /// Why.
+        reason: String,
+    },
+    /// Results stand where new ones are to go.
+    #[error(
+        "{folder} holds results already ({name}); expected another folder (--out), or --force to put new ones in their place"
+    )]
+    FolderStands {
+        /// The folder.
+        folder: String,
+        /// A file that stands in it.
+        name: String,
+    },
+    /// A file that describes nothing.
+    #[error(
+        "{file}: expected a scenario, a rig file, an import map, a study or a device model (a .toml), or a folder with a rig.toml; idc import reads logs"
+    )]
+    NoDescription {
+        /// The file.
+        file: String,
+    },
+    /// A file stands where one is to go.
+    #[error(
+        "{file} is there already; expected another name (--out), or --force to put a new one in its place"
+    )]
+    FileStands {
+        /// The file.
+        file: String,
+    },
+    /// An output file that cannot be.
+    #[error(
+        "cannot write {file}: {reason}; expected a file, in a folder that can be written (--out names another)"
+    )]
+    OutputFile {
+        /// The file.
+        file: String,
         /// Why.
         reason: String,
     },

@@ -26,6 +26,44 @@ pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
 pub(super) const FRONT: &str = "front.svg";
 
+/// What becomes of results that stand where new ones are to go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// New ones are refused.
+    Refuse,
+    /// They are kept.
+    Keep,
+    /// New ones take their place.
+    Replace,
+}
+
+impl Standing {
+    /// As `--force` says.
+    pub(super) fn of(force: bool) -> Self {
+        if force { Self::Replace } else { Self::Refuse }
+    }
+}
+
+/// Refuses a file that stands, or cannot stand, where one is to be written, then makes its folder.
+pub(super) fn prepare_file(path: &Path, standing: Standing) -> Result<(), AppError> {
+    let refuse = |reason: &dyn std::fmt::Display| AppError::OutputFile {
+        file: path.display().to_string(),
+        reason: reason.to_string(),
+    };
+    if path.is_dir() {
+        return Err(refuse(&"there is a folder of that name"));
+    }
+    if standing == Standing::Refuse && path.exists() {
+        return Err(AppError::FileStands {
+            file: path.display().to_string(),
+        });
+    }
+    match path.parent() {
+        Some(folder) => std::fs::create_dir_all(folder).map_err(|error| refuse(&error)),
+        None => Ok(()),
+    }
+}
+
 /// A folder that was found to be writable before the run.
 pub(super) struct OutputFolder {
     path: PathBuf,
@@ -33,13 +71,26 @@ pub(super) struct OutputFolder {
 
 impl OutputFolder {
     /// Makes the folder and tries it for files of these names, so that a long run does not end with nothing.
-    pub(super) fn prepare(path: &Path, names: &[&str]) -> Result<Self, AppError> {
+    pub(super) fn prepare(
+        path: &Path,
+        names: &[&str],
+        standing: Standing,
+    ) -> Result<Self, AppError> {
         let refuse = |reason: String| AppError::OutputFolder {
             folder: path.display().to_string(),
             reason,
         };
         if path.exists() && !path.is_dir() {
             return Err(refuse("there is a file of that name".to_owned()));
+        }
+        let stands = |name: &&&str| path.join(name).is_file();
+        if standing == Standing::Refuse
+            && let Some(name) = names.iter().find(stands)
+        {
+            return Err(AppError::FolderStands {
+                folder: path.display().to_string(),
+                name: (*name).to_owned(),
+            });
         }
         std::fs::create_dir_all(path).map_err(|error| refuse(error.to_string()))?;
         if let Some(name) = names.iter().find(|name| path.join(name).is_dir()) {
@@ -88,6 +139,10 @@ impl OutputFolder {
             names.push(FIGURES);
         }
         unfinished.finish(&names)?;
+        for other in RUN_NAMES.iter().filter(|name| !names.contains(name)) {
+            // That of another run would pass for one of this.
+            self.discard(other)?;
+        }
         Ok(names)
     }
 

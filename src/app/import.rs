@@ -9,31 +9,11 @@ use std::path::{Path, PathBuf};
 
 use super::cli::ImportArguments;
 use super::error::{AppError, ExitCode};
+use super::files::{Standing, prepare_file};
 use super::output::say;
 use crate::import::findings::same_data;
 use crate::import::{ImportMap, Imported, LogNote, import, load_map};
 use crate::recording::parquet::write_parquet;
-
-pub(super) const EXAMPLES: &str = "\
-Examples:
-  idc import assets/import/cylinder_friction.toml KDN_1bar.csv                       what is in it
-  idc import assets/import/cylinder_friction.toml KDN_1bar.csv --out kdn_1.parquet
-  idc import assets/import/cylinder_friction.toml KDN_*.csv --out runs/kdn/      a recording of each, into a folder
-  idc import assets/import/contact_flange.toml run_force.csv run_velocity.csv --out run.parquet   two logs, one recording
-
-A map says which column is what:
-  schema = 1
-  title = \"A cylinder\"
-  [[file]]
-  form = \"text\"                    or parquet, mat5, mcap
-  separator = \";\"
-  time = { column = 1, unit = \"ms\" }
-  [[file.channel]]
-  quantity = \"force\"
-  column = \"F [V]\"
-  unit = \"N\"
-  gain = 50.0                      newtons of a volt
-assets/import/README.md lists every key, unit and form.";
 
 /// A recording to be, and where it goes.
 struct Job {
@@ -72,15 +52,12 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
         jobs.push(Job { imported, out });
     }
     check_destinations(&jobs)?;
+    for path in jobs.iter().filter_map(|job| job.out.as_ref()) {
+        prepare_file(path, Standing::of(arguments.force))?;
+    }
     let copies = copies(&jobs);
     for job in &jobs {
         let Some(path) = &job.out else { continue };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|error| AppError::OutputFolder {
-                folder: folder.display().to_string(),
-                reason: error.to_string(),
-            })?;
-        }
         write_parquet(
             path,
             &job.imported.recording,

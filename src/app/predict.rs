@@ -1,11 +1,14 @@
 //! `idc predict`: what a rig file says of a recording's inputs, and how far that is from what was measured.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
 use super::cli::PredictArguments;
 use super::error::{AppError, ExitCode};
+use super::files::{Standing, prepare_file};
 use super::output::say;
+use super::progress;
 use super::recordings::{read_rig, shown_columns};
 use crate::diagnosis::clean::clean;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
@@ -26,8 +29,11 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
             });
         }
     }
+    prepare_file(&arguments.out, Standing::of(arguments.force))?;
     let time = &taken.inputs.time;
+    let spinner = progress::spinner("simulating", arguments.quiet || arguments.json);
     let predicted = simulate(&rig.plant, &taken.inputs).readings;
+    spinner.finish_and_clear();
     for (column, values) in COLUMNS.into_iter().zip(&predicted) {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             return Err(AppError::Astray {
@@ -44,30 +50,64 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     if arguments.quiet {
         return Ok(ExitCode::Done);
     }
-    let mut text = String::new();
     let mass = rig.plant.device.moving_mass;
     let cleaning = clean(time, &mut taken.readings, &rig.noise, mass);
-    for sentence in cleaning.account(&rig.noise) {
-        // Writing into a text cannot fail.
+    let notes = cleaning.account(&rig.noise);
+    let off: Vec<(&str, f64)> = (0..COLUMNS.len())
+        .filter_map(|channel| {
+            let [measured, predicted] = [&taken.readings[channel], &predicted[channel]];
+            let rms = whitened(measured, predicted, rig.noise[channel])?;
+            Some((COLUMNS[channel], rms))
+        })
+        .collect();
+    say(&if arguments.json {
+        json(arguments, time.len(), &notes, &off)
+    } else {
+        text(arguments, time.len(), &notes, &off)
+    })?;
+    Ok(ExitCode::Done)
+}
+
+/// What is printed of columns with their errors in standard deviations of the noise.
+fn text(
+    arguments: &PredictArguments,
+    samples: usize,
+    notes: &[String],
+    off: &[(&str, f64)],
+) -> String {
+    let mut text = String::new();
+    // Writing into a text cannot fail.
+    for sentence in notes {
         let _ = writeln!(text, "note: {sentence}");
     }
-    for (channel, column) in COLUMNS.into_iter().enumerate() {
-        let measured = &taken.readings[channel];
-        if let Some(rms) = whitened(measured, &predicted[channel], rig.noise[channel]) {
-            let _ = writeln!(
-                text,
-                "{column:<24} measured less predicted: RMS {rms:.3} standard deviations of the sensor's noise"
-            );
-        }
+    for (column, rms) in off {
+        let _ = writeln!(
+            text,
+            "{column:<24} measured less predicted: RMS {rms:.3} standard deviations of the sensor's noise"
+        );
     }
-    let _ = writeln!(
-        text,
-        "{} samples written to {}",
-        time.len(),
-        arguments.out.display()
-    );
-    say(&text)?;
-    Ok(ExitCode::Done)
+    let out = arguments.out.display();
+    let _ = writeln!(text, "{samples} samples written to {out}");
+    text
+}
+
+/// The same for a program.
+fn json(
+    arguments: &PredictArguments,
+    samples: usize,
+    notes: &[String],
+    off: &[(&str, f64)],
+) -> String {
+    let off: BTreeMap<&str, f64> = off.iter().copied().collect();
+    let document = serde_json::json!({
+        "rig": arguments.rig,
+        "inputs": arguments.inputs,
+        "prediction": arguments.out,
+        "samples": samples,
+        "notes": notes,
+        "rms_in_standard_deviations_of_noise": off,
+    });
+    format!("{document:#}\n")
 }
 
 /// Root mean square of measured less predicted in standard deviations of the noise; none where nothing was measured.

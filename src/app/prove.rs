@@ -5,23 +5,12 @@ use std::path::Path;
 use super::cli::{LaboratoryArguments, ProveArguments, SweepArguments};
 use super::diagnose::answer_case;
 use super::error::{AppError, ExitCode};
+use super::files::{OutputFolder, Standing, prepare_file};
 use super::output::say;
+use super::progress;
 use crate::laboratory::{shipped, write_case};
-use crate::proof::{Claims, Diagnose, SweepPlan, page, prove, sweep};
+use crate::proof::{Claims, Diagnose, SweepPlan, folders, page, prove, sweep};
 use crate::recording::atomic::write_text;
-
-/// For the help.
-pub(super) const PROVE_EXAMPLES: &str = "Examples:
-  idc prove                                          the cases that come with the project
-  idc prove --only case-02 case-06                   two of them
-  idc prove --cases lab/cases --sealed lab/truth     others
-
-Exit codes: 0 the score is as good as claimed, 1 it is not, 2 bad input.";
-/// For the help.
-pub(super) const SWEEP_EXAMPLES: &str = "Examples:
-  idc sweep --out runs/sweep --page docs/CONFUSION.md             everything: hours
-  idc sweep --out runs/sweep --page docs/CONFUSION.md --resume    go on where it was stopped
-  idc sweep --out runs/few --effects transport_delay,hose_volume --seeds 1 --empty 5";
 
 /// The program's own diagnosis of a case.
 fn diagnose() -> Box<Diagnose<'static>> {
@@ -45,6 +34,8 @@ pub(super) fn run_prove(arguments: &ProveArguments) -> Result<ExitCode, AppError
     let sealed = arguments.sealed.clone().unwrap_or_else(beside);
     let jobs = jobs(arguments.jobs);
     let out = &arguments.out;
+    prepare_proof(arguments)?;
+    let bar = progress::bar("proving", arguments.json);
     let summary = prove(
         &arguments.cases,
         &sealed,
@@ -52,7 +43,10 @@ pub(super) fn run_prove(arguments: &ProveArguments) -> Result<ExitCode, AppError
         out,
         jobs,
         &*diagnose(),
-    )?;
+        &|done, total| progress::tell(&bar, done, total),
+    );
+    bar.finish_and_clear();
+    let summary = summary?;
     let short = summary.shortfalls(&Claims::PAGE);
     if arguments.json {
         say(&(serde_json::to_string_pretty(&summary)? + "\n"))?;
@@ -80,17 +74,30 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
         duration: arguments.duration_s,
         jobs: jobs(arguments.jobs),
         resume: arguments.resume,
+        replace: arguments.force,
     };
-    let tell = |line: &str| {
-        if !arguments.quiet {
-            eprintln!("{line}");
-        }
-    };
-    let outcomes = sweep(&plan, &arguments.out, &*diagnose(), &tell)?;
     let usual = || arguments.out.join("CONFUSION.md");
     let file = arguments.page.clone().unwrap_or_else(usual);
+    // The tables of a sweep that goes on take the place of its own earlier ones.
+    prepare_file(&file, Standing::of(arguments.force || arguments.resume))?;
+    let silent = arguments.quiet || arguments.json;
+    let bar = progress::bar("sweeping", silent);
+    let tell = |done: usize, total: usize, line: &str| {
+        progress::tell(&bar, done, total);
+        if silent {
+        } else if bar.is_hidden() {
+            eprintln!("{done} of {total}: {line}");
+        } else {
+            bar.println(format!("{done} of {total}: {line}"));
+        }
+    };
+    let outcomes = sweep(&plan, &arguments.out, &*diagnose(), &tell);
+    bar.finish_and_clear();
+    let outcomes = outcomes?;
     write_text(&file, &page(&outcomes))?;
-    if !arguments.quiet {
+    if arguments.json {
+        say(&(serde_json::to_string_pretty(&outcomes)? + "\n"))?;
+    } else if !arguments.quiet {
         say(&format!(
             "{} outcomes, tables in {}\n",
             outcomes.len(),
@@ -102,10 +109,52 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
 
 /// Writes the project's own cases.
 pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode, AppError> {
-    for recipe in shipped() {
-        let folder = arguments.out.join("cases").join(&recipe.name);
+    let out = &arguments.out;
+    let [cases, sealed] = ["cases", "sealed"].map(|name| out.join(name));
+    if let Some(stands) = [&cases, &sealed].into_iter().find(|path| path.exists())
+        && !arguments.force
+    {
+        return Err(AppError::FolderStands {
+            folder: out.display().to_string(),
+            name: stands.file_name().unwrap_or_default().display().to_string(),
+        });
+    }
+    let recipes = shipped();
+    let bar = progress::bar("making", arguments.quiet || arguments.json);
+    let mut names = Vec::new();
+    for (index, recipe) in recipes.iter().enumerate() {
         let case = recipe.make().map_err(crate::proof::ProofError::from)?;
-        write_case(&case, &folder, Some(&arguments.out.join("sealed")))?;
+        write_case(&case, &cases.join(&recipe.name), Some(&sealed))?;
+        progress::tell(&bar, index + 1, recipes.len());
+        names.push(&recipe.name);
+    }
+    bar.finish_and_clear();
+    if arguments.json {
+        let document = serde_json::json!({ "cases": names, "folder": cases, "sealed": sealed });
+        say(&format!("{document:#}\n"))?;
+    } else if !arguments.quiet {
+        say(&format!(
+            "{} cases written to {}, their truth to {}\n",
+            names.len(),
+            cases.display(),
+            sealed.display()
+        ))?;
     }
     Ok(ExitCode::Done)
+}
+
+/// Refuses to prove into a folder that holds an answer to one of the cases, or cannot be written.
+fn prepare_proof(arguments: &ProveArguments) -> Result<(), AppError> {
+    let folders = folders(&arguments.cases, &arguments.only)?;
+    for (name, _) in folders.iter().filter(|_| !arguments.force) {
+        let answer = Path::new(name).join("diagnosis.json");
+        if arguments.out.join(&answer).exists() {
+            return Err(AppError::FolderStands {
+                folder: arguments.out.display().to_string(),
+                name: answer.display().to_string(),
+            });
+        }
+    }
+    OutputFolder::prepare(&arguments.out, &[], Standing::Replace)?;
+    Ok(())
 }

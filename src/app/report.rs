@@ -12,7 +12,7 @@ use clap::Args;
 
 use super::diagnose::{DIAGNOSIS, read_comparison};
 use super::error::{AppError, ExitCode};
-use super::files::{DESIGN, FRONT, SAMPLES, SUMMARY};
+use super::files::{DESIGN, FRONT, SAMPLES, SUMMARY, Standing, prepare_file};
 use super::output::say;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
@@ -29,12 +29,17 @@ pub(super) use run::{RunResult, chart_groups, labels};
 pub(super) const REPORT: &str = "report.html";
 
 /// For the help.
-pub(super) const EXAMPLES: &str = "Examples:
-  idc run scenarios/plate_edge.toml --out runs/plate    writes runs/plate/report.html at its end
-  idc report runs/plate                                 writes it anew from the other files
-  idc report runs/plate --out plate.html                elsewhere
+pub(super) const EXAMPLES: &str = "\
+The folder is one that run, diagnose or design wrote; they write the page
+themselves at their end. It is one file that needs no network: it can be mailed,
+printed, and opened on a phone.
 
-The folder is one that run, diagnose or design wrote. The page is one file that needs no network: it can be mailed, printed, and opened on a phone.";
+Examples:
+  # the page anew, from the other files of the folder
+  idc run scenarios/paper_step.toml --out runs/step --quiet
+  idc report runs/step
+  # elsewhere
+  idc report runs/step --out runs/step_for_you.html";
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
@@ -43,6 +48,9 @@ pub(super) struct ReportArguments {
     /// File for the page [default: report.html in the folder].
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Put the page in place of a file that --out names.
+    #[arg(long)]
+    force: bool,
     /// Print nothing but errors.
     #[arg(long)]
     quiet: bool,
@@ -54,6 +62,9 @@ pub(super) struct ReportArguments {
 /// Writes the page of a folder.
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
+    if let Some(out) = &arguments.out {
+        prepare_file(out, Standing::of(arguments.force))?;
+    }
     let (kind, text) = if folder.join(DIAGNOSIS).is_file() {
         let answer: Answer = read_json(&folder.join(DIAGNOSIS))?;
         (

@@ -12,11 +12,21 @@ use super::viewer::{NativeViewer, Shown, ViewerError, WebPage};
 use crate::recording::rerun::{check_rrd, viewer_version};
 
 /// Shown below the help.
-pub(super) const EXAMPLES: &str = "Examples:
-  idc view runs/plate_edge/recording.rrd
-  idc view --web --port 9191 runs/plate_edge/recording.rrd
+pub(super) const EXAMPLES: &str = "\
+The native viewer is the program `rerun` on the PATH, or the one that IDC_RERUN
+names, of the version that wrote the recording; without it, or without a
+display, the web viewer that is part of this program is served on 127.0.0.1.
 
-The native viewer is the program `rerun` on the PATH, or the one that IDC_RERUN names, of the version that wrote the recording.";
+Exit codes: 0 done, 2 a file that is no whole recording of this version, a port
+in use, or no viewer.
+
+Examples:
+  # A run's recording. (opens a window)
+  idc view runs/first/recording.rrd
+  # As a web page at a port, until Ctrl-C. (serves until stopped)
+  idc view --port 9191 runs/first/recording.rrd
+  # Two runs together. (opens a window)
+  idc view runs/first/recording.rrd runs/second/recording.rrd";
 
 #[derive(Debug, Args)]
 pub(super) struct ViewArguments {

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
+use crate::scenario::schema::plain_schema;
 use crate::scenario::sections::keys;
 
 /// Version of the format.
 pub(super) const SCHEMA: u32 = 1;
 
 /// A study file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StudyFile {
     pub schema: u32,
@@ -25,7 +26,7 @@ pub(super) struct StudyFile {
 }
 
 /// `[study]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StudyKeys {
     pub title: String,
@@ -35,7 +36,7 @@ pub(super) struct StudyKeys {
 }
 
 /// `[objective]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveKeys {
     pub minimise: Option<String>,
@@ -46,7 +47,7 @@ pub(super) struct ObjectiveKeys {
 }
 
 /// How the scenarios make one number.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum OverKeys {
     /// Their mean.
@@ -56,7 +57,7 @@ pub(super) enum OverKeys {
 }
 
 /// A quantity in `[limits]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BoundKeys {
     pub min: Option<f64>,
@@ -64,7 +65,7 @@ pub(super) struct BoundKeys {
 }
 
 /// A variable in `[variables]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct VariableKeys {
     pub min: Option<f64>,
@@ -76,13 +77,19 @@ pub(super) struct VariableKeys {
 }
 
 /// How a variable is stepped through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum ScaleKeys {
     /// Equal differences.
     Linear,
     /// Equal ratios.
     Log,
+}
+
+/// JSON Schema of a study file, for editors.
+#[must_use]
+pub fn schema() -> serde_json::Value {
+    plain_schema::<StudyFile>()
 }
 
 /// Tables of a study file with their keys; `*` stands for a name that the user gives.

@@ -35,6 +35,7 @@ mod variable;
 
 pub use candidate::{Design, Evaluate, EvaluateError, Outcome, ScenarioOutcome};
 pub use error::DesignError;
+pub use file::schema;
 pub use limits::{Limit, LimitQuantity, Side};
 pub use picture::front_svg;
 pub use result::{

@@ -8,10 +8,19 @@ use super::diagnose::Diagnosis;
 use super::flange::Run;
 use super::links::{Link, left_by};
 use super::regime::{regimes, values_of};
-use crate::plant::{CHANNELS, Channel, PlantParameters, simulate};
+use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
 
 /// Points of a balance at most: a cloud of more is a blot.
 const MOST_POINTS: usize = 4000;
+
+/// Variables that are of the air in the chambers.
+const OF_AIR: [&str; 5] = [
+    "chamber_pressure",
+    "pressure_difference",
+    "pressure_rate",
+    "mass_flow",
+    "set_pressure",
+];
 
 /// All of it.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -159,7 +168,10 @@ impl Diagnosis {
         let best = &self.best().fit.prediction;
         let before = of(&self.baseline.prediction.residuals);
         let telling = regimes(&self.evidence, &best.plant, &best.courses, &before);
-        let variable = telling.first()?.variable;
+        // A slide that a motor drives has no air, whatever its numbers say.
+        let airless = self.believed.chain == Chain::DrivenSlide;
+        let mut known = telling.iter().map(|regime| regime.variable);
+        let variable = known.find(|name| !airless || !OF_AIR.contains(name))?;
         let values = values_of(variable, &self.evidence, &best.plant, &best.courses)?;
         let noise = self.evidence.noise[channel as usize];
         let after = of(&best.residuals);

@@ -52,6 +52,12 @@ pub fn load_map(path: &Path) -> Result<ImportMap, ScenarioError> {
     Ok(map)
 }
 
+/// JSON Schema of a map, for editors.
+#[must_use]
+pub fn schema() -> serde_json::Value {
+    keys::schema()
+}
+
 fn file_map(
     document: &Document<'_>,
     index: usize,

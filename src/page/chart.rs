@@ -16,6 +16,8 @@ pub struct Chart<'a> {
     pub spans: Vec<[f64; 2]>,
     /// Charts of one name are zoomed together; may be empty.
     pub group: String,
+    /// Ends of the vertical axis, where what lies beyond would press the rest flat.
+    pub within: Option<[f64; 2]>,
 }
 
 /// A series with its own places, and how it is joined to the others.
@@ -82,6 +84,7 @@ impl Chart<'_> {
             "bands": bands.collect::<Vec<_>>(),
             "markers": markers.collect::<Vec<_>>(),
             "spans": self.spans,
+            "within": self.within,
         });
         (told, [kept.len(), places.len()])
     }

@@ -33,7 +33,7 @@ pub enum ProofError {
         known: String,
     },
     /// Outcomes of another sweep stand there.
-    #[error("{} holds outcomes already: --resume goes on with them, another --out starts anew", folder.display())]
+    #[error("{} holds outcomes already: --resume goes on with them, --force puts new ones in their place, another --out starts anew", folder.display())]
     Standing {
         /// The folder.
         folder: PathBuf,

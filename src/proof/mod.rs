@@ -15,7 +15,7 @@ mod sweep;
 pub use confusion::page;
 pub use error::ProofError;
 pub use outcome::{Made, Outcome};
-pub use prove::{Diagnose, prove};
+pub use prove::{Diagnose, folders, prove};
 pub use score::{CaseScore, judge, overlap, worst_channel};
 pub use summary::{Claims, Summary};
 pub use sweep::{SweepPlan, sweep};

@@ -1,6 +1,7 @@
 //! Diagnoses cases, then opens what was sealed and scores them.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::error::ProofError;
 use super::queue;
@@ -18,6 +19,7 @@ pub type Diagnose<'a> = dyn Fn(&Path, &Path) -> Result<Answer, String> + Sync + 
 const PREDICTION: &str = "prediction.csv";
 
 /// Diagnoses the cases below `cases`, all or those named, into folders below `out`, `jobs` at a time; then scores them by what is sealed in `sealed`.
+/// `told` is how many are done, of how many.
 ///
 /// # Errors
 /// There are no such cases, or a sealed file cannot be read.
@@ -28,11 +30,15 @@ pub fn prove(
     out: &Path,
     jobs: usize,
     diagnose: &Diagnose<'_>,
+    told: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Summary, ProofError> {
     let folders = folders(cases, only)?;
+    let done = AtomicUsize::new(0);
     let answers = queue::all(folders.len(), jobs, |index| {
         let (name, folder) = &folders[index];
-        diagnose(folder, &out.join(name))
+        let answer = diagnose(folder, &out.join(name));
+        told(done.fetch_add(1, Ordering::Relaxed) + 1, folders.len());
+        answer
     });
     let mut scores = Vec::new();
     for ((name, _), answer) in folders.iter().zip(answers) {
@@ -48,7 +54,10 @@ pub fn prove(
 }
 
 /// Folders with a case, by name.
-fn folders(cases: &Path, only: &[String]) -> Result<Vec<(String, PathBuf)>, ProofError> {
+///
+/// # Errors
+/// There are none, or not all that are named.
+pub fn folders(cases: &Path, only: &[String]) -> Result<Vec<(String, PathBuf)>, ProofError> {
     let entries = std::fs::read_dir(cases).map_err(|cause| ProofError::read(cases, cause))?;
     let mut found = Vec::new();
     for entry in entries {
@@ -166,6 +175,7 @@ mod tests {
                 &place("out"),
                 1,
                 &diagnose,
+                &|done, total| assert_eq!((done, total), (1, 1)),
             )
         };
         let error = go(&["two".to_owned()]).unwrap_err().to_string();

@@ -38,6 +38,8 @@ pub struct SweepPlan {
     pub jobs: usize,
     /// Go on with what is there.
     pub resume: bool,
+    /// Put new outcomes in place of what is there.
+    pub replace: bool,
 }
 
 struct Task {
@@ -102,7 +104,7 @@ impl Task {
     }
 }
 
-/// Does what a plan asks for and is not done yet; `say` is told of each case. Outcomes stand in `out`/outcomes, one file each.
+/// Does what a plan asks for and is not done yet; `say` is told of each case: how many are done, of how many, and what was answered. Outcomes stand in `out`/outcomes, one file each.
 ///
 /// # Errors
 /// An effect that there is not, outcomes of another sweep in `out`, a file that cannot be written.
@@ -110,11 +112,11 @@ pub fn sweep(
     plan: &SweepPlan,
     out: &Path,
     diagnose: &Diagnose<'_>,
-    say: &(dyn Fn(&str) + Sync),
+    say: &(dyn Fn(usize, usize, &str) + Sync),
 ) -> Result<Vec<Outcome>, ProofError> {
     let tasks = plan.tasks()?;
     let folder = out.join(OUTCOMES);
-    if !plan.resume && folder.exists() {
+    if !plan.resume && !plan.replace && folder.exists() {
         return Err(ProofError::Standing { folder });
     }
     std::fs::create_dir_all(&folder).map_err(|cause| ProofError::read(&folder, cause))?;
@@ -122,7 +124,11 @@ pub fn sweep(
     let finished = queue::all(tasks.len(), plan.jobs, |index| {
         let task = &tasks[index];
         let path = folder.join(format!("{}.json", task.name()));
-        let outcome = match standing(&path, &plan.made(task))? {
+        let stands = match plan.replace {
+            true => None,
+            false => standing(&path, &plan.made(task))?,
+        };
+        let outcome = match stands {
             Some(outcome) => outcome,
             None => {
                 let outcome = attempt(plan, task, out, diagnose)?;
@@ -133,12 +139,8 @@ pub fn sweep(
             }
         };
         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-        say(&format!(
-            "{count} of {}: {}: answered {}",
-            tasks.len(),
-            task.name(),
-            outcome.answered()
-        ));
+        let answered = format!("{}: answered {}", task.name(), outcome.answered());
+        say(count, tasks.len(), &answered);
         Ok::<Outcome, ProofError>(outcome)
     });
     let mut outcomes = Vec::new();
@@ -146,10 +148,10 @@ pub fn sweep(
         // A fault of the program in one case is not written: it is tried again by --resume.
         match outcome {
             Some(outcome) => outcomes.push(outcome?),
-            None => say(&format!(
-                "{}: a fault of the program, see above",
-                task.name()
-            )),
+            None => {
+                let fault = format!("{}: a fault of the program, see above", task.name());
+                say(tasks.len(), tasks.len(), &fault);
+            }
         }
     }
     Ok(outcomes)
@@ -238,6 +240,7 @@ mod tests {
             duration: 2.0,
             jobs: 2,
             resume: false,
+            replace: false,
         };
         let asked = AtomicUsize::new(0);
         let diagnose = |folder: &Path, _: &Path| {
@@ -254,7 +257,7 @@ mod tests {
                 details: Default::default(),
             })
         };
-        let first = sweep(&plan, &out, &diagnose, &|_| ()).unwrap();
+        let first = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap();
         assert_eq!((first.len(), asked.load(Ordering::Relaxed)), (3, 3));
         assert!(
             first[0].shows > 100.0 && first[1].shows < 6.0,
@@ -269,20 +272,24 @@ mod tests {
             "no case is left"
         );
 
-        let standing = sweep(&plan, &out, &diagnose, &|_| ()).unwrap_err();
+        let standing = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap_err();
         assert!(matches!(standing, ProofError::Standing { .. }));
+        plan.replace = true;
+        let again = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap();
+        assert_eq!((again.len(), asked.load(Ordering::Relaxed)), (3, 6));
+        plan.replace = false;
         plan.resume = true;
         std::fs::remove_file(out.join("outcomes/empty-1000000.json")).unwrap();
-        let second = sweep(&plan, &out, &diagnose, &|_| ()).unwrap();
+        let second = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap();
         let made = |all: &[Outcome]| all.iter().map(|o| o.made.clone()).collect::<Vec<_>>();
         assert_eq!(made(&second), made(&first));
-        assert_eq!(asked.load(Ordering::Relaxed), 4);
+        assert_eq!(asked.load(Ordering::Relaxed), 7);
         plan.duration = 3.0;
-        let other = sweep(&plan, &out, &diagnose, &|_| ()).unwrap_err();
+        let other = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap_err();
         assert!(matches!(other, ProofError::OtherPlan { .. }), "{other}");
         plan.effects = vec!["gremlins".to_owned()];
         assert!(
-            sweep(&plan, &out, &diagnose, &|_| ())
+            sweep(&plan, &out, &diagnose, &|_, _, _| ())
                 .unwrap_err()
                 .to_string()
                 .contains("gremlins")

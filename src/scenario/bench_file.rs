@@ -10,7 +10,7 @@ use super::file::{BoundKeys, DeviceKeys};
 use super::sensing::keys::SensingKeys;
 
 /// What a file describes; a cell if it does not say.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Kind {
     /// Arm, device and workpiece.
@@ -41,7 +41,7 @@ pub(super) struct KindOnly {
 }
 
 /// A bench scenario file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BenchFile {
     pub schema: u32,
@@ -68,7 +68,7 @@ pub(super) struct BenchFile {
 }
 
 /// `[bench]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BenchKeys {
     pub duration_s: f64,
@@ -77,7 +77,7 @@ pub(super) struct BenchKeys {
 }
 
 /// What the tool meets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum LoadKind {
     /// Nothing.
@@ -89,7 +89,7 @@ pub(super) enum LoadKind {
 }
 
 /// `[load]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LoadKeys {
     pub kind: LoadKind,
@@ -102,7 +102,7 @@ pub(super) struct LoadKeys {
 }
 
 /// `[hand]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct HandKeys {
     pub peak_force_n: f64,
@@ -111,7 +111,7 @@ pub(super) struct HandKeys {
 }
 
 /// `[[command]]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CommandKeys {
     pub at_s: f64,
@@ -120,15 +120,16 @@ pub(super) struct CommandKeys {
 }
 
 /// `[[valve]]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ValveKeys {
     pub at_s: f64,
+    #[schemars(with = "String", extend("enum" = ["extend", "retract"]))]
     pub position: crate::physics::valve::ValvePosition,
 }
 
 /// `[simulation]` of a bench.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BenchSimulationKeys {
     pub step_ms: Option<f64>,

@@ -19,7 +19,7 @@ use crate::sensing::{CommandChain, SensingParameters};
 const TABLE: &str = "controller";
 
 /// `[controller]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ControllerKeys {
     #[serde(default)]
@@ -39,7 +39,7 @@ pub(super) struct ControllerKeys {
 }
 
 /// Kind of controller.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum ControllerKind {
     /// The pressure map alone.

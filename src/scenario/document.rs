@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{Place, ScenarioError};
+use super::error::{Excerpt, Place, ScenarioError};
 use super::rig_file::NUMBER_OR_TABLE;
 use super::suggestion::{Sections, advice};
 use super::units::Unit;
@@ -42,6 +42,13 @@ pub(crate) fn read_text(file: &Path) -> Result<String, ScenarioError> {
     })
 }
 
+/// Where a key stands in a file that has been read before; none if it does not stand there.
+pub(crate) fn place_of_key(file: &Path, key: &str, schema: u32) -> Option<Place> {
+    let text = read_text(file).ok()?;
+    let place = Document::new(file, &text, schema).ok()?.place(key);
+    place.position.is_some().then_some(place)
+}
+
 impl<'a> Document<'a> {
     /// Checks that a file's text is TOML of schema version `schema`, and notes where its keys stand.
     pub fn new(file: &'a Path, text: &'a str, schema: u32) -> Result<Self, ScenarioError> {
@@ -51,7 +58,7 @@ impl<'a> Document<'a> {
             entries: Vec::new(),
         };
         let table = DeTable::parse(text).map_err(|error| ScenarioError::Syntax {
-            place: document.place_at(error.span().map_or(text.len(), |span| span.start)),
+            place: document.place_of(error.span().unwrap_or(text.len()..text.len())),
             reason: error.message().to_owned(),
         })?;
         note_table("", table.get_ref(), &mut document.entries);
@@ -62,7 +69,7 @@ impl<'a> Document<'a> {
             && found != i64::from(schema)
         {
             return Err(ScenarioError::Schema {
-                place: document.place_at(value.span().start),
+                place: document.place_of(value.span()),
                 found,
                 expected: schema,
             });
@@ -83,32 +90,56 @@ impl<'a> Document<'a> {
     /// Place of a key, or of the file alone for a key that it leaves out.
     pub fn place(&self, key: &str) -> Place {
         match self.entries.iter().find(|entry| entry.key == key) {
-            Some(entry) => self.place_at(entry.key_span.start),
+            Some(entry) => {
+                let [key, value] = [&entry.key_span, &entry.value_span];
+                let both = key.start..value.end.max(key.end);
+                let one_line = !self.text[both.clone()].contains('\n');
+                self.place_of(if one_line { both } else { key.clone() })
+            }
             None => Place {
                 file: self.file.to_owned(),
                 position: None,
+                excerpt: None,
             },
+        }
+    }
+
+    /// Place of a key that means nothing, whatever its value is.
+    pub fn key_place(&self, key: &str) -> Place {
+        match self.entries.iter().find(|entry| entry.key == key) {
+            Some(entry) => self.place_of(entry.key_span.clone()),
+            None => self.place(key),
         }
     }
 
     /// Names of the keys that a table has in the file.
     pub fn keys_in<'b>(&'b self, table: &str) -> impl Iterator<Item = &'b str> {
         self.entries.iter().filter_map(move |entry| {
-            let name = entry.key.strip_prefix(table)?.strip_prefix('.')?;
+            let name = match table {
+                "" => entry.key.as_str(),
+                table => entry.key.strip_prefix(table)?.strip_prefix('.')?,
+            };
             (!name.contains(['.', '['])).then_some(name)
         })
     }
 
     /// Lines and columns count from 1, columns in characters.
-    fn place_at(&self, offset: usize) -> Place {
-        let before = &self.text[..self.text.floor_char_boundary(offset)];
+    fn place_of(&self, span: Range<usize>) -> Place {
+        let start = self.text.floor_char_boundary(span.start);
+        let before = &self.text[..start];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = self.text[line_start..].lines().next().unwrap_or_default();
+        let end = self.text.floor_char_boundary(span.end.max(start)) - line_start;
         Place {
             file: self.file.to_owned(),
             position: Some((
                 before.matches('\n').count() + 1,
                 before[line_start..].chars().count() + 1,
             )),
+            excerpt: Some(Box::new(Excerpt {
+                line: line.to_owned(),
+                meant: (start - line_start).min(line.len())..end.min(line.len()),
+            })),
         }
     }
 
@@ -116,7 +147,7 @@ impl<'a> Document<'a> {
     fn explain(&self, error: &toml::de::Error, sections: &Sections) -> ScenarioError {
         let message = error.message();
         let span = error.span().unwrap_or(0..0);
-        let place = self.place_at(span.start);
+        let place = self.place_of(span.clone());
         if message.starts_with("unknown field `") {
             let key = self
                 .entries

@@ -1,6 +1,7 @@
 //! What can be wrong with a scenario file or a device model file.
 
 use std::fmt;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// A place in a file, as editors understand it: `file:line:column`.
@@ -10,6 +11,17 @@ pub struct Place {
     pub file: PathBuf,
     /// Line and column, both from 1; none for a value that the file leaves to its default.
     pub position: Option<(usize, usize)>,
+    /// What stands there.
+    pub excerpt: Option<Box<Excerpt>>,
+}
+
+/// The line of a place, and what of it is meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Excerpt {
+    /// The line, without its end.
+    pub line: String,
+    /// Bytes of it.
+    pub meant: Range<usize>,
 }
 
 impl fmt::Display for Place {

@@ -16,7 +16,7 @@ use crate::sensing::{Channel, SensingParameters};
 const TABLE: &str = "estimator";
 
 /// Limits that the other keys start from.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum KnownTo {
     /// As of a device whose parts were not measured one by one.
@@ -27,7 +27,7 @@ pub(super) enum KnownTo {
 }
 
 /// `[estimator]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct EstimatorKeys {
     pub stroke_noise_mm: Option<f64>,

@@ -14,7 +14,7 @@ use super::sensing::keys::SensingKeys;
 pub(super) const SCHEMA: u32 = 1;
 
 /// A scenario file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ScenarioFile {
     pub schema: u32,
@@ -40,7 +40,7 @@ pub(super) struct ScenarioFile {
 }
 
 /// `[arm]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ArmKeys {
     pub urdf: PathBuf,
@@ -60,7 +60,7 @@ pub(super) struct ArmKeys {
 }
 
 /// `[[arm.limit_overrides]]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LimitKeys {
     pub joint: String,
@@ -69,7 +69,7 @@ pub(super) struct LimitKeys {
 }
 
 /// `[[arm.drives]]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DriveKeys {
     pub joint: String,
@@ -80,7 +80,7 @@ pub(super) struct DriveKeys {
 }
 
 /// `[arm.servo]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ServoKeys {
     pub natural_frequency_hz: Option<f64>,
@@ -92,7 +92,7 @@ pub(super) struct ServoKeys {
 }
 
 /// `[device]` of a scenario.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DeviceKeys {
     pub model: PathBuf,
@@ -102,7 +102,7 @@ pub(super) struct DeviceKeys {
 }
 
 /// A device model file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelFile {
     pub schema: u32,
@@ -110,7 +110,7 @@ pub(super) struct ModelFile {
 }
 
 /// `[device]` of a device model file, and `[device.override]` of a scenario.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelKeys {
     pub cylinder_count: Option<u32>,
@@ -167,7 +167,7 @@ pub(super) struct ModelKeys {
 }
 
 /// What the gas does as it is compressed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum GasProcessKind {
     /// Constant temperature.
@@ -177,7 +177,7 @@ pub(super) enum GasProcessKind {
 }
 
 /// `[workpiece]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WorkpieceKeys {
     pub mesh: PathBuf,
@@ -191,7 +191,7 @@ pub(super) struct WorkpieceKeys {
 }
 
 /// Unit of a mesh file, which itself states none.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum MeshUnit {
     /// Millimetre.
@@ -203,7 +203,7 @@ pub(super) enum MeshUnit {
 }
 
 /// `[workpiece.edge]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct EdgeKeys {
     pub edge: Option<usize>,
@@ -216,7 +216,7 @@ pub(super) struct EdgeKeys {
 }
 
 /// `[workpiece.misplacement]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MisplacementKeys {
     pub shift_mm: Option<f64>,
@@ -224,7 +224,7 @@ pub(super) struct MisplacementKeys {
 }
 
 /// `[workpiece.burr]`: `kind` says which of the other keys there are.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BurrKeys {
     pub kind: BurrKind,
@@ -239,7 +239,7 @@ pub(super) struct BurrKeys {
 }
 
 /// Shape of a burr.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum BurrKind {
     /// No burr.
@@ -255,7 +255,7 @@ pub(super) enum BurrKind {
 }
 
 /// `[contact]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ContactKeys {
     pub stiffness_n_per_m: Option<f64>,
@@ -266,7 +266,7 @@ pub(super) struct ContactKeys {
 }
 
 /// `[process]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ProcessKeys {
     pub force_n: f64,
@@ -283,7 +283,7 @@ pub(super) struct ProcessKeys {
 }
 
 /// `[simulation]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SimulationKeys {
     pub step_ms: Option<f64>,
@@ -293,7 +293,7 @@ pub(super) struct SimulationKeys {
 }
 
 /// A metric in `[expect]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BoundKeys {
     pub min: Option<f64>,

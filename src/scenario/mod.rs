@@ -22,6 +22,7 @@ mod load;
 pub mod recorded_cell;
 mod rig_device;
 pub mod rig_file;
+pub mod schema;
 pub(crate) mod sections;
 mod sensing;
 pub(crate) mod suggestion;
@@ -39,6 +40,21 @@ pub use load::{load, load_any, load_bench};
 pub use recorded_cell::{RecordedCell, load_recorded_cell};
 pub use sensing::largest_set_pressure;
 pub use variation::ScenarioTemplate;
+
+/// Where a dotted key stands in a scenario file; none if it does not stand there.
+pub fn place_of(file: &std::path::Path, key: &str) -> Option<error::Place> {
+    document::place_of_key(file, key, file::SCHEMA)
+}
+
+/// Keys that a file gives in a table, by its dotted name; at the top for none.
+///
+/// # Errors
+/// The file cannot be read, or is not TOML.
+pub fn keys_given(file: &std::path::Path, table: &str) -> Result<Vec<String>, ScenarioError> {
+    let text = document::read_text(file)?;
+    let document = document::Document::new(file, &text, file::SCHEMA)?;
+    Ok(document.keys_in(table).map(str::to_owned).collect())
+}
 
 /// A scenario of either kind.
 #[derive(Debug, Clone)]

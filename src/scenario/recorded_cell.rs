@@ -25,7 +25,7 @@ pub use effects::{FoundNumbers, apply, improved_cell_text};
 pub(super) use own::effects_of;
 
 /// The file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RecordedCellFile {
     #[expect(dead_code, reason = "checked by Document::new")]
@@ -46,7 +46,7 @@ pub(super) struct RecordedCellFile {
 }
 
 /// `[joints]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct JointsKeys {
     pub servo_bandwidth_hz: f64,
@@ -56,7 +56,7 @@ pub(super) struct JointsKeys {
 }
 
 /// `[sensors]`: standard deviations of their noise.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SensorsKeys {
     pub joints_rad: f64,
@@ -66,7 +66,7 @@ pub(super) struct SensorsKeys {
 }
 
 /// `[belief]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BeliefKeys {
     pub tolerance: Option<f64>,

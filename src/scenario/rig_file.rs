@@ -29,7 +29,7 @@ mod values;
 
 pub use improved::{ImprovedEffect, as_written, improved_text};
 pub(super) use number::NUMBER_OR_TABLE;
-pub(super) use quantities::blank;
+pub(super) use quantities::{blank, described_numbers};
 
 /// Version of the format.
 const SCHEMA: u32 = 1;

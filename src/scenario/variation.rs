@@ -36,6 +36,7 @@ impl ScenarioTemplate {
         let bare = Place {
             file: self.path.clone(),
             position: None,
+            excerpt: None,
         };
         let mut table: toml::Table =
             self.text

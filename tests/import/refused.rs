@@ -13,7 +13,7 @@ fn refused(folder: &Folder, logs: &[&str], says: &[&str]) {
     for words in says {
         assert!(line.contains(words), "{line}\nlacks {words:?}");
     }
-    assert_eq!(outcome.err.trim_end(), line, "more than the one line");
+    assert_eq!(outcome.sentences(), line, "more than the one line");
     assert_eq!((outcome.code, outcome.out.as_str()), (2, ""), "{line}");
     assert_eq!(folder.names("."), before, "{line}");
 }

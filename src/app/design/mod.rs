@@ -11,7 +11,7 @@ use serde::Serialize;
 pub use evaluate::ScenarioEvaluator;
 
 use super::error::AppError;
-use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder};
+use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, Standing};
 use super::report::{REPORT, of_design};
 use crate::design::{self, Study, StudyResult};
 
@@ -37,12 +37,20 @@ pub(super) struct FinishedStudy {
 
 impl PreparedStudy {
     /// Reads study and scenarios and tries the starting design, then makes the folder: bad input leaves nothing behind.
-    pub(super) fn new(file: &Path, folder: &Path) -> Result<Self, AppError> {
-        let study = design::load(file)?;
+    pub(super) fn new(
+        file: &Path,
+        evaluations: Option<u32>,
+        folder: &Path,
+        standing: Standing,
+    ) -> Result<Self, AppError> {
+        let mut study = design::load(file)?;
+        if let Some(evaluations) = evaluations {
+            study.evaluations = evaluations as usize;
+        }
         let evaluator = ScenarioEvaluator::new(&study)?;
         design::check_start(&study, &evaluator)?;
         Ok(Self {
-            folder: OutputFolder::prepare(folder, &NAMES)?,
+            folder: OutputFolder::prepare(folder, &NAMES, standing)?,
             study,
             evaluator,
         })

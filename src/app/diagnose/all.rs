@@ -7,12 +7,13 @@ use std::sync::{Mutex, PoisonError};
 
 use super::super::cli::DiagnoseArguments;
 use super::super::error::{AppError, ExitCode};
+use super::super::files::Standing;
 use super::super::output::say;
+use super::super::progress;
 use super::cell;
-use super::one::{Prepared, Standing, complete, is_case};
+use super::one::{Prepared, complete, is_case};
 use crate::diagnosis::answer::{Answer, Verdict};
 use crate::replay::LoadedCell;
-use indicatif::{ProgressBar, ProgressStyle};
 
 /// What became of a case.
 struct Outcome {
@@ -35,7 +36,7 @@ pub(super) fn run(
 ) -> Result<ExitCode, AppError> {
     let names = cases(&arguments.case, cell.is_some())?;
     let silent = arguments.quiet || arguments.json;
-    let bar = bar(names.len(), silent);
+    let bar = progress::cases(names.len(), silent);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     // One at a time on all processors is no slower in all, and each is done sooner.
     let jobs = arguments.jobs.map_or(1, usize::from);
@@ -152,16 +153,6 @@ fn natural(name: &str) -> Vec<(u128, String)> {
         rest = after;
     }
     parts
-}
-
-fn bar(count: usize, hidden: bool) -> ProgressBar {
-    if hidden {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(count as u64);
-    let style = ProgressStyle::with_template("{pos} of {len} cases {wide_bar} {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }
 
 /// Prints what became of the cases.

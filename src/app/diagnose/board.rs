@@ -28,6 +28,11 @@ const USUAL: f64 = 0.96;
 const ROOM: f64 = 1.5;
 /// Share of a cloud's points to either side that its axes need not reach [1].
 const OUTERMOST: f64 = 0.005;
+/// Values that a variable has at most for its points to be spread; how far from each, to what side, and in what order.
+const FEW: usize = 5;
+const SPREAD: f64 = 0.2;
+const SIDE: f64 = 0.13;
+const GOLDEN: f64 = 0.618_034;
 /// The part of the device that each channel tells of.
 const SUBSYSTEMS: [&str; CHANNELS.len()] = ["regulator", "piston", "contact", "piston"];
 
@@ -203,14 +208,22 @@ fn of_balance(balance: &Balance) -> Cloud {
     let low = sorted.get(outermost).copied().unwrap_or_default();
     let high = sorted.iter().rev().nth(outermost).copied();
     let high = high.unwrap_or_default();
-    let group = |label: &str, role, lacking: &[f64]| {
-        let pairs = balance.values.iter().zip(lacking);
-        let within = pairs.filter(|(value, _)| (low..=high).contains(*value));
+    // Of a variable with few values, points would lie on one another: they are spread, those of the models side by side.
+    let mut apart = sorted;
+    apart.dedup();
+    let is_discrete = apart.len() <= FEW;
+    let group = |label: &str, role, lacking: &[f64], side: f64| {
+        let pairs = balance.values.iter().zip(lacking).enumerate();
+        let within = pairs.filter(|(_, (value, _))| (low..=high).contains(*value));
+        let spread = |index: usize| match is_discrete {
+            true => side + SPREAD * ((GOLDEN * index as f64).fract() - 0.5),
+            false => 0.0,
+        };
         CloudGroup {
             label: label.to_owned(),
             role,
             points: within
-                .map(|(value, lacking)| [scale * value, factor * lacking])
+                .map(|(i, (value, lacking))| [scale * value + spread(i), factor * lacking])
                 .collect(),
             joined: false,
         }
@@ -220,8 +233,8 @@ fn of_balance(balance: &Balance) -> Cloud {
         horizontal: format!("{words} [{of}]"),
         vertical: format!("what it lacks [{unit}]"),
         groups: vec![
-            group("as believed", BoardRole::Believed, &balance.before),
-            group("improved", BoardRole::Improved, &balance.after),
+            group("as believed", BoardRole::Believed, &balance.before, -SIDE),
+            group("improved", BoardRole::Improved, &balance.after, SIDE),
         ],
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::super::error::AppError;
-use super::super::files::OutputFolder;
+use super::super::files::{OutputFolder, Standing};
 use super::super::recordings::{read_rig, shown_columns};
 use super::cell;
 use super::cell_account::add_cell;
@@ -34,17 +34,6 @@ use crate::scenario::recorded_cell::{FoundNumbers, improved_cell_text};
 use crate::scenario::rig_file::{ImprovedEffect, RigFile, from_text, improved_text, load_rig};
 
 const RIG: &str = "rig.toml";
-
-/// What becomes of a diagnosis that stands where a new one is to go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Standing {
-    /// The new one is refused.
-    Refuse,
-    /// It is kept.
-    Keep,
-    /// The new one takes its place.
-    Replace,
-}
 
 /// Where the believed model stands.
 enum Model {
@@ -140,7 +129,7 @@ impl Prepared {
         Ok(Self {
             name: own.file_name().unwrap_or_default().display().to_string(),
             sources: sources(folder, cell, &work),
-            folder: OutputFolder::prepare(out, &NAMES)?,
+            folder: OutputFolder::prepare(out, &NAMES, Standing::Replace)?,
             work,
         })
     }
@@ -318,7 +307,7 @@ fn flange_work(rig: RigFile, folder: &Path) -> Result<Work, AppError> {
 }
 
 /// Names of the recordings to diagnose from; one with a star stands for all in the folder that fit it, but the one to be predicted, in order.
-fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, AppError> {
+pub(in super::super) fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, AppError> {
     let mut names: Vec<String> = Vec::new();
     for name in &rig.fit {
         let Some((before, after)) = name.split_once('*') else {
@@ -388,7 +377,7 @@ fn flange(
 }
 
 /// The rig file of a case.
-fn rig_of(folder: &Path) -> Result<RigFile, AppError> {
+pub(in super::super) fn rig_of(folder: &Path) -> Result<RigFile, AppError> {
     if !is_case(folder) {
         return Err(AppError::NoCase {
             folder: folder.display().to_string(),

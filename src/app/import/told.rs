@@ -82,6 +82,9 @@ fn gaps(found: &[Finding]) -> String {
 
 /// A channel in a line.
 fn line(finding: &Finding, wide: usize) -> String {
+    if finding.missing == finding.samples {
+        return format!("{:<wide$}  empty", finding.quantity);
+    }
     let [low, high] = finding.range.map(shown);
     let unit = finding.unit.symbol();
     let mut text = format!(

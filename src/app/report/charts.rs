@@ -11,6 +11,13 @@ use crate::page::Chart;
 /// Standard deviations to either end of a 95 % band [1].
 const BAND: f64 = 1.959_964;
 
+/// What is taken from the times of a recording [s]: nothing, unless they are those of a clock, which single precision cannot tell apart.
+pub(super) fn origin(recording: &Compared) -> f64 {
+    const CLOCK: f64 = 1e4;
+    let start = recording.time.first().copied().unwrap_or(0.0);
+    if start.abs() > CLOCK { start } else { 0.0 }
+}
+
 /// A channel of a recording: as measured and by the models; and what they leave, with the band of the sensor's noise.
 pub(super) fn channel<'a>(
     answer: &Answer,
@@ -19,7 +26,7 @@ pub(super) fn channel<'a>(
 ) -> [Chart<'a>; 2] {
     let index = channel.channel as usize;
     let (unit, factor) = CHANNEL_UNITS[index];
-    let start = recording.time.first().copied().unwrap_or(0.0);
+    let start = origin(recording);
     let from_start = |t: f64| t - start;
     let time: Vec<f64> = recording.time.iter().map(|t| from_start(*t)).collect();
     let scaled = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| v * factor).collect() };
@@ -42,15 +49,14 @@ pub(super) fn channel<'a>(
         },
         spans: spans.clone(),
         group: recording.name.clone(),
+        within: None,
     };
     let words = capital(CHANNEL_WORDS[index]);
+    // Of what cannot be simulated there is what was desired.
+    let simulated = channel.improved.iter().any(|v| v.is_finite());
+    let believed = if simulated { "as believed" } else { "desired" };
     let models = [
-        (
-            &channel.believed,
-            "as believed",
-            Role::Command,
-            Stroke::Dashed,
-        ),
+        (&channel.believed, believed, Role::Command, Stroke::Dashed),
         (&channel.improved, "improved", Role::Estimate, Stroke::Plain),
     ];
     let models = models
@@ -111,6 +117,19 @@ pub(in crate::app) fn variable(name: &str) -> (&str, &'static str, f64) {
     }
 }
 
+/// Where nearly all values lie, with some room; none where there are none. At an impact a few are ten times as large.
+fn most_of(values: &[f64]) -> Option<[f64; 2]> {
+    const BEYOND: f64 = 0.01;
+    const ROOM: f64 = 0.35;
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().checked_sub(1)?;
+    let at = |share: f64| sorted[(share * last as f64).round() as usize];
+    let (low, high) = (at(BEYOND).min(0.0), at(1.0 - BEYOND).max(0.0));
+    let room = ROOM * (high - low);
+    (room > 0.0).then_some([low - room, high + room])
+}
+
 /// What a link lacks, in words.
 pub(in crate::app) fn lacking(balance: &Balance) -> &'static str {
     match balance.link.as_str() {
@@ -142,6 +161,7 @@ pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
             ],
             ..Panel::default()
         },
+        within: most_of(&balance.before).map(|ends| ends.map(|end| factor * end)),
         ..Chart::default()
     }
 }

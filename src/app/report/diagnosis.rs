@@ -1,6 +1,6 @@
 //! The page of a diagnosis.
 
-use super::charts::{balance, channel, unlisted};
+use super::charts::{balance, channel, origin, unlisted};
 use super::provenance;
 use crate::diagnosis::account::Section as Told;
 use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict};
@@ -12,6 +12,15 @@ use crate::page::{Block, Cell, Fact, Page, Section, Strip, Table, Tone};
 
 /// Recordings that are shown at once; the others are folded away.
 const SHOWN: usize = 2;
+
+/// What the account of a contact flange says of it.
+const OF_FLANGE: [&str; 5] = [
+    "Impact",
+    "Ringing",
+    "Settling",
+    "Steady error",
+    "While the arm moves",
+];
 
 /// The page.
 pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> {
@@ -58,12 +67,12 @@ fn told<'a>(answer: &Answer, title: &str, heading: &str) -> Option<Section<'a>> 
 
 /// What each effect is, in words.
 fn lead(answer: &Answer) -> Vec<String> {
-    let words = |effect: &FoundEffect| {
-        let meaning = meaning(&effect.name);
-        (!meaning.is_empty()).then(|| capital(meaning) + ".")
+    let said = |effect: &FoundEffect| {
+        let words = meaning(&effect.name);
+        (words != meaning("")).then(|| capital(words) + ".")
     };
     let known = answer.effects.iter().filter(|e| e.name != UNLISTED);
-    let mut lead: Vec<String> = known.filter_map(words).collect();
+    let mut lead: Vec<String> = known.filter_map(said).collect();
     if answer.verdict == Verdict::NothingMissing {
         lead.push("What the recordings show lies within the sensors' noise and the tolerances of the rig file.".to_owned());
     }
@@ -87,7 +96,7 @@ fn facts(answer: &Answer) -> Vec<Fact> {
         .prediction
         .iter()
         .max_by(|a, b| a.before_sigmas.total_cmp(&b.before_sigmas));
-    if let Some(error) = worst {
+    if let Some(error) = worst.filter(|_| answer.verdict != Verdict::NothingMissing) {
         let (words, unit, factor) = of_column(&error.channel);
         add(
             &format!("error of {words}, not fitted to"),
@@ -109,11 +118,6 @@ fn facts(answer: &Answer) -> Vec<Fact> {
             format!("{samples} readings"),
         );
     }
-    add(
-        "time taken",
-        format!("{} s", figures(answer.seconds, 2)),
-        String::new(),
-    );
     facts
 }
 
@@ -188,6 +192,10 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
     let told = part(answer, "What is missing");
     let paragraphs = told.into_iter().flat_map(|told| &told.paragraphs);
     blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    for title in OF_FLANGE {
+        let paragraphs = part(answer, title).into_iter().flat_map(|t| &t.paragraphs);
+        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    }
     (!blocks.is_empty()).then(|| Section::new("What is missing", blocks))
 }
 
@@ -206,10 +214,12 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Sectio
         .collect();
     subsystems.dedup();
     for recording in &comparison.recordings {
+        let start = origin(recording);
         let own = |column: &str| -> Vec<[f64; 2]> {
             let own = answer.mismatch.iter();
             let own = own.filter(|m| m.recording == recording.name && m.channel == column);
-            own.map(|m| [m.start_s, m.end_s]).collect()
+            own.map(|m| [m.start_s, m.end_s].map(|t| t - start))
+                .collect()
         };
         let rows = COLUMNS.iter().zip(CHANNEL_WORDS);
         let rows = rows.map(|(column, words)| (words.to_owned(), own(column)));
@@ -217,16 +227,19 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Sectio
         if let (false, [first, .., last]) = (rows.is_empty(), recording.time.as_slice()) {
             blocks.push(Block::Heading(recording.name.clone()));
             blocks.push(Block::Strip(Strip {
-                span: [*first, *last],
+                span: [first - start, last - start],
                 rows,
             }));
         }
     }
     if !answer.mismatch.is_empty() {
-        let hint = format!(
-            "The strips show when the found effects ({}) move a channel by more than three standard deviations of its sensor.",
-            subsystems.join(", ").replace('_', " ")
-        );
+        let hint = match answer.details.runs.is_empty() {
+            false => "The strips show each run from contact until it has settled.".to_owned(),
+            true => format!(
+                "The strips show when the found effects ({}) move a channel by more than three standard deviations of its sensor.",
+                subsystems.join(", ").replace('_', " ")
+            ),
+        };
         blocks.push(Block::Hint(hint));
     }
     (!blocks.is_empty()).then(|| Section::new("Where it shows", blocks))
@@ -242,11 +255,19 @@ fn before_and_after<'a>(answer: &Answer, comparison: &'a Comparison) -> Option<S
             .collect()
     };
     let mut order: Vec<&Compared> = comparison.recordings.iter().collect();
-    // What was not fitted to is the proof: it comes first.
-    order.sort_by_key(|recording| !recording.unseen);
-    let mut blocks = vec![Block::Hint(
-        "Shaded times are those of the strips above. Draw over a chart to zoom it, and all of its recording; a double click shows all.".to_owned(),
-    )];
+    // What was measured and not fitted to is the proof: it comes first; what was not measured, last.
+    let measured = |of: &Compared| {
+        let values = of.channels.iter().flat_map(|channel| &channel.measured);
+        values.copied().any(f64::is_finite)
+    };
+    order.sort_by_key(|recording| (!measured(recording), !recording.unseen));
+    let shaded = match answer.mismatch.is_empty() {
+        true => "",
+        false => "Shaded times are those of the strips above. ",
+    };
+    let mut blocks = vec![Block::Hint(format!(
+        "{shaded}Draw over a chart to zoom it, and all of its recording; a double click shows all."
+    ))];
     for (place, recording) in order.into_iter().enumerate() {
         let kept = match recording.unseen {
             true => "kept from the fit",

@@ -423,9 +423,6 @@ fn from<'a>(run: &RunResult<'_>) -> Section<'a> {
     if let Some(samples) = run.document["samples"].as_u64() {
         told += &format!(", {samples} samples");
     }
-    if let Some(factor) = run.document["summary"]["timing"]["real_time_factor"].as_f64() {
-        told += &format!(", {} times as fast as real time", figures(factor, 3));
-    }
     section.blocks.insert(0, Block::Paragraph(told + "."));
     section
 }

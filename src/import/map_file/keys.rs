@@ -6,10 +6,11 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
 use crate::import::map::Column;
+use crate::scenario::schema::{Described, describe, key_rows, plain_schema};
 use crate::scenario::sections::keys;
 
 /// The file as it is written.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MapFile {
     #[allow(dead_code, reason = "checked by Document::new")]
@@ -20,7 +21,7 @@ pub(super) struct MapFile {
 }
 
 /// `[[file]]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileKeys {
     pub path: Option<PathBuf>,
@@ -42,7 +43,7 @@ pub(super) struct FileKeys {
 }
 
 /// `form`.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum FormKey {
     Text,
@@ -52,7 +53,7 @@ pub(super) enum FormKey {
 }
 
 /// `clock`.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum ClockKey {
     Shared,
@@ -60,7 +61,7 @@ pub(super) enum ClockKey {
 }
 
 /// `[file.time]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TimeKeys {
     pub column: ColumnKey,
@@ -69,7 +70,7 @@ pub(super) struct TimeKeys {
 }
 
 /// `[[file.channel]]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ChannelKeys {
     pub quantity: String,
@@ -84,6 +85,21 @@ pub(super) struct ChannelKeys {
 /// A column by its number from 1, or by its name.
 #[derive(Debug)]
 pub(super) struct ColumnKey(pub Column);
+
+impl schemars::JsonSchema for ColumnKey {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Column".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "anyOf": [
+                { "type": "integer", "minimum": 1 },
+                { "type": "string", "minLength": 1 },
+            ]
+        })
+    }
+}
 
 impl<'de> Deserialize<'de> for ColumnKey {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -117,11 +133,28 @@ impl Visitor<'_> for ColumnVisitor {
 }
 
 /// `pressure`.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum PressureKey {
     Gauge,
     Absolute,
+}
+
+/// JSON Schema of a map; what a key means is read off the page of maps.
+pub(super) fn schema() -> serde_json::Value {
+    const PAGE: &str = include_str!("../../../assets/import/README.md");
+    let rows = key_rows(PAGE);
+    // The page has a table for each of these, in its order.
+    let tables = ["", "file", "file.time", "file.channel"];
+    describe(plain_schema::<MapFile>(), |table, key| {
+        let place = tables.iter().position(|name| *name == table)?;
+        let row = rows.get(place)?.iter().find(|row| row.names(key))?;
+        let absent = match row.cells.get(2).map(String::as_str) {
+            None | Some("-") => String::new(),
+            Some(absent) => format!(" Without it: {absent}."),
+        };
+        Some(Described::text(format!("{}.{absent}", row.cells[1])))
+    })
 }
 
 /// Tables of a map with their keys.

@@ -25,7 +25,7 @@ pub(super) fn effects(
         let key = join("effect", name);
         let names: Vec<&str> = known.iter().map(|effect| effect.name).collect();
         return Err(ScenarioError::UnknownKey {
-            place: document.place(&key),
+            place: document.key_place(&key),
             key,
             advice: nearest(name, &names),
         });
@@ -59,7 +59,7 @@ fn values(
     if let Some(key) = numbers.keys().find(|key| !names.contains(&key.as_str())) {
         let dotted = join(&table, key);
         return Err(ScenarioError::UnknownKey {
-            place: document.place(&dotted),
+            place: document.key_place(&dotted),
             key: dotted,
             advice: nearest(key, &names),
         });

@@ -139,7 +139,7 @@ impl Reader<'_> {
             Some(key) => {
                 let dotted = join(TABLE, key);
                 Err(ScenarioError::UnknownKey {
-                    place: self.document.place(&dotted),
+                    place: self.document.key_place(&dotted),
                     key: dotted,
                     advice: nearest(key, &known),
                 })

@@ -23,7 +23,7 @@ pub(super) struct Number {
 }
 
 /// The number's table.
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct NumberKeys {
     value: f64,

@@ -92,6 +92,46 @@ pub(super) fn needs(chain: Chain, key: &str) -> bool {
     }
 }
 
+/// The file that `idc new rig` begins with, whose comments say what the numbers are.
+pub(super) const TEMPLATE: &str = include_str!("../../../assets/new/rig.toml");
+
+/// Every number of a rig file: table, key, what it is, least and largest plausible value.
+pub(in super::super) fn described_numbers() -> Vec<(String, String, String, [f64; 2])> {
+    let (table, key, range) = COUNT;
+    let count = (format!("{table}.{key}"), range);
+    let (table, key, range) = DRIFT;
+    let drift = (format!("{table}.{key}"), range);
+    let rows = QUANTITIES
+        .iter()
+        .map(|row| (row.quantity.name.to_owned(), row.range));
+    let sensors = SENSOR_KEYS.map(|(key, range)| (key.to_owned(), range));
+    let all = [count]
+        .into_iter()
+        .chain(rows)
+        .chain(sensors)
+        .chain([drift]);
+    all.map(|(dotted, range)| {
+        let (table, key) = dotted.split_once('.').unwrap_or(("", &dotted));
+        let text = meaning(table, key).unwrap_or_default();
+        (table.to_owned(), key.to_owned(), text, range)
+    })
+    .collect()
+}
+
+/// The comment behind a key of the template.
+fn meaning(table: &str, key: &str) -> Option<String> {
+    let (_, below) = TEMPLATE.split_once(&format!("\n[{table}]\n"))?;
+    let line = below
+        .lines()
+        .take_while(|line| !line.starts_with('['))
+        .find(|line| {
+            line.strip_prefix(key)
+                .is_some_and(|rest| rest.starts_with(' '))
+        })?;
+    let (_, comment) = line.rsplit_once("# ")?;
+    Some(comment.to_owned())
+}
+
 /// Pressure of a regulator's supply of which the file says nothing: as much as a regulator stands, so that it never binds [Pa gauge].
 const AMPLE_SUPPLY: f64 = 16e5;
 
@@ -119,5 +159,33 @@ pub(in super::super) fn blank() -> PlantParameters {
         latent: None,
         chain: Chain::Whole,
         links: LinkParameters::NONE,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::check::Section;
+    use super::super::super::document::Document;
+    use super::super::values::plain;
+    use super::*;
+
+    #[test]
+    fn the_file_to_start_from_has_every_number_with_its_unit_and_range() {
+        let document = Document::new(std::path::Path::new("rig.toml"), TEMPLATE, 1).unwrap();
+        let (drift_table, drift_key, _) = DRIFT;
+        for (table, key, text, [low, high]) in described_numbers() {
+            if (table.as_str(), key.as_str()) == (drift_table, drift_key) {
+                continue;
+            }
+            assert!(!text.is_empty(), "{table}.{key}");
+            let dotted = format!("{table}.{key}");
+            let place = Section::new(&document, "").document().place(&dotted);
+            let (line, _) = place
+                .position
+                .unwrap_or_else(|| panic!("{dotted} is not there"));
+            let line = TEMPLATE.lines().nth(line - 1).unwrap();
+            let range = format!("({} to {})", plain(low), plain(high));
+            assert!(line.ends_with(&range), "{dotted}: {line}\nexpected {range}");
+        }
     }
 }

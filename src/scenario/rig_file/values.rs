@@ -102,7 +102,7 @@ fn refuse_unknown(
         Some(key) => {
             let key = join(table, key);
             Err(ScenarioError::UnknownKey {
-                place: document.place(&key),
+                place: document.key_place(&key),
                 advice: advice(&key, &sections),
                 key,
             })

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 /// `[sensing]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct SensingKeys {
     #[serde(default)]
@@ -25,7 +25,7 @@ pub(in crate::scenario) struct SensingKeys {
 }
 
 /// What the stages are that do not say it themselves.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(in crate::scenario) enum Preset {
     /// The truth everywhere.
@@ -38,7 +38,7 @@ pub(in crate::scenario) enum Preset {
 }
 
 /// What the command's way is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(in crate::scenario) enum CommandChainKind {
     /// As it is wanted.
@@ -48,7 +48,7 @@ pub(in crate::scenario) enum CommandChainKind {
 }
 
 /// What a sensor is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(in crate::scenario) enum SensorKind {
     /// The truth.
@@ -60,7 +60,7 @@ pub(in crate::scenario) enum SensorKind {
 }
 
 /// `[sensing.command]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct CommandChainKeys {
     pub kind: Option<CommandChainKind>,
@@ -77,7 +77,7 @@ pub(in crate::scenario) struct CommandChainKeys {
 }
 
 /// `[sensing.regulator_pressure]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RegulatorPressureKeys {
     pub kind: Option<SensorKind>,
@@ -91,7 +91,7 @@ pub(in crate::scenario) struct RegulatorPressureKeys {
 }
 
 /// `[sensing.force]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct ForceKeys {
     pub kind: Option<SensorKind>,
@@ -108,7 +108,7 @@ pub(in crate::scenario) struct ForceKeys {
 }
 
 /// `[sensing.stroke]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct StrokeKeys {
     pub kind: Option<SensorKind>,
@@ -119,7 +119,7 @@ pub(in crate::scenario) struct StrokeKeys {
 }
 
 /// `[sensing.acceleration]`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct AccelerationKeys {
     pub kind: Option<SensorKind>,
@@ -130,7 +130,7 @@ pub(in crate::scenario) struct AccelerationKeys {
 }
 
 /// `[sensing.adc]`, which reads regulator pressure and force.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct AdcKeys {
     pub bits: Option<u32>,
@@ -139,7 +139,7 @@ pub(in crate::scenario) struct AdcKeys {
 }
 
 /// Treatment of the force's noise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(in crate::scenario) enum FilterKind {
     /// None.
@@ -153,7 +153,7 @@ pub(in crate::scenario) enum FilterKind {
 }
 
 /// `[sensing.filter]`: `kind` says which of the other keys there is.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct FilterKeys {
     pub kind: FilterKind,

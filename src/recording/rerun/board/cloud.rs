@@ -15,7 +15,9 @@ pub(super) const ROOM: [f64; 4] = [210.0, 60.0, 130.0, 190.0];
 /// Share of the range that stays free at either end.
 const MARGIN: f64 = 0.06;
 /// Numbers on an axis, about.
-const TICKS: f64 = 5.0;
+const TICKS: f64 = 6.0;
+/// How far the viewer writes below a point what belongs to it.
+const BELOW: f32 = 28.0;
 const GRID: Colour = [150, 150, 150, 70];
 
 /// Entity of a cloud.
@@ -143,12 +145,12 @@ fn write_axes(
     for (value, text) in x.ticks() {
         lines.push([[value, y.low], [value, y.high]]);
         let [across, down] = field.at([value, y.low]);
-        numbers.push(([across, down + 45.0], text));
+        numbers.push(([across, down + 45.0 - BELOW], text));
     }
     for (value, text) in y.ticks() {
         lines.push([[x.low, value], [x.high, value]]);
         let [across, down] = field.at([x.low, value]);
-        numbers.push(([across - 85.0, down], text));
+        numbers.push(([across - 85.0, down - BELOW], text));
     }
     let colours = (0..lines.len()).map(|i| rerun_colour(if i < frame { GREY } else { GRID }));
     let strips = lines.iter().map(|line| line.map(|end| field.at(end)));
@@ -160,7 +162,7 @@ fn write_axes(
     let (places, texts): (Vec<_>, Vec<_>) = numbers.into_iter().unzip();
     let numbers = label(places, texts, GREY);
     rrd.add_static(&format!("{entity}/axes/numbers"), &numbers)?;
-    let below = [(0.5 * FIELD[0]) as f32, (FIELD[1] + 125.0) as f32];
+    let below = [(0.5 * FIELD[0]) as f32, (FIELD[1] + 125.0) as f32 - BELOW];
     let words = label([below], [cloud.horizontal.clone()], GREY);
     rrd.add_static(&format!("{entity}/axes/variable"), &words)
 }

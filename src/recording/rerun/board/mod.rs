@@ -17,7 +17,7 @@ use super::{RerunOptions, SUMMARY, cell, slug};
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_atomic;
 use crate::recording::board::{Board, BoardRole};
-use crate::recording::rerun::colours::{GREY, ORANGE, PALE_GREY, SKY_BLUE};
+use crate::recording::rerun::colours::{ORANGE, PALE_GREY, SKY_BLUE, YELLOW};
 use crate::recording::scene::Colour;
 
 /// Writes findings as a Rerun file that opens as a finished screen. Equal input gives equal bytes.
@@ -69,7 +69,7 @@ fn role_colour(role: BoardRole) -> Colour {
         BoardRole::Measured => PALE_GREY,
         BoardRole::Believed => ORANGE,
         BoardRole::Improved => SKY_BLUE,
-        BoardRole::Guide => GREY,
+        BoardRole::Guide => YELLOW,
     }
 }
 

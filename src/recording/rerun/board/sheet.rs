@@ -46,7 +46,7 @@ pub(super) fn write(rrd: &mut RrdWriter, entity: &str, sheet: &Sheet) -> Result<
             let look = SeriesLines::new()
                 .with_names([label.clone()])
                 .with_colors([rerun_colour(role_colour(BoardRole::Guide))])
-                .with_widths([0.8]);
+                .with_widths([1.2]);
             rrd.add_static(&entity, &look)?;
             let columns = Scalars::new([*value; 2]).columns_of_unit_batches()?;
             rrd.add_columns(&entity, vec![ends.clone()], columns)?;
@@ -72,8 +72,8 @@ fn write_lines(
     // Lines that lie on one another are seen all the same: each is narrower than the one below it.
     let width = |role| match role {
         BoardRole::Measured => 4.0,
-        BoardRole::Believed => 2.0,
-        BoardRole::Improved | BoardRole::Guide => 1.0,
+        BoardRole::Believed => 2.2,
+        BoardRole::Improved | BoardRole::Guide => 1.4,
     };
     let look = SeriesLines::new()
         .with_names(lines.iter().map(|line| line.label.clone()))

@@ -1,0 +1,98 @@
+//! `idc check`: what a file describes and what would be done with it, without doing it.
+
+mod bench;
+mod cell;
+mod report;
+mod rig;
+mod study;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use self::report::Report;
+use super::error::{AppError, ExitCode};
+use super::output::say;
+use crate::scenario::{self, AnyScenario, ScenarioError};
+
+/// For the help.
+pub(super) const EXAMPLES: &str = "\
+What is wrong is told with file, line and column, and the key that was probably
+meant. Exit codes: 0 it can be used, 2 it cannot.
+
+Examples:
+  # What would be simulated, how long it is and how large its files will be.
+  idc check scenarios/plate_edge.toml
+  # A rig, a design study and an import map are explained as well.
+  idc check scenarios/studies/device_design.toml
+  # A case for idc diagnose: its rig file and the recordings that it names.
+  idc check assets/proof/cases/case-03
+  # For a program.
+  idc check scenarios/hand_push.toml --json";
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArguments {
+    /// Scenario, rig file, import map, study or device model; or a folder with rig.toml and its recordings.
+    pub(super) file: PathBuf,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    pub(super) quiet: bool,
+    /// Print it as JSON.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    pub(super) json: bool,
+}
+
+/// Explains a file.
+pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
+    let report = explained(&arguments.file)?;
+    if arguments.json {
+        say(&report.json()?)?;
+    } else if !arguments.quiet {
+        say(&report.text())?;
+    }
+    Ok(ExitCode::Done)
+}
+
+fn explained(file: &Path) -> Result<Report, AppError> {
+    if file.is_dir() {
+        return rig::case(file);
+    }
+    if file
+        .extension()
+        .is_some_and(|extension| extension != "toml")
+    {
+        return Err(AppError::NoDescription {
+            file: file.display().to_string(),
+        });
+    }
+    let keys = scenario::keys_given(file, "")?;
+    let has = |key: &str| keys.iter().any(|given| given == key);
+    if has("study") {
+        return study::study(file);
+    }
+    if has("file") {
+        return study::map(file);
+    }
+    if !has("title") && !has("kind") {
+        let of_rig = [
+            "rig",
+            "cylinder",
+            "regulator",
+            "gas",
+            "sensors",
+            "recordings",
+        ];
+        if of_rig.into_iter().any(has) {
+            return rig::rig(file);
+        }
+        if has("device") {
+            return study::model(file);
+        }
+    }
+    match scenario::load_any(file) {
+        Ok(AnyScenario::Cell(cell)) => cell::cell(*cell),
+        Ok(AnyScenario::Bench(bench)) => bench::bench(*bench),
+        Err(ScenarioError::OtherKind { .. }) => cell::recorded(file),
+        Err(error) => Err(error.into()),
+    }
+}

@@ -1,0 +1,144 @@
+//! A robot cell explained: one that is simulated, or one of which there are recordings.
+
+use std::path::Path;
+
+use super::super::error::AppError;
+use super::report::{Report, shown};
+use crate::cell::Cell;
+use crate::metrics;
+use crate::replay::LoadedCell;
+use crate::scenario::{
+    ArmScenario, BurrScenario, Scenario, WorkpieceScenario, keys_given, load_recorded_cell,
+};
+use crate::workpiece::EdgeCurve;
+
+/// Bytes of a sample in recording.rrd and samples.parquet together, and what each axis of the arm adds, from runs of the shipped scenarios.
+const BYTES: f64 = 400.0;
+const BYTES_PER_AXIS: f64 = 60.0;
+
+/// A cell that can be run.
+pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
+    let file = scenario.path.clone();
+    metrics::validate(metrics::METRICS, &scenario.expect).map_err(|source| AppError::Metrics {
+        file: file.display().to_string(),
+        source,
+    })?;
+    let cell = Cell::new(scenario)?;
+    let scenario = &cell.scenario;
+    let mut report = Report::new(&file, "a robot cell to simulate", Some(&scenario.title));
+    arm(&mut report, &scenario.arm, cell.arm.chain.len());
+    report.device(&scenario.device.parameters);
+    overrides(&mut report, &file)?;
+    if scenario.device.locked {
+        report.fact("", "its slide is clamped (device.locked)");
+    }
+    part(&mut report, &scenario.workpiece, &cell.part.edge);
+    let process = &scenario.process;
+    report.fact(
+        "job",
+        format!(
+            "{} N at {} mm/s, working stroke {} mm",
+            shown(process.force),
+            shown(process.feed * 1e3),
+            shown(process.working_stroke * 1e3)
+        ),
+    );
+    report.number("force_n", process.force);
+    report.number("feed_mm_per_s", process.feed * 1e3);
+    report.number("edge_length_mm", cell.part.edge.length * 1e3);
+    let phases = cell.plan.phases();
+    let phases = phases
+        .iter()
+        .map(|(phase, from, to)| format!("{} {:.1} s", phase.name(), to - from));
+    report.fact("phases", phases.collect::<Vec<_>>().join(", "));
+    let axes = cell.arm.chain.len() as f64;
+    let bytes = BYTES + BYTES_PER_AXIS * axes;
+    report.extent(cell.plan.duration(), scenario.simulation.step, bytes);
+    report.bounds(&scenario.expect);
+    files(&mut report, &scenario.arm, &scenario.workpiece);
+    for note in &cell.notes {
+        report.note(note.as_str());
+    }
+    report.next(format!("idc run {}", file.display()));
+    Ok(report)
+}
+
+/// A cell of which there are recordings.
+pub(super) fn recorded(file: &Path) -> Result<Report, AppError> {
+    let loaded = LoadedCell::new(load_recorded_cell(file)?)?;
+    let scenario = &loaded.scenario;
+    let kind = "a robot cell of which there are recordings";
+    let mut report = Report::new(file, kind, Some(&scenario.title));
+    arm(&mut report, &scenario.arm, loaded.joints.len());
+    report.device(&scenario.device.parameters);
+    overrides(&mut report, file)?;
+    report.fact(
+        "servo",
+        format!("{} Hz, critically damped", shown(scenario.servo_bandwidth)),
+    );
+    for (effect, _) in &scenario.effects {
+        report.fact("believed", effect.name);
+    }
+    files(&mut report, &scenario.arm, &scenario.workpiece);
+    report.next(format!(
+        "idc diagnose RECORDINGS --all --scenario {} --out DIR",
+        file.display()
+    ));
+    Ok(report)
+}
+
+fn arm(report: &mut Report, arm: &ArmScenario, axes: usize) {
+    let name = arm.urdf.file_stem().unwrap_or_default().display();
+    let text = format!(
+        "{name}, {axes} axes, device on its link `{}`",
+        arm.flange_link
+    );
+    report.fact("arm", text);
+    report.number("axes", axes);
+}
+
+/// What the scenario changes of the device's model.
+pub(super) fn overrides(report: &mut Report, file: &Path) -> Result<(), AppError> {
+    let keys = keys_given(file, "device.override")?;
+    if !keys.is_empty() {
+        report.fact("", format!("changed by the scenario: {}", keys.join(", ")));
+    }
+    Ok(())
+}
+
+fn part(report: &mut Report, workpiece: &WorkpieceScenario, edge: &EdgeCurve) {
+    let name = workpiece.mesh.file_stem().unwrap_or_default().display();
+    let closed = if edge.closed { ", closed" } else { "" };
+    let length = shown((edge.length * 1e6).round() / 1e3);
+    report.fact("part", format!("{name}, {}: {length} mm{closed}", edge.id));
+    let wrong = &workpiece.misplacement;
+    if wrong.shift != 0.0 || wrong.tilt != 0.0 {
+        let text = format!(
+            "really {} mm off towards the tool, tilted by {} deg",
+            shown(wrong.shift * 1e3),
+            shown(wrong.tilt.to_degrees())
+        );
+        report.fact("", text);
+    }
+    let burr = match &workpiece.burr {
+        BurrScenario::None => return,
+        BurrScenario::Constant { height } => format!("{} mm everywhere", shown(height * 1e3)),
+        BurrScenario::Random { mean_height, .. } => {
+            format!("random, {} mm on average", shown(mean_height * 1e3))
+        }
+        BurrScenario::Bump { height, .. } => format!("one bump of {} mm", shown(height * 1e3)),
+        BurrScenario::Table { path } => format!("heights from {}", path.display()),
+    };
+    report.fact("burr", burr);
+}
+
+fn files(report: &mut Report, arm: &ArmScenario, workpiece: &WorkpieceScenario) {
+    report.file("arm", &arm.urdf);
+    for (name, folder) in &arm.package_directories {
+        report.file(format!("package {name}"), folder);
+    }
+    report.file("part", &workpiece.mesh);
+    if let BurrScenario::Table { path } = &workpiece.burr {
+        report.file("burr", path);
+    }
+}

@@ -1,0 +1,170 @@
+//! What is told of a file: facts by name, numbers for programs, the files that it needs and what to do next.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::AppError;
+use crate::device::DeviceParameters;
+use crate::scenario::Expectation;
+
+/// Wide enough for every label.
+const LABEL: usize = 12;
+
+/// An explanation.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    /// The file, or folder.
+    file: PathBuf,
+    /// What it is.
+    kind: &'static str,
+    /// Its title, where it has one.
+    title: Option<String>,
+    /// What it says, one sentence or less each, by label.
+    facts: Vec<(&'static str, String)>,
+    /// What programs want to know, units in the names.
+    numbers: serde_json::Map<String, serde_json::Value>,
+    /// Files that it refers to.
+    files: Vec<FileNote>,
+    /// What a user may not expect.
+    notes: Vec<String>,
+    /// What can be done with it.
+    next: String,
+}
+
+/// A file that another refers to.
+#[derive(Debug, Serialize)]
+struct FileNote {
+    what: String,
+    path: PathBuf,
+    there: bool,
+}
+
+impl Report {
+    pub(super) fn new(file: &Path, kind: &'static str, title: Option<&str>) -> Self {
+        Self {
+            file: file.to_owned(),
+            kind,
+            title: title.map(str::to_owned),
+            facts: Vec::new(),
+            numbers: serde_json::Map::new(),
+            files: Vec::new(),
+            notes: Vec::new(),
+            next: String::new(),
+        }
+    }
+
+    pub(super) fn fact(&mut self, label: &'static str, text: impl Into<String>) {
+        self.facts.push((label, text.into()));
+    }
+
+    pub(super) fn number(&mut self, name: &str, value: impl Into<serde_json::Value>) {
+        self.numbers.insert(name.to_owned(), value.into());
+    }
+
+    pub(super) fn file(&mut self, what: impl Into<String>, path: &Path) {
+        self.files.push(FileNote {
+            what: what.into(),
+            path: path.to_owned(),
+            there: path.exists(),
+        });
+    }
+
+    pub(super) fn note(&mut self, sentence: impl Into<String>) {
+        self.notes.push(sentence.into());
+    }
+
+    pub(super) fn next(&mut self, command: impl Into<String>) {
+        self.next = command.into();
+    }
+
+    /// Bounds on its results.
+    pub(super) fn bounds(&mut self, bounds: &[Expectation]) {
+        let one = |bound: &Expectation| {
+            let side = |word: &str, value: Option<f64>| Some(format!("{word} {}", value?));
+            let sides = [side("at least", bound.min), side("at most", bound.max)];
+            let sides: Vec<String> = sides.into_iter().flatten().collect();
+            format!("{} {}", bound.metric, sides.join(" and "))
+        };
+        for (index, bound) in bounds.iter().enumerate() {
+            self.fact(if index == 0 { "expected" } else { "" }, one(bound));
+        }
+    }
+
+    /// How much is simulated and written.
+    pub(super) fn extent(&mut self, duration: f64, step: f64, bytes_per_sample: f64) {
+        let samples = (duration / step).ceil();
+        let bytes = samples * bytes_per_sample;
+        let text = format!(
+            "{duration:.1} s in steps of {} ms: {samples} samples, about {} of files",
+            shown(step * 1e3),
+            size(bytes)
+        );
+        self.fact("time", text);
+        self.number("duration_s", duration);
+        self.number("step_s", step);
+        self.number("samples", samples);
+        self.number("estimated_bytes", bytes.round());
+    }
+
+    /// The device's main numbers.
+    pub(super) fn device(&mut self, device: &DeviceParameters) {
+        let millimetres = |metres: f64| shown(metres * 1e3);
+        let text = format!(
+            "{} x bore {} mm, rod {} mm, stroke {} mm; moving mass {} kg; supply {} bar gauge",
+            device.cylinder_count,
+            millimetres(device.bore),
+            millimetres(device.rod),
+            millimetres(device.full_stroke),
+            shown(device.moving_mass),
+            shown(device.regulator.supply / 1e5)
+        );
+        self.fact("device", text);
+    }
+
+    /// For people.
+    pub(super) fn text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.file.display(), self.kind);
+        let mut line = |label: &str, said: &str| {
+            // Writing into a text cannot fail.
+            let _ = writeln!(text, "  {label:<LABEL$} {said}");
+        };
+        if let Some(title) = &self.title {
+            line("title", title);
+        }
+        for (label, said) in &self.facts {
+            line(label, said);
+        }
+        for (index, file) in self.files.iter().enumerate() {
+            let absent = if file.there { "" } else { "   NOT THERE" };
+            let said = format!("{} ({}){absent}", file.path.display(), file.what);
+            line(if index == 0 { "files" } else { "" }, &said);
+        }
+        for note in &self.notes {
+            let _ = writeln!(text, "note: {note}");
+        }
+        let _ = writeln!(text, "next: {}", self.next);
+        text
+    }
+
+    /// For programs.
+    pub(super) fn json(&self) -> Result<String, AppError> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+/// A number without what rounding adds to it.
+pub(super) fn shown(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
+
+/// A count of bytes.
+pub(super) fn size(bytes: f64) -> String {
+    match bytes {
+        bytes if bytes < 1e6 => format!("{:.0} kB", (bytes / 1e3).max(1.0)),
+        bytes if bytes < 1e9 => format!("{:.1} MB", bytes / 1e6),
+        bytes => format!("{:.1} GB", bytes / 1e9),
+    }
+}

@@ -1,0 +1,120 @@
+//! A rig file explained, and a case of `idc diagnose`: a rig file with the recordings that it names.
+
+use std::path::Path;
+
+use super::super::diagnose::{rig_of, to_fit};
+use super::super::error::AppError;
+use super::super::recordings::read_rig;
+use super::report::{Report, shown};
+use crate::diagnosis::recorded::{COLUMNS, recorded_of};
+use crate::plant::Chain;
+use crate::scenario::rig_file::{RigFile, load_rig};
+
+/// A rig file alone.
+pub(super) fn rig(file: &Path) -> Result<Report, AppError> {
+    let rig = load_rig(file)?;
+    let mut report = Report::new(
+        file,
+        "a rig file: a device as its owner believes it to be",
+        None,
+    );
+    describe(&mut report, &rig);
+    let folder = file.parent().unwrap_or(Path::new(""));
+    for name in rig.fit.iter().filter(|name| !name.contains('*')) {
+        report.file("recording to diagnose from", &folder.join(name));
+    }
+    if let Some(name) = &rig.predict {
+        report.file("recording to predict", &folder.join(name));
+    }
+    if rig.fit.is_empty() {
+        report.note("`recordings.fit` names no recording; idc diagnose asks for one at least");
+    }
+    report.next(format!("idc predict {} RECORDING", file.display()));
+    Ok(report)
+}
+
+/// A folder with a rig file and its recordings, read as `idc diagnose` would.
+pub(super) fn case(folder: &Path) -> Result<Report, AppError> {
+    let rig = rig_of(folder)?;
+    let mut report = Report::new(
+        folder,
+        "a case to diagnose: a rig file and recordings",
+        None,
+    );
+    describe(&mut report, &rig);
+    let names = to_fit(&rig, folder)?;
+    for name in &names {
+        recording(&mut report, &rig, folder, name, "to diagnose from")?;
+    }
+    if let Some(name) = &rig.predict {
+        recording(&mut report, &rig, folder, name, "to be predicted")?;
+    }
+    report.number("recordings", names.len());
+    report.next(format!("idc diagnose {} --out DIR", folder.display()));
+    Ok(report)
+}
+
+fn describe(report: &mut Report, rig: &RigFile) {
+    let plant = &rig.plant;
+    if plant.chain == Chain::Whole {
+        report.device(&plant.device);
+    } else {
+        report.fact(
+            "part",
+            format!("{} alone ([rig] chain)", plant.chain.name()),
+        );
+    }
+    let tolerances: Vec<String> = (rig.tolerances.iter())
+        .map(|t| format!("{} to {} %", t.key, shown(t.tolerance * 100.0)))
+        .collect();
+    for (index, chunk) in tolerances.chunks(2).enumerate() {
+        report.fact(if index == 0 { "believed" } else { "" }, chunk.join(", "));
+    }
+    for (effect, _) in &rig.effects {
+        report.fact("effect", effect.name);
+    }
+    if let Some(latent) = &plant.latent {
+        let variable = latent.variable.name();
+        report.fact("latent", format!("a term without a name over {variable}"));
+    }
+    report.fact("rate", format!("{} Hz", shown(rig.rate)));
+    report.number("rate_hz", rig.rate);
+}
+
+/// One recording, as far as a reader of it needs to know.
+fn recording(
+    report: &mut Report,
+    rig: &RigFile,
+    folder: &Path,
+    name: &str,
+    what: &str,
+) -> Result<(), AppError> {
+    let path = folder.join(name);
+    let read = read_rig(rig.plant.chain, &path)?;
+    let time = read.time();
+    let span = time.last().unwrap_or(&0.0) - time.first().unwrap_or(&0.0);
+    let mut measured = String::new();
+    if rig.plant.chain != Chain::ContactFlange {
+        let file = path.display().to_string();
+        let taken = recorded_of(rig.plant.chain, &file, &read)?;
+        let there = |channel: &usize| taken.readings[*channel].iter().any(|v| v.is_finite());
+        let columns: Vec<&str> = (0..COLUMNS.len())
+            .filter(there)
+            .map(|channel| COLUMNS[channel])
+            .collect();
+        measured = match columns.is_empty() {
+            true => "; nothing measured".to_owned(),
+            false => format!("; measured: {}", columns.join(", ")),
+        };
+    }
+    let samples = read.sample_count();
+    report.fact(
+        "recording",
+        format!(
+            "{name}, {what}: {samples} samples in {} s{measured}",
+            shown(span)
+        ),
+    );
+    report.file(what, &path);
+    Ok(())
+}

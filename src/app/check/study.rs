@@ -1,0 +1,108 @@
+//! A design study, an import map and a device model explained.
+
+use std::path::Path;
+
+use super::super::error::AppError;
+use super::report::{Report, shown};
+use crate::design::{self, Domain};
+use crate::import::load_map;
+use crate::import::map::{Clock, Form};
+use crate::scenario::{load_any, load_device};
+
+/// A design study.
+pub(super) fn study(file: &Path) -> Result<Report, AppError> {
+    let study = design::load(file)?;
+    let mut report = Report::new(file, "a design study", Some(&study.title));
+    for (index, variable) in study.variables.iter().enumerate() {
+        let range = match &variable.domain {
+            Domain::Linear(low, high) => format!("{} to {}", shown(*low), shown(*high)),
+            Domain::Logarithmic(low, high) => {
+                format!("{} to {}, in ratios", shown(*low), shown(*high))
+            }
+            Domain::Catalogue(entries) => format!("one of {} catalogue values", entries.len()),
+        };
+        let start = shown(variable.start);
+        report.fact(
+            if index == 0 { "varied" } else { "" },
+            format!("{}: {range}, from {start}", variable.key),
+        );
+    }
+    report.fact("minimised", study.objective.metric.as_str());
+    if let Some(key) = study.trade_off_key() {
+        let front = format!("against {key}, {} points of the front", study.front_points);
+        report.fact("traded off", front);
+    }
+    for (index, limit) in study.limits.iter().enumerate() {
+        let side = match limit.side {
+            design::Side::Min => "at least",
+            design::Side::Max => "at most",
+        };
+        report.fact(
+            if index == 0 { "limits" } else { "" },
+            format!("{} {side} {}", limit.key(), shown(limit.bound)),
+        );
+    }
+    let scenarios = study.scenarios.len();
+    report.fact(
+        "extent",
+        format!(
+            "at most {} designs, each in {scenarios} scenarios",
+            study.evaluations
+        ),
+    );
+    report.number("evaluations", study.evaluations);
+    report.number("scenarios", scenarios);
+    for scenario in &study.scenarios {
+        load_any(scenario)?;
+        report.file("scenario", scenario);
+    }
+    report.next(format!("idc design {}", file.display()));
+    Ok(report)
+}
+
+/// An import map.
+pub(super) fn map(file: &Path) -> Result<Report, AppError> {
+    let map = load_map(file)?;
+    let kind = "an import map: what the columns of a log are";
+    let mut report = Report::new(file, kind, Some(&map.title));
+    for log in &map.files {
+        let form = match &log.form {
+            Form::Text(_) => "a text",
+            Form::Parquet => "Parquet",
+            Form::Mat5 => "MATLAB",
+            Form::Mcap => "MCAP",
+        };
+        let clock = match &log.clock {
+            Clock::Shared { .. } => "",
+            Clock::Unknown { .. } => ", its clock off by what is to be found",
+        };
+        let time = match &log.time {
+            None => "times at which messages were logged".to_owned(),
+            Some(time) => format!("times in {}", time.column),
+        };
+        report.fact("log", format!("{form}, {time}{clock}"));
+        for channel in &log.channels {
+            let text = format!(
+                "{} from {}, in {}",
+                channel.quantity, channel.column, channel.unit.name
+            );
+            report.fact("channel", text);
+        }
+        if let Some(path) = &log.path {
+            report.file("log", path);
+        }
+    }
+    report.number("logs", map.files.len());
+    report.next(format!("idc import {} LOGS", file.display()));
+    Ok(report)
+}
+
+/// A device model.
+pub(super) fn model(file: &Path) -> Result<Report, AppError> {
+    let device = load_device(file)?;
+    let kind = "a device model, for [device] model of a scenario";
+    let mut report = Report::new(file, kind, None);
+    report.device(&device.parameters);
+    report.next("idc new cell, whose [device] names it".to_owned());
+    Ok(report)
+}

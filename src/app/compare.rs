@@ -1,0 +1,388 @@
+//! `idc compare`: several runs, or several diagnoses, side by side.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::diagnose::DIAGNOSIS;
+use super::error::{AppError, ExitCode};
+use super::files::{SUMMARY, Standing, prepare_file};
+use super::output::say;
+use super::report::{RunResult, chart_groups, labels, read_json, read_run};
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::words::{capital, figures, percent, spoken};
+use crate::figure::{Horizontal, Panel, Role, Series, Stroke};
+use crate::page::{Block, Cell, Chart, Fact, Page, Section, Table, Tone, html};
+use crate::recording::atomic::write_text;
+use crate::recording::schema;
+
+/// For the help.
+pub(super) const EXAMPLES: &str = "\
+Numbers of the second and further folders stand beside their change against the
+first. Folders hold runs, or diagnoses, not both.
+
+Examples:
+  # two runs: numbers side by side, and a page with signals over one another
+  idc run scenarios/paper_step.toml --out runs/step --quiet
+  idc run scenarios/hand_push.toml --out runs/push --quiet
+  idc compare runs/step runs/push --out runs/step_and_push.html
+  # the same numbers for a program
+  idc compare runs/step runs/push --json";
+
+/// Colours of runs over one another, in order; there are no more.
+const COLOURS: [Role; 7] = [
+    Role::Regulator,
+    Role::Force,
+    Role::Stroke,
+    Role::Estimate,
+    Role::Band,
+    Role::Measured,
+    Role::Command,
+];
+/// Signals that are drawn over one another.
+const SIGNALS: [&str; 6] = [
+    schema::CONTACT_FORCE,
+    schema::STROKE,
+    schema::REGULATOR_PRESSURE,
+    schema::CHAMBER_1_PRESSURE,
+    schema::PATH_ERROR,
+    schema::PATH_ERROR_AXIAL,
+];
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// Folders with results, two to seven; the first is what the others are compared with.
+    #[arg(num_args = 2..=COLOURS.len(), required = true)]
+    folders: Vec<PathBuf>,
+    /// File for a page with all of it drawn over one another.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Put the page in place of a file of that name.
+    #[arg(long)]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long)]
+    quiet: bool,
+    /// Print the numbers as JSON.
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+/// Numbers side by side: name, unit, key, and one value per folder.
+struct Row {
+    name: String,
+    unit: String,
+    key: String,
+    factor: f64,
+    values: Vec<Option<f64>>,
+}
+
+/// What is compared.
+struct Compared {
+    names: Vec<String>,
+    /// A sentence per folder.
+    verdicts: Vec<String>,
+    rows: Vec<Row>,
+    runs: Vec<RunResult<'static>>,
+}
+
+/// Compares and prints.
+pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
+    if let Some(out) = &arguments.out {
+        prepare_file(out, Standing::of(arguments.force))?;
+    }
+    let compared = read(&arguments.folders)?;
+    if let Some(out) = &arguments.out {
+        write_text(out, &html(&page(&compared)))?;
+    }
+    if arguments.json {
+        return print_json(&compared, arguments.out.as_deref());
+    }
+    if !arguments.quiet {
+        say(&text(&compared))?;
+        if let Some(out) = &arguments.out {
+            say(&format!("\nwritten to {}\n", out.display()))?;
+        }
+    }
+    Ok(ExitCode::Done)
+}
+
+fn read(folders: &[PathBuf]) -> Result<Compared, AppError> {
+    let diagnosed = |folder: &PathBuf| folder.join(DIAGNOSIS).is_file();
+    let is_run = |folder: &PathBuf| folder.join(SUMMARY).is_file();
+    for folder in folders {
+        if !diagnosed(folder) && !is_run(folder) {
+            return Err(AppError::NoResults {
+                folder: folder.display().to_string(),
+            });
+        }
+    }
+    let names = folders.iter().map(|f| f.display().to_string()).collect();
+    if folders.iter().all(diagnosed) {
+        let answers = folders.iter().map(|f| read_json(&f.join(DIAGNOSIS)));
+        return Ok(of_diagnoses(
+            names,
+            &answers.collect::<Result<Vec<_>, _>>()?,
+        ));
+    }
+    if let Some(odd) = folders.iter().find(|f| diagnosed(f)) {
+        return Err(AppError::MixedResults {
+            diagnosis: odd.display().to_string(),
+        });
+    }
+    let runs: Vec<RunResult<'static>> = folders
+        .iter()
+        .map(|f| read_run(f))
+        .collect::<Result<_, _>>()?;
+    Ok(of_runs(names, runs))
+}
+
+fn of_runs(names: Vec<String>, runs: Vec<RunResult<'static>>) -> Compared {
+    let mut keys: Vec<&str> = Vec::new();
+    for run in &runs {
+        for (key, _) in run.metrics() {
+            if !keys.contains(&key) {
+                keys.push(key);
+            }
+        }
+    }
+    let row = |key: &str| {
+        let (label, unit, _) = labels(key)?;
+        let value = |run: &RunResult<'_>| run.document["summary"][key].as_f64();
+        Some(Row {
+            name: label.to_owned(),
+            unit: (if unit == "1" { "" } else { unit }).to_owned(),
+            key: key.to_owned(),
+            factor: 1.0,
+            values: runs.iter().map(value).collect(),
+        })
+    };
+    Compared {
+        rows: keys.into_iter().filter_map(row).collect(),
+        verdicts: runs.iter().map(|run| run.title().to_owned()).collect(),
+        names,
+        runs,
+    }
+}
+
+fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
+    let mut rows: Vec<Row> = Vec::new();
+    let mut add = |name: String, unit: &str, factor, place: usize, key: String, value| {
+        let index = match rows.iter().position(|row| row.key == key) {
+            Some(index) => index,
+            None => {
+                rows.push(Row {
+                    name,
+                    unit: unit.to_owned(),
+                    key,
+                    factor,
+                    values: vec![None; answers.len()],
+                });
+                rows.len() - 1
+            }
+        };
+        rows[index].values[place] = Some(value);
+    };
+    for (place, answer) in answers.iter().enumerate() {
+        for effect in &answer.effects {
+            let words = effect.name.replace('_', " ");
+            let key = format!("{}.probability", effect.name);
+            add(
+                format!("{words}: probability"),
+                "",
+                1.0,
+                place,
+                key,
+                effect.confidence,
+            );
+            for (name, estimate) in &effect.parameters {
+                let (spoken, unit, factor) = spoken(name);
+                let key = format!("{}.{name}", effect.name);
+                add(
+                    format!("{words}: {spoken}"),
+                    unit,
+                    factor,
+                    place,
+                    key,
+                    estimate.value,
+                );
+            }
+        }
+        for error in &answer.details.prediction {
+            let (spoken, unit, factor) = spoken(&error.channel);
+            let key = format!("prediction.{}", error.channel);
+            let name = format!("error of {spoken}, not fitted to");
+            add(name, unit, factor, place, key, error.after);
+        }
+    }
+    let verdict = |answer: &Answer| {
+        let headline = capital(&answer.details.account.headline.replace('_', " "));
+        match answer.details.explained_share {
+            Some(share) => format!("{headline} ({} of the mismatch explained)", percent(share)),
+            None => headline,
+        }
+    };
+    Compared {
+        names,
+        verdicts: answers.iter().map(verdict).collect(),
+        rows,
+        runs: Vec::new(),
+    }
+}
+
+impl Row {
+    fn shown(&self, place: usize) -> String {
+        self.values[place].map_or("–".to_owned(), |v| figures(self.factor * v, 4))
+    }
+
+    /// Change against the first; none where either is absent, or the first is nothing.
+    fn change(&self, place: usize) -> Option<String> {
+        let (first, own) = (self.values[0]?, self.values[place]?);
+        let share = 100.0 * (own - first) / first.abs();
+        match share {
+            _ if own == first => Some("=".to_owned()),
+            share if !share.is_finite() => None,
+            share if share.abs() >= 1000.0 => Some(format!("x{}", figures(own / first, 2))),
+            share => Some(format!("{share:+.1} %")),
+        }
+    }
+}
+
+fn text(compared: &Compared) -> String {
+    let mut text = String::new();
+    // Writing into a text cannot fail.
+    for (name, verdict) in compared.names.iter().zip(&compared.verdicts) {
+        let _ = writeln!(text, "{name}: {verdict}");
+    }
+    text.push('\n');
+    let mut table: Vec<Vec<String>> = vec![vec![String::new()]];
+    table[0].extend(compared.names.iter().map(|name| short(name)));
+    for row in &compared.rows {
+        let unit = match row.unit.is_empty() {
+            true => String::new(),
+            false => format!(" [{}]", row.unit),
+        };
+        let mut cells = vec![format!("{}{unit}", row.name), row.shown(0)];
+        cells.extend((1..row.values.len()).map(|place| match row.change(place) {
+            Some(change) => format!("{} ({change})", row.shown(place)),
+            None => row.shown(place),
+        }));
+        table.push(cells);
+    }
+    let count = compared.names.len() + 1;
+    let width = |column: usize| {
+        let cells = table.iter().map(|cells| cells[column].chars().count());
+        cells.max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..count).map(width).collect();
+    for cells in &table {
+        let _ = write!(text, "{:<1$}", cells[0], widths[0]);
+        for (cell, width) in cells.iter().zip(&widths).skip(1) {
+            let _ = write!(text, "  {cell:>width$}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The last part of a folder's path.
+fn short(name: &str) -> String {
+    let last = Path::new(name).file_name();
+    last.map_or_else(|| name.to_owned(), |last| last.display().to_string())
+}
+
+fn print_json(compared: &Compared, out: Option<&Path>) -> Result<ExitCode, AppError> {
+    let row = |row: &Row| json!({"key": row.key, "name": row.name, "values": row.values});
+    let document = json!({
+        "folders": compared.names,
+        "verdicts": compared.verdicts,
+        "numbers": compared.rows.iter().map(row).collect::<Vec<Value>>(),
+        "page": out,
+    });
+    say(&format!("{}\n", serde_json::to_string_pretty(&document)?))?;
+    Ok(ExitCode::Done)
+}
+
+fn page(compared: &Compared) -> Page<'_> {
+    let names: Vec<String> = compared.names.iter().map(|name| short(name)).collect();
+    let facts = names
+        .iter()
+        .zip(&compared.verdicts)
+        .map(|(name, verdict)| Fact {
+            name: name.clone(),
+            value: String::new(),
+            remark: verdict.clone(),
+        });
+    let signals = Section::new("Over one another", over_one_another(compared, &names));
+    let numbers = Section::new("Numbers", vec![Block::Table(table(compared, &names))]);
+    let sections = [signals, numbers].into_iter();
+    Page {
+        title: "Comparison".to_owned(),
+        verdict: names.join(" / "),
+        tone: Tone::Plain,
+        facts: facts.collect(),
+        sections: sections.filter(|s| !s.blocks.is_empty()).collect(),
+        footer: "Made by idc compare.".to_owned(),
+        ..Page::default()
+    }
+}
+
+fn over_one_another<'a>(compared: &'a Compared, names: &[String]) -> Vec<Block<'a>> {
+    let mut blocks = Vec::new();
+    for group in chart_groups() {
+        for (quantity, words, ..) in group.lines.iter().filter(|line| SIGNALS.contains(&line.0)) {
+            let line = |(place, run): (usize, &RunResult<'_>)| {
+                let values = &run.recording.channel(quantity)?.values;
+                let values: Vec<f64> = values.iter().map(|v| v * group.factor).collect();
+                let time = run.recording.time().to_vec();
+                // Where runs agree, both are seen.
+                let stroke = match place % 2 {
+                    0 => Stroke::Plain,
+                    _ => Stroke::Dashed,
+                };
+                let name = names[place].clone();
+                Some(Series::new(name, time, values, COLOURS[place], stroke))
+            };
+            let series: Vec<Series<'_>> =
+                compared.runs.iter().enumerate().filter_map(line).collect();
+            if !series.is_empty() {
+                blocks.push(Block::Chart(Chart {
+                    panel: Panel {
+                        title: format!("{}: {words}", group.title),
+                        vertical_label: group.label.to_owned(),
+                        horizontal: Horizontal::Time,
+                        series,
+                        ..Panel::default()
+                    },
+                    group: "runs".to_owned(),
+                    ..Chart::default()
+                }));
+            }
+        }
+    }
+    blocks
+}
+
+fn table(compared: &Compared, names: &[String]) -> Table {
+    let mut columns = vec!["number".to_owned(), "unit".to_owned()];
+    for (place, name) in names.iter().enumerate() {
+        columns.push(format!("#{name}"));
+        if place > 0 {
+            columns.push("#change".to_owned());
+        }
+    }
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let row = |row: &Row| {
+        let mut cells = vec![Cell::from(row.name.clone()), Cell::from(row.unit.clone())];
+        for place in 0..row.values.len() {
+            cells.push(Cell::from(row.shown(place)));
+            if place > 0 {
+                cells.push(Cell::from(row.change(place).unwrap_or_default()));
+            }
+        }
+        cells
+    };
+    Table::new("", &columns, compared.rows.iter().map(row).collect())
+}

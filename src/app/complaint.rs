@@ -1,0 +1,111 @@
+//! How an error is told: one sentence on standard error, below it the line of the file that it is about with a caret; as JSON where JSON was asked for.
+//!
+//!     error: cell.toml:28:1: unknown key `process.froce_n`; did you mean `force_n`?
+//!       --> cell.toml:28:1
+//!        |
+//!     28 | froce_n = 150
+//!        | ^^^^^^^
+
+use std::path::Path;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use anstream::eprintln;
+use anstyle::{AnsiColor, Style};
+
+use super::error::{AppError, ExitCode};
+use crate::cell::CellError;
+use crate::design::DesignError;
+use crate::metrics::MetricsError;
+use crate::scenario::error::Place;
+use crate::scenario::place_of;
+
+/// The word that an error begins with.
+const WORD: Style = AnsiColor::BrightRed.on_default().bold();
+
+/// Was JSON asked for, of whichever command?
+pub fn wants_json(matches: &clap::ArgMatches) -> bool {
+    let Some((_, command)) = matches.subcommand() else {
+        return false;
+    };
+    let flag = command.try_get_one::<bool>("json");
+    matches!(flag, Ok(Some(true))) || wants_json(command)
+}
+
+/// Tells an error on standard error.
+pub fn complain(error: &AppError, json: bool) {
+    let code = error.exit_code();
+    let place = place(error);
+    if json {
+        eprintln!("{}", as_json(error, code, place.as_ref()));
+        return;
+    }
+    let word = if code == ExitCode::Stopped {
+        "stopped"
+    } else {
+        "error"
+    };
+    eprintln!("{WORD}{word}{WORD:#}: {error}");
+    if let Some(excerpt) = place.as_ref().and_then(excerpt) {
+        eprintln!("{excerpt}");
+    }
+}
+
+/// Where in a file the error is.
+fn place(error: &AppError) -> Option<Place> {
+    let of_key = |file: &Path, key: &str| place_of(file, key);
+    match error {
+        AppError::Scenario(error) | AppError::Cell(CellError::Scenario(error)) => {
+            error.place().cloned()
+        }
+        AppError::Cell(
+            CellError::EdgeUnknown { file, .. } | CellError::EdgeNotConvex { file, .. },
+        ) => of_key(file, "workpiece.edge"),
+        AppError::Cell(CellError::JointStiffness { file, .. }) => {
+            of_key(file, "joints.stiffness_n_m_per_rad")
+        }
+        AppError::Design(error) => match &**error {
+            DesignError::File(error) => error.place().cloned(),
+            DesignError::Variable { place, .. } | DesignError::UnknownMetric { place, .. } => {
+                Some(place.clone())
+            }
+            _ => None,
+        },
+        AppError::Metrics { file, source } => match source {
+            MetricsError::UnknownMetric { metric, .. } | MetricsError::Bound { metric, .. } => {
+                of_key(Path::new(file), &format!("expect.{metric}"))
+            }
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The line with carets below what is meant.
+fn excerpt(place: &Place) -> Option<String> {
+    let (line, _) = place.position?;
+    let excerpt = place.excerpt.as_ref()?;
+    let file = place.file.display().to_string();
+    let snippet = Snippet::source(&excerpt.line)
+        .line_start(line)
+        .path(file)
+        .annotation(AnnotationKind::Primary.span(excerpt.meant.clone()));
+    let group = Group::with_level(Level::ERROR).element(snippet);
+    // `anstream` takes the colours out where there is no terminal.
+    Some(Renderer::styled().render(&[group]))
+}
+
+/// One line: {"error": {"message", "exit_code"}}, and "file", "line", "column" where it is in a file.
+fn as_json(error: &AppError, code: ExitCode, place: Option<&Place>) -> serde_json::Value {
+    let mut told = serde_json::json!({
+        "message": error.to_string(),
+        "exit_code": code as u8,
+    });
+    if let Some(place) = place {
+        told["file"] = place.file.display().to_string().into();
+        if let Some((line, column)) = place.position {
+            told["line"] = line.into();
+            told["column"] = column.into();
+        }
+    }
+    serde_json::json!({ "error": told })
+}

@@ -1,0 +1,178 @@
+//! `idc new`: a commented file to start from, which can be used as it stands. What a cell needs beside it (arm, device, part) comes with the program.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::error::{AppError, ExitCode};
+use super::files::{Standing, prepare_file};
+use super::output::say;
+use crate::recording::atomic::write_atomic;
+
+/// For the help.
+pub(super) const EXAMPLES: &str = "\
+Exit codes: 0 done, 2 bad input, or a file that stands already (--force).
+
+Examples:
+  # A robot cell; arm, device and part go beside it.
+  idc new cell runs/mine/cell.toml
+  idc run runs/mine/cell.toml --out runs/mine/first
+  # A rig file and an import map, for logs of a device on a bench.
+  idc new rig runs/mine/rig.toml
+  idc new import runs/mine/map.toml
+  # Each can be checked.
+  idc check runs/mine/rig.toml";
+
+/// Where a template names the folder of models.
+const MODELS: &str = "MODELS";
+/// Files that a cell needs.
+const BESIDE: [(&str, &[u8]); 3] = [
+    ("arm10.urdf", include_bytes!("../../models/arm/arm10.urdf")),
+    ("device.toml", include_bytes!("../../models/device.toml")),
+    ("plate.stl", include_bytes!("../../assets/plate.stl")),
+];
+
+#[derive(Debug, Args)]
+pub(super) struct NewArguments {
+    /// What to begin with.
+    #[arg(value_enum)]
+    kind: Kind,
+    /// File to write [default: new_KIND.toml].
+    file: Option<PathBuf>,
+    /// The same as FILE.
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "file",
+        help_heading = "Output"
+    )]
+    out: Option<PathBuf>,
+    /// Put new files in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print as JSON what was written.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Kind {
+    /// A scenario: arm, device and part.
+    Cell,
+    /// A rig file: a device as its owner believes it to be.
+    Rig,
+    /// An import map: what the columns of a log are.
+    Import,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Cell => "cell",
+            Self::Rig => "rig",
+            Self::Import => "import",
+        }
+    }
+
+    fn template(self) -> &'static str {
+        match self {
+            Self::Cell => include_str!("../../assets/new/cell.toml"),
+            Self::Rig => include_str!("../../assets/new/rig.toml"),
+            Self::Import => include_str!("../../assets/new/import.toml"),
+        }
+    }
+
+    /// What to do next with the file.
+    fn next(self, file: &Path) -> String {
+        let file = file.display();
+        match self {
+            Self::Cell => format!("idc run {file}"),
+            Self::Rig => format!("idc check {file}"),
+            Self::Import => format!("idc import {file} LOG.csv"),
+        }
+    }
+}
+
+/// Writes a file to start from.
+pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
+    let kind = arguments.kind;
+    let usual = || PathBuf::from(format!("new_{}.toml", kind.name()));
+    let given = arguments.file.clone().or_else(|| arguments.out.clone());
+    let file = given.unwrap_or_else(usual);
+    let files = files(kind, &file);
+    // All are looked at before the first is written. What stands there as it would be written can stay.
+    let stays = |path: &Path, content: &[u8]| std::fs::read(path).is_ok_and(|old| old == content);
+    let mut written = Vec::new();
+    for (path, content) in &files {
+        if !stays(path, content) || *path == file {
+            prepare_file(path, Standing::of(arguments.force))?;
+            written.push((path, content));
+        }
+    }
+    for (path, content) in &written {
+        write_atomic(path, |output| std::io::Write::write_all(output, content))?;
+    }
+    let paths: Vec<&PathBuf> = written.iter().map(|(path, _)| *path).collect();
+    let next = kind.next(&file);
+    if arguments.json {
+        let document = serde_json::json!({ "kind": kind.name(), "written": paths, "next": next });
+        say(&format!("{document:#}\n"))?;
+    } else if !arguments.quiet {
+        let names: Vec<String> = paths
+            .iter()
+            .map(|path| path.display().to_string())
+            .collect();
+        say(&format!("written: {}\nnext: {next}\n", names.join(", ")))?;
+    }
+    Ok(ExitCode::Done)
+}
+
+/// The file and what it needs beside it, with their contents.
+fn files(kind: Kind, file: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let models = format!("{stem}_models");
+    let text = kind.template().replace(MODELS, &models);
+    let mut files = vec![(file.to_owned(), text.into_bytes())];
+    if matches!(kind, Kind::Cell) {
+        let beside = BESIDE.iter();
+        files
+            .extend(beside.map(|(name, content)| {
+                (file.with_file_name(&models).join(name), content.to_vec())
+            }));
+    }
+    files
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cell::Cell;
+    use crate::import::load_map;
+    use crate::scenario::load;
+    use crate::scenario::rig_file::load_rig;
+
+    fn written(kind: Kind) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("deep/my.file.toml");
+        for (path, content) in files(kind, &file) {
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, content).unwrap();
+        }
+        (folder, file)
+    }
+
+    #[test]
+    fn each_is_what_our_own_readers_take() {
+        let (_folder, file) = written(Kind::Cell);
+        let cell = Cell::new(load(&file).unwrap()).unwrap();
+        assert_eq!(cell.scenario.process.force, 150.0);
+        let (_folder, file) = written(Kind::Rig);
+        let rig = load_rig(&file).unwrap();
+        assert_eq!((rig.fit.len(), rig.tolerances.len()), (1, 8));
+        let (_folder, file) = written(Kind::Import);
+        assert_eq!(load_map(&file).unwrap().files[0].channels.len(), 7);
+    }
+}

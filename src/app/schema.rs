@@ -1,0 +1,74 @@
+//! `idc schema`: what editors need to know of a file's keys.
+
+use clap::{Args, ValueEnum};
+
+use super::error::{AppError, ExitCode};
+use super::output::say;
+use crate::{design, import, metrics, scenario};
+
+/// For the help.
+pub(super) const EXAMPLES: &str = "\
+They stand in assets/schemas as well. An editor for TOML (taplo, Even Better
+TOML of VS Code) takes one from the first line of a file:
+  #:schema https://example.org/schemas/scenario.json, or a path
+
+Exit codes: 0 done, 2 bad input.
+
+Examples:
+  # Keys, units, ranges and defaults of a scenario.
+  idc schema scenario > scenario.json
+  # Every key of a rig file's cylinder.
+  idc schema rig | python3 -c 'import json, sys; \\
+      print(*json.load(sys.stdin)[\"properties\"][\"cylinder\"][\"properties\"])'";
+
+#[derive(Debug, Args)]
+pub(super) struct SchemaArguments {
+    /// Which file.
+    #[arg(value_enum)]
+    file: File,
+}
+
+/// A file that has a schema.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum File {
+    /// A scenario: a cell, a bench or a recorded cell.
+    Scenario,
+    /// A rig file.
+    Rig,
+    /// An import map.
+    Import,
+    /// A design study.
+    Study,
+    /// A device model.
+    Device,
+}
+
+impl File {
+    fn schema(self) -> serde_json::Value {
+        match self {
+            Self::Scenario => with_metrics(scenario::schema::scenario()),
+            Self::Rig => scenario::schema::rig(),
+            Self::Import => import::map_file::schema(),
+            Self::Study => design::schema(),
+            Self::Device => scenario::schema::device(),
+        }
+    }
+}
+
+/// Names the metrics that `[expect]` may bound.
+fn with_metrics(mut schema: serde_json::Value) -> serde_json::Value {
+    schema["then"]["properties"]["expect"]["propertyNames"] = one_of(metrics::BENCH_METRICS);
+    schema["else"]["else"]["properties"]["expect"]["propertyNames"] = one_of(metrics::METRICS);
+    schema
+}
+
+fn one_of<S>(metrics: &[metrics::Metric<S>]) -> serde_json::Value {
+    let names: Vec<&str> = metrics.iter().map(|metric| metric.name).collect();
+    serde_json::json!({ "enum": names })
+}
+
+/// Prints a schema.
+pub(super) fn run(arguments: &SchemaArguments) -> Result<ExitCode, AppError> {
+    say(&format!("{:#}\n", arguments.file.schema()))?;
+    Ok(ExitCode::Done)
+}

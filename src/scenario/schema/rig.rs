@@ -1,0 +1,116 @@
+//! JSON Schema of a rig file: its tables hold numbers by key, which are not fields of a type.
+
+use serde_json::{Map, Value, json};
+
+use super::super::rig_file::described_numbers;
+use super::DIALECT;
+use crate::effects::candidates;
+use crate::plant::Chain;
+
+/// Schema of a rig file.
+#[must_use]
+pub fn schema() -> Value {
+    let mut tables: Map<String, Value> = Map::new();
+    for (table, key, text, [low, high]) in described_numbers() {
+        let number = number(&text, Some([low, high]));
+        let entry = tables.entry(table).or_insert_with(|| table_of(Map::new()));
+        entry["properties"][key] = number;
+    }
+    let chains = Chain::ALL.map(Chain::name);
+    tables.insert(
+        "schema".to_owned(),
+        json!({ "const": 1, "description": "Version of this format." }),
+    );
+    tables.insert(
+        "rig".to_owned(),
+        json!({
+            "type": "object",
+            "properties": { "chain": {
+                "enum": chains,
+                "description": "How much of the device there is. Default: whole.",
+            } },
+            "additionalProperties": false,
+        }),
+    );
+    tables.insert(
+        "recordings".to_owned(),
+        json!({
+            "type": "object",
+            "properties": {
+                "fit": {
+                    "type": "array",
+                    "items": { "type": "string" },
+                    "description": "Recordings beside this file to diagnose from; a star stands for all that fit.",
+                },
+                "predict": {
+                    "type": "string",
+                    "description": "Recording that is kept back, to be predicted.",
+                },
+            },
+            "additionalProperties": false,
+        }),
+    );
+    tables.insert("effect".to_owned(), effects());
+    tables.insert(
+        "latent".to_owned(),
+        json!({ "type": "object", "description": "Physics that no known effect explains, as a diagnosis writes it." }),
+    );
+    json!({
+        "$schema": DIALECT,
+        "title": "A rig file of idc: a device, its contact and its sensors as their owner believes them to be, in SI",
+        "type": "object",
+        "properties": tables,
+        "required": ["schema"],
+        "additionalProperties": false,
+    })
+}
+
+fn table_of(properties: Map<String, Value>) -> Value {
+    json!({ "type": "object", "properties": properties, "additionalProperties": false })
+}
+
+/// A number, alone or with what is known of its accuracy.
+fn number(text: &str, range: Option<[f64; 2]>) -> Value {
+    let mut plain = json!({ "type": "number" });
+    if let Some([low, high]) = range {
+        plain["minimum"] = low.into();
+        plain["maximum"] = high.into();
+    }
+    json!({
+        "description": text,
+        "anyOf": [
+            plain,
+            {
+                "type": "object",
+                "properties": {
+                    "value": plain,
+                    "tolerance": {
+                        "type": "number",
+                        "minimum": 0.0,
+                        "exclusiveMaximum": 1.0,
+                        "description": "Half the width of what is believed, as a share of the value.",
+                    },
+                    "low": { "type": "number" },
+                    "high": { "type": "number" },
+                },
+                "required": ["value"],
+                "additionalProperties": false,
+            },
+        ],
+    })
+}
+
+/// `[effect.NAME]`, those of every part of a device.
+fn effects() -> Value {
+    let mut names = Map::new();
+    for effect in Chain::ALL.into_iter().flat_map(candidates) {
+        let mut properties = Map::new();
+        for parameter in (effect.parameters)(&super::super::rig_file::blank()) {
+            properties.insert(parameter.quantity.name.to_owned(), number("", None));
+        }
+        names.insert(effect.name.to_owned(), table_of(properties));
+    }
+    let mut effects = table_of(names);
+    effects["description"] = "Physics beyond the believed model, as a diagnosis writes it.".into();
+    effects
+}

@@ -1,0 +1,134 @@
+//! Every example of every `--help` is run as printed, from a folder that looks like the project's; help fits into 80 columns.
+
+use std::path::Path;
+use std::process::Command;
+
+use clap::CommandFactory as _;
+use idc_cell::app::Cli;
+
+use crate::common::project;
+
+/// What a comment may say of an example that no test runs.
+const REASONS: [&str; 4] = [
+    "(takes minutes)",
+    "(takes hours)",
+    "(opens a window)",
+    "(serves until stopped)",
+];
+
+/// The help of a command as a terminal of 80 columns shows it.
+fn help(command: &[String]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_idc"))
+        .args(command)
+        .arg("--help")
+        .env("COLUMNS", "80")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{command:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Every command by its words, the program itself first; what takes commands itself is followed down.
+fn commands() -> Vec<Vec<String>> {
+    fn note(command: &clap::Command, words: &[String], found: &mut Vec<Vec<String>>) {
+        found.push(words.to_vec());
+        for sub in command.get_subcommands() {
+            if !sub.is_hide_set() && sub.get_name() != "help" {
+                let words = [words, &[sub.get_name().to_owned()]].concat();
+                note(sub, &words, found);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    note(&Cli::command(), &[], &mut found);
+    found
+}
+
+/// Examples: the command as it would be pasted, and the comment above it.
+fn examples(help: &str) -> Vec<(String, String)> {
+    let Some((_, text)) = help.split_once("Examples:\n") else {
+        return Vec::new();
+    };
+    let mut found: Vec<(String, String)> = Vec::new();
+    let mut comment = String::new();
+    let mut open = false;
+    for line in text.lines() {
+        if open {
+            let (command, _) = found.last_mut().unwrap();
+            *command += &format!("\n{line}");
+        } else if let Some(words) = line.strip_prefix("  # ") {
+            comment = words.to_owned();
+        } else {
+            let command = line.strip_prefix("  ");
+            let command =
+                command.unwrap_or_else(|| panic!("neither comment nor example: {line:?}"));
+            found.push((command.to_owned(), comment.clone()));
+        }
+        open = line.ends_with('\\');
+    }
+    found
+}
+
+/// A folder with what the project comes with, where nothing can be spoiled.
+pub fn place() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["assets", "docs", "models", "scenarios"] {
+        std::os::unix::fs::symlink(project(name), folder.path().join(name)).unwrap();
+    }
+    folder
+}
+
+/// Runs a line in a shell that knows this program as `idc`.
+pub fn shell(line: &str, folder: &Path) -> std::process::Output {
+    let program = Path::new(env!("CARGO_BIN_EXE_idc")).parent().unwrap();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let mut paths = vec![program.to_owned()];
+    paths.extend(std::env::split_paths(&path));
+    Command::new("bash")
+        .args(["-e", "-o", "pipefail", "-c", line])
+        .env("PATH", std::env::join_paths(paths).unwrap())
+        .env("HOME", folder)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn every_help_fits_into_80_columns_and_ends_with_examples() {
+    for command in commands() {
+        let text = help(&command);
+        let wide = text.lines().find(|line| line.chars().count() > 80);
+        assert_eq!(wide, None, "{command:?}");
+        let examples = examples(&text);
+        assert!(!examples.is_empty(), "{command:?} has no examples:\n{text}");
+        if let Some(name) = command.first() {
+            let own = |(line, _): &(String, String)| line.contains(&format!("idc {name}"));
+            assert!(
+                examples.iter().any(own),
+                "{command:?}: none of its examples is one of its own"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_example_of_the_help_runs_as_printed() {
+    let mut run = 0;
+    for command in commands() {
+        let folder = place();
+        for (line, comment) in examples(&help(&command)) {
+            if REASONS.iter().any(|reason| comment.contains(reason)) {
+                continue;
+            }
+            let output = shell(&line, folder.path());
+            assert!(
+                output.status.success(),
+                "{line}\n{}{}",
+                String::from_utf8_lossy(&output.stdout),
+                String::from_utf8_lossy(&output.stderr)
+            );
+            run += 1;
+        }
+    }
+    assert!(run > 15, "{run} examples");
+}
