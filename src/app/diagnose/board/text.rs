@@ -39,10 +39,14 @@ pub(super) fn markdown(answer: &Answer, left_out: usize, thinned: bool) -> Strin
     text
 }
 
-/// The numbers of what was found.
+/// The numbers of what was found, each effect above its own.
 fn effects(answer: &Answer) -> String {
     let mut rows = String::new();
     for effect in &answer.effects {
+        let name = effect.name.replace('_', " ");
+        let probability = percent(effect.confidence);
+        // A string takes whatever is written to it.
+        let _ = writeln!(rows, "| **{name}** | probability | {probability} |");
         for (name, estimate) in &effect.parameters {
             let (words, unit, factor) = spoken(name);
             let number = |value: f64| figures(factor * value, 4);
@@ -51,22 +55,16 @@ fn effects(answer: &Answer) -> String {
             let (value, interval) = if low == high {
                 (format!("{}", factor * value), String::new())
             } else {
-                let interval = format!("{} to {} {unit}", number(low), number(high));
+                let interval = format!("{} to {}", number(low), number(high));
                 (number(value), interval)
             };
-            // A string takes whatever is written to it.
-            let _ = writeln!(
-                rows,
-                "| {} | {words} | {value} {unit} | {interval} | {} |",
-                effect.name.replace('_', " "),
-                percent(effect.confidence)
-            );
+            let _ = writeln!(rows, "| {words} | {value} {unit} | {interval} |");
         }
     }
     if rows.is_empty() {
         return rows;
     }
-    format!("\n| effect | number | value | 95 % | probability |\n|---|---|---|---|---|\n{rows}")
+    format!("\n| what is missing | value | 95 % interval |\n|---|---|---|\n{rows}")
 }
 
 /// Errors of prediction on what was not fitted to.
@@ -95,6 +93,6 @@ fn predictions(answer: &Answer) -> String {
         return rows;
     }
     format!(
-        "\n| error of prediction (RMS) | of | as believed | improved | noise |\n|---|---|---|---|---|\n{rows}"
+        "\n| prediction error (RMS) | of | before | after | noise |\n|---|---|---|---|---|\n{rows}"
     )
 }

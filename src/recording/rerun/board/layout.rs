@@ -97,7 +97,8 @@ fn sheet_panel(index: usize, sheet: &Sheet, linked: bool) -> Panel {
     if !sheet.lanes.is_empty() {
         let lanes = sheet::lanes_entity(&entity);
         let name = "Where the recording parts from the believed model";
-        let share = 0.3 + 0.22 * sheet.lanes.len() as f32;
+        // Of the height of all plots, whatever their number.
+        let share = (0.08 + 0.055 * sheet.lanes.len() as f32) * sheet.rows.len() as f32;
         rows.push((share, plain_view(ViewKind::StateTimeline, name, &lanes)));
     }
     for row in &sheet.rows {
