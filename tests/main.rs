@@ -37,3 +37,4 @@ mod standing;
 mod stiff_reference;
 mod stops;
 mod uniformity;
+mod view;

@@ -4,8 +4,10 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::bench_picture::scene_of;
 use super::error::AppError;
 use super::files::provenance;
+use super::viewer::{PART_INTERVAL, Watch};
 use crate::metrics::{BenchLimits, BenchSummary, Timing, Verdict, summarise_bench};
 use crate::recording::Recording;
 use crate::recording::provenance::Provenance;
@@ -31,11 +33,30 @@ pub fn run_rig(
     rig: &Rig,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<FinishedBench, AppError> {
+    run_watched(rig, progress, None)
+}
+
+/// Runs a rig's whole job, and hands what is recorded over to who watches it.
+pub(super) fn run_watched(
+    rig: &Rig,
+    progress: &mut dyn FnMut(usize, usize),
+    watch: Option<&Watch>,
+) -> Result<FinishedBench, AppError> {
     const PROGRESS_STEPS: usize = 500;
     let start = Instant::now();
-    let (recording, stop) = rig.run(&mut |done, total| {
-        if done.is_multiple_of(PROGRESS_STEPS) {
-            progress(done, total);
+    let length = (PART_INTERVAL / rig.scenario.step).round().max(1.0) as usize;
+    let mut handed_over = 0;
+    let (recording, stop) = rig.run_watched(&mut |simulation| {
+        if simulation.steps().is_multiple_of(PROGRESS_STEPS) {
+            progress(simulation.steps(), simulation.total_steps());
+        }
+        if let Some(watch) = watch
+            && (simulation.done() || simulation.steps().is_multiple_of(length))
+            && let Ok(part) = simulation.since(handed_over)
+            && let Ok(scene) = scene_of(&rig.scenario, &part)
+        {
+            handed_over = simulation.sample_count();
+            watch.add(part, scene);
         }
     })?;
     let wall = start.elapsed().as_secs_f64();

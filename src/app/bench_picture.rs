@@ -29,8 +29,12 @@ pub(super) fn scene_of(
     let force = recording.values(schema::CONTACT_FORCE)?;
     let surface = recording.channel(schema::SURFACE_POSITION);
     let mut frames: Vec<usize> = Vec::new();
+    // A part of a run has the frames that the whole would have there.
+    let before = (recording.time()[0] / FRAME_INTERVAL - 1e-6)
+        .ceil()
+        .max(0.0);
     for (index, time) in recording.time().iter().enumerate() {
-        if *time >= FRAME_INTERVAL * frames.len() as f64 - 1e-9 {
+        if *time >= FRAME_INTERVAL * (before + frames.len() as f64) - 1e-9 {
             frames.push(index);
         }
     }

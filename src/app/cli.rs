@@ -10,7 +10,8 @@ use super::files::{OutputFolder, RUN_NAMES, RunOutput, Standing, SummaryDocument
 use super::help;
 use super::output::say;
 use super::picture::scene_of;
-use super::run::run_cell;
+use super::run::run_watched;
+use super::viewer::{Viewing, Watch};
 use super::{bench, bench_figures, bench_picture, progress};
 use crate::cell::Cell;
 use crate::metrics::{self, Verdict};
@@ -50,6 +51,9 @@ enum Command {
     /// Do a design study: find the device that keeps the contact force most uniform under limits.
     #[command(after_help = help::DESIGN)]
     Design(DesignArguments),
+    /// Look at recordings, in Rerun's native viewer where it is installed, otherwise as a web page.
+    #[command(after_help = super::view::EXAMPLES)]
+    View(super::view::ViewArguments),
     /// List the sharp edges of a part and the outlines of its faces.
     #[command(after_help = help::EDGES)]
     Edges(super::edges::EdgesArguments),
@@ -95,6 +99,9 @@ struct RunArguments {
     /// Folder for recording.rrd, samples.parquet and summary.json [default: runs/<scenario name>].
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    /// Watch the run while it goes on: `native` or `web` viewer, `web:PORT`, or the address at which one listens [default: native where it is installed, otherwise web].
+    #[arg(long, value_name = "WHERE", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    view: Option<String>,
     /// Put new results in place of old ones.
     #[arg(long, help_heading = "Output")]
     force: bool,
@@ -173,6 +180,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Check(arguments) => super::check::run(arguments),
         Command::New(arguments) => super::new::run(arguments),
         Command::Design(arguments) => design(arguments),
+        Command::View(arguments) => super::view::run(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
         Command::Import(arguments) => super::import::run(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
@@ -189,9 +197,11 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
 }
 
 fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
-    let scenario = match scenario::load_any(&arguments.scenario)? {
+    let scenario = scenario::load_any(&arguments.scenario)?;
+    let viewing = arguments.view.as_deref().map(Viewing::parse).transpose()?;
+    let scenario = match scenario {
         AnyScenario::Cell(cell) => *cell,
-        AnyScenario::Bench(bench) => return run_bench(arguments, *bench),
+        AnyScenario::Bench(bench) => return run_bench(arguments, *bench, viewing),
     };
     let file = arguments.scenario.display().to_string();
     let metrics_error = |source| AppError::Metrics {
@@ -211,8 +221,10 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
             eprintln!("note: {note}");
         }
     }
+    let watch = open_watch(viewing, arguments.quiet)?;
     let bar = progress::bar("simulating", quiet);
-    let finished = run_cell(&cell, &mut |done, total| progress::tell(&bar, done, total));
+    let told = &mut |done, total| progress::tell(&bar, done, total);
+    let finished = run_watched(&cell, told, watch.as_ref());
     bar.finish_and_clear();
     let finished = finished?;
     let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect)
@@ -220,10 +232,11 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let title = &cell.scenario.title;
     let document = SummaryDocument::new(&cell, &finished, &verdicts)?.text()?;
     let report = super::report::page_of_run(&document, &finished.recording)?;
+    let scene = scene_of(&cell, &finished.recording, &finished.frames)?;
     let names = folder.write(&RunOutput {
         title,
         recording: &finished.recording,
-        scene: &scene_of(&cell, &finished.recording, &finished.frames)?,
+        scene: &scene,
         markdown: markdown(title, &finished.summary, &verdicts),
         opening: opening(arguments),
         summary: &document,
@@ -233,10 +246,19 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let table = text(title, &finished.summary, &verdicts, style());
     let output = [arguments.quiet, arguments.json];
     show(output, &document, &table, &folder, &names)?;
-    Ok(end(finished.stop.as_ref(), &verdicts))
+    let code = end(finished.stop.as_ref(), &verdicts);
+    if let Some(watch) = watch {
+        let summary = markdown(title, &finished.summary, &verdicts);
+        watch.close(scene, summary, quiet);
+    }
+    Ok(code)
 }
 
-fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCode, AppError> {
+fn run_bench(
+    arguments: &RunArguments,
+    scenario: BenchScenario,
+    viewing: Option<Viewing>,
+) -> Result<ExitCode, AppError> {
     let file = arguments.scenario.display().to_string();
     let metrics_error = |source| AppError::Metrics {
         file: file.clone(),
@@ -254,8 +276,11 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
         &RUN_NAMES,
         Standing::of(arguments.force),
     )?;
-    let bar = progress::bar("simulating", arguments.quiet || arguments.json);
-    let finished = bench::run_rig(&rig, &mut |done, total| progress::tell(&bar, done, total));
+    let quiet = arguments.quiet || arguments.json;
+    let watch = open_watch(viewing, arguments.quiet)?;
+    let bar = progress::bar("simulating", quiet);
+    let told = &mut |done, total| progress::tell(&bar, done, total);
+    let finished = bench::run_watched(&rig, told, watch.as_ref());
     bar.finish_and_clear();
     let finished = finished?;
     let scenario = &rig.scenario;
@@ -263,10 +288,11 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
         .map_err(metrics_error)?;
     let document = bench::document(scenario, &finished, &verdicts)?;
     let report = super::report::page_of_run(&document, &finished.recording)?;
+    let scene = bench_picture::scene_of(scenario, &finished.recording)?;
     let names = folder.write(&RunOutput {
         title: &scenario.title,
         recording: &finished.recording,
-        scene: &bench_picture::scene_of(scenario, &finished.recording)?,
+        scene: &scene,
         markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
         opening: opening(arguments),
         summary: &document,
@@ -276,7 +302,22 @@ fn run_bench(arguments: &RunArguments, scenario: BenchScenario) -> Result<ExitCo
     let table = bench_text(&scenario.title, &finished.summary, &verdicts, style());
     let output = [arguments.quiet, arguments.json];
     show(output, &document, &table, &folder, &names)?;
-    Ok(end(finished.stop.as_ref(), &verdicts))
+    let code = end(finished.stop.as_ref(), &verdicts);
+    if let Some(watch) = watch {
+        let summary = bench_markdown(&scenario.title, &finished.summary, &verdicts);
+        watch.close(scene, summary, quiet);
+    }
+    Ok(code)
+}
+
+/// Opens the viewer that `--view` asks for.
+fn open_watch(viewing: Option<Viewing>, quiet: bool) -> Result<Option<Watch>, AppError> {
+    let watch = viewing.map(Watch::begin).transpose()?;
+    let address = watch.as_ref().and_then(Watch::address);
+    if let (Some(address), false) = (address, quiet) {
+        eprintln!("watch the run at {address}");
+    }
+    Ok(watch)
 }
 
 fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {

@@ -2,8 +2,10 @@
 
 mod all;
 mod arm_prediction;
+mod board;
 mod cell;
 mod cell_account;
+mod cell_scene;
 mod comparison_files;
 mod fit_picture;
 mod one;

@@ -269,6 +269,9 @@ pub enum AppError {
     /// A picture.
     #[error(transparent)]
     Figure(#[from] crate::figure::FigureError),
+    /// A viewer.
+    #[error(transparent)]
+    Viewer(#[from] super::viewer::ViewerError),
     /// The terminal, or whatever is in its place.
     #[error("cannot print: {0}")]
     Print(std::io::Error),

@@ -117,22 +117,20 @@ impl OutputFolder {
                 format!("idc {}", env!("CARGO_PKG_VERSION")),
             ),
         ]);
-        write_parquet(
-            &unfinished.path().join(SAMPLES),
-            output.recording,
-            &metadata,
-        )?;
         let options = RerunOptions {
             summary_markdown: output.markdown.clone(),
             opening: output.opening,
             ..RerunOptions::default()
         };
-        write_rrd(
-            &unfinished.path().join(RECORDING),
-            output.recording,
-            output.scene,
-            &options,
-        )?;
+        let (table, picture) = [SAMPLES, RECORDING]
+            .map(|name| unfinished.path().join(name))
+            .into();
+        // The two large files, side by side.
+        let written = rayon::join(
+            || write_parquet(&table, output.recording, &metadata),
+            || write_rrd(&picture, output.recording, output.scene, &options),
+        );
+        written.0.and(written.1)?;
         write_text(&unfinished.path().join(SUMMARY), output.summary)?;
         write_text(&unfinished.path().join(REPORT), output.report)?;
         let mut names = vec![RECORDING, SAMPLES, SUMMARY, REPORT];

@@ -41,6 +41,8 @@ Examples:
   idc run scenarios/plate_edge.toml --out runs/first
   # The same again, in place of what is there.
   idc run scenarios/plate_edge.toml --out runs/first --force
+  # Watched in a viewer while it goes on. (opens a window)
+  idc run scenarios/plate_edge.toml --out runs/watched --view
   # The device alone, on a bench; its numbers as JSON.
   idc run scenarios/paper_step.toml --out runs/step --json";
 

@@ -26,6 +26,8 @@ mod recordings;
 mod report;
 mod run;
 mod schema;
+mod view;
+mod viewer;
 
 pub use bench::{FinishedBench, run_rig};
 pub use cli::{Cli, execute};
@@ -34,3 +36,4 @@ pub use design::ScenarioEvaluator;
 pub use error::{AppError, ExitCode};
 pub use picture::scene_of;
 pub use run::{Finished, run_cell};
+pub use viewer::ViewerError;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use glamx::DPose3;
 
+use crate::arm::Arm;
 use crate::arm::urdf::VisualShape;
 use crate::cell::Cell;
 use crate::recording::scene::{
@@ -30,15 +31,25 @@ pub fn scene_of(
     recording: &Recording,
     frames: &FrameLog,
 ) -> Result<Scene, RecordingError> {
+    let mut scene = motion_of(cell, frames);
+    for (index, body) in scene.bodies.iter_mut().enumerate() {
+        body.shapes.extend(visual_shapes(&cell.arm, index));
+    }
+    scene.bodies.push(part(cell));
+    scene.edge_path = edge_path(cell, recording)?;
+    Ok(scene)
+}
+
+/// The part of the scene that changes from frame to frame: no arm's shapes, no part, no edge.
+pub(super) fn motion_of(cell: &Cell, frames: &FrameLog) -> Scene {
     let mut bodies = arm(cell, frames);
     bodies.extend(device(cell, frames));
-    bodies.push(part(cell));
-    Ok(Scene {
+    Scene {
         title: cell.scenario.title.clone(),
         bodies,
         frame_times: frames.times.clone(),
         frame_path_lengths: frames.path_lengths.clone(),
-        edge_path: edge_path(cell, recording)?,
+        edge_path: EdgePath::default(),
         contact_arrows: frames
             .contact_points
             .iter()
@@ -58,7 +69,7 @@ pub fn scene_of(
                 .map(|joint| joint.effort)
                 .collect(),
         },
-    })
+    }
 }
 
 fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
@@ -66,17 +77,7 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
     (0..=count)
         .map(|index| SceneBody {
             entity: format!("arm/{}", cell.arm.link_names[index]),
-            shapes: cell
-                .arm
-                .visuals
-                .iter()
-                .filter(|visual| visual.link_index == index)
-                .map(|visual| SceneShape {
-                    body_from_shape: visual.link_from_visual,
-                    geometry: geometry(&visual.shape),
-                    colour: visual.colour,
-                })
-                .collect(),
+            shapes: Vec::new(),
             world_from_body: match index {
                 0 => ScenePoses::Static(cell.scenario.arm.world_from_base),
                 _ => {
@@ -85,6 +86,18 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
             },
         })
         .collect()
+}
+
+/// What a link of the arm looks like; nothing beyond the last.
+pub(super) fn visual_shapes(arm: &Arm, link: usize) -> impl Iterator<Item = SceneShape> {
+    let visuals = arm.visuals.iter();
+    visuals
+        .filter(move |visual| visual.link_index == link)
+        .map(|visual| SceneShape {
+            body_from_shape: visual.link_from_visual,
+            geometry: geometry(&visual.shape),
+            colour: visual.colour,
+        })
 }
 
 fn geometry(shape: &VisualShape) -> SceneGeometry {

@@ -24,6 +24,7 @@ use crate::recording::parquet::read_parquet;
 use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
 
+pub(super) use charts::{lacking, variable};
 pub(super) use run::{RunResult, labels};
 pub(super) use signals::chart_groups;
 

@@ -9,6 +9,7 @@ mod thin;
 
 pub use chart::Chart;
 pub use html::html;
+pub use thin::kept;
 
 /// A page.
 #[derive(Debug, Clone, PartialEq, Default)]

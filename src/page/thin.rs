@@ -2,7 +2,8 @@
 //! is lost however far one looks away.
 
 /// Indices of the samples that are kept, at most about `most`, in order; all where there are not more.
-pub(super) fn kept(count: usize, series: &[&[f64]], most: usize) -> Vec<usize> {
+#[must_use]
+pub fn kept(count: usize, series: &[&[f64]], most: usize) -> Vec<usize> {
     if count <= most || series.is_empty() {
         return (0..count).collect();
     }

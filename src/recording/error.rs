@@ -83,6 +83,12 @@ pub enum RecordingError {
         /// Why it could not be.
         cause: String,
     },
+    /// A viewer no longer takes a recording that is being made.
+    #[error("the recording cannot be watched any longer: {cause}")]
+    Live {
+        /// Why.
+        cause: String,
+    },
     /// A file could not be read.
     #[error("cannot read {}: {cause}", path.display())]
     Read {

@@ -5,6 +5,7 @@
 //! a [`scene::Scene`], and [`schema`] lists the signals that the simulated cell writes.
 
 pub mod atomic;
+pub mod board;
 pub mod csv;
 mod error;
 pub mod long_table;

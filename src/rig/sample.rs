@@ -113,20 +113,34 @@ impl RigLog {
         ]);
     }
 
+    /// Number of samples.
+    pub(super) fn count(&self) -> usize {
+        self.time.len()
+    }
+
     /// The recording, without the channels that never had a value.
     pub(super) fn into_recording(self) -> Result<Recording, RecordingError> {
-        let channels = CHANNELS
-            .iter()
-            .enumerate()
-            .map(|(index, quantity)| {
-                let values: Vec<f64> = self.rows.iter().map(|row| row[index]).collect();
-                let unit = schema::definition(quantity)
-                    .expect("every channel is in the schema")
-                    .unit;
-                Channel::new(*quantity, unit, values)
-            })
-            .filter(|channel| !channel.values.iter().all(|value| value.is_nan()))
-            .collect();
+        let channels = self
+            .channels(0)
+            .filter(|channel| !channel.values.iter().all(|value| value.is_nan()));
+        let channels = channels.collect();
         Recording::new(self.time, channels, Vec::new())
+    }
+
+    /// The recording from a sample on, with all channels.
+    pub(super) fn since(&self, first: usize) -> Result<Recording, RecordingError> {
+        let first = first.min(self.count());
+        let time = self.time[first..].to_vec();
+        Recording::new(time, self.channels(first).collect(), Vec::new())
+    }
+
+    fn channels(&self, first: usize) -> impl Iterator<Item = Channel> {
+        CHANNELS.iter().enumerate().map(move |(index, quantity)| {
+            let values: Vec<f64> = self.rows[first..].iter().map(|row| row[index]).collect();
+            let unit = schema::definition(quantity)
+                .expect("every channel is in the schema")
+                .unit;
+            Channel::new(*quantity, unit, values)
+        })
     }
 }

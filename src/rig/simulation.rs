@@ -65,11 +65,22 @@ impl Rig {
         &self,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<(Recording, Option<RigError>), RecordingError> {
+        self.run_watched(&mut |simulation| progress(simulation.steps(), simulation.total_steps()))
+    }
+
+    /// Runs the whole job, and shows it to `watch` after every step.
+    ///
+    /// # Errors
+    /// Nothing could be recorded.
+    pub fn run_watched(
+        &self,
+        watch: &mut dyn FnMut(&RigSimulation<'_>),
+    ) -> Result<(Recording, Option<RigError>), RecordingError> {
         let mut simulation = RigSimulation::new(self);
         let mut stop = None;
         while !simulation.done() && stop.is_none() {
             stop = simulation.step().err();
-            progress(simulation.steps(), simulation.total_steps());
+            watch(&simulation);
         }
         Ok((simulation.into_recording()?, stop))
     }
@@ -172,6 +183,19 @@ impl<'a> RigSimulation<'a> {
     /// Time [s].
     pub fn time(&self) -> f64 {
         self.steps as f64 * self.rig.scenario.step
+    }
+
+    /// Number of samples recorded so far.
+    pub fn sample_count(&self) -> usize {
+        self.log.count()
+    }
+
+    /// What was recorded from a sample on, with all channels.
+    ///
+    /// # Errors
+    /// Nothing was.
+    pub fn since(&self, first: usize) -> Result<Recording, RecordingError> {
+        self.log.since(first)
     }
 
     /// What was recorded so far.

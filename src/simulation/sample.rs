@@ -57,11 +57,37 @@ impl SampleLog {
         self.rows.extend_from_slice(joints.as_flattened());
     }
 
+    /// Number of samples.
+    pub fn count(&self) -> usize {
+        self.time.len()
+    }
+
     /// The recording.
     ///
     /// # Errors
     /// Nothing was recorded.
     pub fn into_recording(self) -> Result<Recording, RecordingError> {
+        let channels = self.channels(0);
+        Recording::new(self.time, channels, self.phases)
+    }
+
+    /// The recording from a sample on.
+    ///
+    /// # Errors
+    /// Nothing was recorded since.
+    pub fn since(&self, first: usize) -> Result<Recording, RecordingError> {
+        let time = self.time[first.min(self.count())..].to_vec();
+        let start = time.first().copied().unwrap_or_default();
+        let reaches = |phase: &&PhaseSpan| phase.end > start || Some(&phase.end) == time.last();
+        let phases = self.phases.iter().filter(reaches).map(|phase| PhaseSpan {
+            start: phase.start.max(start),
+            ..phase.clone()
+        });
+        let phases = phases.collect();
+        Recording::new(time, self.channels(first), phases)
+    }
+
+    fn channels(&self, first: usize) -> Vec<Channel> {
         let singles = schema::SIGNALS
             .iter()
             .chain(
@@ -77,17 +103,16 @@ impl SampleLog {
         let column = |index: usize| {
             self.rows
                 .iter()
-                .skip(index)
+                .skip(first * width + index)
                 .step_by(width)
                 .copied()
                 .collect()
         };
-        let channels = singles
+        singles
             .chain(joints)
             .enumerate()
             .map(|(index, (quantity, unit))| Channel::new(quantity, unit, column(index)))
-            .collect();
-        Recording::new(self.time, channels, self.phases)
+            .collect()
     }
 }
 
@@ -104,4 +129,48 @@ pub struct FrameLog {
     pub contact_points: Vec<DVec3>,
     /// Force on the part [N].
     pub contact_forces: Vec<DVec3>,
+}
+
+impl FrameLog {
+    /// The frames from one on.
+    #[must_use]
+    pub fn since(&self, first: usize) -> Self {
+        let first = first.min(self.times.len());
+        Self {
+            times: self.times[first..].to_vec(),
+            path_lengths: self.path_lengths[first..].to_vec(),
+            links: self.links[first..].to_vec(),
+            contact_points: self.contact_points[first..].to_vec(),
+            contact_forces: self.contact_forces[first..].to_vec(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_come_since_is_the_rest_of_the_whole() {
+        let mut log = SampleLog::new(0, 8);
+        let width = SampleLog::width(0);
+        for index in 0..8_u32 {
+            let phase = if index < 5 {
+                Phase::Approach
+            } else {
+                Phase::Follow
+            };
+            let row = vec![f64::from(index); width];
+            log.push(f64::from(index), phase, &row, &[]);
+        }
+        let rest = log.since(3).unwrap();
+        assert_eq!(rest.time(), [3.0, 4.0, 5.0, 6.0, 7.0]);
+        assert_eq!(rest.channels()[width - 1].values, rest.time());
+        let spans = rest.phases().iter().map(|p| (p.name.as_str(), p.start));
+        let spans: Vec<_> = spans.collect();
+        assert_eq!(spans, [("approach", 3.0), ("follow", 5.0)]);
+        assert_eq!(log.since(6).unwrap().phases().len(), 1);
+        assert!(log.since(8).is_err());
+        assert_eq!(log.since(0).unwrap(), log.into_recording().unwrap());
+    }
 }

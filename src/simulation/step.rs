@@ -164,6 +164,11 @@ impl<'a> Simulation<'a> {
     }
 
     /// What was recorded so far.
+    pub fn logs(&self) -> (&SampleLog, &FrameLog) {
+        (&self.log, &self.frames)
+    }
+
+    /// What was recorded so far, and the end of the run.
     pub fn into_logs(self) -> (SampleLog, FrameLog) {
         (self.log, self.frames)
     }

@@ -37,6 +37,8 @@ const HELD: usize = 2;
 /// A case of a cell, with what its servos were found to do.
 pub(super) struct CellCase {
     pub case: Case,
+    /// Commands and encoders of the first recording.
+    pub axes: Option<Axes>,
     pub servo: Option<ServoLink>,
     /// What the drives' torques show of their joints' friction.
     pub frictions: Vec<JointFriction>,
@@ -177,6 +179,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppErro
                 .chain(frictions.iter().filter_map(|f| f.shown(&believed)))
                 .collect(),
         },
+        axes: axes.into_iter().next(),
         servo,
         frictions,
         of_arm: of_arm.unwrap_or_default(),

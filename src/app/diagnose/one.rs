@@ -8,12 +8,13 @@ use super::super::files::{OutputFolder, Standing};
 use super::super::recordings::{read_rig, shown_columns};
 use super::cell;
 use super::cell_account::add_cell;
+use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
 use super::outputs::{DIAGNOSIS, IMPROVED, NAMES, Outputs, stands_complete};
 use super::unlisted_picture::picture;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
-use crate::diagnosis::comparison::of_flange;
+use crate::diagnosis::comparison::{Comparison, of_flange};
 use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::diagnose::{Diagnosis, diagnose};
 use crate::diagnosis::estimate::Number;
@@ -21,11 +22,12 @@ use crate::diagnosis::flange::{NoContact, Run, Shown};
 use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of, run_of};
-use crate::diagnosis::servo::ServoLink;
+use crate::diagnosis::servo::{Axes, ServoLink};
 use crate::effects::candidates;
 use crate::plant::{Chain, Channel, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
+use crate::recording::scene::Scene;
 use crate::replay::LoadedCell;
 use crate::scenario::RecordedCell;
 use crate::scenario::recorded_cell::{FoundNumbers, improved_cell_text};
@@ -38,6 +40,7 @@ enum Model {
     Rig(Box<RigFile>),
     Cell {
         cell: Box<LoadedCell>,
+        axes: Option<Axes>,
         servo: Option<ServoLink>,
         frictions: Vec<JointFriction>,
         of_arm: Vec<PredictionError>,
@@ -173,6 +176,7 @@ impl Prepared {
             servo,
             frictions,
             of_arm,
+            ..
         } = &model
         {
             let account = &mut answer.details.account;
@@ -182,16 +186,42 @@ impl Prepared {
                 account.add("What improved.toml leaves out", vec![place.to_owned()]);
             }
         }
+        let comparison = diagnosis.comparison(&case, &plant);
         let outputs = Outputs {
             answer,
             improved: &improved,
             prediction: prediction.as_deref(),
             picture: picture.as_deref(),
             fit_picture: fit_picture.as_deref(),
-            comparison: &diagnosis.comparison(&case, &plant),
+            scene: scene(&model, &case, &comparison, &plant)?,
+            comparison: &comparison,
         };
         outputs.write(&self.folder)
     }
+}
+
+/// What the first recording of a cell looks like in space.
+fn scene(
+    model: &Model,
+    case: &Case,
+    comparison: &Comparison,
+    plant: &PlantParameters,
+) -> Result<Option<Scene>, AppError> {
+    let Model::Cell { cell, axes, .. } = model else {
+        return Ok(None);
+    };
+    let first = case.recordings.first();
+    let course = first.and_then(|first| first.recorded.inputs.cell.as_deref());
+    let (Some(axes), Some(compared), Some(course)) = (axes, comparison.recordings.first(), course)
+    else {
+        return Ok(None);
+    };
+    let drawn = Drawn {
+        axes,
+        compared,
+        course,
+    };
+    cell_scene(cell, &drawn, plant).map(Some)
 }
 
 /// The files that a case is read from.
@@ -341,6 +371,7 @@ fn flange(
         picture: None,
         fit_picture: None,
         comparison: &of_flange(&runs, unseen.as_ref()),
+        scene: None,
     };
     outputs.write(folder)
 }
@@ -377,6 +408,7 @@ fn cell_case(folder: &Path, cell: &LoadedCell) -> Result<(Model, Case), AppError
     let read = cell::read(cell, folder)?;
     let model = Model::Cell {
         cell: Box::new(cell.clone()),
+        axes: read.axes,
         servo: read.servo,
         frictions: read.frictions,
         of_arm: read.of_arm,

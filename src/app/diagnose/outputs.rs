@@ -5,11 +5,14 @@ use std::path::Path;
 use super::super::error::AppError;
 use super::super::files::OutputFolder;
 use super::super::report::{REPORT, of_diagnosis};
+use super::board::board;
 use super::comparison_files::{BALANCE, COMPARISON, write_balances, write_recordings};
 use super::one::Finished;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
 use crate::recording::atomic::write_text;
+use crate::recording::rerun::write_board;
+use crate::recording::scene::Scene;
 
 const ACCOUNT: &str = "account.txt";
 pub(super) const IMPROVED: &str = "improved.toml";
@@ -18,9 +21,11 @@ const PREDICTION: &str = "prediction.csv";
 const PICTURE: &str = "unlisted.svg";
 /// Before and after, of a part of the device.
 const FIT_PICTURE: &str = "fit.svg";
+/// All of it on a screen, for Rerun's viewer.
+pub(in super::super) const BOARD: &str = "diagnosis.rrd";
 pub(in super::super) const DIAGNOSIS: &str = "diagnosis.json";
 /// All that a diagnosis may write.
-pub(super) const NAMES: [&str; 9] = [
+pub(super) const NAMES: [&str; 10] = [
     ACCOUNT,
     IMPROVED,
     PREDICTION,
@@ -29,12 +34,13 @@ pub(super) const NAMES: [&str; 9] = [
     COMPARISON,
     BALANCE,
     REPORT,
+    BOARD,
     DIAGNOSIS,
 ];
 
 /// Does a folder hold what every diagnosis has?
 pub(super) fn stands_complete(folder: &Path) -> bool {
-    let all = [ACCOUNT, IMPROVED, COMPARISON, BALANCE, DIAGNOSIS];
+    let all = [ACCOUNT, IMPROVED, COMPARISON, BALANCE, BOARD, DIAGNOSIS];
     all.iter().all(|name| folder.join(name).is_file())
 }
 
@@ -52,6 +58,8 @@ pub(super) struct Outputs<'a> {
     pub fit_picture: Option<&'a str>,
     /// Recordings beside models.
     pub comparison: &'a Comparison,
+    /// What a cell looks like.
+    pub scene: Option<Scene>,
 }
 
 impl Outputs<'_> {
@@ -84,10 +92,12 @@ impl Outputs<'_> {
             write_balances(&unfinished.join(BALANCE), self.comparison)?;
             let report = of_diagnosis(&self.answer, self.comparison);
             write_text(&unfinished.join(REPORT), &report)?;
+            let screen = board(&self.answer, self.comparison, self.scene);
+            write_board(&unfinished.join(BOARD), &screen)?;
             write_text(&unfinished.join(DIAGNOSIS), &document)?;
             let names = texts.iter().map(|(name, _)| *name);
             Ok(names
-                .chain([COMPARISON, BALANCE, REPORT, DIAGNOSIS])
+                .chain([COMPARISON, BALANCE, REPORT, BOARD, DIAGNOSIS])
                 .collect())
         })?;
         Ok(Finished {

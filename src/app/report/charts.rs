@@ -98,7 +98,7 @@ pub(super) fn channel<'a>(
 }
 
 /// A variable for people: words, unit and what a value in SI is multiplied by.
-fn variable(name: &str) -> (&str, &'static str, f64) {
+pub(in crate::app) fn variable(name: &str) -> (&str, &'static str, f64) {
     match name {
         "time" => ("time", "s", 1.0),
         "stroke_m" => ("stroke", "mm", 1e3),
@@ -130,16 +130,21 @@ fn most_of(values: &[f64]) -> Option<[f64; 2]> {
     (room > 0.0).then_some([low - room, high + room])
 }
 
-/// What a link lacks against the variable that says when, before and after.
-pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
-    let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
-    let (words, of, scale) = variable(&balance.variable);
-    let lacking = match balance.link.as_str() {
+/// What a link lacks, in words.
+pub(in crate::app) fn lacking(balance: &Balance) -> &'static str {
+    match balance.link.as_str() {
         "regulator" => "pressure at the regulator's outlet",
         "piston" => "force on the piston",
         "contact" => "contact force",
         _ => CHANNEL_WORDS[balance.channel as usize],
-    };
+    }
+}
+
+/// What a link lacks against the variable that says when, before and after.
+pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
+    let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
+    let (words, of, scale) = variable(&balance.variable);
+    let lacking = lacking(balance);
     let places: Vec<f64> = balance.values.iter().map(|v| v * scale).collect();
     let cloud = |values: &[f64], label: &str, role| {
         let values: Vec<f64> = values.iter().map(|v| v * factor).collect();

@@ -23,6 +23,7 @@ const GLOBAL_VIEW: u128 = 0x5c0d_ca6a_e63f_9cf7_f657_2602_5904_74cc;
 /// A view's class, as the viewer calls it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ViewKind {
+    Spatial2D,
     Spatial3D,
     TimeSeries,
     StateTimeline,
@@ -32,6 +33,7 @@ pub(super) enum ViewKind {
 impl ViewKind {
     const fn class(self) -> &'static str {
         match self {
+            Self::Spatial2D => "2D",
             Self::Spatial3D => "3D",
             Self::TimeSeries => "TimeSeries",
             Self::StateTimeline => "StateTimeline",
@@ -58,6 +60,8 @@ pub(super) enum Panel {
     View(View),
     /// Panels side by side, on top of one another or behind tabs, with their shares of the space.
     Split(ContainerKind, Vec<(f32, Panel)>),
+    /// Panels under a name of their own, as a tab shows it.
+    Named(String, Box<Panel>),
 }
 
 impl Panel {
@@ -69,6 +73,11 @@ impl Panel {
     /// Panels from top to bottom.
     pub(super) fn column(parts: Vec<(f32, Self)>) -> Self {
         Self::Split(ContainerKind::Vertical, parts)
+    }
+
+    /// Panels under a name.
+    pub(super) fn named(name: &str, panel: Self) -> Self {
+        Self::Named(name.to_owned(), Box::new(panel))
     }
 
     /// Panels behind tabs, the first in front.
@@ -118,9 +127,22 @@ impl BlueprintWriter<'_> {
 
     /// Writes a panel with what is in it; gives its id and entity.
     fn panel(&mut self, panel: &Panel) -> Result<(u128, String), RrdError> {
+        if let Panel::Named(name, panel) = panel {
+            let (id, entity) = self.panel(panel)?;
+            let name = Name(name.clone().into());
+            let named = match panel.as_ref() {
+                Panel::View(_) => None,
+                _ => Some(ContainerBlueprint::update_fields().with_display_name(name)),
+            };
+            if let Some(named) = named {
+                self.add(&entity, &named)?;
+            }
+            return Ok((id, entity));
+        }
         self.ids += 1;
         let id = self.ids;
         let entity = match panel {
+            Panel::Named(..) => unreachable!("named panels are written above"),
             Panel::View(view) => {
                 let entity = format!("view/{}", uuid(id));
                 self.view(&entity, view)?;

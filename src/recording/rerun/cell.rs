@@ -13,7 +13,7 @@ use super::colours::{SKY_BLUE, force_error_colour, rerun_colour};
 use super::rrd::{RrdError, RrdWriter};
 use super::shading::shade;
 use super::timelines::Axes;
-use crate::recording::scene::{EdgePath, Scene, SceneGeometry, ScenePoses, SceneShape};
+use crate::recording::scene::{EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
 
 /// Entity of which everything in space is a child.
 pub(super) const CELL: &str = "/cell";
@@ -30,28 +30,43 @@ const ARROW_RADIUS: f32 = 0.004;
 /// itself it would be hidden in the tool.
 const ARROW_OFFSET: f64 = 0.045;
 
-/// Writes everything in space.
-pub(super) fn write_cell(
-    rrd: &mut RrdWriter,
-    scene: &Scene,
-    options: &RerunOptions,
-) -> Result<(), RrdError> {
+/// Writes the bodies, and where those are that do not move.
+pub(super) fn write_bodies(rrd: &mut RrdWriter, scene: &Scene) -> Result<(), RrdError> {
     rrd.add_static(CELL, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-    let frames = Axes::of_frames(&scene.frame_times, &scene.frame_path_lengths);
     for body in &scene.bodies {
-        let entity = format!("{CELL}/{}", body.entity);
-        match &body.world_from_body {
-            ScenePoses::Static(pose) => rrd.add_static(&entity, &transform(pose))?,
-            ScenePoses::Moving(poses) => {
-                write_motion(rrd, &entity, frames.all_columns(), poses)?;
-            }
+        let entity = body_entity(body);
+        if let ScenePoses::Static(pose) = &body.world_from_body {
+            rrd.add_static(&entity, &transform(pose))?;
         }
         for (index, shape) in body.shapes.iter().enumerate() {
             write_shape(rrd, &format!("{entity}/part_{}", index + 1), shape)?;
         }
     }
-    write_edge_path(rrd, &scene.edge_path)?;
+    // The colour that the contact force has in its plot.
+    let look = Arrows3D::update_fields()
+        .with_colors([rerun_colour(SKY_BLUE)])
+        .with_radii([Radius::new_scene_units(ARROW_RADIUS)]);
+    rrd.add_static(CONTACT_FORCE, &look)
+}
+
+/// Writes what changes from frame to frame: bodies that move, and the contact force. `path_before` as in [`Axes::of_frames`].
+pub(super) fn write_frames(
+    rrd: &mut RrdWriter,
+    scene: &Scene,
+    path_before: f64,
+    options: &RerunOptions,
+) -> Result<(), RrdError> {
+    let frames = Axes::of_frames(scene, path_before);
+    for body in &scene.bodies {
+        if let ScenePoses::Moving(poses) = &body.world_from_body {
+            write_motion(rrd, &body_entity(body), frames.all_columns(), poses)?;
+        }
+    }
     write_contact_force(rrd, scene, frames.all_columns(), options)
+}
+
+fn body_entity(body: &SceneBody) -> String {
+    format!("{CELL}/{}", body.entity)
 }
 
 fn write_motion(
@@ -102,7 +117,7 @@ fn write_shape(rrd: &mut RrdWriter, entity: &str, shape: &SceneShape) -> Result<
 }
 
 /// One strip per segment, so that each has its colour.
-fn write_edge_path(rrd: &mut RrdWriter, path: &EdgePath) -> Result<(), RrdError> {
+pub(super) fn write_edge_path(rrd: &mut RrdWriter, path: &EdgePath) -> Result<(), RrdError> {
     let corners = path.points_in_world.windows(2);
     let strips: Vec<[[f32; 3]; 2]> = corners
         .map(|ends| [triple(ends[0]), triple(ends[1])])
@@ -127,7 +142,7 @@ fn write_contact_force(
     let acts = |force: DVec3| force.length() > 0.0;
     let arrows = &scene.contact_arrows;
     let drawn: Vec<_> = arrows.iter().filter(|a| acts(a.force_in_world)).collect();
-    if drawn.is_empty() {
+    if arrows.is_empty() {
         return Ok(());
     }
     let vectors: Vec<DVec3> = drawn
@@ -141,12 +156,7 @@ fn write_contact_force(
     let columns = Arrows3D::from_vectors(vectors.iter().map(|vector| triple(*vector)))
         .with_origins(origins)
         .columns(arrows.iter().map(|a| usize::from(acts(a.force_in_world))))?;
-    rrd.add_columns(CONTACT_FORCE, times, columns)?;
-    // The colour that the contact force has in its plot.
-    let look = Arrows3D::update_fields()
-        .with_colors([rerun_colour(SKY_BLUE)])
-        .with_radii([Radius::new_scene_units(ARROW_RADIUS)]);
-    rrd.add_static(CONTACT_FORCE, &look)
+    rrd.add_columns(CONTACT_FORCE, times, columns)
 }
 
 fn transform(pose: &DPose3) -> Transform3D {

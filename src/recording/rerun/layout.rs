@@ -19,7 +19,7 @@ use super::colours::rerun_colour;
 use super::plots::Plot;
 use super::timelines::SIM_TIME;
 use super::view_box::ViewBox;
-use super::{Opening, PHASES, SUMMARY};
+use super::{Opening, PHASES, RerunOptions, SUMMARY};
 use crate::recording::schema::PlotGroup;
 
 /// Heading of the edge's view: how to read the colours of the path.
@@ -103,7 +103,8 @@ pub(super) fn time_panel(opening: Opening) -> TimePanelBlueprint {
     }
 }
 
-fn plain_view(kind: ViewKind, name: &str, origin: &str) -> Panel {
+/// A view of all below an entity, as the viewer shows it of itself.
+pub(super) fn plain_view(kind: ViewKind, name: &str, origin: &str) -> Panel {
     Panel::View(View {
         kind,
         name: name.to_owned(),
@@ -150,6 +151,24 @@ fn spatial_views(input: &LayoutInput) -> (Panel, Option<Panel>) {
         spatial_view(EDGE_VIEW, Some(eye_on_edge), 0.05)
     });
     (spatial_view("Cell", eye_on_cell, 0.25), edge)
+}
+
+/// A view of what fills a box, below an entity.
+pub(super) fn cell_view(
+    name: &str,
+    origin: &str,
+    framed: Option<ViewBox>,
+    options: &RerunOptions,
+) -> Panel {
+    let eye = framed.map(|framed| {
+        let eye = framed.eye(options.eye_direction, CELL_EYE_RADII);
+        (eye, framed.centre())
+    });
+    let mut panel = spatial_view(name, eye, 0.25);
+    if let Panel::View(view) = &mut panel {
+        origin.clone_into(&mut view.origin);
+    }
+    panel
 }
 
 /// A view of the cell, seen from a place towards a target [m].

@@ -6,25 +6,36 @@
 //! simulated time or along path length. Equal input gives equal bytes.
 
 mod blueprint;
+mod board;
 mod cell;
+mod check;
 mod colours;
+mod fingerprint;
 mod footer;
 mod layout;
+mod live;
 mod plots;
 mod rrd;
 mod shading;
+mod signals;
 mod timelines;
 mod view_box;
+
+pub use board::write_board;
+pub use check::{RrdFault, check_rrd, viewer_version};
+pub use live::{LiveOutlet, LiveRecording};
+pub use rrd::LiveWriter;
 
 use std::io::Write as _;
 use std::path::Path;
 
-use ::rerun::archetypes::{RecordingInfo, SeriesLines, StateChange, StateConfiguration};
-use ::rerun::{EntityPath, Scalars, StoreKind, TextDocument};
+use ::rerun::archetypes::RecordingInfo;
+use ::rerun::{EntityPath, StoreKind, TextDocument};
 use glam::DVec3;
 
+use self::fingerprint::fingerprint;
 use self::layout::LayoutInput;
-use self::plots::{Plot, phase_colour};
+use self::plots::Plot;
 use self::rrd::{RrdError, RrdWriter};
 use self::timelines::Axes;
 use super::atomic::write_atomic;
@@ -128,12 +139,15 @@ fn write_data(
 ) -> Result<(), RrdError> {
     let info = RecordingInfo::new().with_name(scene.title.clone());
     rrd.add_static(&EntityPath::properties().to_string(), &info)?;
-    cell::write_cell(rrd, scene, options)?;
-    let axes = Axes::of(recording);
+    cell::write_bodies(rrd, scene)?;
+    cell::write_edge_path(rrd, &scene.edge_path)?;
+    cell::write_frames(rrd, scene, 0.0, options)?;
+    let axes = Axes::of(recording, 0.0);
     for plot in plots {
-        write_plot(rrd, plot, &axes)?;
+        signals::write_looks(rrd, plot)?;
+        signals::write_values(rrd, plot, &axes)?;
     }
-    write_phases(rrd, recording, &axes)?;
+    signals::write_phases(rrd, recording, &axes)?;
     if !options.summary_markdown.is_empty() {
         let text = TextDocument::from_markdown(options.summary_markdown.clone());
         rrd.add_static(SUMMARY, &text)?;
@@ -141,91 +155,14 @@ fn write_data(
     Ok(())
 }
 
-fn write_plot(rrd: &mut RrdWriter, plot: &Plot, axes: &Axes) -> Result<(), RrdError> {
-    for series in &plot.series {
-        let entity = format!("{}/{}", plot.entity, series.name);
-        let look = SeriesLines::new()
-            .with_names([series.label.clone()])
-            .with_colors([colours::rerun_colour(series.colour)])
-            .with_widths([series.width]);
-        rrd.add_static(&entity, &look)?;
-        let scalars = Scalars::new(series.values.iter().copied());
-        let columns = scalars.columns_of_unit_batches()?;
-        rrd.add_columns(&entity, axes.columns(&series.indices), columns)?;
-    }
-    Ok(())
-}
-
-/// The phases as one lane: a change at each start, and an end where no other phase follows.
-fn write_phases(rrd: &mut RrdWriter, recording: &Recording, axes: &Axes) -> Result<(), RrdError> {
-    let phases = recording.phases();
-    if phases.is_empty() {
-        return Ok(());
-    }
-    let mut names: Vec<&str> = Vec::new();
-    let mut states: Vec<&str> = Vec::new();
-    let mut indices: Vec<usize> = Vec::new();
-    let last = recording.sample_count() - 1;
-    for (index, phase) in phases.iter().enumerate() {
-        if !names.contains(&phase.name.as_str()) {
-            names.push(&phase.name);
-        }
-        let samples = recording.samples_in(phase);
-        states.push(&phase.name);
-        indices.push(samples.start.min(last));
-        let next = phases.get(index + 1);
-        if next.is_none_or(|next| next.start > phase.end) {
-            // An empty name ends the lane's bar.
-            states.push("");
-            indices.push(samples.end.min(last));
-        }
-    }
-    let colours = names
-        .iter()
-        .enumerate()
-        .map(|(index, name)| colours::rerun_colour(phase_colour(name, index)));
-    let look = StateConfiguration::new()
-        .with_values(names.iter().copied())
-        .with_colors(colours);
-    rrd.add_static(PHASES, &look)?;
-    let changes = StateChange::new().with_state(states);
-    let columns = changes.columns_of_unit_batches()?;
-    rrd.add_columns(PHASES, axes.columns(&indices), columns)
-}
-
-/// Letters, digits and dashes of a title.
+/// Letters and digits of a title, other stretches as a dash each.
 fn slug(title: &str) -> String {
-    let keep = |c: char| {
-        if c.is_ascii_alphanumeric() {
-            c.to_ascii_lowercase()
-        } else {
-            '-'
-        }
-    };
-    title.chars().map(keep).collect()
-}
-
-/// A number that follows from the content (FNV-1a): two recordings open in one viewer are told
-/// apart, the same recording written twice is the same.
-fn fingerprint(recording: &Recording, scene: &Scene, options: &RerunOptions) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut add = |bytes: &[u8]| {
-        for byte in bytes {
-            hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    };
-    add(scene.title.as_bytes());
-    add(options.summary_markdown.as_bytes());
-    let channels = recording.channels().iter();
-    for values in channels
-        .map(|channel| &channel.values[..])
-        .chain([recording.time()])
-    {
-        for value in values {
-            add(&value.to_bits().to_le_bytes());
-        }
-    }
-    hash
+    let words = title.split(|letter: char| !letter.is_ascii_alphanumeric());
+    let words: Vec<String> = words
+        .filter(|word| !word.is_empty())
+        .map(str::to_ascii_lowercase)
+        .collect();
+    words.join("-")
 }
 
 #[cfg(test)]

@@ -8,19 +8,20 @@ use crate::recording::scene::{Colour, SceneLimits};
 use crate::recording::schema::{self, JointSignal, PlotGroup};
 use crate::recording::{Recording, RecordingError, Unit};
 
-/// A line in a plot, at some of the recording's samples.
+/// A line in a plot.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Series {
-    /// Its entity, below the plot's.
+    /// Its entity, below the plot's, if it is a guide.
     pub(super) name: String,
     /// Its name in the legend, unit included.
     pub(super) label: String,
     pub(super) colour: Colour,
     /// Line width [points].
     pub(super) width: f32,
-    /// Indices of the samples that are drawn.
-    pub(super) indices: Vec<usize>,
-    /// Values at those samples, in the plot's unit.
+    /// A guide for the eye: a set value, a band or a limit. Guides have an entity each, the signals of a plot one together, whose times are
+    /// stored once.
+    pub(super) guide: bool,
+    /// Values at the recording's samples, in the plot's unit; of a guide that never changes only those at the two ends.
     pub(super) values: Vec<f64>,
 }
 
@@ -35,6 +36,18 @@ pub(super) struct Plot {
     pub(super) series: Vec<Series>,
     /// Range of the vertical axis; `None` fits the data.
     pub(super) range: Option<[f64; 2]>,
+}
+
+impl Plot {
+    /// The lines of signals.
+    pub(super) fn signals(&self) -> impl Iterator<Item = &Series> {
+        self.series.iter().filter(|series| !series.guide)
+    }
+
+    /// The guides for the eye.
+    pub(super) fn guides(&self) -> impl Iterator<Item = &Series> {
+        self.series.iter().filter(|series| series.guide)
+    }
 }
 
 /// How a group of signals is shown.
@@ -157,7 +170,11 @@ fn group_series(recording: &Recording, style: &Style) -> Vec<Series> {
         let values = channel.values.iter().map(|v| v * style.factor).collect();
         let label = format!("{} [{}]", signal.label, style.unit);
         let colour = signal_colour(signal.quantity, index);
-        series.push(line(signal.quantity, label, colour, 1.5, values));
+        let look = (label, colour, 1.5);
+        series.push(match signal.quantity {
+            schema::DESIRED_FORCE => guide(signal.quantity, look, values),
+            _ => line(signal.quantity, look, values),
+        });
     }
     series
 }
@@ -204,31 +221,26 @@ fn joint_torque_series(
             .collect();
         let label = format!("joint {joint} [{}]", style.unit);
         let colour = PALETTE[(joint - 1) % PALETTE.len()];
-        series.push(line(&channel.quantity, label, colour, 1.5, values));
+        series.push(line(&channel.quantity, (label, colour, 1.5), values));
     }
     Ok(series)
 }
 
 fn add_limits(plot: &mut Plot, recording: &Recording, limits: &SceneLimits, style: &Style) {
-    let samples = recording.sample_count();
     match plot.group {
         PlotGroup::Force => add_force_band(plot, recording),
         PlotGroup::Stroke => {
             if let Some([low, high]) = limits.stroke.map(|stop| stop.map(|v| v * style.factor)) {
                 let margin = 0.06 * (high - low);
                 plot.range = Some([low - margin, high + margin]);
-                plot.series
-                    .push(limit("retracted", "end stops [mm]", low, samples));
-                plot.series
-                    .push(limit("extended", "end stops [mm]", high, samples));
+                plot.series.push(limit("retracted", "end stops [mm]", low));
+                plot.series.push(limit("extended", "end stops [mm]", high));
             }
         }
         PlotGroup::JointTorque => {
             plot.range = Some([-112.0, 112.0]);
-            plot.series
-                .push(limit("limit_plus", "limits [%]", 100.0, samples));
-            plot.series
-                .push(limit("limit_minus", "limits [%]", -100.0, samples));
+            plot.series.push(limit("limit_plus", "limits [%]", 100.0));
+            plot.series.push(limit("limit_minus", "limits [%]", -100.0));
         }
         PlotGroup::Pressure => plot.range = roomy_range(&plot.series),
         PlotGroup::PathError | PlotGroup::ForceBalance => {}
@@ -261,7 +273,7 @@ fn add_force_band(plot: &mut Plot, recording: &Recording) {
             VERMILLION
         };
         plot.series
-            .push(line(name, label.to_owned(), colour, 0.8, values));
+            .push(guide(name, (label.to_owned(), colour, 0.8), values));
     }
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     let desired_peak = largest(&desired.values);
@@ -276,26 +288,32 @@ fn add_force_band(plot: &mut Plot, recording: &Recording) {
 }
 
 /// A horizontal line over the whole recording.
-fn limit(name: &str, label: &str, value: f64, samples: usize) -> Series {
-    line(name, label.to_owned(), GREY, 0.8, vec![value; samples])
+fn limit(name: &str, label: &str, value: f64) -> Series {
+    guide(name, (label.to_owned(), GREY, 0.8), vec![value; 2])
 }
 
-/// A series of all samples, or of the two ends if its value never changes.
-fn line(name: &str, label: String, colour: Colour, width: f32, mut values: Vec<f64>) -> Series {
-    let mut indices: Vec<usize> = (0..values.len()).collect();
-    // Constant stretches within a series stay whole: the viewer thins each pixel's samples out to
-    // their extremes and would join the wrong one of them to a far next sample.
-    if values.len() > 2 && values.iter().all(|value| *value == values[0]) {
-        indices = vec![0, values.len() - 1];
-        values.truncate(2);
-    }
+/// A series of all samples, with its label, colour and width.
+fn line(name: &str, (label, colour, width): (String, Colour, f32), values: Vec<f64>) -> Series {
     Series {
         name: name.to_owned(),
         label,
         colour,
         width,
-        indices,
+        guide: false,
         values,
+    }
+}
+
+/// A guide: all samples, or the two ends if its value never changes.
+fn guide(name: &str, look: (String, Colour, f32), mut values: Vec<f64>) -> Series {
+    // Constant stretches within a series stay whole: the viewer thins each pixel's samples out to
+    // their extremes and would join the wrong one of them to a far next sample.
+    if values.len() > 2 && values.iter().all(|value| *value == values[0]) {
+        values.truncate(2);
+    }
+    Series {
+        guide: true,
+        ..line(name, look, values)
     }
 }
 
@@ -328,14 +346,12 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_keeps_its_ends_only() {
-        let flat = line("x", String::new(), GREY, 1.0, vec![2.0; 6]);
-        assert_eq!((flat.indices, flat.values), (vec![0, 5], vec![2.0, 2.0]));
+    fn a_guide_that_never_changes_keeps_its_ends_only() {
+        let look = || (String::new(), GREY, 1.0);
+        assert_eq!(guide("x", look(), vec![2.0; 6]).values, [2.0, 2.0]);
         let step = vec![2.0, 2.0, 2.0, 2.0, 2.0, 3.0];
-        assert_eq!(
-            line("x", String::new(), GREY, 1.0, step.clone()).values,
-            step
-        );
+        assert_eq!(guide("x", look(), step.clone()).values, step);
+        assert_eq!(line("x", look(), vec![2.0; 6]).values, [2.0; 6]);
     }
 
     #[test]
@@ -364,7 +380,7 @@ mod tests {
         };
         let stroke = Channel::new(schema::STROKE, Unit::Metre, vec![0.025; 6]);
         let plots = plots(&recording(vec![stroke]), &limits).unwrap();
-        assert_eq!(find(&plots[0], "stroke").values, [25.0, 25.0]);
+        assert_eq!(find(&plots[0], "stroke").values, [25.0; 6]);
         assert_eq!(find(&plots[0], "extended").values, [50.0, 50.0]);
         assert_eq!(plots[0].range, Some([-3.0, 53.0]));
     }
@@ -377,7 +393,7 @@ mod tests {
             joint_torque: vec![100.0, 120.0],
         };
         let drawn = plots(&recording(vec![torque()]), &limits).unwrap();
-        assert_eq!(find(&drawn[0], "joint_2_torque").values, [-25.0, -25.0]);
+        assert_eq!(find(&drawn[0], "joint_2_torque").values, [-25.0; 6]);
         assert_eq!(find(&drawn[0], "limit_minus").values, [-100.0, -100.0]);
         limits.joint_torque.pop();
         let message = plots(&recording(vec![torque()]), &limits)
@@ -402,7 +418,7 @@ mod tests {
     #[test]
     fn a_range_leaves_room_and_passes_over_missing_values() {
         let values = vec![f64::NAN, 1.0, 3.0];
-        let series = line("x", String::new(), GREY, 1.0, values);
+        let series = line("x", (String::new(), GREY, 1.0), values);
         let [low, high] = roomy_range(&[series]).unwrap();
         assert!((low - 0.8).abs() < 1e-12 && (high - 3.2).abs() < 1e-12);
     }

@@ -1,20 +1,32 @@
-//! Writes `.rrd` files chunk by chunk.
+//! Writes `.rrd` files chunk by chunk, and streams of the same form.
 //!
 //! Rerun's own `RecordingStream` stamps every chunk with the clock and only logs a full disk. Here
 //! the chunks get ids that follow from the recording and the encoder's errors come back, so equal
 //! input gives equal bytes and a failed write is a failed write.
 
-use ::rerun::external::re_log_encoding::{CodecError, EncodeError, Encoder};
+use std::time::Duration;
+
+use ::rerun::external::re_log_encoding::{
+    CodecError, CrateVersion, EncodeError, Encoder, EncodingOptions,
+};
 use ::rerun::external::re_log_types::{
     BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource,
 };
 use ::rerun::external::re_tuid::Tuid;
+use ::rerun::external::re_uri::ProxyUri;
 use ::rerun::log::{Chunk, ChunkError, ChunkId, LogMsg, TimeColumn};
+use ::rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
 use ::rerun::{
     AsComponents, EntityPath, SerializationError, SerializedComponentColumn, StoreId, StoreKind,
 };
 
 use super::footer::sort_footer;
+
+/// Memory that a file gets at the start [bytes]: that of a minute of a cell. It is touched only as it is filled.
+const FILE_CAPACITY: usize = 16 << 20;
+
+/// How long a viewer that listens may take to answer.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Name under which the viewer groups our recordings and keeps their layout.
 pub(super) const APPLICATION: &str = "idc-cell";
@@ -30,11 +42,28 @@ pub(super) enum RrdError {
     Chunk(#[from] ChunkError),
     #[error(transparent)]
     Serialize(#[from] SerializationError),
+    #[error("cannot write: {0}")]
+    Write(#[from] std::io::Error),
+    #[error("the viewer no longer answers")]
+    Gone,
 }
 
-/// A file that is being written: stores, one after the other, in one stream.
+/// Where what is written goes.
+enum Outlet {
+    /// A file, put together in memory.
+    File(Encoder<Vec<u8>>),
+    /// Whoever reads on the other side, such as a viewer's standard input.
+    Stream(Encoder<LiveWriter>),
+    /// A viewer that listens for recordings.
+    Viewer(Box<GrpcSink>),
+}
+
+/// Takes the bytes of a recording while it is made.
+pub type LiveWriter = Box<dyn std::io::Write + Send>;
+
+/// A file or stream that is being written: stores, one after the other.
 pub(super) struct RrdWriter {
-    encoder: Encoder<Vec<u8>>,
+    outlet: Outlet,
     store: StoreId,
     /// High half of all chunk ids; from the recording, so that two open files do not share ids.
     id_seed: u64,
@@ -49,9 +78,45 @@ impl RrdWriter {
         recording_id: &str,
         id_seed: u64,
     ) -> Result<Self, RrdError> {
-        let encoder = Encoder::local()?;
+        let options = EncodingOptions::PROTOBUF_COMPRESSED;
+        let file = Vec::with_capacity(FILE_CAPACITY);
+        let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, file)?;
+        Self::begin_at(Outlet::File(encoder), kind, recording_id, id_seed)
+    }
+
+    /// Starts a stream in the same way.
+    pub(super) fn begin_stream(
+        writer: LiveWriter,
+        kind: StoreKind,
+        recording_id: &str,
+        id_seed: u64,
+    ) -> Result<Self, RrdError> {
+        let options = EncodingOptions::PROTOBUF_COMPRESSED;
+        let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, writer)?;
+        // A footer tells where in a file chunks lie; nobody looks that up in a stream.
+        encoder.do_not_emit_footer();
+        Self::begin_at(Outlet::Stream(encoder), kind, recording_id, id_seed)
+    }
+
+    /// Starts to send to a viewer that listens.
+    pub(super) fn begin_sending(
+        address: ProxyUri,
+        kind: StoreKind,
+        recording_id: &str,
+        id_seed: u64,
+    ) -> Result<Self, RrdError> {
+        let sink = Outlet::Viewer(Box::new(GrpcSink::new(address)));
+        Self::begin_at(sink, kind, recording_id, id_seed)
+    }
+
+    fn begin_at(
+        outlet: Outlet,
+        kind: StoreKind,
+        recording_id: &str,
+        id_seed: u64,
+    ) -> Result<Self, RrdError> {
         let mut writer = Self {
-            encoder,
+            outlet,
             store: StoreId::new(kind, APPLICATION, recording_id.to_owned()),
             id_seed,
             chunks: 0,
@@ -72,10 +137,23 @@ impl RrdWriter {
 
     fn announce_store(&mut self) -> Result<(), RrdError> {
         let source = StoreSource::Other(APPLICATION.to_owned());
-        self.encoder.append(&LogMsg::SetStoreInfo(SetStoreInfo {
+        self.append(LogMsg::SetStoreInfo(SetStoreInfo {
             row_id: Tuid::from_nanos_and_inc(self.id_seed, 0),
             info: StoreInfo::new(self.store.clone(), source),
-        }))?;
+        }))
+    }
+
+    fn append(&mut self, message: LogMsg) -> Result<(), RrdError> {
+        match &mut self.outlet {
+            Outlet::File(encoder) => drop(encoder.append(&message)?),
+            Outlet::Stream(encoder) => drop(encoder.append(&message)?),
+            Outlet::Viewer(sink) => {
+                if matches!(sink.status(), GrpcSinkConnectionState::Disconnected(_)) {
+                    return Err(RrdError::Gone);
+                }
+                sink.send(message);
+            }
+        }
         Ok(())
     }
 
@@ -116,23 +194,35 @@ impl RrdWriter {
             .collect();
         let columns = columns.into_iter().collect();
         let chunk = Chunk::from_auto_row_ids(id, EntityPath::from(entity), times, columns)?;
-        let message = LogMsg::ArrowMsg(self.store.clone(), chunk.to_arrow_msg()?);
-        self.encoder.append(&message)?;
-        Ok(())
+        self.append(LogMsg::ArrowMsg(self.store.clone(), chunk.to_arrow_msg()?))
     }
 
     /// Makes this store, a blueprint, the layout in which the viewer opens the recording.
     pub(super) fn activate(&mut self) -> Result<(), RrdError> {
         let command = BlueprintActivationCommand::make_active(self.store.clone());
-        let message = LogMsg::BlueprintActivationCommand(command);
-        self.encoder.append(&message)?;
-        Ok(())
+        self.append(LogMsg::BlueprintActivationCommand(command))
     }
 
-    /// The bytes of the whole file.
+    /// Sees to it that what was added has left.
+    pub(super) fn flush(&mut self) -> Result<(), RrdError> {
+        match &mut self.outlet {
+            Outlet::File(_) => Ok(()),
+            Outlet::Stream(encoder) => Ok(encoder.flush_blocking()?),
+            Outlet::Viewer(sink) => {
+                let sent = sink.flush_blocking(PATIENCE);
+                sent.map_err(|_| RrdError::Gone)
+            }
+        }
+    }
+
+    /// The bytes of the whole file; none of what has left already.
     pub(super) fn finish(mut self) -> Result<Vec<u8>, RrdError> {
-        self.encoder.finish()?;
-        let mut file = self.encoder.into_inner()?;
+        self.flush()?;
+        let Outlet::File(mut encoder) = self.outlet else {
+            return Ok(Vec::new());
+        };
+        encoder.finish()?;
+        let mut file = encoder.into_inner()?;
         sort_footer(&mut file)?;
         Ok(file)
     }

@@ -155,7 +155,7 @@ fn written() -> (ChunkStore, ChunkStore) {
 #[test]
 fn every_sample_of_a_signal_is_there_on_both_timelines() {
     let (data, _) = written();
-    let force = moving(&data, "/plots/force/contact_force");
+    let force = moving(&data, "/plots/force");
     assert_eq!(
         scalars(force),
         recording().values(schema::CONTACT_FORCE).unwrap()
@@ -173,7 +173,6 @@ fn constants_are_two_points_in_the_units_of_the_plot() {
     for (entity, value) in [
         ("/plots/force/band_plus_5", 105.0),
         ("/plots/force/band_minus_10", 90.0),
-        ("/plots/joint_torque/joint_1_torque", 25.0),
         ("/plots/joint_torque/limit_plus", 100.0),
     ] {
         let chunk = moving(&data, entity);

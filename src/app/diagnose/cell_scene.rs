@@ -1,0 +1,245 @@
+//! A recorded cell in space: the arm as its encoders read, pale, beside that of the improved model, and the edge coloured by where the believed model's
+//! force is off.
+
+use glam::DVec3;
+use glamx::DPose3;
+
+use super::super::error::AppError;
+use super::super::picture::{PART, device_bodies, visual_shapes};
+use crate::arm::kinematics::link_poses;
+use crate::arm::{Arm, load_arm};
+use crate::cell::{CellError, arm_options};
+use crate::diagnosis::comparison::Compared;
+use crate::diagnosis::servo::Axes;
+use crate::plant::{CellCourse, Channel, PlantParameters, follow};
+use crate::recording::scene::{
+    Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
+};
+use crate::replay::LoadedCell;
+use crate::workpiece::load_mesh;
+
+/// Time between two frames [s].
+const FRAME_INTERVAL: f64 = 0.02;
+/// The recorded arm.
+const PALE: Colour = [225, 230, 240, 90];
+/// Segments of the edge.
+const SEGMENTS: usize = 200;
+
+/// What is drawn of a recording.
+pub(super) struct Drawn<'a> {
+    /// Commands and encoders.
+    pub axes: &'a Axes,
+    /// Its channels beside the models.
+    pub compared: &'a Compared,
+    /// The edge beside the ball.
+    pub course: &'a CellCourse,
+}
+
+/// The scene of a recording.
+///
+/// # Errors
+/// The arm's file or the part's mesh, should they have changed since they were read.
+pub(super) fn cell_scene(
+    cell: &LoadedCell,
+    drawn: &Drawn<'_>,
+    improved: &PlantParameters,
+) -> Result<Scene, AppError> {
+    let scenario = &cell.scenario;
+    let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm)).map_err(CellError::from)?;
+    let time = &drawn.axes.time;
+    let frames = frames(time);
+    let recorded = recorded_angles(drawn.axes);
+    let simulated = simulated_angles(drawn.axes, improved);
+    let stroke = |measured: bool| {
+        let channels = drawn.compared.channels.iter();
+        let mut own = channels.filter(|c| c.channel == Channel::Stroke);
+        let values = own.next().map(|c| match measured {
+            true => c.measured.clone(),
+            false => c.improved.clone(),
+        });
+        held(values.unwrap_or_default(), time.len())
+    };
+    let mut bodies = Vec::new();
+    for (name, angles, stroke, pale) in [
+        ("simulated", &simulated, stroke(false), false),
+        ("recorded", &recorded, stroke(true), true),
+    ] {
+        let poses = poses(cell, angles, &frames);
+        let mut own = arm_bodies(cell, &arm, &poses);
+        own.extend(of_device(cell, &poses, &frames, &stroke));
+        for body in &mut own {
+            body.entity = format!("{name}/{}", body.entity);
+            if pale {
+                body.shapes.iter_mut().for_each(|shape| shape.colour = PALE);
+            }
+        }
+        bodies.extend(own);
+    }
+    bodies.push(part(cell)?);
+    let edge = &drawn.course.edge;
+    let stations = frames.iter().map(|i| edge[*i].station);
+    Ok(Scene {
+        title: drawn.compared.name.clone(),
+        bodies,
+        frame_times: frames.iter().map(|i| time[*i] - time[0]).collect(),
+        frame_path_lengths: stations.collect(),
+        edge_path: edge_path(drawn),
+        contact_arrows: vec![
+            ContactArrow {
+                point_in_world: DVec3::ZERO,
+                force_in_world: DVec3::ZERO,
+            };
+            frames.len()
+        ],
+        ..Scene::default()
+    })
+}
+
+fn frames(time: &[f64]) -> Vec<usize> {
+    let mut frames: Vec<usize> = Vec::new();
+    for (index, own) in time.iter().enumerate() {
+        if own - time[0] >= FRAME_INTERVAL * frames.len() as f64 - 1e-9 {
+            frames.push(index);
+        }
+    }
+    frames
+}
+
+/// Angles of each joint as its encoder read, as commanded where it has none.
+fn recorded_angles(axes: &Axes) -> Vec<Vec<f64>> {
+    let joints = axes.commands.iter().zip(&axes.encoders);
+    joints
+        .map(|(command, encoder)| match encoder {
+            Some(encoder) => held(encoder.clone(), command.len()),
+            None => command.clone(),
+        })
+        .collect()
+}
+
+/// Angles of each joint by the model: what its servo makes of its command, less what its encoder reads beyond the truth.
+fn simulated_angles(axes: &Axes, model: &PlantParameters) -> Vec<Vec<f64>> {
+    let joints = axes.commands.iter().zip(model.cell.encoder_offset);
+    joints
+        .map(|(command, offset)| {
+            let mut angle = follow(&axes.time, command, model.cell.servo_bandwidth).angle;
+            angle.iter_mut().for_each(|angle| *angle -= offset);
+            angle
+        })
+        .collect()
+}
+
+/// Values with gaps filled by the value before; nought before the first, or without any.
+fn held(mut values: Vec<f64>, count: usize) -> Vec<f64> {
+    values.resize(count, f64::NAN);
+    let mut last = 0.0;
+    for value in &mut values {
+        if value.is_nan() {
+            *value = last;
+        }
+        last = *value;
+    }
+    values
+}
+
+/// Poses of the links in the world, frame by frame.
+fn poses(cell: &LoadedCell, angles: &[Vec<f64>], frames: &[usize]) -> Vec<Vec<DPose3>> {
+    let cell = &cell.cell;
+    let of = |index: &usize| {
+        let q: Vec<f64> = angles.iter().map(|angle| angle[*index]).collect();
+        let mut poses = vec![DPose3::IDENTITY; q.len()];
+        link_poses(&cell.chain, cell.world_from_base, &q, &mut poses);
+        poses
+    };
+    frames.iter().map(of).collect()
+}
+
+fn arm_bodies(cell: &LoadedCell, arm: &Arm, poses: &[Vec<DPose3>]) -> Vec<SceneBody> {
+    let link = |index: usize| SceneBody {
+        entity: format!("arm/{}", arm.link_names[index]),
+        shapes: visual_shapes(arm, index).collect(),
+        world_from_body: match index {
+            0 => ScenePoses::Static(cell.cell.world_from_base),
+            _ => ScenePoses::Moving(poses.iter().map(|links| links[index - 1]).collect()),
+        },
+    };
+    (0..=arm.chain.len()).map(link).collect()
+}
+
+fn of_device(
+    cell: &LoadedCell,
+    poses: &[Vec<DPose3>],
+    frames: &[usize],
+    stroke: &[f64],
+) -> [SceneBody; 2] {
+    let chain = &cell.cell.chain;
+    let flange = |links: &Vec<DPose3>| links[chain.len() - 1] * chain.tip_from_last;
+    let flanges: Vec<DPose3> = poses.iter().map(flange).collect();
+    let slides = flanges.iter().zip(frames).map(|(flange, index)| {
+        let out = DVec3::new(0.0, 0.0, stroke[*index]);
+        *flange * DPose3::from_translation(out)
+    });
+    let slides = ScenePoses::Moving(slides.collect());
+    device_bodies(&cell.scenario.device, ScenePoses::Moving(flanges), slides)
+}
+
+fn part(cell: &LoadedCell) -> Result<SceneBody, AppError> {
+    let workpiece = &cell.scenario.workpiece;
+    let mesh = load_mesh(&workpiece.mesh, workpiece.mesh_scale)?;
+    Ok(SceneBody {
+        entity: "workpiece".into(),
+        shapes: vec![SceneShape {
+            body_from_shape: DPose3::IDENTITY,
+            geometry: SceneGeometry::Mesh {
+                vertices: mesh.vertices().to_vec(),
+                triangles: mesh.triangles().to_vec(),
+            },
+            colour: PART,
+        }],
+        world_from_body: ScenePoses::Static(workpiece.world_from_part),
+    })
+}
+
+/// The edge as far as it was ridden, with the mean of (measured - believed) / believed force over each segment.
+fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
+    let edge = &drawn.course.edge;
+    let stations = || edge.iter().map(|place| place.station);
+    let low = stations().fold(f64::INFINITY, f64::min);
+    let high = stations().fold(f64::NEG_INFINITY, f64::max);
+    if low >= high {
+        return EdgePath::default();
+    }
+    let segment = |station: f64| {
+        let place = (station - low) / (high - low) * SEGMENTS as f64;
+        (place as usize).min(SEGMENTS - 1)
+    };
+    let channels = drawn.compared.channels.iter();
+    let force = channels.filter(|c| c.channel == Channel::Force).last();
+    let mut sums = vec![(0.0, 0.0); SEGMENTS];
+    // Corners: the place of the sample that is nearest to each.
+    let mut corners = vec![(f64::INFINITY, DVec3::ZERO); SEGMENTS + 1];
+    for (index, place) in edge.iter().enumerate() {
+        let exact = (place.station - low) / (high - low) * SEGMENTS as f64;
+        let nearest = &mut corners[exact.round() as usize];
+        let away = (exact - exact.round()).abs();
+        if away < nearest.0 {
+            *nearest = (away, place.point);
+        }
+        let Some(force) = force else { continue };
+        let (measured, believed) = (force.measured[index], force.believed[index]);
+        let error = (measured - believed) / believed;
+        if believed > 0.0 && error.is_finite() {
+            let sum = &mut sums[segment(place.station)];
+            *sum = (sum.0 + error, sum.1 + 1.0);
+        }
+    }
+    let mut path = EdgePath::default();
+    let known = |corner: &&(usize, (f64, DVec3))| corner.1.0.is_finite();
+    let corners: Vec<(usize, (f64, DVec3))> = corners.into_iter().enumerate().collect();
+    let corners: Vec<&(usize, (f64, DVec3))> = corners.iter().filter(known).collect();
+    for pair in corners.windows(2) {
+        let (sum, count) = sums[pair[0].0];
+        path.relative_force_error.push(sum / count);
+    }
+    path.points_in_world = corners.iter().map(|(_, (_, point))| *point).collect();
+    path
+}
