@@ -291,7 +291,10 @@ fn the_picture_of_another_study_does_not_stay() {
     std::fs::create_dir(bench.path("out")).unwrap();
     bench.write("out/front.svg", "old");
     bench.write("out/mine.txt", "mine");
-    let outcome = bench.idc(&["design", "study.toml", "--out", "out", "--json"], &[]);
+    let outcome = bench.idc(
+        &["design", "study.toml", "--out", "out", "--force", "--json"],
+        &[],
+    );
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
     assert_eq!(
         bench.names_in("out"),

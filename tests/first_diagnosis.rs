@@ -57,7 +57,12 @@ fn the_page_leads_to_the_right_diagnosis_in_ten_commands_at_most() {
         assert!((value("value") / page - 1.0).abs() < 0.01, "{number}");
         assert!(value("low") < truth && truth < value("high"), "{number}");
     }
-    for file in ["account.txt", "improved.toml", "prediction.csv"] {
+    for file in [
+        "report.html",
+        "account.txt",
+        "improved.toml",
+        "prediction.csv",
+    ] {
         assert!(found.join(file).is_file(), "{file}");
     }
     for words in [

@@ -93,6 +93,18 @@ pub fn shell(line: &str, folder: &Path) -> std::process::Output {
         .unwrap()
 }
 
+/// Clap would break a longer line, and with it an example.
+#[test]
+fn what_help_ends_with_is_not_broken() {
+    let program = Cli::command();
+    for command in program.get_subcommands().chain([&program]) {
+        let text = command.get_after_help().map(ToString::to_string);
+        let text = text.unwrap_or_default();
+        let wide = text.lines().find(|line| line.chars().count() > 80);
+        assert_eq!(wide, None, "{}", command.get_name());
+    }
+}
+
 #[test]
 fn every_help_fits_into_80_columns_and_ends_with_examples() {
     for command in commands() {

@@ -19,6 +19,7 @@ mod help;
 mod import;
 mod laboratory;
 mod layers;
+mod manual;
 mod own_cell;
 mod paper_deviation;
 mod paper_page;

@@ -51,7 +51,7 @@ fn what_is_wrong_is_shown_in_its_line() {
         (
             "edge = 1 ",
             "edge = 99 ",
-            "  --> scenario.toml:22:2\n   |\n22 | [workpiece.edge]\n   |  ^^^^^^^^^^^^^^",
+            "  --> scenario.toml:23:1\n   |\n23 | edge = 99            # long top edge at part y = 0, see `idc edges assets/plate.stl`\n   | ^^^^^^^^^",
         ),
         (
             "force_mean_n =",

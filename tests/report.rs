@@ -107,10 +107,7 @@ fn damaged_folders_are_refused_by_one_message_and_keep_their_page() {
         "{}",
         outcome.err
     );
-    bench.write(
-        "found/diagnosis.json",
-        "{\"schema\": 1, \"verdict\"".to_owned(),
-    );
+    bench.write("found/diagnosis.json", "{\"schema\": 1, \"verdict\"");
     let outcome = bench.idc(&["report", "found"], &[]);
     assert_eq!(outcome.code, 2);
     outcome.only_line("error: cannot read found/diagnosis.json");

@@ -179,8 +179,8 @@ fn slips_of_the_pen_are_not() {
         (
             "scenario",
             "scenarios/hand_push.toml",
-            "peak_force_n =",
-            "peak_force = 1 #",
+            "position_mm =",
+            "position =",
         ),
         (
             "scenario",

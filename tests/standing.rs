@@ -106,6 +106,20 @@ fn a_place_that_cannot_be_written_is_refused_and_nothing_is_done() {
 }
 
 #[test]
+fn a_diagnosis_does_not_take_the_place_of_a_run() {
+    let bench = folder();
+    assert_eq!(bench.run().code, 0);
+    let before = bench.contents();
+    let outcome = bench.idc(&["diagnose", "cases/case-03", "--out", "out"], &[]);
+    let line = outcome.only_line("error: ");
+    assert!(
+        line.contains("out holds results already (report.html)"),
+        "{line}"
+    );
+    assert!(outcome.code == 2 && before == bench.contents());
+}
+
+#[test]
 fn a_run_replaces_all_files_of_another() {
     let bench = Bench::new("paper_step");
     assert_eq!(bench.run().code, 0);

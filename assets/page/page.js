@@ -141,6 +141,9 @@
     };
     const data = [numbers(told.at), ...told.series.map((one) => numbers(one.values))];
     chart.plot = new uPlot(options, data, place);
+    // The other edge of an area has no name of its own.
+    const rows = place.querySelectorAll(".u-legend .u-series");
+    told.series.forEach((one, which) => { if (!one.label) rows[which + 1].style.display = "none"; });
     place.setAttribute("data-drawn", "");
     new ResizeObserver(() => chart.plot.setSize({ width: place.clientWidth, height: 280 })).observe(place);
     chart.figure.querySelector(".reset").addEventListener("click", () => all(chart.plot));

@@ -56,13 +56,13 @@ enum Command {
     View(super::view::ViewArguments),
     /// List the sharp edges of a part and the outlines of its faces.
     #[command(after_help = help::EDGES)]
-    Edges(EdgesArguments),
+    Edges(super::edges::EdgesArguments),
     /// Make a recording of the logs of a real device, as a map says what their columns are.
     #[command(after_help = help::IMPORT)]
-    Import(ImportArguments),
+    Import(super::import::ImportArguments),
     /// Say what a rig file, believed or improved, predicts for the inputs of a recording.
     #[command(after_help = help::PREDICT)]
-    Predict(PredictArguments),
+    Predict(super::predict::PredictArguments),
     /// Find what physics the recordings of a rig contain that its model leaves out.
     #[command(after_help = help::DIAGNOSE)]
     Diagnose(DiagnoseArguments),
@@ -74,13 +74,13 @@ enum Command {
     Compare(super::compare::CompareArguments),
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
     #[command(after_help = help::PROVE)]
-    Prove(ProveArguments),
+    Prove(super::prove::ProveArguments),
     /// Try the diagnosis on every effect, from its largest size down to where it is lost, and on devices with nothing missing.
     #[command(after_help = help::SWEEP)]
-    Sweep(SweepArguments),
+    Sweep(super::prove::SweepArguments),
     /// Write the cases that come with the project, with their sealed truth, as the laboratory makes them.
     #[command(after_help = help::LABORATORY)]
-    Laboratory(LaboratoryArguments),
+    Laboratory(super::prove::LaboratoryArguments),
     /// Print the JSON Schema of a file, for editors.
     #[command(after_help = super::schema::EXAMPLES)]
     Schema(super::schema::SchemaArguments),
@@ -117,26 +117,6 @@ struct RunArguments {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct ImportArguments {
-    /// Import map.
-    pub(super) map: PathBuf,
-    /// Logs in place of those that the map names, in its order; several times as many make several recordings.
-    pub(super) logs: Vec<PathBuf>,
-    /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
-    #[arg(long, help_heading = "Output")]
-    pub(super) out: Option<PathBuf>,
-    /// Put new results in place of old ones.
-    #[arg(long, help_heading = "Output")]
-    pub(super) force: bool,
-    /// Print nothing but errors.
-    #[arg(long, help_heading = "Output")]
-    pub(super) quiet: bool,
-    /// Print what was understood as JSON.
-    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
-    pub(super) json: bool,
-}
-
-#[derive(Debug, Args)]
 struct DesignArguments {
     /// Study file.
     study: PathBuf,
@@ -155,136 +135,6 @@ struct DesignArguments {
     /// Print what design.json holds instead of the table.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct EdgesArguments {
-    /// Mesh file: STL, OBJ or COLLADA.
-    pub(super) mesh: PathBuf,
-    /// Unit of the mesh file: mm, m or inch.
-    #[arg(long, default_value = "mm")]
-    pub(super) unit: MeshUnit,
-    /// Dihedral angle above which an edge counts as sharp [deg].
-    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
-    pub(super) sharp_angle_deg: f64,
-    /// Print them as JSON.
-    #[arg(long, help_heading = "Output")]
-    pub(super) json: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct PredictArguments {
-    /// Rig file.
-    pub(super) rig: PathBuf,
-    /// Recording whose inputs drive the rig; what it holds of measured columns is compared.
-    pub(super) inputs: PathBuf,
-    /// File for the predicted columns.
-    #[arg(long, default_value = "prediction.csv", help_heading = "Output")]
-    pub(super) out: PathBuf,
-    /// Put new results in place of old ones.
-    #[arg(long, help_heading = "Output")]
-    pub(super) force: bool,
-    /// Print nothing but errors.
-    #[arg(long, help_heading = "Output")]
-    pub(super) quiet: bool,
-    /// Print as JSON how far off the prediction is.
-    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
-    pub(super) json: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ProveArguments {
-    /// Folder of cases, each a folder with rig.toml and recordings.
-    #[arg(long, default_value = "assets/proof/cases")]
-    pub(super) cases: PathBuf,
-    /// Folder of what is sealed, opened only once all is diagnosed [default: the folder `sealed` beside that of the cases].
-    #[arg(long)]
-    pub(super) sealed: Option<PathBuf>,
-    /// Names of the cases to take [default: all].
-    #[arg(long, num_args = 1..)]
-    pub(super) only: Vec<String>,
-    /// Folder for the answers.
-    #[arg(long, default_value = "runs/proof", help_heading = "Output")]
-    pub(super) out: PathBuf,
-    /// Cases at a time [default: as many as there are processors].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    pub(super) jobs: Option<u16>,
-    /// Print the score as JSON.
-    #[arg(long, help_heading = "Output")]
-    pub(super) json: bool,
-    /// Put new results in place of old ones.
-    #[arg(long, help_heading = "Output")]
-    pub(super) force: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct SweepArguments {
-    /// Folder for the outcomes, one file for each case.
-    #[arg(long, help_heading = "Output")]
-    pub(super) out: PathBuf,
-    /// Effects by name, divided by commas [default: all of the vocabulary].
-    #[arg(long, value_delimiter = ',')]
-    pub(super) effects: Vec<String>,
-    /// Devices for each size of each effect.
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(0..=1000))]
-    pub(super) seeds: u64,
-    /// Sizes of each effect.
-    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=16))]
-    pub(super) sizes: u16,
-    /// Devices with nothing missing.
-    #[arg(long, default_value_t = 150)]
-    pub(super) empty: u64,
-    /// Which devices are drawn: another number, others.
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..1_000_000))]
-    pub(super) draw: u64,
-    /// Length of each recording [s].
-    #[arg(long, default_value_t = 4.0, value_parser = duration)]
-    pub(super) duration_s: f64,
-    /// Cases at a time [default: as many as there are processors].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    pub(super) jobs: Option<u16>,
-    /// Go on where it was stopped.
-    #[arg(long)]
-    pub(super) resume: bool,
-    /// File for the tables [default: CONFUSION.md in the output folder].
-    #[arg(long, help_heading = "Output")]
-    pub(super) page: Option<PathBuf>,
-    /// Put new results in place of old ones.
-    #[arg(long, conflicts_with = "resume", help_heading = "Output")]
-    pub(super) force: bool,
-    /// Print nothing but errors.
-    #[arg(long, help_heading = "Output")]
-    pub(super) quiet: bool,
-    /// Print the outcomes as JSON.
-    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
-    pub(super) json: bool,
-}
-
-/// Length of a recording [s].
-fn duration(text: &str) -> Result<f64, String> {
-    let expected = || format!("`{text}` is no length of a recording, expected 2 to 60 s");
-    let value: f64 = text.parse().map_err(|_| expected())?;
-    if (2.0..=60.0).contains(&value) {
-        Ok(value)
-    } else {
-        Err(expected())
-    }
-}
-
-#[derive(Debug, Args)]
-pub(super) struct LaboratoryArguments {
-    /// Folder for `cases` and `sealed`.
-    #[arg(long, help_heading = "Output")]
-    pub(super) out: PathBuf,
-    /// Put new results in place of old ones.
-    #[arg(long, help_heading = "Output")]
-    pub(super) force: bool,
-    /// Print nothing but errors.
-    #[arg(long, help_heading = "Output")]
-    pub(super) quiet: bool,
-    /// Print as JSON which cases were written.
-    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
-    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -318,13 +168,6 @@ pub(super) struct DiagnoseArguments {
     /// Print what diagnosis.json holds instead of the account; with --all, one line for each case.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     pub(super) json: bool,
-}
-
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-pub(super) enum MeshUnit {
-    Mm,
-    M,
-    Inch,
 }
 
 /// Runs the command; errors are bad input.

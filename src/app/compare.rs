@@ -1,5 +1,7 @@
 //! `idc compare`: several runs, or several diagnoses, side by side.
 
+mod page;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -10,13 +12,11 @@ use super::diagnose::DIAGNOSIS;
 use super::error::{AppError, ExitCode};
 use super::files::{SUMMARY, Standing, prepare_file};
 use super::output::say;
-use super::report::{RunResult, chart_groups, labels, read_json, read_run};
+use super::report::{RunResult, labels, read_json, read_run};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::words::{capital, figures, percent, spoken};
-use crate::figure::{Horizontal, Panel, Role, Series, Stroke};
-use crate::page::{Block, Cell, Chart, Fact, Page, Section, Table, Tone, html};
+use crate::page::html;
 use crate::recording::atomic::write_text;
-use crate::recording::schema;
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -31,30 +31,13 @@ Examples:
   # the same numbers for a program
   idc compare runs/step runs/push --json";
 
-/// Colours of runs over one another, in order; there are no more.
-const COLOURS: [Role; 7] = [
-    Role::Regulator,
-    Role::Force,
-    Role::Stroke,
-    Role::Estimate,
-    Role::Band,
-    Role::Measured,
-    Role::Command,
-];
-/// Signals that are drawn over one another.
-const SIGNALS: [&str; 6] = [
-    schema::CONTACT_FORCE,
-    schema::STROKE,
-    schema::REGULATOR_PRESSURE,
-    schema::CHAMBER_1_PRESSURE,
-    schema::PATH_ERROR,
-    schema::PATH_ERROR_AXIAL,
-];
+/// Folders at most: as many as there are colours.
+const MOST: usize = page::COLOURS.len();
 
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {
     /// Folders with results, two to seven; the first is what the others are compared with.
-    #[arg(num_args = 2..=COLOURS.len(), required = true)]
+    #[arg(num_args = 2..=MOST, required = true)]
     folders: Vec<PathBuf>,
     /// File for a page with all of it drawn over one another.
     #[arg(long)]
@@ -95,7 +78,7 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
     }
     let compared = read(&arguments.folders)?;
     if let Some(out) = &arguments.out {
-        write_text(out, &html(&page(&compared)))?;
+        write_text(out, &html(&page::page(&compared)))?;
     }
     if arguments.json {
         return print_json(&compared, arguments.out.as_deref());
@@ -303,86 +286,4 @@ fn print_json(compared: &Compared, out: Option<&Path>) -> Result<ExitCode, AppEr
     });
     say(&format!("{}\n", serde_json::to_string_pretty(&document)?))?;
     Ok(ExitCode::Done)
-}
-
-fn page(compared: &Compared) -> Page<'_> {
-    let names: Vec<String> = compared.names.iter().map(|name| short(name)).collect();
-    let facts = names
-        .iter()
-        .zip(&compared.verdicts)
-        .map(|(name, verdict)| Fact {
-            name: name.clone(),
-            value: String::new(),
-            remark: verdict.clone(),
-        });
-    let signals = Section::new("Over one another", over_one_another(compared, &names));
-    let numbers = Section::new("Numbers", vec![Block::Table(table(compared, &names))]);
-    let sections = [signals, numbers].into_iter();
-    Page {
-        title: "Comparison".to_owned(),
-        verdict: names.join(" / "),
-        tone: Tone::Plain,
-        facts: facts.collect(),
-        sections: sections.filter(|s| !s.blocks.is_empty()).collect(),
-        footer: "Made by idc compare.".to_owned(),
-        ..Page::default()
-    }
-}
-
-fn over_one_another<'a>(compared: &'a Compared, names: &[String]) -> Vec<Block<'a>> {
-    let mut blocks = Vec::new();
-    for group in chart_groups() {
-        for (quantity, words, ..) in group.lines.iter().filter(|line| SIGNALS.contains(&line.0)) {
-            let line = |(place, run): (usize, &RunResult<'_>)| {
-                let values = &run.recording.channel(quantity)?.values;
-                let values: Vec<f64> = values.iter().map(|v| v * group.factor).collect();
-                let time = run.recording.time().to_vec();
-                // Where runs agree, both are seen.
-                let stroke = match place % 2 {
-                    0 => Stroke::Plain,
-                    _ => Stroke::Dashed,
-                };
-                let name = names[place].clone();
-                Some(Series::new(name, time, values, COLOURS[place], stroke))
-            };
-            let series: Vec<Series<'_>> =
-                compared.runs.iter().enumerate().filter_map(line).collect();
-            if !series.is_empty() {
-                blocks.push(Block::Chart(Chart {
-                    panel: Panel {
-                        title: format!("{}: {words}", group.title),
-                        vertical_label: group.label.to_owned(),
-                        horizontal: Horizontal::Time,
-                        series,
-                        ..Panel::default()
-                    },
-                    group: "runs".to_owned(),
-                    ..Chart::default()
-                }));
-            }
-        }
-    }
-    blocks
-}
-
-fn table(compared: &Compared, names: &[String]) -> Table {
-    let mut columns = vec!["number".to_owned(), "unit".to_owned()];
-    for (place, name) in names.iter().enumerate() {
-        columns.push(format!("#{name}"));
-        if place > 0 {
-            columns.push("#change".to_owned());
-        }
-    }
-    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-    let row = |row: &Row| {
-        let mut cells = vec![Cell::from(row.name.clone()), Cell::from(row.unit.clone())];
-        for place in 0..row.values.len() {
-            cells.push(Cell::from(row.shown(place)));
-            if place > 0 {
-                cells.push(Cell::from(row.change(place).unwrap_or_default()));
-            }
-        }
-        cells
-    };
-    Table::new("", &columns, compared.rows.iter().map(row).collect())
 }

@@ -59,10 +59,21 @@ fn place(error: &AppError) -> Option<Place> {
         }
         AppError::Cell(
             CellError::EdgeUnknown { file, .. } | CellError::EdgeNotConvex { file, .. },
-        ) => of_key(file, "workpiece.edge"),
+        ) => ["edge", "loop"]
+            .into_iter()
+            .find_map(|key| of_key(file, &format!("workpiece.edge.{key}"))),
         AppError::Cell(CellError::JointStiffness { file, .. }) => {
             of_key(file, "joints.stiffness_n_m_per_rad")
         }
+        AppError::Cell(CellError::Supply { file, .. }) => of_key(file, "process.force_n"),
+        AppError::Cell(CellError::SeedPosture { file, .. }) => of_key(file, "arm.seed_posture_deg"),
+        AppError::Cell(CellError::EdgeStretch { file, key, .. }) => {
+            of_key(file, &format!("workpiece.edge.{key}"))
+        }
+        AppError::Cell(CellError::Effect { file, effect }) => {
+            of_key(file, &format!("effect.{effect}"))
+        }
+        AppError::Cell(CellError::Burr { file, .. }) => of_key(file, "workpiece.burr.kind"),
         AppError::Design(error) => match &**error {
             DesignError::File(error) => error.place().cloned(),
             DesignError::Variable { place, .. } | DesignError::UnknownMetric { place, .. } => {
@@ -70,12 +81,10 @@ fn place(error: &AppError) -> Option<Place> {
             }
             _ => None,
         },
-        AppError::Metrics { file, source } => match source {
-            MetricsError::UnknownMetric { metric, .. } | MetricsError::Bound { metric, .. } => {
-                of_key(Path::new(file), &format!("expect.{metric}"))
-            }
-            _ => None,
-        },
+        AppError::Metrics {
+            file,
+            source: MetricsError::UnknownMetric { metric, .. } | MetricsError::Bound { metric, .. },
+        } => of_key(Path::new(file), &format!("expect.{metric}")),
         _ => None,
     }
 }
@@ -86,7 +95,7 @@ fn excerpt(place: &Place) -> Option<String> {
     let excerpt = place.excerpt.as_ref()?;
     let file = place.file.display().to_string();
     let snippet = Snippet::source(&excerpt.line)
-        .line_start(line)
+        .line_start(line as usize)
         .path(file)
         .annotation(AnnotationKind::Primary.span(excerpt.meant.clone()));
     let group = Group::with_level(Level::ERROR).element(snippet);

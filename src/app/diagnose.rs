@@ -10,6 +10,7 @@ mod comparison_files;
 mod fit_picture;
 mod one;
 mod outputs;
+mod stages;
 mod unlisted_picture;
 
 use std::path::Path;
@@ -25,6 +26,7 @@ use super::output::say;
 use super::progress;
 use crate::replay::LoadedCell;
 use crate::scenario::load_recorded_cell;
+use stages::Stages;
 
 fn load_cell(path: &Path) -> Result<LoadedCell, AppError> {
     Ok(LoadedCell::new(load_recorded_cell(path)?)?)
@@ -53,13 +55,13 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         }
         return Ok(ExitCode::Done);
     }
+    let silent = arguments.quiet || arguments.json || arguments.verbose;
+    let spinner = progress::spinner(&Stages::first(), silent);
     let prepared = one::Prepared::new(&arguments.case, cell, &out, standing)?;
-    let spinner = progress::spinner(
-        "reading",
-        arguments.quiet || arguments.json || arguments.verbose,
-    );
+    let mut stages = Stages::default();
+    spinner.set_message(stages.begun());
     let finished = prepared.run(&mut |text| {
-        spinner.set_message(text.trim().to_owned());
+        spinner.set_message(stages.told(text));
         if arguments.verbose {
             eprintln!("{text}");
         }

@@ -1,12 +1,38 @@
 //! `idc edges`: what edges a part has.
 
-use super::cli::{EdgesArguments, MeshUnit};
+use std::path::PathBuf;
+
+use clap::Args;
+
 use super::error::{AppError, ExitCode};
 use super::output::say;
+use super::progress;
 use crate::workpiece::{
     Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, list_edges, load_mesh,
 };
 use glam::DVec3;
+
+#[derive(Debug, Args)]
+pub(super) struct EdgesArguments {
+    /// Mesh file: STL, OBJ or COLLADA.
+    mesh: PathBuf,
+    /// Unit of the mesh file: mm, m or inch.
+    #[arg(long, default_value = "mm")]
+    unit: MeshUnit,
+    /// Dihedral angle above which an edge counts as sharp [deg].
+    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
+    sharp_angle_deg: f64,
+    /// Print them as JSON.
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum MeshUnit {
+    Mm,
+    M,
+    Inch,
+}
 
 pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     let scale = match arguments.unit {
@@ -22,12 +48,14 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
             expected: "1 to 170",
         });
     }
+    let spinner = progress::spinner("looking for edges", arguments.json);
     let mesh = load_mesh(&arguments.mesh, scale)?;
     let search = EdgeSearch {
         sharp_angle: angle.to_radians(),
         ..EdgeSearch::default()
     };
     let list = list_edges(&mesh, &search);
+    spinner.finish_and_clear();
     say(&if arguments.json {
         json(arguments, &list)
     } else {

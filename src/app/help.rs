@@ -4,7 +4,8 @@
 /// After the list of commands.
 pub(super) const PROGRAM: &str = "\
 The usual order:
-  look       idc run scenarios/plate_edge.toml, then the recording in Rerun
+  look       idc run scenarios/plate_edge.toml, then report.html in a browser
+             and recording.rrd in Rerun; idc compare sets runs side by side
   own cell   idc new cell, idc check, idc run, idc design
   own rig    idc new import, idc import, idc new rig, idc check, idc diagnose
   proof      idc prove, idc sweep
@@ -76,7 +77,7 @@ Examples:
       assets/proof/cases/case-03/ride.csv --out runs/believed.csv
   # The same as numbers for a program.
   idc predict assets/proof/cases/case-03/rig.toml \\
-      assets/proof/cases/case-03/ride.csv --out runs/believed.csv --force --json";
+      assets/proof/cases/case-03/ride.csv --out runs/again.csv --json";
 
 /// `idc import`.
 pub(super) const IMPORT: &str = "\
@@ -98,7 +99,8 @@ Examples:
   # One case: its rig.toml names its recordings.
   idc diagnose assets/proof/cases/case-03 --out runs/cases/case-03
   # What was found, for a program; the diagnosis that stands is kept.
-  idc diagnose assets/proof/cases/case-03 --out runs/cases/case-03 --resume --json
+  idc diagnose assets/proof/cases/case-03 --out runs/cases/case-03 \\
+      --resume --json
   # Every case below a folder, going on where it was stopped. (takes minutes)
   idc diagnose assets/proof/cases --all --out runs/cases --resume
   # Cases of a robot cell: the scenario is what is believed. (takes minutes)

@@ -7,13 +7,35 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::cli::ImportArguments;
+use clap::Args;
+
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
+use super::progress;
 use crate::import::findings::same_data;
 use crate::import::{ImportMap, Imported, LogNote, import, load_map};
 use crate::recording::parquet::write_parquet;
+
+#[derive(Debug, Args)]
+pub(super) struct ImportArguments {
+    /// Import map.
+    map: PathBuf,
+    /// Logs in place of those that the map names, in its order; several times as many make several recordings.
+    logs: Vec<PathBuf>,
+    /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print what was understood as JSON.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
 
 /// A recording to be, and where it goes.
 struct Job {
@@ -45,12 +67,16 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
         arguments.logs.chunks(each).collect()
     };
     let mut jobs: Vec<Job> = Vec::new();
-    for logs in &groups {
+    let sizes: Vec<u64> = groups.iter().map(|logs| bytes(logs)).collect();
+    let bar = progress::bytes(sizes.iter().sum(), arguments.quiet || arguments.json);
+    for (logs, size) in groups.iter().zip(&sizes) {
         let imported = import(&map, logs)?;
+        bar.inc(*size);
         let out = arguments.out.as_ref();
         let out = out.map(|out| destination(out, &imported, groups.len()));
         jobs.push(Job { imported, out });
     }
+    bar.finish_and_clear();
     check_destinations(&jobs)?;
     for path in jobs.iter().filter_map(|job| job.out.as_ref()) {
         prepare_file(path, Standing::of(arguments.force))?;
@@ -70,6 +96,12 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
         say(&text(&map, &jobs, &copies))?;
     }
     Ok(ExitCode::Done)
+}
+
+/// How large logs are together.
+fn bytes(logs: &[PathBuf]) -> u64 {
+    let size = |log: &PathBuf| std::fs::metadata(log).map_or(0, |file| file.len());
+    logs.iter().map(size).sum()
 }
 
 /// Where a recording goes: into a folder, named by its first log, unless it is alone and the folder is none.

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::cli::PredictArguments;
+use clap::Args;
+
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
@@ -15,6 +16,26 @@ use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::plant::simulate;
 use crate::recording::csv::write_csv;
 use crate::scenario::rig_file::load_rig;
+
+#[derive(Debug, Args)]
+pub(super) struct PredictArguments {
+    /// Rig file.
+    rig: PathBuf,
+    /// Recording whose inputs drive the rig; what it holds of measured columns is compared.
+    inputs: PathBuf,
+    /// File for the predicted columns.
+    #[arg(long, default_value = "prediction.csv", help_heading = "Output")]
+    out: PathBuf,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print as JSON how far off the prediction is.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
 
 /// Predicts and writes.
 pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError> {

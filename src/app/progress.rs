@@ -19,6 +19,16 @@ pub(super) fn bar(verb: &str, hidden: bool) -> ProgressBar {
     bar
 }
 
+/// A bar of so many bytes to read.
+pub(super) fn bytes(count: u64, hidden: bool) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::hidden());
+    let template = "reading {wide_bar} {bytes} of {total_bytes}, {elapsed} so far";
+    let style = ProgressStyle::with_template(template);
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    show_later(&bar, hidden);
+    bar
+}
+
 /// A bar of so many cases.
 pub(super) fn cases(count: usize, hidden: bool) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());

@@ -1,9 +1,10 @@
 //! `idc prove`, `idc sweep` and `idc laboratory`: the diagnosis on cases of which the truth is known, but not to it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::cli::{LaboratoryArguments, ProveArguments, SweepArguments};
 use super::diagnose::answer_case;
+use clap::Args;
+
 use super::error::{AppError, ExitCode};
 use super::files::{OutputFolder, Standing, prepare_file};
 use super::output::say;
@@ -11,6 +12,101 @@ use super::progress;
 use crate::laboratory::{shipped, write_case};
 use crate::proof::{Claims, Diagnose, SweepPlan, folders, page, prove, sweep};
 use crate::recording::atomic::write_text;
+
+#[derive(Debug, Args)]
+pub(super) struct ProveArguments {
+    /// Folder of cases, each a folder with rig.toml and recordings.
+    #[arg(long, default_value = "assets/proof/cases")]
+    cases: PathBuf,
+    /// Folder of what is sealed, opened only once all is diagnosed [default: the folder `sealed` beside that of the cases].
+    #[arg(long)]
+    sealed: Option<PathBuf>,
+    /// Names of the cases to take [default: all].
+    #[arg(long, num_args = 1..)]
+    only: Vec<String>,
+    /// Folder for the answers.
+    #[arg(long, default_value = "runs/proof", help_heading = "Output")]
+    out: PathBuf,
+    /// Cases at a time [default: as many as there are processors].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Print the score as JSON.
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SweepArguments {
+    /// Folder for the outcomes, one file for each case.
+    #[arg(long, help_heading = "Output")]
+    out: PathBuf,
+    /// Effects by name, divided by commas [default: all of the vocabulary].
+    #[arg(long, value_delimiter = ',')]
+    effects: Vec<String>,
+    /// Devices for each size of each effect.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(0..=1000))]
+    seeds: u64,
+    /// Sizes of each effect.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=16))]
+    sizes: u16,
+    /// Devices with nothing missing.
+    #[arg(long, default_value_t = 150)]
+    empty: u64,
+    /// Which devices are drawn: another number, others.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..1_000_000))]
+    draw: u64,
+    /// Length of each recording [s].
+    #[arg(long, default_value_t = 4.0, value_parser = duration)]
+    duration_s: f64,
+    /// Cases at a time [default: as many as there are processors].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Go on where it was stopped.
+    #[arg(long)]
+    resume: bool,
+    /// File for the tables [default: CONFUSION.md in the output folder].
+    #[arg(long, help_heading = "Output")]
+    page: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, conflicts_with = "resume", help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print the outcomes as JSON.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
+
+/// Length of a recording [s].
+fn duration(text: &str) -> Result<f64, String> {
+    let expected = || format!("`{text}` is no length of a recording, expected 2 to 60 s");
+    let value: f64 = text.parse().map_err(|_| expected())?;
+    if (2.0..=60.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err(expected())
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct LaboratoryArguments {
+    /// Folder for `cases` and `sealed`.
+    #[arg(long, help_heading = "Output")]
+    out: PathBuf,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print as JSON which cases were written.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
 
 /// The program's own diagnosis of a case.
 fn diagnose() -> Box<Diagnose<'static>> {

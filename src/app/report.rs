@@ -4,6 +4,8 @@ mod charts;
 mod design;
 mod diagnosis;
 mod run;
+mod signals;
+mod tables;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -23,7 +25,8 @@ use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
 
 pub(super) use charts::{lacking, variable};
-pub(super) use run::{RunResult, chart_groups, labels};
+pub(super) use run::{RunResult, labels};
+pub(super) use signals::chart_groups;
 
 /// Its name.
 pub(super) const REPORT: &str = "report.html";

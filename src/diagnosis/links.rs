@@ -159,7 +159,7 @@ pub fn left_by(
     plain: &PlantParameters,
 ) -> Vec<f64> {
     let plain = PlantParameters {
-        sensors: plain.sensors.clone(),
+        sensors: plain.sensors,
         ..held.plant.clone()
     };
     if link == Link::Regulator || plain.sensors == held.plant.sensors {

@@ -89,10 +89,10 @@ impl Chart<'_> {
         (told, [kept.len(), places.len()])
     }
 
-    /// Samples that its panel has.
-    pub(super) fn samples(&self) -> usize {
+    /// Numbers that its panel has, the places counted once.
+    pub(super) fn numbers(&self) -> usize {
         let lengths = self.panel.series.iter().map(|s| s.values.len());
-        lengths.max().unwrap_or(0) * self.panel.series.len()
+        lengths.max().unwrap_or(0) * (self.panel.series.len() + 1)
     }
 }
 

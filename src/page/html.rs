@@ -12,22 +12,26 @@ const SCRIPT: &str = include_str!("../../assets/page/page.js");
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 /// Numbers on a page at most: four bytes and a third of text each, so that the page stays below 3 MB.
-const MOST_NUMBERS: usize = 350_000;
-/// Numbers of a chart that are always shown.
-const LEAST_NUMBERS: usize = 4000;
+const MOST_NUMBERS: usize = 300_000;
+/// Numbers that small charts keep beside large ones: of all charts, and of one at most.
+const LEAST_NUMBERS: [usize; 2] = [150_000, 4000];
 
 /// What the parts of a page share.
 struct Budget {
     /// Share of its numbers that a chart may keep [1].
     share: f64,
+    /// Numbers that it may keep in any case.
+    least: usize,
 }
 
 /// The page as a document.
 #[must_use]
 pub fn html(page: &Page<'_>) -> String {
-    let all: usize = page.sections.iter().map(|s| numbers(&s.blocks)).sum();
+    let counts = page.sections.iter().map(|s| numbers(&s.blocks));
+    let (charts, all) = counts.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     let budget = Budget {
         share: (MOST_NUMBERS as f64 / all.max(1) as f64).min(1.0),
+        least: (LEAST_NUMBERS[0] / charts.max(1)).min(LEAST_NUMBERS[1]),
     };
     let tone = match page.tone {
         Tone::Plain => "verdict",
@@ -72,13 +76,15 @@ pub fn html(page: &Page<'_>) -> String {
     .into_string()
 }
 
-fn numbers(blocks: &[Block<'_>]) -> usize {
+/// Charts, and their numbers.
+fn numbers(blocks: &[Block<'_>]) -> (usize, usize) {
     let of = |block: &Block<'_>| match block {
-        Block::Chart(chart) => chart.samples(),
+        Block::Chart(chart) => (1, chart.numbers()),
         Block::Folded(_, blocks) => numbers(blocks),
-        _ => 0,
+        _ => (0, 0),
     };
-    blocks.iter().map(of).sum()
+    let counts = blocks.iter().map(of);
+    counts.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
 
 fn section(part: &Section<'_>, budget: &Budget) -> Markup {
@@ -94,8 +100,8 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
     markup! {
         @match block_of {
             Block::Heading(text) => h3 { (text) },
-            Block::Paragraph(text) => p { (text) },
-            Block::Hint(text) => p.hint { (text) },
+            Block::Paragraph(text) => p { (bound(text)) },
+            Block::Hint(text) => p.hint { (bound(text)) },
             Block::Table(of) => (table(of)),
             Block::Chart(of) => (chart(of, budget)),
             Block::Strip(of) => (strip(of)),
@@ -111,8 +117,9 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
 }
 
 fn chart(chart: &Chart<'_>, budget: &Budget) -> Markup {
-    let series = chart.panel.series.len().max(1);
-    let most = (budget.share * chart.samples() as f64).max(LEAST_NUMBERS as f64) as usize / series;
+    let columns = chart.panel.series.len() + 1;
+    let share = (budget.share * chart.numbers() as f64) as usize;
+    let most = share.max(budget.least) / columns;
     let (told, [kept, of]) = chart.told(most);
     // `</script>` within a text would end it.
     let told = told.to_string().replace("</", "<\\/");
@@ -172,6 +179,11 @@ fn strip(strip: &Strip) -> Markup {
             span.ends { span { (format!("{first:.1} s")) } span { (format!("{last:.1} s")) } }
         }
     }
+}
+
+/// A text in which a number stays with its percent sign.
+fn bound(text: &str) -> String {
+    text.replace(" %", "\u{a0}%")
 }
 
 /// A heading as an address within the page.

@@ -93,8 +93,9 @@ impl<'a> Document<'a> {
             Some(entry) => {
                 let [key, value] = [&entry.key_span, &entry.value_span];
                 let both = key.start..value.end.max(key.end);
-                let one_line = !self.text[both.clone()].contains('\n');
-                self.place_of(if one_line { both } else { key.clone() })
+                // The value of a table begins with its heading, which holds the key.
+                let beside = value.start >= key.end && !self.text[both.clone()].contains('\n');
+                self.place_of(if beside { both } else { key.clone() })
             }
             None => Place {
                 file: self.file.to_owned(),
@@ -133,8 +134,8 @@ impl<'a> Document<'a> {
         Place {
             file: self.file.to_owned(),
             position: Some((
-                before.matches('\n').count() + 1,
-                before[line_start..].chars().count() + 1,
+                before.matches('\n').count() as u32 + 1,
+                before[line_start..].chars().count() as u32 + 1,
             )),
             excerpt: Some(Box::new(Excerpt {
                 line: line.to_owned(),

@@ -10,7 +10,7 @@ pub struct Place {
     /// The file.
     pub file: PathBuf,
     /// Line and column, both from 1; none for a value that the file leaves to its default.
-    pub position: Option<(usize, usize)>,
+    pub position: Option<(u32, u32)>,
     /// What stands there.
     pub excerpt: Option<Box<Excerpt>>,
 }

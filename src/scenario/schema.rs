@@ -147,6 +147,18 @@ fn describe_table(schema: &mut Value, table: &str, of: &impl Fn(&str, &str) -> O
             apply(property, &described);
         }
         let below = super::document::join(table, key);
+        if let Value::Object(property) = &mut *property {
+            let heading = match property.contains_key("items") {
+                true => format!("Tables [[{below}]]."),
+                false => format!("Table [{below}]."),
+            };
+            let bare = !property.contains_key("description");
+            if bare
+                && (property.contains_key("items") || property.contains_key("additionalProperties"))
+            {
+                property.insert("description".to_owned(), heading.into());
+            }
+        }
         match property.get_mut("items") {
             Some(items) => describe_table(items, &below, of),
             None => describe_table(property, &below, of),

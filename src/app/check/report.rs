@@ -1,7 +1,7 @@
 //! What is told of a file: facts by name, numbers for programs, the files that it needs and what to do next.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use serde::Serialize;
 
@@ -66,7 +66,7 @@ impl Report {
     pub(super) fn file(&mut self, what: impl Into<String>, path: &Path) {
         self.files.push(FileNote {
             what: what.into(),
-            path: path.to_owned(),
+            path: without_detours(path),
             there: path.exists(),
         });
     }
@@ -112,13 +112,12 @@ impl Report {
     pub(super) fn device(&mut self, device: &DeviceParameters) {
         let millimetres = |metres: f64| shown(metres * 1e3);
         let text = format!(
-            "{} x bore {} mm, rod {} mm, stroke {} mm; moving mass {} kg; supply {} bar gauge",
+            "{} x bore {} mm, rod {} mm, stroke {} mm; moving mass {} kg",
             device.cylinder_count,
             millimetres(device.bore),
             millimetres(device.rod),
             millimetres(device.full_stroke),
             shown(device.moving_mass),
-            shown(device.regulator.supply / 1e5)
         );
         self.fact("device", text);
     }
@@ -154,6 +153,19 @@ impl Report {
     }
 }
 
+/// A path without the folders that it goes into and out of again.
+fn without_detours(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        let up = part == Component::ParentDir;
+        match plain.components().next_back() {
+            Some(Component::Normal(_)) if up => drop(plain.pop()),
+            _ => plain.push(part),
+        }
+    }
+    plain
+}
+
 /// A number without what rounding adds to it.
 pub(super) fn shown(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
@@ -166,5 +178,22 @@ pub(super) fn size(bytes: f64) -> String {
         bytes if bytes < 1e6 => format!("{:.0} kB", (bytes / 1e3).max(1.0)),
         bytes if bytes < 1e9 => format!("{:.1} MB", bytes / 1e6),
         bytes => format!("{:.1} GB", bytes / 1e9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_told_without_detours() {
+        for (path, told) in [
+            ("scenarios/../models/device.toml", "models/device.toml"),
+            ("../a/./b/../c.stl", "../a/c.stl"),
+            ("../../x", "../../x"),
+            ("/a/b", "/a/b"),
+        ] {
+            assert_eq!(without_detours(Path::new(path)), Path::new(told), "{path}");
+        }
     }
 }

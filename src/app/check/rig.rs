@@ -77,8 +77,10 @@ fn describe(report: &mut Report, rig: &RigFile) {
         let variable = latent.variable.name();
         report.fact("latent", format!("a term without a name over {variable}"));
     }
-    report.fact("rate", format!("{} Hz", shown(rig.rate)));
-    report.number("rate_hz", rig.rate);
+    if plant.chain == Chain::Whole {
+        report.fact("rate", format!("{} Hz", shown(rig.rate)));
+        report.number("rate_hz", rig.rate);
+    }
 }
 
 /// One recording, as far as a reader of it needs to know.

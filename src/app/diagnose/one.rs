@@ -129,7 +129,7 @@ impl Prepared {
         Ok(Self {
             name: own.file_name().unwrap_or_default().display().to_string(),
             sources: sources(folder, cell, &work),
-            folder: OutputFolder::prepare(out, &NAMES, Standing::Replace)?,
+            folder: OutputFolder::prepare(out, &NAMES, standing)?,
             work,
         })
     }

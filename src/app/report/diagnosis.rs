@@ -2,6 +2,7 @@
 
 use super::charts::{balance, channel, origin, unlisted};
 use super::provenance;
+use super::tables::{how_well, own_numbers, ruled_out};
 use crate::diagnosis::account::Section as Told;
 use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict};
 use crate::diagnosis::comparison::{Compared, Comparison};
@@ -54,7 +55,7 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> 
 }
 
 /// A part of the account by its title.
-fn part<'a>(answer: &'a Answer, title: &str) -> Option<&'a Told> {
+pub(super) fn part<'a>(answer: &'a Answer, title: &str) -> Option<&'a Told> {
     let mut sections = answer.details.account.sections.iter();
     sections.find(|section| section.title == title)
 }
@@ -122,7 +123,7 @@ fn facts(answer: &Answer) -> Vec<Fact> {
 }
 
 /// A channel's column for people.
-fn of_column(column: &str) -> (&str, &'static str, f64) {
+pub(super) fn of_column(column: &str) -> (&str, &'static str, f64) {
     match COLUMNS.iter().position(|own| *own == column) {
         Some(index) => {
             let (unit, factor) = CHANNEL_UNITS[index];
@@ -150,17 +151,23 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
         let (words, unit, factor) = spoken(name);
         let number = |v: f64| Cell::from(figures(factor * v, 4));
         let [low, high] = relative(estimate);
+        // Which joint is known or not; it has no interval.
+        let certain = estimate.low == estimate.high;
+        let unless_certain = |cell: Cell| if certain { Cell::from("") } else { cell };
         vec![
             Cell::from(effect.name.replace('_', " ")),
             Cell::from(effect.subsystem.replace('_', " ")),
             Cell::from(percent(effect.confidence)),
             Cell::from(words),
-            number(estimate.value),
-            number(estimate.low),
-            number(estimate.high),
+            match certain && estimate.value.fract() == 0.0 {
+                true => Cell::from(format!("{}", estimate.value)),
+                false => number(estimate.value),
+            },
+            unless_certain(number(estimate.low)),
+            unless_certain(number(estimate.high)),
             Cell::from(unit),
             match low.is_finite() && high.is_finite() {
-                true => Cell::Interval([-widest, low, 0.0, high, widest]),
+                true => unless_certain(Cell::Interval([-widest, low, 0.0, high, widest])),
                 false => Cell::from(""),
             },
         ]
@@ -288,154 +295,6 @@ fn balances<'a>(comparison: &Comparison) -> Option<Section<'a>> {
     let mut blocks = vec![Block::Hint("What closes each balance along the measured motion, against the variable that says most about it: a law shows as a curve, what is explained lies flat.".to_owned())];
     blocks.extend(comparison.balances.iter().map(|b| Block::Chart(balance(b))));
     (blocks.len() > 1).then(|| Section::new("What each link lacks", blocks))
-}
-
-fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
-    let details = &answer.details;
-    let mut blocks = Vec::new();
-    let row = |m: &crate::diagnosis::details::ChannelMisfit| {
-        let (words, unit, factor) = of_column(&m.channel);
-        let sigmas = |v: f64| Cell::from(figures(v, 3));
-        vec![
-            Cell::from(m.recording.clone()),
-            Cell::from(words),
-            Cell::from(m.samples.to_string()),
-            Cell::from(format!("{} {unit}", figures(factor * m.believed_rms, 3))),
-            Cell::from(format!("{} {unit}", figures(factor * m.improved_rms, 3))),
-            sigmas(m.believed_sigmas),
-            sigmas(m.tolerated_sigmas),
-            sigmas(m.improved_sigmas),
-            m.left_out_sigmas.map_or(Cell::from("–"), sigmas),
-        ]
-    };
-    if !details.misfit.is_empty() {
-        blocks.push(Block::Table(Table::new(
-            "What the models leave of each channel: root mean square, then in multiples of the sensor's noise (1 is noise). The last column is a fit to the other recordings.",
-            &["recording", "channel", "#readings", "#believed", "#improved", "#believed, σ", "#within tolerances, σ", "#improved, σ", "#not fitted to, σ"],
-            details.misfit.iter().map(row).collect(),
-        )));
-    }
-    let row = |e: &crate::diagnosis::details::PredictionError| {
-        let (words, unit, factor) = of_column(&e.channel);
-        let number = |v: f64| Cell::from(format!("{} {unit}", figures(factor * v, 3)));
-        vec![
-            Cell::from(e.recording.clone()),
-            Cell::from(words),
-            number(e.before),
-            number(e.after),
-            number(e.noise),
-            Cell::from(figures(e.after_sigmas, 3)),
-        ]
-    };
-    if !details.prediction.is_empty() {
-        blocks.push(Block::Table(Table::new(
-            "Errors on what was not fitted to.",
-            &[
-                "recording",
-                "channel",
-                "#before",
-                "#after",
-                "#sensor's noise",
-                "#after, σ",
-            ],
-            details.prediction.iter().map(row).collect(),
-        )));
-    }
-    for told in ["What is left", "A run that it never saw", "The runs"] {
-        let paragraphs = part(answer, told).into_iter().flat_map(|t| &t.paragraphs);
-        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
-    }
-    (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
-}
-
-fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
-    let tolerated = &answer.details.tolerated;
-    let row = |number: &crate::diagnosis::details::ToleratedNumber| {
-        let (words, unit, factor) = spoken(&number.key);
-        let found = number.found;
-        let shift = 100.0 * (found.value / number.believed - 1.0);
-        vec![
-            Cell::from(words),
-            Cell::from(figures(factor * number.believed, 4)),
-            Cell::from(figures(factor * found.value, 4)),
-            Cell::from(figures(factor * found.low, 4)),
-            Cell::from(figures(factor * found.high, 4)),
-            Cell::from(unit),
-            Cell::from(match shift.is_finite() {
-                true => format!("{shift:+.1} %"),
-                false => String::new(),
-            }),
-        ]
-    };
-    let rows: Vec<Vec<Cell>> = tolerated.iter().map(row).collect();
-    let table = Table::new(
-        "The rig file's own numbers, moved within their tolerances.",
-        &[
-            "number",
-            "#believed",
-            "#found",
-            "#low",
-            "#high",
-            "unit",
-            "#change",
-        ],
-        rows,
-    );
-    (!tolerated.is_empty())
-        .then(|| Section::new("The rig's own numbers", vec![Block::Table(table)]))
-}
-
-fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
-    let details = &answer.details;
-    let mut blocks = Vec::new();
-    let names = |effects: &[String]| {
-        let names: Vec<String> = effects.iter().map(|name| name.replace('_', " ")).collect();
-        match names.is_empty() {
-            true => "nothing missing".to_owned(),
-            false => names.join(" and "),
-        }
-    };
-    let row = |other: &crate::diagnosis::details::Considered| {
-        let against = match other.log10_odds {
-            odds if odds > -2.0 => Cell::Judged("not ruled out".to_owned(), false),
-            odds if odds > -15.0 => Cell::from(format!("1 to {}", figures(10f64.powf(-odds), 2))),
-            odds => Cell::from(format!("1 to 10^{:.0}", -odds)),
-        };
-        vec![
-            Cell::from(names(&other.effects)),
-            against,
-            Cell::from(other.explained_share.map_or("–".to_owned(), percent)),
-        ]
-    };
-    if !details.considered.is_empty() {
-        blocks.push(Block::Table(Table::new(
-            "Other explanations that were fitted in full, against the one given.",
-            &["explanation", "#odds", "#of the mismatch explained"],
-            details.considered.iter().map(row).collect(),
-        )));
-    }
-    let unit = details
-        .remaining
-        .as_ref()
-        .map_or("", |r| r.channel.as_str());
-    let (_, unit, factor) = of_column(unit);
-    let row = |variant: &crate::diagnosis::details::RuledOutReport| {
-        vec![
-            Cell::from(names(&variant.effects)),
-            Cell::from(format!("{} {unit}", figures(factor * variant.rms, 3))),
-        ]
-    };
-    if !details.ruled_out.is_empty() {
-        blocks.push(Block::Table(Table::new(
-            "Variants of the answer, fitted anew: without one of its effects, or with another law in its place.",
-            &["explanation", "#leaves, RMS"],
-            details.ruled_out.iter().map(row).collect(),
-        )));
-    }
-    let title = "What the recordings do not tell apart";
-    let paragraphs = part(answer, title).into_iter().flat_map(|t| &t.paragraphs);
-    blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
-    (!blocks.is_empty()).then(|| Section::new("What was ruled out", blocks))
 }
 
 /// All that the account says, folded away.

@@ -183,7 +183,7 @@ mod tests {
             let (line, _) = place
                 .position
                 .unwrap_or_else(|| panic!("{dotted} is not there"));
-            let line = TEMPLATE.lines().nth(line - 1).unwrap();
+            let line = TEMPLATE.lines().nth(line as usize - 1).unwrap();
             let range = format!("({} to {})", plain(low), plain(high));
             assert!(line.ends_with(&range), "{dotted}: {line}\nexpected {range}");
         }

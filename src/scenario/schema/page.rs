@@ -42,7 +42,19 @@ impl Row {
         let [_, unit, default, range, meaning] = &self.cells[..] else {
             return Described::text(self.cells.last().cloned().unwrap_or_default());
         };
-        let mut text = format!("{meaning} [{unit}]");
+        // What is no number of a unit shows by its type.
+        let words = [
+            "text",
+            "file",
+            "true or false",
+            "number",
+            "whole number",
+            "-",
+        ];
+        let mut text = match words.contains(&unit.as_str()) {
+            true => meaning.clone(),
+            false => format!("{meaning} [{unit}]"),
+        };
         if !range.is_empty() {
             text += &format!(", {range}");
         }

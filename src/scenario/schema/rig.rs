@@ -59,6 +59,7 @@ pub fn schema() -> Value {
         "$schema": DIALECT,
         "title": "A rig file of idc: a device, its contact and its sensors as their owner believes them to be, in SI",
         "type": "object",
+        "definitions": { "number": number("A number of the effect, in the unit that its name ends with.", None) },
         "properties": tables,
         "required": ["schema"],
         "additionalProperties": false,
@@ -106,7 +107,10 @@ fn effects() -> Value {
     for effect in Chain::ALL.into_iter().flat_map(candidates) {
         let mut properties = Map::new();
         for parameter in (effect.parameters)(&super::super::rig_file::blank()) {
-            properties.insert(parameter.quantity.name.to_owned(), number("", None));
+            properties.insert(
+                parameter.quantity.name.to_owned(),
+                json!({ "$ref": "#/definitions/number" }),
+            );
         }
         names.insert(effect.name.to_owned(), table_of(properties));
     }

@@ -1,0 +1,109 @@
+//! The page of a comparison.
+
+use super::super::report::{RunResult, chart_groups};
+use super::{Compared, Row, short};
+use crate::figure::{Horizontal, Panel, Role, Series, Stroke};
+use crate::page::{Block, Cell, Chart, Fact, Page, Section, Table, Tone};
+use crate::recording::schema;
+
+/// Colours of runs over one another, in order; there are no more.
+pub(super) const COLOURS: [Role; 7] = [
+    Role::Regulator,
+    Role::Force,
+    Role::Stroke,
+    Role::Estimate,
+    Role::Band,
+    Role::Measured,
+    Role::Command,
+];
+/// Signals that are drawn over one another.
+const SIGNALS: [&str; 6] = [
+    schema::CONTACT_FORCE,
+    schema::STROKE,
+    schema::REGULATOR_PRESSURE,
+    schema::CHAMBER_1_PRESSURE,
+    schema::PATH_ERROR,
+    schema::PATH_ERROR_AXIAL,
+];
+
+pub(super) fn page(compared: &Compared) -> Page<'_> {
+    let names: Vec<String> = compared.names.iter().map(|name| short(name)).collect();
+    let facts = names
+        .iter()
+        .zip(&compared.verdicts)
+        .map(|(name, verdict)| Fact {
+            name: name.clone(),
+            value: String::new(),
+            remark: verdict.clone(),
+        });
+    let signals = Section::new("Over one another", over_one_another(compared, &names));
+    let numbers = Section::new("Numbers", vec![Block::Table(table(compared, &names))]);
+    let sections = [signals, numbers].into_iter();
+    Page {
+        title: "Comparison".to_owned(),
+        verdict: names.join(" / "),
+        tone: Tone::Plain,
+        facts: facts.collect(),
+        sections: sections.filter(|s| !s.blocks.is_empty()).collect(),
+        footer: "Made by idc compare.".to_owned(),
+        ..Page::default()
+    }
+}
+
+fn over_one_another<'a>(compared: &'a Compared, names: &[String]) -> Vec<Block<'a>> {
+    let mut blocks = Vec::new();
+    for group in chart_groups() {
+        for (quantity, words, ..) in group.lines.iter().filter(|line| SIGNALS.contains(&line.0)) {
+            let line = |(place, run): (usize, &RunResult<'_>)| {
+                let values = &run.recording.channel(quantity)?.values;
+                let values: Vec<f64> = values.iter().map(|v| v * group.factor).collect();
+                let time = run.recording.time().to_vec();
+                // Where runs agree, both are seen.
+                let stroke = match place % 2 {
+                    0 => Stroke::Plain,
+                    _ => Stroke::Dashed,
+                };
+                let name = names[place].clone();
+                Some(Series::new(name, time, values, COLOURS[place], stroke))
+            };
+            let series: Vec<Series<'_>> =
+                compared.runs.iter().enumerate().filter_map(line).collect();
+            if !series.is_empty() {
+                blocks.push(Block::Chart(Chart {
+                    panel: Panel {
+                        title: format!("{}: {words}", group.title),
+                        vertical_label: group.label.to_owned(),
+                        horizontal: Horizontal::Time,
+                        series,
+                        ..Panel::default()
+                    },
+                    group: "runs".to_owned(),
+                    ..Chart::default()
+                }));
+            }
+        }
+    }
+    blocks
+}
+
+fn table(compared: &Compared, names: &[String]) -> Table {
+    let mut columns = vec!["number".to_owned(), "unit".to_owned()];
+    for (place, name) in names.iter().enumerate() {
+        columns.push(format!("#{name}"));
+        if place > 0 {
+            columns.push("#change".to_owned());
+        }
+    }
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let row = |row: &Row| {
+        let mut cells = vec![Cell::from(row.name.clone()), Cell::from(row.unit.clone())];
+        for place in 0..row.values.len() {
+            cells.push(Cell::from(row.shown(place)));
+            if place > 0 {
+                cells.push(Cell::from(row.change(place).unwrap_or_default()));
+            }
+        }
+        cells
+    };
+    Table::new("", &columns, compared.rows.iter().map(row).collect())
+}

@@ -1,0 +1,250 @@
+//! The charts of a run: its signals against time, its force along the edge, the drives of its arm.
+
+use serde_json::Value;
+
+use super::run::RunResult;
+use crate::diagnosis::words::figures;
+use crate::figure::{Horizontal, Marker, Panel, Role, Series, Stroke};
+use crate::page::{Block, Cell, Chart, Section, Table};
+use crate::recording::PhaseSpan;
+use crate::recording::schema::{self, JointSignal, joint_quantity};
+
+/// A line: quantity, label, role and stroke.
+type Line = (&'static str, &'static str, Role, Stroke);
+
+/// A chart of a run: title, label of its vertical axis, what a value in SI is multiplied by, and lines.
+pub(in super::super) struct Group {
+    pub title: &'static str,
+    pub label: &'static str,
+    pub factor: f64,
+    pub lines: &'static [Line],
+}
+
+const FORCE: [Line; 5] = [
+    (
+        schema::MEASURED_FORCE_UNFILTERED,
+        "load cell, read",
+        Role::Measured,
+        Stroke::Raw,
+    ),
+    (schema::CONTACT_FORCE, "true", Role::Force, Stroke::Truth),
+    (
+        schema::MEASURED_FORCE,
+        "load cell, filtered",
+        Role::Filtered,
+        Stroke::Plain,
+    ),
+    (
+        schema::ESTIMATED_FORCE,
+        "estimated",
+        Role::Estimate,
+        Stroke::Plain,
+    ),
+    (
+        schema::DESIRED_FORCE,
+        "desired",
+        Role::Command,
+        Stroke::Dashed,
+    ),
+];
+const STROKE: [Line; 3] = [
+    (schema::MEASURED_STROKE, "read", Role::Measured, Stroke::Raw),
+    (schema::STROKE, "true", Role::Stroke, Stroke::Truth),
+    (
+        schema::SURFACE_POSITION,
+        "surface",
+        Role::Command,
+        Stroke::Dashed,
+    ),
+];
+const PRESSURE: [Line; 5] = [
+    (
+        schema::MEASURED_REGULATOR_PRESSURE,
+        "regulator, read",
+        Role::Measured,
+        Stroke::Raw,
+    ),
+    (
+        schema::CHAMBER_2_PRESSURE,
+        "chamber 2",
+        Role::Chamber2,
+        Stroke::Plain,
+    ),
+    (
+        schema::CHAMBER_1_PRESSURE,
+        "chamber 1",
+        Role::Chamber1,
+        Stroke::Plain,
+    ),
+    (
+        schema::REGULATOR_PRESSURE,
+        "regulator",
+        Role::Regulator,
+        Stroke::Truth,
+    ),
+    (schema::SET_PRESSURE, "set", Role::Command, Stroke::Dashed),
+];
+const SEALS: [Line; 1] = [(schema::SEAL_FORCE, "seals", Role::Band, Stroke::Plain)];
+const PATH: [Line; 2] = [
+    (
+        schema::PATH_ERROR_AXIAL,
+        "along the tool's axis",
+        Role::Chamber2,
+        Stroke::Plain,
+    ),
+    (
+        schema::PATH_ERROR,
+        "beside the path",
+        Role::Force,
+        Stroke::Plain,
+    ),
+];
+
+/// The charts of a run, in order.
+#[must_use]
+pub(in super::super) fn chart_groups() -> [Group; 5] {
+    let group = |title, label, factor, lines| Group {
+        title,
+        label,
+        factor,
+        lines,
+    };
+    [
+        group("Contact force", "force [N]", 1.0, FORCE.as_slice()),
+        group("Stroke", "stroke [mm]", 1e3, &STROKE),
+        group("Pressure", "pressure [bar absolute]", 1e-5, &PRESSURE),
+        group("Path error", "error [um]", 1e6, &PATH),
+        group("Seals", "force [N]", 1.0, &SEALS),
+    ]
+}
+
+/// Roles that joints are drawn in, base first.
+const JOINTS: [Role; 7] = [
+    Role::Regulator,
+    Role::Force,
+    Role::Stroke,
+    Role::Estimate,
+    Role::Band,
+    Role::Measured,
+    Role::Command,
+];
+
+fn time_of(run: &RunResult<'_>) -> Vec<f64> {
+    run.recording.time().to_vec()
+}
+
+/// Starts of the phases, as lines.
+fn markers(run: &RunResult<'_>) -> Vec<Marker> {
+    let marker = |phase: &PhaseSpan| Marker {
+        label: phase.name.clone(),
+        at: phase.start,
+    };
+    run.recording.phases().iter().map(marker).collect()
+}
+
+fn chart<'a>(run: &RunResult<'_>, title: &str, label: &str, series: Vec<Series<'a>>) -> Chart<'a> {
+    Chart {
+        panel: Panel {
+            title: title.to_owned(),
+            vertical_label: label.to_owned(),
+            horizontal: Horizontal::Time,
+            series,
+            markers: markers(run),
+            ..Panel::default()
+        },
+        group: "run".to_owned(),
+        ..Chart::default()
+    }
+}
+
+pub(super) fn signals<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+    let hint = "Draw over a chart to zoom it, and all of the run; a double click shows all.";
+    let mut blocks = vec![Block::Hint(hint.to_owned())];
+    for group in chart_groups() {
+        let line = |(quantity, label, role, stroke): &Line| {
+            let values = &run.recording.channel(quantity)?.values;
+            if values.iter().all(|v| v.is_nan()) {
+                return None;
+            }
+            let values: Vec<f64> = values.iter().map(|v| v * group.factor).collect();
+            Some(Series::new(*label, time_of(run), values, *role, *stroke))
+        };
+        let series: Vec<Series<'_>> = group.lines.iter().filter_map(line).collect();
+        if !series.is_empty() {
+            blocks.push(Block::Chart(chart(run, group.title, group.label, series)));
+        }
+    }
+    (blocks.len() > 1).then(|| Section::new("Signals", blocks))
+}
+
+/// Force over the place on the edge: what a deburrer asks for.
+pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+    let places = &run.recording.channel(schema::PATH_LENGTH)?.values;
+    let force = &run.recording.channel(schema::CONTACT_FORCE)?.values;
+    let follow = run.recording.phases().iter().find(|p| p.name == "follow")?;
+    let span = run.recording.samples_in(follow);
+    let places: Vec<f64> = places[span.clone()].iter().map(|p| 1e3 * p).collect();
+    let panel = Panel {
+        title: "Contact force along the edge, while following it".to_owned(),
+        vertical_label: "force [N]".to_owned(),
+        horizontal: Horizontal::Quantity("length along the edge [mm]".to_owned()),
+        series: vec![Series::new(
+            "true",
+            places,
+            &force[span],
+            Role::Force,
+            Stroke::Plain,
+        )],
+        ..Panel::default()
+    };
+    let mut blocks = vec![Block::Chart(Chart {
+        panel,
+        ..Chart::default()
+    })];
+    let tenths = run.document["summary"]["force_by_tenth"].as_array();
+    let row = |tenth: &Value| {
+        let number = |key: &str, digits| {
+            Cell::from(
+                tenth[key]
+                    .as_f64()
+                    .map_or("–".to_owned(), |v| figures(v, digits)),
+            )
+        };
+        vec![
+            number("from_mm", 4),
+            number("to_mm", 4),
+            number("force_mean_n", 5),
+            number("force_standard_deviation_n", 2),
+        ]
+    };
+    let rows: Vec<Vec<Cell>> = tenths.into_iter().flatten().map(row).collect();
+    if !rows.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "Contact force by tenths of the edge",
+            &["#from, mm", "#to, mm", "#mean, N", "#standard deviation, N"],
+            rows,
+        )));
+    }
+    Some(Section::new("Along the edge", blocks))
+}
+
+pub(super) fn joints<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+    let names = run.document["joint_names"].as_array()?;
+    let line = |(index, role): (usize, Role)| {
+        let quantity = joint_quantity(index + 1, JointSignal::Torque);
+        let values = &run.recording.channel(&quantity)?.values;
+        let name = names.get(index).and_then(Value::as_str).unwrap_or("joint");
+        Some(Series::new(
+            name,
+            time_of(run),
+            values.as_slice(),
+            role,
+            Stroke::Plain,
+        ))
+    };
+    let series: Vec<Series<'_>> = JOINTS.into_iter().enumerate().filter_map(line).collect();
+    (!series.is_empty()).then(|| {
+        let chart = chart(run, "Torque of the drives", "torque [N m]", series);
+        Section::new("The arm", vec![Block::Chart(chart)])
+    })
+}

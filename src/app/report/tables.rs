@@ -1,0 +1,157 @@
+//! The tables of a diagnosis: how well it fits, the rig's own numbers, what was ruled out.
+
+use super::diagnosis::{of_column, part};
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::details::{
+    ChannelMisfit, Considered, PredictionError, RuledOutReport, ToleratedNumber,
+};
+use crate::diagnosis::words::{figures, percent, spoken};
+use crate::page::{Block, Cell, Section, Table};
+
+pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let details = &answer.details;
+    let mut blocks = Vec::new();
+    let row = |m: &ChannelMisfit| {
+        let (words, unit, factor) = of_column(&m.channel);
+        let sigmas = |v: f64| Cell::from(figures(v, 3));
+        vec![
+            Cell::from(m.recording.clone()),
+            Cell::from(words),
+            Cell::from(m.samples.to_string()),
+            Cell::from(format!("{} {unit}", figures(factor * m.believed_rms, 3))),
+            Cell::from(format!("{} {unit}", figures(factor * m.improved_rms, 3))),
+            sigmas(m.believed_sigmas),
+            sigmas(m.tolerated_sigmas),
+            sigmas(m.improved_sigmas),
+            m.left_out_sigmas.map_or(Cell::from("–"), sigmas),
+        ]
+    };
+    if !details.misfit.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "What the models leave of each channel: root mean square, then in multiples of the sensor's noise (1 is noise). The last column is a fit to the other recordings.",
+            &["recording", "channel", "#readings", "#believed", "#improved", "#believed, σ", "#within tolerances, σ", "#improved, σ", "#not fitted to, σ"],
+            details.misfit.iter().map(row).collect(),
+        )));
+    }
+    let row = |e: &PredictionError| {
+        let (words, unit, factor) = of_column(&e.channel);
+        let number = |v: f64| Cell::from(format!("{} {unit}", figures(factor * v, 3)));
+        vec![
+            Cell::from(e.recording.clone()),
+            Cell::from(words),
+            number(e.before),
+            number(e.after),
+            number(e.noise),
+            Cell::from(figures(e.after_sigmas, 3)),
+        ]
+    };
+    if !details.prediction.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "Errors on what was not fitted to.",
+            &[
+                "recording",
+                "channel",
+                "#before",
+                "#after",
+                "#sensor's noise",
+                "#after, σ",
+            ],
+            details.prediction.iter().map(row).collect(),
+        )));
+    }
+    for told in ["What is left", "A run that it never saw", "The runs"] {
+        let paragraphs = part(answer, told).into_iter().flat_map(|t| &t.paragraphs);
+        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    }
+    (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
+}
+
+pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let tolerated = &answer.details.tolerated;
+    let row = |number: &ToleratedNumber| {
+        let (words, unit, factor) = spoken(&number.key);
+        let found = number.found;
+        let shift = 100.0 * (found.value / number.believed - 1.0);
+        vec![
+            Cell::from(words),
+            Cell::from(figures(factor * number.believed, 4)),
+            Cell::from(figures(factor * found.value, 4)),
+            Cell::from(figures(factor * found.low, 4)),
+            Cell::from(figures(factor * found.high, 4)),
+            Cell::from(unit),
+            Cell::from(match shift.is_finite() {
+                true => format!("{shift:+.1} %"),
+                false => String::new(),
+            }),
+        ]
+    };
+    let rows: Vec<Vec<Cell>> = tolerated.iter().map(row).collect();
+    let table = Table::new(
+        "The rig file's own numbers, moved within their tolerances.",
+        &[
+            "number",
+            "#believed",
+            "#found",
+            "#low",
+            "#high",
+            "unit",
+            "#change",
+        ],
+        rows,
+    );
+    (!tolerated.is_empty())
+        .then(|| Section::new("The rig's own numbers", vec![Block::Table(table)]))
+}
+
+pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let details = &answer.details;
+    let mut blocks = Vec::new();
+    let names = |effects: &[String]| {
+        let names: Vec<String> = effects.iter().map(|name| name.replace('_', " ")).collect();
+        match names.is_empty() {
+            true => "nothing missing".to_owned(),
+            false => names.join(" and "),
+        }
+    };
+    let row = |other: &Considered| {
+        let against = match other.log10_odds {
+            odds if odds > -2.0 => Cell::Judged("not ruled out".to_owned(), false),
+            odds if odds > -15.0 => Cell::from(format!("1 to {}", figures(10f64.powf(-odds), 2))),
+            odds => Cell::from(format!("1 to 10^{:.0}", -odds)),
+        };
+        vec![
+            Cell::from(names(&other.effects)),
+            against,
+            Cell::from(other.explained_share.map_or("–".to_owned(), percent)),
+        ]
+    };
+    if !details.considered.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "Other explanations that were fitted in full, against the one given.",
+            &["explanation", "#odds", "#of the mismatch explained"],
+            details.considered.iter().map(row).collect(),
+        )));
+    }
+    let unit = details
+        .remaining
+        .as_ref()
+        .map_or("", |r| r.channel.as_str());
+    let (_, unit, factor) = of_column(unit);
+    let row = |variant: &RuledOutReport| {
+        vec![
+            Cell::from(names(&variant.effects)),
+            Cell::from(format!("{} {unit}", figures(factor * variant.rms, 3))),
+        ]
+    };
+    if !details.ruled_out.is_empty() {
+        blocks.push(Block::Table(Table::new(
+            "Variants of the answer, fitted anew: without one of its effects, or with another law in its place.",
+            &["explanation", "#leaves, RMS"],
+            details.ruled_out.iter().map(row).collect(),
+        )));
+    }
+    let title = "What the recordings do not tell apart";
+    let paragraphs = part(answer, title).into_iter().flat_map(|t| &t.paragraphs);
+    blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    (!blocks.is_empty()).then(|| Section::new("What was ruled out", blocks))
+}
