@@ -213,7 +213,7 @@ fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
         (place as usize).min(SEGMENTS - 1)
     };
     let channels = drawn.compared.channels.iter();
-    let force = channels.filter(|c| c.channel == Channel::Force).last();
+    let force = channels.filter(|c| c.channel == Channel::Force).next_back();
     let mut sums = vec![(0.0, 0.0); SEGMENTS];
     // Corners: the place of the sample that is nearest to each.
     let mut corners = vec![(f64::INFINITY, DVec3::ZERO); SEGMENTS + 1];

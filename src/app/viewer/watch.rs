@@ -91,7 +91,7 @@ fn reach(host: &str, port: u16) -> Result<(), ViewerError> {
 /// What is handed over to the thread that sends.
 enum Part {
     /// Samples and frames that have come since the last part.
-    Samples(Recording, Scene),
+    Samples(Box<Recording>, Box<Scene>),
     /// The whole run's scene and its summary.
     End(Box<Scene>, String),
 }
@@ -137,7 +137,8 @@ impl Watch {
     /// Hands over what has come since the last part.
     pub(in crate::app) fn add(&self, samples: Recording, scene: Scene) {
         // With the thread gone, so is the viewer: `end` says so.
-        drop(self.parts.send(Part::Samples(samples, scene)));
+        let part = Part::Samples(Box::new(samples), Box::new(scene));
+        drop(self.parts.send(part));
     }
 
     /// Hands over what only the whole run tells, and waits until all is sent; on a web page, until this program is interrupted.

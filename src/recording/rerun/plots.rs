@@ -176,6 +176,8 @@ fn group_series(recording: &Recording, style: &Style) -> Vec<Series> {
             _ => line(signal.quantity, look, values),
         });
     }
+    // What a sensor reads of a signal is drawn first, below the signal itself.
+    series.sort_by_key(|series| !series.name.starts_with("measured"));
     series
 }
 

@@ -4,7 +4,7 @@ use ::rerun::{LineStrips2D, Points2D, Radius};
 
 use super::role_colour;
 use crate::recording::board::Cloud;
-use crate::recording::rerun::colours::{GREY, rerun_colour};
+use crate::recording::rerun::colours::{GREY, PALE_GREY, rerun_colour};
 use crate::recording::rerun::rrd::{RrdError, RrdWriter};
 use crate::recording::scene::Colour;
 
@@ -160,10 +160,10 @@ fn write_axes(
         .with_draw_order(10.0);
     rrd.add_static(&format!("{entity}/axes"), &axes)?;
     let (places, texts): (Vec<_>, Vec<_>) = numbers.into_iter().unzip();
-    let numbers = label(places, texts, GREY);
+    let numbers = label(places, texts, PALE_GREY);
     rrd.add_static(&format!("{entity}/axes/numbers"), &numbers)?;
     let below = [(0.5 * FIELD[0]) as f32, (FIELD[1] + 125.0) as f32 - BELOW];
-    let words = label([below], [cloud.horizontal.clone()], GREY);
+    let words = label([below], [cloud.horizontal.clone()], PALE_GREY);
     rrd.add_static(&format!("{entity}/axes/variable"), &words)
 }
 

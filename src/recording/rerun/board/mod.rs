@@ -17,7 +17,7 @@ use super::{RerunOptions, SUMMARY, cell, slug};
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_atomic;
 use crate::recording::board::{Board, BoardRole};
-use crate::recording::rerun::colours::{ORANGE, PALE_GREY, SKY_BLUE, YELLOW};
+use crate::recording::rerun::colours::{GREY, ORANGE, SKY_BLUE, YELLOW};
 use crate::recording::scene::Colour;
 
 /// Writes findings as a Rerun file that opens as a finished screen. Equal input gives equal bytes.
@@ -66,7 +66,8 @@ fn write_data(rrd: &mut RrdWriter, board: &Board, options: &RerunOptions) -> Res
 /// The colour of what is shown, the same in every picture.
 fn role_colour(role: BoardRole) -> Colour {
     match role {
-        BoardRole::Measured => PALE_GREY,
+        // Seen on the viewer's dark and on its light ground.
+        BoardRole::Measured => GREY,
         BoardRole::Believed => ORANGE,
         BoardRole::Improved => SKY_BLUE,
         BoardRole::Guide => YELLOW,
