@@ -7,7 +7,7 @@ use super::details::{
     ChannelMisfit, ChannelNoise, Considered, Details, LinkReport, NextExperiment, PredictionError,
     RegimeReport, RemainingReport, RuledOutReport, ToleratedNumber,
 };
-use super::diagnose::{Diagnosis, names_of};
+use super::diagnose::{Diagnosis, names_of, spoken_name};
 use super::estimate::Number;
 use super::evidence::Prediction;
 use super::fit::robust_sum;
@@ -16,6 +16,7 @@ use super::links::Link;
 use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms};
 use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
+use super::search::RoughFit;
 use crate::effects::Effect;
 use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, Chain, Channel};
@@ -239,15 +240,44 @@ impl Diagnosis {
     }
 
     fn considered(&self) -> Vec<Considered> {
+        let power = |score: f64, best: f64| -0.5 * (score - best) / std::f64::consts::LN_10;
         let best = self.ranked[0].score;
-        let others = self.ranked[1..].iter().take(MOST_CONSIDERED);
-        others
-            .map(|ranked| Considered {
-                effects: names_of(&ranked.hypothesis),
-                log10_odds: -0.5 * (ranked.score - best) / std::f64::consts::LN_10,
-                explained_share: self.share_explained_by(&ranked.hypothesis),
-            })
-            .collect()
+        let others = self.ranked[1..].iter().map(|ranked| Considered {
+            effects: names_of(&ranked.hypothesis),
+            in_full: true,
+            log10_odds: power(ranked.score, best),
+            explained_share: self.share_explained_by(&ranked.hypothesis),
+        });
+        let mut found: Vec<Considered> = others.collect();
+        // A rough fit is compared with the rough fit of the same effects, or with the best rough one where there is none.
+        let own = names_of(self.best());
+        let names = |rough: &RoughFit| -> Vec<String> {
+            rough.effects.iter().map(|e| spoken_name(e)).collect()
+        };
+        let same = self.roughly.iter().find(|rough| {
+            let names = names(rough);
+            names.len() == own.len() && names.iter().all(|name| own.contains(name))
+        });
+        let Some(reference) = same.or_else(|| self.roughly.first()).map(|r| r.score) else {
+            return found;
+        };
+        for rough in &self.roughly {
+            let effects = names(rough);
+            let told = |known: &[String]| {
+                known.len() == effects.len() && known.iter().all(|name| effects.contains(name))
+            };
+            let behind = rough.score > reference;
+            if behind && !told(&own) && !found.iter().any(|other| told(&other.effects)) {
+                found.push(Considered {
+                    effects,
+                    in_full: false,
+                    log10_odds: power(rough.score, reference),
+                    explained_share: rough.explained_share,
+                });
+            }
+        }
+        found.truncate(MOST_CONSIDERED);
+        found
     }
 
     fn noises(&self) -> Vec<ChannelNoise> {

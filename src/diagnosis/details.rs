@@ -28,7 +28,7 @@ pub struct Details {
     pub explained_share: Option<f64>,
     /// What no law explains, where it is more than noise and everything was judged against it.
     pub remaining: Option<RemainingReport>,
-    /// Other explanations that were fitted in full, the best first.
+    /// Other explanations that were looked at: those fitted in full first, then those that fell behind earlier, the best first.
     pub considered: Vec<Considered>,
     /// Variants of the explanation of a part of the device, the best first.
     pub ruled_out: Vec<RuledOutReport>,
@@ -113,11 +113,13 @@ pub struct RemainingReport {
     pub regimes: Vec<RegimeReport>,
 }
 
-/// An explanation that was fitted in full, and not given.
+/// An explanation that was looked at, and not given.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Considered {
     /// Its effects.
     pub effects: Vec<String>,
+    /// Was it fitted in full? Otherwise with the piston held to its measured motion, and compared with what the answer's effects came to so.
+    pub in_full: bool,
     /// Its odds against the answer given, as a power of ten [1].
     pub log10_odds: f64,
     /// Share of the mismatch that it explains [1]; none where there is none.

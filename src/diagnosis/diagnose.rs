@@ -16,7 +16,7 @@ use super::next_experiment::{Separation, separations};
 use super::regime::{Regime, regimes};
 use super::remaining::Remaining;
 use super::ruled_out::{RuledOut, ruled_out};
-use super::search::{MOST_EFFECTS, MOST_OF_LINK, Search};
+use super::search::{MOST_EFFECTS, MOST_OF_LINK, RoughFit, Search};
 use super::unlisted::Shape;
 use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, Chain, PlantParameters, simulate};
@@ -87,6 +87,8 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
     /// Explanations, best first.
     pub ranked: Vec<Ranked>,
+    /// Explanations that were fitted roughly on the way, the best first.
+    pub roughly: Vec<RoughFit>,
     /// What no law explains of a part of the device; none where that is noise, or where there is the whole of it.
     pub remaining: Option<Remaining>,
     /// Variants of the best that do worse, of a part of the device.
@@ -118,10 +120,13 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     let remaining = (case.believed.chain.output())
         .map(|channel| Remaining::of(&search_of(case, &evidence), channel, say))
         .filter(|(remaining, _)| !remaining.is_noise());
+    let mut roughly = Vec::new();
     let (ranked, evidence, remaining) = match remaining {
         None => {
             let search = search_of(case, &evidence);
-            (rank(&search, search.run(say)), evidence, None)
+            let (found, rough) = search.run_and_tell(say);
+            roughly = rough;
+            (rank(&search, found), evidence, None)
         }
         Some((mut remaining, mut seed)) => {
             let mut rounds = 0;
@@ -162,6 +167,7 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
             Some(channel) => ruled_out(&search, best, channel),
             None => Vec::new(),
         },
+        roughly,
         remaining,
         estimates: estimates(&case.believed, best, &evidence),
         shape: Shape::of(&evidence, best),

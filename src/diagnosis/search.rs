@@ -59,6 +59,17 @@ pub struct Shown {
     pub numbers: Vec<Free>,
 }
 
+/// An explanation that was fitted roughly: the piston held to its measured motion, errors in time forgiven.
+#[derive(Debug, Clone)]
+pub struct RoughFit {
+    /// Names of its effects.
+    pub effects: Vec<&'static str>,
+    /// What it costs, penalty included [1].
+    pub score: f64,
+    /// Share of the mismatch that it explains [1].
+    pub explained_share: Option<f64>,
+}
+
 impl Search<'_> {
     /// The believed model within its tolerances, roughly.
     pub fn baseline(&self) -> Hypothesis {
@@ -112,6 +123,11 @@ impl Search<'_> {
     /// Forward, one effect after the other, as long as one more explains what it must; backward, whatever the rest does as well without; at last
     /// once more forward with the finest measure, for effects too small to be seen roughly.
     pub fn run(&self, say: &mut dyn FnMut(&str)) -> Vec<Hypothesis> {
+        self.run_and_tell(say).0
+    }
+
+    /// The same, with what was fitted roughly on the way.
+    pub fn run_and_tell(&self, say: &mut dyn FnMut(&str)) -> (Vec<Hypothesis>, Vec<RoughFit>) {
         let noise = rough_noise(self.evidence);
         let baseline = self.baseline();
         say(&format!(
@@ -170,7 +186,15 @@ impl Search<'_> {
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.prefer_plain(&mut full, &scale);
         self.add_unlisted(&mut full, &unexplained, &scale, say);
-        full
+        let before = unexplained.fit.rough - noise;
+        let roughly = all.iter().map(|hypothesis| RoughFit {
+            effects: hypothesis.effects.iter().map(|e| e.name).collect(),
+            score: self.rough_score(hypothesis),
+            explained_share: (before > 0.0)
+                .then(|| ((unexplained.fit.rough - hypothesis.fit.rough) / before).clamp(0.0, 1.0)),
+        });
+        let roughly = roughly.collect();
+        (full, roughly)
     }
 
     /// Hypotheses of one effect more, those that lead fitted roughly with everything free; best first.

@@ -123,12 +123,13 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
             Cell::from(names(&other.effects)),
             against,
             Cell::from(other.explained_share.map_or("–".to_owned(), percent)),
+            Cell::from(if other.in_full { "in full" } else { "roughly" }),
         ]
     };
     if !details.considered.is_empty() {
         blocks.push(Block::Table(Table::new(
-            "Other explanations that were fitted in full, against the one given.",
-            &["explanation", "#odds", "#of the mismatch explained"],
+            "Other explanations, against the one given; roughly: with the piston held to its measured motion, where a law that acts on the motion alone can seem to explain more than it does.",
+            &["explanation", "#odds", "#of the mismatch explained", "fitted"],
             details.considered.iter().map(row).collect(),
         )));
     }
