@@ -115,7 +115,7 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     };
     let row = |other: &Considered| {
         let against = match other.log10_odds {
-            odds if odds > -2.0 => Cell::Judged("not ruled out".to_owned(), false),
+            odds if odds > -2.0 && other.in_full => Cell::Judged("not ruled out".to_owned(), false),
             odds if odds > -15.0 => Cell::from(format!("1 to {}", figures(10f64.powf(-odds), 2))),
             odds => Cell::from(format!("1 to 10^{:.0}", -odds)),
         };
