@@ -61,6 +61,7 @@ fn a_planted_force_is_found_told_of_and_kept() {
             "balance.parquet",
             "comparison.parquet",
             "diagnosis.json",
+            "diagnosis.rrd",
             "improved.toml",
             "prediction.csv",
             "report.html"

@@ -67,9 +67,9 @@ impl Chart<'_> {
             })
         });
         let bands = panel.bands.iter();
-        let bands = bands.map(|band| json!({"from": band.from, "to": band.to}));
+        let bands = bands.map(|band| json!({"from": coarse(band.from), "to": coarse(band.to)}));
         let markers = panel.markers.iter();
-        let markers = markers.map(|marker| json!({"label": marker.label, "at": marker.at}));
+        let markers = markers.map(|marker| json!({"label": marker.label, "at": coarse(marker.at)}));
         let x = match &panel.horizontal {
             Horizontal::Time => "time [s]",
             Horizontal::Quantity(name) => name,
@@ -83,8 +83,8 @@ impl Chart<'_> {
             "areas": areas,
             "bands": bands.collect::<Vec<_>>(),
             "markers": markers.collect::<Vec<_>>(),
-            "spans": self.spans,
-            "within": self.within,
+            "spans": self.spans.iter().map(|span| span.map(coarse)).collect::<Vec<_>>(),
+            "within": self.within.map(|ends| ends.map(coarse)),
         });
         (told, [kept.len(), places.len()])
     }
@@ -147,6 +147,11 @@ fn on_all_places(drawn: &[Drawn<'_>]) -> (Vec<f64>, Vec<Vec<f64>>) {
         places.into_iter().map(|(place, ..)| place).collect(),
         columns,
     )
+}
+
+/// A number to what a picture shows of it: one that went through a file may differ in its last bit.
+fn coarse(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
 }
 
 /// Little-endian `f32` in base64.

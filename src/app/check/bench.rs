@@ -9,7 +9,7 @@ use crate::scenario::BenchScenario;
 use crate::scenario::bench::{CommandScenario, LoadScenario};
 
 /// Bytes of a sample in recording.rrd and samples.parquet together, from runs of the shipped scenarios.
-const BYTES: f64 = 450.0;
+const BYTES: f64 = 320.0;
 
 /// A bench that can be run.
 pub(super) fn bench(scenario: BenchScenario) -> Result<Report, AppError> {

@@ -13,8 +13,8 @@ use crate::scenario::{
 use crate::workpiece::EdgeCurve;
 
 /// Bytes of a sample in recording.rrd and samples.parquet together, and what each axis of the arm adds, from runs of the shipped scenarios.
-const BYTES: f64 = 400.0;
-const BYTES_PER_AXIS: f64 = 60.0;
+const BYTES: f64 = 280.0;
+const BYTES_PER_AXIS: f64 = 45.0;
 
 /// A cell that can be run.
 pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {

@@ -234,15 +234,15 @@ fn sources(folder: &Path, cell: Option<&LoadedCell>, work: &Work) -> Vec<(String
         }
         None => within(RIG),
     };
-    let names: Vec<&str> = match work {
+    let recordings: Vec<(String, PathBuf)> = match work {
+        // Of a run of one's own the recording is a file in the folder that it is called by.
         Work::Plant { case, .. } => (case.recordings.iter().chain(&case.unseen))
-            .map(|recording| recording.name.as_str())
+            .map(|recording| (recording.name.clone(), PathBuf::from(&recording.file)))
             .collect(),
         Work::Flange { runs, unseen, .. } => (runs.iter().chain(unseen))
-            .map(|(run, _)| run.name.as_str())
+            .map(|(run, _)| within(&run.name))
             .collect(),
     };
-    let recordings = names.into_iter().map(within);
     std::iter::once(first).chain(recordings).collect()
 }
 
