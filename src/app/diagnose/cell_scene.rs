@@ -51,7 +51,7 @@ pub(super) fn cell_scene(
     let recorded = recorded_angles(drawn.axes);
     let simulated = simulated_angles(drawn.axes, improved);
     let stroke = |measured: bool| {
-        let channels = drawn.compared.channels.iter();
+        let mut channels = drawn.compared.channels.iter();
         let mut own = channels.filter(|c| c.channel == Channel::Stroke);
         let values = own.next().map(|c| match measured {
             true => c.measured.clone(),
@@ -212,8 +212,8 @@ fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
         let place = (station - low) / (high - low) * SEGMENTS as f64;
         (place as usize).min(SEGMENTS - 1)
     };
-    let channels = drawn.compared.channels.iter();
-    let force = channels.filter(|c| c.channel == Channel::Force).next_back();
+    let mut channels = drawn.compared.channels.iter();
+    let force = channels.rfind(|c| c.channel == Channel::Force);
     let mut sums = vec![(0.0, 0.0); SEGMENTS];
     // Corners: the place of the sample that is nearest to each.
     let mut corners = vec![(f64::INFINITY, DVec3::ZERO); SEGMENTS + 1];
