@@ -51,7 +51,7 @@ pub(super) fn cell_scene(
     let recorded = recorded_angles(drawn.axes);
     let simulated = simulated_angles(drawn.axes, improved);
     let stroke = |measured: bool| {
-        let mut channels = drawn.compared.channels.iter();
+        let channels = drawn.compared.channels.iter();
         let mut own = channels.filter(|c| c.channel == Channel::Stroke);
         let values = own.next().map(|c| match measured {
             true => c.measured.clone(),
