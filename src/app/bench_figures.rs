@@ -8,9 +8,10 @@ use crate::scenario::BenchScenario;
 use crate::scenario::bench::CommandScenario;
 
 /// Quantity, label, role and stroke of a line, in the order of drawing.
-type Line = (&'static str, &'static str, Role, Stroke);
+pub(super) type Line = (&'static str, &'static str, Role, Stroke);
 
-const PRESSURE: [Line; 5] = [
+/// Lines of a picture of it.
+pub(super) const PRESSURE: [Line; 5] = [
     (
         schema::MEASURED_REGULATOR_PRESSURE,
         "regulator, read",
@@ -37,7 +38,8 @@ const PRESSURE: [Line; 5] = [
     ),
     (schema::SET_PRESSURE, "set", Role::Command, Stroke::Dashed),
 ];
-const FORCE: [Line; 5] = [
+/// Lines of a picture of it.
+pub(super) const FORCE: [Line; 5] = [
     (
         schema::MEASURED_FORCE_UNFILTERED,
         "load cell, read",
@@ -64,7 +66,8 @@ const FORCE: [Line; 5] = [
         Stroke::Dashed,
     ),
 ];
-const STROKE: [Line; 3] = [
+/// Lines of a picture of it.
+pub(super) const STROKE: [Line; 3] = [
     (schema::MEASURED_STROKE, "read", Role::Measured, Stroke::Raw),
     (schema::STROKE, "true", Role::Stroke, Stroke::Truth),
     (

@@ -2,15 +2,13 @@
 
 use serde_json::Value;
 
+use super::super::bench_figures::{FORCE, Line, PRESSURE, STROKE};
 use super::run::RunResult;
 use crate::diagnosis::words::figures;
 use crate::figure::{Horizontal, Marker, Panel, Role, Series, Stroke};
 use crate::page::{Block, Cell, Chart, Section, Table};
 use crate::recording::PhaseSpan;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
-
-/// A line: quantity, label, role and stroke.
-type Line = (&'static str, &'static str, Role, Stroke);
 
 /// A chart of a run: title, label of its vertical axis, what a value in SI is multiplied by, and lines.
 pub(in super::super) struct Group {
@@ -20,70 +18,6 @@ pub(in super::super) struct Group {
     pub lines: &'static [Line],
 }
 
-const FORCE: [Line; 5] = [
-    (
-        schema::MEASURED_FORCE_UNFILTERED,
-        "load cell, read",
-        Role::Measured,
-        Stroke::Raw,
-    ),
-    (schema::CONTACT_FORCE, "true", Role::Force, Stroke::Truth),
-    (
-        schema::MEASURED_FORCE,
-        "load cell, filtered",
-        Role::Filtered,
-        Stroke::Plain,
-    ),
-    (
-        schema::ESTIMATED_FORCE,
-        "estimated",
-        Role::Estimate,
-        Stroke::Plain,
-    ),
-    (
-        schema::DESIRED_FORCE,
-        "desired",
-        Role::Command,
-        Stroke::Dashed,
-    ),
-];
-const STROKE: [Line; 3] = [
-    (schema::MEASURED_STROKE, "read", Role::Measured, Stroke::Raw),
-    (schema::STROKE, "true", Role::Stroke, Stroke::Truth),
-    (
-        schema::SURFACE_POSITION,
-        "surface",
-        Role::Command,
-        Stroke::Dashed,
-    ),
-];
-const PRESSURE: [Line; 5] = [
-    (
-        schema::MEASURED_REGULATOR_PRESSURE,
-        "regulator, read",
-        Role::Measured,
-        Stroke::Raw,
-    ),
-    (
-        schema::CHAMBER_2_PRESSURE,
-        "chamber 2",
-        Role::Chamber2,
-        Stroke::Plain,
-    ),
-    (
-        schema::CHAMBER_1_PRESSURE,
-        "chamber 1",
-        Role::Chamber1,
-        Stroke::Plain,
-    ),
-    (
-        schema::REGULATOR_PRESSURE,
-        "regulator",
-        Role::Regulator,
-        Stroke::Truth,
-    ),
-    (schema::SET_PRESSURE, "set", Role::Command, Stroke::Dashed),
-];
 const SEALS: [Line; 1] = [(schema::SEAL_FORCE, "seals", Role::Band, Stroke::Plain)];
 const PATH: [Line; 2] = [
     (
