@@ -135,6 +135,11 @@ fn a_check_says_what_would_be_done() {
         .sum();
     let ratio = numbers["estimated_bytes"].as_f64().unwrap() / written as f64;
     assert!((0.7..1.4).contains(&ratio), "{ratio} of what was written");
+    // A bench has a sample at its start and one at its end: idc check counted one too few.
+    let bench = Bench::new("paper_step");
+    bench.run();
+    let told = &check("scenarios/paper_step.toml")["numbers"]["samples"];
+    assert_eq!(told.as_f64(), bench.summary()["samples"].as_f64());
     for (file, kind) in [
         ("scenarios/paper_step.toml", "a bench to simulate"),
         ("scenarios/studies/device_design.toml", "a design study"),

@@ -12,7 +12,7 @@ use super::diagnose::DIAGNOSIS;
 use super::error::{AppError, ExitCode};
 use super::files::{SUMMARY, Standing, prepare_file};
 use super::output::say;
-use super::report::{RunResult, labels, read_json, read_run};
+use super::report::{ROLES, RunResult, labels, read_json, read_run};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::words::{capital, figures, percent, spoken};
 use crate::page::html;
@@ -32,7 +32,7 @@ Examples:
   idc compare runs/step runs/push --json";
 
 /// Folders at most: as many as there are colours.
-const MOST: usize = page::COLOURS.len();
+const MOST: usize = ROLES.len();
 
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {

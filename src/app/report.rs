@@ -26,7 +26,7 @@ use crate::recording::{Recording, RecordingError};
 
 pub(super) use charts::{lacking, variable};
 pub(super) use run::{RunResult, labels};
-pub(super) use signals::chart_groups;
+pub(super) use signals::{ROLES, chart_groups};
 
 /// Its name.
 pub(super) const REPORT: &str = "report.html";

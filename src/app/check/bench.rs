@@ -38,7 +38,9 @@ pub(super) fn bench(scenario: BenchScenario) -> Result<Report, AppError> {
     if scenario.estimator.is_some() {
         report.fact("estimator", "contact force without a load cell");
     }
-    report.extent(scenario.duration, scenario.step, BYTES);
+    // A bench is sampled at its start too.
+    let (duration, step) = (scenario.duration, scenario.step);
+    report.extent(duration, step, (duration / step - 1e-9).ceil() + 1.0, BYTES);
     report.bounds(&scenario.expect);
     report.next(format!("idc run {}", file.display()));
     Ok(report)

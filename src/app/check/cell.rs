@@ -53,7 +53,8 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     report.fact("phases", phases.collect::<Vec<_>>().join(", "));
     let axes = cell.arm.chain.len() as f64;
     let bytes = BYTES + BYTES_PER_AXIS * axes;
-    report.extent(cell.plan.duration(), scenario.simulation.step, bytes);
+    let (duration, step) = (cell.plan.duration(), scenario.simulation.step);
+    report.extent(duration, step, (duration / step).ceil(), bytes);
     report.bounds(&scenario.expect);
     files(&mut report, &scenario.arm, &scenario.workpiece);
     for note in &cell.notes {

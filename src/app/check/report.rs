@@ -93,8 +93,7 @@ impl Report {
     }
 
     /// How much is simulated and written.
-    pub(super) fn extent(&mut self, duration: f64, step: f64, bytes_per_sample: f64) {
-        let samples = (duration / step).ceil();
+    pub(super) fn extent(&mut self, duration: f64, step: f64, samples: f64, bytes_per_sample: f64) {
         let bytes = samples * bytes_per_sample;
         let text = format!(
             "{duration:.1} s in steps of {} ms: {samples} samples, about {} of files",

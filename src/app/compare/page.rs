@@ -1,21 +1,11 @@
 //! The page of a comparison.
 
-use super::super::report::{RunResult, chart_groups};
+use super::super::report::{ROLES, RunResult, chart_groups};
 use super::{Compared, Row, short};
-use crate::figure::{Horizontal, Panel, Role, Series, Stroke};
+use crate::figure::{Horizontal, Panel, Series, Stroke};
 use crate::page::{Block, Cell, Chart, Fact, Page, Section, Table, Tone};
 use crate::recording::schema;
 
-/// Colours of runs over one another, in order; there are no more.
-pub(super) const COLOURS: [Role; 7] = [
-    Role::Regulator,
-    Role::Force,
-    Role::Stroke,
-    Role::Estimate,
-    Role::Band,
-    Role::Measured,
-    Role::Command,
-];
 /// Signals that are drawn over one another.
 const SIGNALS: [&str; 6] = [
     schema::CONTACT_FORCE,
@@ -64,7 +54,7 @@ fn over_one_another<'a>(compared: &'a Compared, names: &[String]) -> Vec<Block<'
                     _ => Stroke::Dashed,
                 };
                 let name = names[place].clone();
-                Some(Series::new(name, time, values, COLOURS[place], stroke))
+                Some(Series::new(name, time, values, ROLES[place], stroke))
             };
             let series: Vec<Series<'_>> =
                 compared.runs.iter().enumerate().filter_map(line).collect();

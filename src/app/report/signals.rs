@@ -52,8 +52,8 @@ pub(in super::super) fn chart_groups() -> [Group; 5] {
     ]
 }
 
-/// Roles that joints are drawn in, base first.
-const JOINTS: [Role; 7] = [
+/// Roles that many of a kind are drawn in, in order: joints from the base on, runs as they are named.
+pub(in super::super) const ROLES: [Role; 7] = [
     Role::Regulator,
     Role::Force,
     Role::Stroke,
@@ -176,7 +176,7 @@ pub(super) fn joints<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
             Stroke::Plain,
         ))
     };
-    let series: Vec<Series<'_>> = JOINTS.into_iter().enumerate().filter_map(line).collect();
+    let series: Vec<Series<'_>> = ROLES.into_iter().enumerate().filter_map(line).collect();
     (!series.is_empty()).then(|| {
         let chart = chart(run, "Torque of the drives", "torque [N m]", series);
         Section::new("The arm", vec![Block::Chart(chart)])
