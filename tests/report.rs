@@ -78,7 +78,11 @@ fn the_page_of_a_run_comes_again_and_names_bounds_that_were_not_kept() {
     let words = ["run", "scenario.toml", "--out", "broken", "--quiet"];
     assert_eq!(bench.idc(&words, &[]).code, 1);
     let text = fs::read_to_string(bench.path("broken/report.html")).unwrap();
-    assert!(text.contains("Outside its bounds: mean."));
+    assert!(text.contains("Outside its bounds: force, mean is 1"));
+    assert!(text.contains(" N, expected at most 1 N."));
+    // What a bench means by it, not a cell, which follows an edge.
+    assert!(text.contains("surface moving; else last level, steady"));
+    assert!(!text.contains("over the following phase"));
 }
 
 #[test]

@@ -6,16 +6,20 @@ use clap::{Args, Parser, Subcommand};
 
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
-use super::files::{OutputFolder, RUN_NAMES, RunOutput, Standing, SummaryDocument};
+use super::files::{
+    OutputFolder, RECORDING, RUN_NAMES, RunOutput, Standing, SummaryDocument, files_of_cell,
+    provenance,
+};
+use super::growing::GrowingFile;
 use super::help;
 use super::output::say;
 use super::picture::scene_of;
-use super::run::run_watched;
+use super::run::{Listener, run_heard};
 use super::viewer::{Viewing, Watch};
 use super::{bench, bench_figures, bench_picture, progress};
 use crate::cell::Cell;
 use crate::metrics::{self, Verdict};
-use crate::recording::rerun::Opening;
+use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::report::{Style, bench_markdown, bench_text, markdown, text};
 use crate::rig::Rig;
 use crate::scenario::{self, AnyScenario, BenchScenario};
@@ -69,7 +73,7 @@ enum Command {
     /// Write report.html of a folder with results: one page for a browser.
     #[command(after_help = super::report::EXAMPLES)]
     Report(super::report::ReportArguments),
-    /// Compare runs, or diagnoses: numbers side by side, signals over one another.
+    /// Compare runs, or diagnoses: numbers side by side, signals of runs over one another.
     #[command(after_help = super::compare::EXAMPLES)]
     Compare(super::compare::CompareArguments),
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
@@ -221,34 +225,51 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
             eprintln!("note: {note}");
         }
     }
+    let scenario = &cell.scenario;
+    let files = files_of_cell(
+        &scenario.path,
+        &scenario.arm,
+        &scenario.device,
+        &scenario.workpiece,
+    );
+    let origin = provenance(&files, scenario.simulation.seed)?;
+    let origin_text = serde_json::to_string(&origin)?;
+    let target = folder.path().join(RECORDING);
+    let options = RerunOptions {
+        opening: opening(arguments),
+        ..RerunOptions::default()
+    };
     let watch = open_watch(viewing, arguments.quiet)?;
     let bar = progress::bar("simulating", quiet);
     let told = &mut |done, total| progress::tell(&bar, done, total);
-    let finished = run_watched(&cell, told, watch.as_ref());
-    bar.finish_and_clear();
-    let finished = finished?;
-    let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect)
-        .map_err(metrics_error)?;
-    let title = &cell.scenario.title;
-    let document = SummaryDocument::new(&cell, &finished, &verdicts)?.text()?;
-    let report = super::report::page_of_run(&document, &finished.recording)?;
-    let scene = scene_of(&cell, &finished.recording, &finished.frames)?;
-    let names = folder.write(&RunOutput {
-        title,
-        recording: &finished.recording,
-        scene: &scene,
-        markdown: markdown(title, &finished.summary, &verdicts),
-        opening: opening(arguments),
-        summary: &document,
-        figures: None,
-        report: &report,
-    })?;
-    let table = text(title, &finished.summary, &verdicts, style());
-    let output = [arguments.quiet, arguments.json];
-    show(output, &document, &table, &folder, &names)?;
-    let code = end(finished.stop.as_ref(), &verdicts);
-    if let Some(watch) = watch {
+    let (code, scene, summary) = std::thread::scope(|scope| -> Result<_, AppError> {
+        let growing = GrowingFile::begin(scope, &cell, &target, &origin_text, options);
+        let watching = watch.iter().map(|watch| Listener::watching(&cell, watch));
+        let listeners = watching.chain([growing.listener()]).collect();
+        let finished = run_heard(&cell, told, listeners);
+        bar.finish_and_clear();
+        let finished = finished?;
+        let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect)
+            .map_err(metrics_error)?;
+        let title = &cell.scenario.title;
+        let document = SummaryDocument::new(&cell, &finished, &verdicts, &origin).text()?;
+        let report = super::report::page_of_run(&document, &finished.recording)?;
+        let scene = scene_of(&cell, &finished.recording, &finished.frames)?;
         let summary = markdown(title, &finished.summary, &verdicts);
+        let names = folder.write(RunOutput {
+            title,
+            recording: &finished.recording,
+            picture: Box::new(|path| growing.write(path, &finished.recording, &scene, &summary)),
+            summary: &document,
+            figures: None,
+            report: &report,
+        })?;
+        let table = text(title, &finished.summary, &verdicts, style());
+        let output = [arguments.quiet, arguments.json];
+        show(output, &document, &table, &folder, &names)?;
+        Ok((end(finished.stop.as_ref(), &verdicts), scene, summary))
+    })?;
+    if let Some(watch) = watch {
         watch.close(scene, summary, quiet);
     }
     Ok(code)
@@ -289,12 +310,15 @@ fn run_bench(
     let document = bench::document(scenario, &finished, &verdicts)?;
     let report = super::report::page_of_run(&document, &finished.recording)?;
     let scene = bench_picture::scene_of(scenario, &finished.recording)?;
-    let names = folder.write(&RunOutput {
+    let options = RerunOptions {
+        summary_markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
+        opening: opening(arguments),
+        ..RerunOptions::default()
+    };
+    let names = folder.write(RunOutput {
         title: &scenario.title,
         recording: &finished.recording,
-        scene: &scene,
-        markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
-        opening: opening(arguments),
+        picture: Box::new(|path| write_rrd(path, &finished.recording, &scene, &options)),
         summary: &document,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
         report: &report,
@@ -304,8 +328,7 @@ fn run_bench(
     show(output, &document, &table, &folder, &names)?;
     let code = end(finished.stop.as_ref(), &verdicts);
     if let Some(watch) = watch {
-        let summary = bench_markdown(&scenario.title, &finished.summary, &verdicts);
-        watch.close(scene, summary, quiet);
+        watch.close(scene, options.summary_markdown, quiet);
     }
     Ok(code)
 }
@@ -417,7 +440,15 @@ fn opening(arguments: &RunArguments) -> Opening {
         })
 }
 
+/// Where results go: as asked, or to a folder in `runs` that is called as the input, a file without its extension.
 pub(super) fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
-    let default = || Path::new("runs").join(input.file_stem().unwrap_or_default());
+    let default = || {
+        let folder = input.canonicalize().ok().filter(|path| path.is_dir());
+        let name = match &folder {
+            Some(folder) => folder.file_name(),
+            None => input.file_stem(),
+        };
+        Path::new("runs").join(name.unwrap_or_default())
+    };
     out.cloned().unwrap_or_else(default)
 }

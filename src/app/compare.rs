@@ -10,11 +10,11 @@ use serde_json::{Value, json};
 
 use super::diagnose::DIAGNOSIS;
 use super::error::{AppError, ExitCode};
-use super::files::{SUMMARY, Standing, prepare_file};
+use super::files::{SAMPLES, SUMMARY, Standing, is_same, prepare_file};
 use super::output::say;
-use super::report::{ROLES, RunResult, labels, read_json, read_run};
-use crate::diagnosis::answer::Answer;
-use crate::diagnosis::words::{capital, figures, percent, spoken};
+use super::report::{Label, ROLES, RunResult, read_json, read_run};
+use crate::diagnosis::answer::{Answer, Estimate};
+use crate::diagnosis::words::{capital, figures, of_column, percent, spoken};
 use crate::page::html;
 use crate::recording::atomic::write_text;
 
@@ -31,6 +31,8 @@ Examples:
   # the same numbers for a program
   idc compare runs/step runs/push --json";
 
+/// Parameter of an effect that says which joint it is about.
+const JOINT: &str = "joint";
 /// Folders at most: as many as there are colours.
 const MOST: usize = ROLES.len();
 
@@ -39,7 +41,7 @@ pub(super) struct CompareArguments {
     /// Folders with results, two to seven; the first is what the others are compared with.
     #[arg(num_args = 2..=MOST, required = true)]
     folders: Vec<PathBuf>,
-    /// File for a page with all of it drawn over one another.
+    /// File for a page: numbers side by side, signals of runs over one another.
     #[arg(long)]
     out: Option<PathBuf>,
     /// Put the page in place of a file of that name.
@@ -73,11 +75,17 @@ struct Compared {
 
 /// Compares and prints.
 pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
-    if let Some(out) = &arguments.out {
-        prepare_file(out, Standing::of(arguments.force))?;
-    }
     let compared = read(&arguments.folders)?;
     if let Some(out) = &arguments.out {
+        let inputs = [DIAGNOSIS, SUMMARY, SAMPLES];
+        let mut inputs =
+            (arguments.folders.iter()).flat_map(|folder| inputs.map(|name| folder.join(name)));
+        if inputs.any(|input| is_same(&input, out)) {
+            return Err(AppError::Overwrites {
+                file: out.display().to_string(),
+            });
+        }
+        prepare_file(out, "--out", Standing::of(arguments.force))?;
         write_text(out, &html(&page::page(&compared)))?;
     }
     if arguments.json {
@@ -97,7 +105,7 @@ fn read(folders: &[PathBuf]) -> Result<Compared, AppError> {
     let is_run = |folder: &PathBuf| folder.join(SUMMARY).is_file();
     for folder in folders {
         if !diagnosed(folder) && !is_run(folder) {
-            return Err(AppError::NoResults {
+            return Err(AppError::NotCompared {
                 folder: folder.display().to_string(),
             });
         }
@@ -110,9 +118,12 @@ fn read(folders: &[PathBuf]) -> Result<Compared, AppError> {
             &answers.collect::<Result<Vec<_>, _>>()?,
         ));
     }
-    if let Some(odd) = folders.iter().find(|f| diagnosed(f)) {
+    let odd = folders.iter().find(|folder| diagnosed(folder));
+    let run = folders.iter().find(|folder| !diagnosed(folder));
+    if let (Some(odd), Some(run)) = (odd, run) {
         return Err(AppError::MixedResults {
             diagnosis: odd.display().to_string(),
+            run: run.display().to_string(),
         });
     }
     let runs: Vec<RunResult<'static>> = folders
@@ -123,27 +134,24 @@ fn read(folders: &[PathBuf]) -> Result<Compared, AppError> {
 }
 
 fn of_runs(names: Vec<String>, runs: Vec<RunResult<'static>>) -> Compared {
-    let mut keys: Vec<&str> = Vec::new();
-    for run in &runs {
-        for (key, _) in run.metrics() {
-            if !keys.contains(&key) {
-                keys.push(key);
-            }
+    let mut labels: Vec<Label> = Vec::new();
+    for (label, _) in runs.iter().flat_map(RunResult::metrics) {
+        if !labels.iter().any(|known| known.key == label.key) {
+            labels.push(label);
         }
     }
-    let row = |key: &str| {
-        let (label, unit, _) = labels(key)?;
-        let value = |run: &RunResult<'_>| run.document["summary"][key].as_f64();
-        Some(Row {
-            name: label.to_owned(),
-            unit: (if unit == "1" { "" } else { unit }).to_owned(),
-            key: key.to_owned(),
+    let row = |label: Label| {
+        let value = |run: &RunResult<'_>| run.document["summary"][label.key].as_f64();
+        Row {
+            unit: label.unit.to_owned(),
+            key: label.key.to_owned(),
             factor: 1.0,
             values: runs.iter().map(value).collect(),
-        })
+            name: label.name,
+        }
     };
     Compared {
-        rows: keys.into_iter().filter_map(row).collect(),
+        rows: labels.into_iter().map(row).collect(),
         verdicts: runs.iter().map(|run| run.title().to_owned()).collect(),
         names,
         runs,
@@ -170,8 +178,14 @@ fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
     };
     for (place, answer) in answers.iter().enumerate() {
         for effect in &answer.effects {
-            let words = effect.name.replace('_', " ");
-            let key = format!("{}.probability", effect.name);
+            // Frictions of two joints are two effects.
+            let of_joint = |(name, joint): &&(String, Estimate)| name == JOINT && joint.value > 0.0;
+            let own = match effect.parameters.iter().find(of_joint) {
+                Some((_, joint)) => format!("{}_{}", effect.name, joint.value),
+                None => effect.name.clone(),
+            };
+            let words = own.replace('_', " ");
+            let key = format!("{own}.probability");
             add(
                 format!("{words}: probability"),
                 "",
@@ -180,9 +194,10 @@ fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
                 key,
                 effect.confidence,
             );
-            for (name, estimate) in &effect.parameters {
+            let numbers = effect.parameters.iter().filter(|(name, _)| name != JOINT);
+            for (name, estimate) in numbers {
                 let (spoken, unit, factor) = spoken(name);
-                let key = format!("{}.{name}", effect.name);
+                let key = format!("{own}.{name}");
                 add(
                     format!("{words}: {spoken}"),
                     unit,
@@ -194,7 +209,7 @@ fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
             }
         }
         for error in &answer.details.prediction {
-            let (spoken, unit, factor) = spoken(&error.channel);
+            let (spoken, unit, factor) = of_column(&error.channel);
             let key = format!("prediction.{}", error.channel);
             let name = format!("error of {spoken}, not fitted to");
             add(name, unit, factor, place, key, error.after);
@@ -241,7 +256,7 @@ fn text(compared: &Compared) -> String {
     }
     text.push('\n');
     let mut table: Vec<Vec<String>> = vec![vec![String::new()]];
-    table[0].extend(compared.names.iter().map(|name| short(name)));
+    table[0].extend(short(&compared.names));
     for row in &compared.rows {
         let unit = match row.unit.is_empty() {
             true => String::new(),
@@ -270,10 +285,27 @@ fn text(compared: &Compared) -> String {
     text
 }
 
-/// The last part of a folder's path.
-fn short(name: &str) -> String {
-    let last = Path::new(name).file_name();
-    last.map_or_else(|| name.to_owned(), |last| last.display().to_string())
+/// The ends of folders' paths by which they are told apart: their last parts, or as many more as it takes.
+fn short(names: &[String]) -> Vec<String> {
+    let parts = |name: &String| -> Vec<String> {
+        let parts = Path::new(name).components();
+        let parts = parts.map(|part| part.as_os_str().display().to_string());
+        parts.collect()
+    };
+    let parts: Vec<Vec<String>> = names.iter().map(parts).collect();
+    let most = parts.iter().map(Vec::len).max().unwrap_or(1);
+    let ends = |count: usize| -> Vec<String> {
+        let end = |parts: &Vec<String>| parts[parts.len().saturating_sub(count)..].join("/");
+        parts.iter().map(end).collect()
+    };
+    let differ = |count: &usize| {
+        let mut ends = ends(*count);
+        ends.sort();
+        ends.dedup();
+        ends.len() == names.len()
+    };
+    // The same folder twice is called the same.
+    ends((1..=most).find(differ).unwrap_or(1))
 }
 
 fn print_json(compared: &Compared, out: Option<&Path>) -> Result<ExitCode, AppError> {
@@ -286,4 +318,22 @@ fn print_json(compared: &Compared, out: Option<&Path>) -> Result<ExitCode, AppEr
     });
     say(&format!("{}\n", serde_json::to_string_pretty(&document)?))?;
     Ok(ExitCode::Done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_are_called_by_the_ends_that_differ() {
+        let called = |names: &[&str]| {
+            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+            short(&names)
+        };
+        assert_eq!(called(&["runs/step", "runs/push/"]), ["step", "push"]);
+        let both = ["runs/mine/found", "runs/yours/found"];
+        assert_eq!(called(&both), ["mine/found", "yours/found"]);
+        assert_eq!(called(&["a", "a"]), ["a", "a"]);
+        assert_eq!(called(&["found", "other/found"]), ["found", "other/found"]);
+    }
 }

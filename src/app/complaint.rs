@@ -39,12 +39,7 @@ pub fn complain(error: &AppError, json: bool) {
         eprintln!("{}", as_json(error, code, place.as_ref()));
         return;
     }
-    let word = if code == ExitCode::Stopped {
-        "stopped"
-    } else {
-        "error"
-    };
-    eprintln!("{WORD}{word}{WORD:#}: {error}");
+    eprintln!("{WORD}error{WORD:#}: {error}");
     if let Some(excerpt) = place.as_ref().and_then(excerpt) {
         eprintln!("{excerpt}");
     }

@@ -15,7 +15,7 @@ mod unlisted_picture;
 
 use std::path::Path;
 
-pub(super) use comparison_files::read_comparison;
+pub(super) use comparison_files::{BALANCE, COMPARISON, read_comparison};
 pub(super) use one::{rig_of, to_fit};
 pub(super) use outputs::DIAGNOSIS;
 

@@ -67,7 +67,7 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
 /// The list for a program, in the part's frame.
 fn json(arguments: &EdgesArguments, list: &EdgeList) -> String {
     let document = serde_json::json!({
-        "mesh": arguments.mesh,
+        "mesh": arguments.mesh.display().to_string(),
         "sharp_angle_deg": arguments.sharp_angle_deg,
         "edges": list.edges.iter().map(described).collect::<Vec<_>>(),
         "loops": list.loops.iter().map(described).collect::<Vec<_>>(),

@@ -69,10 +69,30 @@ pub enum AppError {
         folder: String,
     },
     /// Folders of runs and of diagnoses.
-    #[error("{diagnosis} holds a diagnosis and the others runs, expected all of one kind")]
+    #[error("{diagnosis} holds a diagnosis and {run} a run, expected all of one kind")]
     MixedResults {
         /// A folder with a diagnosis.
         diagnosis: String,
+        /// A folder with a run.
+        run: String,
+    },
+    /// A folder that cannot be compared.
+    #[error(
+        "{folder}: there is nothing in it to compare, expected the folder of a run (summary.json) or of a diagnosis (diagnosis.json)"
+    )]
+    NotCompared {
+        /// The folder.
+        folder: String,
+    },
+    /// A name that a file cannot hold.
+    #[error(
+        "{file}: its name stands in the file too, and {letter:?} cannot; expected a name without it"
+    )]
+    Unwritable {
+        /// The file.
+        file: String,
+        /// What cannot.
+        letter: char,
     },
     /// A bound on a metric.
     #[error("{file}: {source}")]
@@ -141,19 +161,23 @@ pub enum AppError {
     },
     /// A file stands where one is to go.
     #[error(
-        "{file} is there already; expected another name (--out), or --force to put a new one in its place"
+        "{file} is there already; expected another name ({option}), or --force to put a new one in its place"
     )]
     FileStands {
         /// The file.
         file: String,
+        /// The option that names another.
+        option: &'static str,
     },
     /// An output file that cannot be.
     #[error(
-        "cannot write {file}: {reason}; expected a file, in a folder that can be written (--out names another)"
+        "cannot write {file}: {reason}; expected a file, in a folder that can be written ({option} names another)"
     )]
     OutputFile {
         /// The file.
         file: String,
+        /// The option that names another.
+        option: &'static str,
         /// Why.
         reason: String,
     },
@@ -193,6 +217,14 @@ pub enum AppError {
         folder: String,
         /// Why there are none.
         reason: String,
+    },
+    /// Cases of which some could not be diagnosed.
+    #[error("{failed} of {of} cases failed; the others are done")]
+    CasesFailed {
+        /// How many failed.
+        failed: usize,
+        /// Of how many.
+        of: usize,
     },
     /// A rig file that names nothing to diagnose from.
     #[error("{file}: `recordings.fit` names no recording, expected the files to diagnose from")]
@@ -275,8 +307,8 @@ pub enum AppError {
     /// The terminal, or whatever is in its place.
     #[error("cannot print: {0}")]
     Print(std::io::Error),
-    /// Summary as JSON.
-    #[error("cannot write the summary as JSON: {0}")]
+    /// A document as JSON.
+    #[error("cannot write or read results as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
 

@@ -9,14 +9,13 @@ use super::report::REPORT;
 use super::run::Finished;
 use crate::cell::Cell;
 use crate::metrics::{Summary, Verdict};
-use crate::recording::Recording;
 use crate::recording::atomic::{UnfinishedFolder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
-use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
-use crate::recording::scene::Scene;
+use crate::recording::{Recording, RecordingError};
+use crate::scenario::{ArmScenario, BurrScenario, DeviceScenario, WorkpieceScenario};
 
-const RECORDING: &str = "recording.rrd";
+pub(super) const RECORDING: &str = "recording.rrd";
 pub(super) const SAMPLES: &str = "samples.parquet";
 pub(super) const SUMMARY: &str = "summary.json";
 const FIGURES: &str = "figures.svg";
@@ -44,10 +43,23 @@ impl Standing {
     }
 }
 
-/// Refuses a file that stands, or cannot stand, where one is to be written, then makes its folder.
-pub(super) fn prepare_file(path: &Path, standing: Standing) -> Result<(), AppError> {
+/// Do two paths lead to one file, or folder, that is there?
+pub(super) fn is_same(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => false,
+    }
+}
+
+/// Refuses a file that stands, or cannot stand, where one is to be written, then makes its folder; `option` names another.
+pub(super) fn prepare_file(
+    path: &Path,
+    option: &'static str,
+    standing: Standing,
+) -> Result<(), AppError> {
     let refuse = |reason: &dyn std::fmt::Display| AppError::OutputFile {
         file: path.display().to_string(),
+        option,
         reason: reason.to_string(),
     };
     if path.is_dir() {
@@ -56,6 +68,7 @@ pub(super) fn prepare_file(path: &Path, standing: Standing) -> Result<(), AppErr
     if standing == Standing::Refuse && path.exists() {
         return Err(AppError::FileStands {
             file: path.display().to_string(),
+            option,
         });
     }
     match path.parent() {
@@ -108,7 +121,7 @@ impl OutputFolder {
     }
 
     /// Writes the files of a run and returns their names.
-    pub(super) fn write(&self, output: &RunOutput<'_>) -> Result<Vec<&'static str>, AppError> {
+    pub(super) fn write(&self, output: RunOutput<'_>) -> Result<Vec<&'static str>, AppError> {
         let unfinished = UnfinishedFolder::within(&self.path)?;
         let metadata = BTreeMap::from([
             ("title".to_owned(), output.title.to_owned()),
@@ -117,18 +130,13 @@ impl OutputFolder {
                 format!("idc {}", env!("CARGO_PKG_VERSION")),
             ),
         ]);
-        let options = RerunOptions {
-            summary_markdown: output.markdown.clone(),
-            opening: output.opening,
-            ..RerunOptions::default()
-        };
         let (table, picture) = [SAMPLES, RECORDING]
             .map(|name| unfinished.path().join(name))
             .into();
         // The two large files, side by side.
         let written = rayon::join(
             || write_parquet(&table, output.recording, &metadata),
-            || write_rrd(&picture, output.recording, output.scene, &options),
+            || (output.picture)(&picture),
         );
         written.0.and(written.1)?;
         write_text(&unfinished.path().join(SUMMARY), output.summary)?;
@@ -194,18 +202,35 @@ pub(super) fn provenance(files: &[&PathBuf], seed: u64) -> Result<Provenance, Ap
     Ok(Provenance::of(files, Some(seed))?)
 }
 
+/// The files that a cell is made of, that of its scenario first.
+pub(super) fn files_of_cell<'a>(
+    path: &'a PathBuf,
+    arm: &'a ArmScenario,
+    device: &'a DeviceScenario,
+    workpiece: &'a WorkpieceScenario,
+) -> Vec<&'a PathBuf> {
+    let mut files = vec![path];
+    let burr = match &workpiece.burr {
+        BurrScenario::Table { path } => Some(path),
+        _ => None,
+    };
+    let others = [&device.model, &arm.urdf, &workpiece.mesh];
+    for file in others.into_iter().chain(burr) {
+        if !files.contains(&file) {
+            files.push(file);
+        }
+    }
+    files
+}
+
 /// What a run leaves behind.
 pub(super) struct RunOutput<'a> {
     /// Name for people.
     pub title: &'a str,
     /// The signals.
     pub recording: &'a Recording,
-    /// How it looks in space.
-    pub scene: &'a Scene,
-    /// Results for the recording's text panel.
-    pub markdown: String,
-    /// How the recording opens.
-    pub opening: Opening,
+    /// Writes recording.rrd.
+    pub picture: Box<dyn FnOnce(&Path) -> Result<(), RecordingError> + Send + 'a>,
     /// summary.json.
     pub summary: &'a str,
     /// figures.svg.
@@ -227,7 +252,7 @@ pub(super) struct SummaryDocument<'a> {
     joint_names: Vec<&'a str>,
     samples: usize,
     notes: &'a [String],
-    provenance: Provenance,
+    provenance: &'a Provenance,
 }
 
 impl<'a> SummaryDocument<'a> {
@@ -236,16 +261,9 @@ impl<'a> SummaryDocument<'a> {
         cell: &'a Cell,
         finished: &'a Finished,
         expectations: &'a [Verdict],
-    ) -> Result<Self, AppError> {
-        let scenario = &cell.scenario;
-        let files = [
-            &scenario.path,
-            &scenario.device.model,
-            &scenario.arm.urdf,
-            &scenario.workpiece.mesh,
-        ];
-        Ok(Self {
-            provenance: provenance(&files, scenario.simulation.seed)?,
+        origin: &'a Provenance,
+    ) -> Self {
+        Self {
             schema: 1,
             scenario: cell.scenario.path.display().to_string(),
             title: &cell.scenario.title,
@@ -261,7 +279,8 @@ impl<'a> SummaryDocument<'a> {
                 .collect(),
             samples: finished.recording.sample_count(),
             notes: &cell.notes,
-        })
+            provenance: origin,
+        }
     }
 
     /// As JSON.

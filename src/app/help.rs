@@ -12,7 +12,8 @@ The usual order:
 Every command's --help ends with examples.
 
 With --json, results go to standard output and an error to standard error, as
-one JSON object each. Results that stand are replaced with --force only.
+one JSON object each. Results that stand are replaced with --force only; a page
+that idc report writes anew in its own folder holds the same.
 Colours and progress show in a terminal alone; NO_COLOR is honoured.
 
 Exit codes:

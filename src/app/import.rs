@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, prepare_file};
+use super::files::{Standing, is_same, prepare_file};
 use super::output::say;
 use super::progress;
 use crate::import::findings::same_data;
@@ -79,7 +79,7 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     bar.finish_and_clear();
     check_destinations(&jobs)?;
     for path in jobs.iter().filter_map(|job| job.out.as_ref()) {
-        prepare_file(path, Standing::of(arguments.force))?;
+        prepare_file(path, "--out", Standing::of(arguments.force))?;
     }
     let copies = copies(&jobs);
     for job in &jobs {
@@ -128,9 +128,8 @@ fn check_destinations(jobs: &[Job]) -> Result<(), AppError> {
                 out: out.clone(),
             });
         }
-        let itself = |path: &Path| std::fs::canonicalize(path).ok();
         let mut logs = jobs.iter().flat_map(|job| &job.imported.logs);
-        if itself(out).is_some_and(|out| logs.any(|log| itself(&log.file).as_ref() == Some(&out))) {
+        if logs.any(|log| is_same(&log.file, out)) {
             return Err(AppError::Overwrites {
                 file: out.display().to_string(),
             });

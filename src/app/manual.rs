@@ -70,7 +70,7 @@ pub(super) fn man(arguments: &ManArguments) -> Result<ExitCode, AppError> {
     let mut pages = Vec::new();
     pages_of(&program, "idc", &mut pages)?;
     for (name, _) in &pages {
-        prepare_file(&folder.join(name), Standing::of(arguments.force))?;
+        prepare_file(&folder.join(name), "--out", Standing::of(arguments.force))?;
     }
     for (name, text) in &pages {
         write_text(&folder.join(name), text)?;

@@ -13,6 +13,7 @@ mod edges;
 mod error;
 mod estimate_figure;
 mod files;
+mod growing;
 mod help;
 mod import;
 mod manual;

@@ -102,30 +102,34 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
     let usual = || PathBuf::from(format!("new_{}.toml", kind.name()));
     let given = arguments.file.clone().or_else(|| arguments.out.clone());
     let file = given.unwrap_or_else(usual);
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    if let Some(letter) = stem.chars().find(|c| "\"\\".contains(*c) || c.is_control()) {
+        return Err(AppError::Unwritable {
+            file: file.display().to_string(),
+            letter,
+        });
+    }
     let files = files(kind, &file);
     // All are looked at before the first is written. What stands there as it would be written can stay.
     let stays = |path: &Path, content: &[u8]| std::fs::read(path).is_ok_and(|old| old == content);
     let mut written = Vec::new();
     for (path, content) in &files {
         if !stays(path, content) || *path == file {
-            prepare_file(path, Standing::of(arguments.force))?;
+            prepare_file(path, "--out", Standing::of(arguments.force))?;
             written.push((path, content));
         }
     }
     for (path, content) in &written {
         write_atomic(path, |output| std::io::Write::write_all(output, content))?;
     }
-    let paths: Vec<&PathBuf> = written.iter().map(|(path, _)| *path).collect();
+    let paths = written.iter().map(|(path, _)| path.display().to_string());
+    let paths: Vec<String> = paths.collect();
     let next = kind.next(&file);
     if arguments.json {
         let document = serde_json::json!({ "kind": kind.name(), "written": paths, "next": next });
         say(&format!("{document:#}\n"))?;
     } else if !arguments.quiet {
-        let names: Vec<String> = paths
-            .iter()
-            .map(|path| path.display().to_string())
-            .collect();
-        say(&format!("written: {}\nnext: {next}\n", names.join(", ")))?;
+        say(&format!("written: {}\nnext: {next}\n", paths.join(", ")))?;
     }
     Ok(ExitCode::Done)
 }

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, prepare_file};
+use super::files::{Standing, is_same, prepare_file};
 use super::output::say;
 use super::progress;
-use super::recordings::{read_rig, shown_columns};
+use super::recordings::{check_finite, read_rig, shown_columns};
 use crate::diagnosis::clean::clean;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::plant::simulate;
@@ -44,28 +44,19 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     let recording = read_rig(rig.plant.chain, &arguments.inputs)?;
     let mut taken = recorded_of(rig.plant.chain, &file, &recording)?;
     for input in [&arguments.rig, &arguments.inputs] {
-        if same_file(input, &arguments.out) {
+        if is_same(input, &arguments.out) {
             return Err(AppError::Overwrites {
                 file: arguments.out.display().to_string(),
             });
         }
     }
-    prepare_file(&arguments.out, Standing::of(arguments.force))?;
+    prepare_file(&arguments.out, "--out", Standing::of(arguments.force))?;
     let time = &taken.inputs.time;
     let spinner = progress::spinner("simulating", arguments.quiet || arguments.json);
     let predicted = simulate(&rig.plant, &taken.inputs).readings;
     spinner.finish_and_clear();
-    for (column, values) in COLUMNS.into_iter().zip(&predicted) {
-        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            return Err(AppError::Astray {
-                rig: arguments.rig.display().to_string(),
-                inputs: file,
-                time: time[index],
-                column,
-                value: values[index],
-            });
-        }
-    }
+    let rig_file = arguments.rig.display().to_string();
+    check_finite(&rig_file, &file, time, &predicted)?;
     let columns = shown_columns(rig.plant.chain, &predicted);
     write_csv(&arguments.out, time, &columns)?;
     if arguments.quiet {
@@ -121,9 +112,9 @@ fn json(
 ) -> String {
     let off: BTreeMap<&str, f64> = off.iter().copied().collect();
     let document = serde_json::json!({
-        "rig": arguments.rig,
-        "inputs": arguments.inputs,
-        "prediction": arguments.out,
+        "rig": arguments.rig.display().to_string(),
+        "inputs": arguments.inputs.display().to_string(),
+        "prediction": arguments.out.display().to_string(),
         "samples": samples,
         "notes": notes,
         "rms_in_standard_deviations_of_noise": off,
@@ -140,13 +131,6 @@ fn whitened(measured: &[f64], predicted: &[f64], noise: f64) -> Option<f64> {
         .collect();
     let count = squares.len() as f64;
     (count > 0.0).then(|| (squares.iter().sum::<f64>() / count).sqrt())
-}
-
-fn same_file(one: &Path, other: &Path) -> bool {
-    match (one.canonicalize(), other.canonicalize()) {
-        (Ok(one), Ok(other)) => one == other,
-        _ => false,
-    }
 }
 
 #[cfg(test)]

@@ -175,7 +175,17 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
     let usual = || arguments.out.join("CONFUSION.md");
     let file = arguments.page.clone().unwrap_or_else(usual);
     // The tables of a sweep that goes on take the place of its own earlier ones.
-    prepare_file(&file, Standing::of(arguments.force || arguments.resume))?;
+    let option = if arguments.page.is_some() {
+        "--page"
+    } else {
+        "--out"
+    };
+    plan.check()?;
+    prepare_file(
+        &file,
+        option,
+        Standing::of(arguments.force || arguments.resume),
+    )?;
     let silent = arguments.quiet || arguments.json;
     let bar = progress::bar("sweeping", silent);
     let tell = |done: usize, total: usize, line: &str| {
@@ -226,7 +236,7 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
     }
     bar.finish_and_clear();
     if arguments.json {
-        let document = serde_json::json!({ "cases": names, "folder": cases, "sealed": sealed });
+        let document = serde_json::json!({ "cases": names, "folder": cases.display().to_string(), "sealed": sealed.display().to_string() });
         say(&format!("{document:#}\n"))?;
     } else if !arguments.quiet {
         say(&format!(

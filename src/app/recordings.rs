@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::error::AppError;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Chain};
 use crate::recording::csv::{read_csv, read_readings};
@@ -25,6 +26,30 @@ pub(super) fn read_rig(chain: Chain, path: &Path) -> Result<Recording, Recording
         read_readings(path)?
     };
     Ok(read.recording)
+}
+
+/// Is a prediction made of numbers throughout? `rig` and `inputs` are the files that it is of.
+///
+/// # Errors
+/// [`AppError::Astray`] with the first that is none.
+pub(super) fn check_finite(
+    rig: &str,
+    inputs: &str,
+    time: &[f64],
+    predicted: &[Vec<f64>; CHANNELS.len()],
+) -> Result<(), AppError> {
+    for (column, values) in COLUMNS.into_iter().zip(predicted) {
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            return Err(AppError::Astray {
+                rig: rig.to_owned(),
+                inputs: inputs.to_owned(),
+                time: time[index],
+                column,
+                value: values[index],
+            });
+        }
+    }
+    Ok(())
 }
 
 /// The columns of a prediction: all of a whole device's, that of the output of a part.

@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::diagnose::{DIAGNOSIS, read_comparison};
+use super::diagnose::{BALANCE, COMPARISON, DIAGNOSIS, read_comparison};
 use super::error::{AppError, ExitCode};
-use super::files::{DESIGN, FRONT, SAMPLES, SUMMARY, Standing, prepare_file};
+use super::files::{DESIGN, FRONT, SAMPLES, SUMMARY, Standing, is_same, prepare_file};
 use super::output::say;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
@@ -24,8 +24,8 @@ use crate::recording::parquet::read_parquet;
 use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
 
-pub(super) use charts::{lacking, variable};
-pub(super) use run::{RunResult, labels};
+pub(super) use charts::{lacking, most_of, variable};
+pub(super) use run::{Label, RunResult};
 pub(super) use signals::{ROLES, chart_groups};
 
 /// Its name.
@@ -65,8 +65,15 @@ pub(super) struct ReportArguments {
 /// Writes the page of a folder.
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
-    if let Some(out) = &arguments.out {
-        prepare_file(out, Standing::of(arguments.force))?;
+    let inputs = [
+        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, DESIGN, FRONT,
+    ];
+    if let Some(out) = &arguments.out
+        && inputs.iter().any(|name| is_same(&folder.join(name), out))
+    {
+        return Err(AppError::Overwrites {
+            file: out.display().to_string(),
+        });
     }
     let (kind, text) = if folder.join(DIAGNOSIS).is_file() {
         let answer: Answer = read_json(&folder.join(DIAGNOSIS))?;
@@ -85,11 +92,14 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
             folder: folder.display().to_string(),
         });
     };
+    if let Some(out) = &arguments.out {
+        prepare_file(out, "--out", Standing::of(arguments.force))?;
+    }
     let default = || folder.join(REPORT);
     let out = arguments.out.clone().unwrap_or_else(default);
     write_text(&out, &text)?;
     if arguments.json {
-        let told = serde_json::json!({"kind": kind, "file": out, "bytes": text.len()});
+        let told = serde_json::json!({"kind": kind, "file": out.display().to_string(), "bytes": text.len()});
         say(&format!("{told}\n"))?;
     } else if !arguments.quiet {
         let size = text.len() as f64 / 1e6;
@@ -136,6 +146,12 @@ pub(super) fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T
     let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
     let read = serde_json::from_str(&text);
     Ok(read.map_err(|e| RecordingError::read(path, e))?)
+}
+
+/// Where a document says that it comes from.
+fn provenance_of(document: &serde_json::Value) -> crate::page::Section<'static> {
+    let known = serde_json::from_value(document["provenance"].clone());
+    provenance(&known.unwrap_or_default())
 }
 
 /// The part of a page that says where all comes from.

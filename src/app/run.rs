@@ -7,8 +7,9 @@ use super::picture::{motion_of, scene_of};
 use super::viewer::{PART_INTERVAL, Watch};
 use crate::cell::Cell;
 use crate::metrics::{Summary, SummaryLimits, Timing, summarise};
-use crate::recording::Recording;
-use crate::simulation::{FrameLog, Simulation, SimulationError};
+use crate::recording::scene::Scene;
+use crate::recording::{Recording, RecordingError};
+use crate::simulation::{FrameLog, SampleLog, Simulation, SimulationError};
 
 /// Steps between two looks at the progress bar.
 const PROGRESS_STEPS: usize = 500;
@@ -30,32 +31,31 @@ pub struct Finished {
 /// # Errors
 /// Nothing could be recorded or measured.
 pub fn run_cell(cell: &Cell, progress: &mut dyn FnMut(usize, usize)) -> Result<Finished, AppError> {
-    run_watched(cell, progress, None)
+    run_heard(cell, progress, Vec::new())
 }
 
-/// Simulates the whole job, and hands what is recorded over to who watches it.
-pub(super) fn run_watched(
+/// Simulates the whole job, and gives what is recorded to listeners while it goes on.
+pub(super) fn run_heard(
     cell: &Cell,
     progress: &mut dyn FnMut(usize, usize),
-    watch: Option<&Watch>,
+    mut listeners: Vec<Listener<'_>>,
 ) -> Result<Finished, AppError> {
     let start = Instant::now();
     let mut simulation = Simulation::new(cell);
     let mut stop = None;
-    let mut watched = watch.map(|watch| CellParts::new(cell, watch));
     while !simulation.done() && stop.is_none() {
         stop = simulation.step().err();
         if simulation.steps().is_multiple_of(PROGRESS_STEPS) {
             progress(simulation.steps(), simulation.total_steps());
         }
-        if let Some(watched) = &mut watched
-            && watched.is_due(&simulation)
-        {
-            watched.hand_over(&simulation)?;
+        for listener in &mut listeners {
+            if simulation.steps().is_multiple_of(listener.part) {
+                listener.hand_over(&simulation)?;
+            }
         }
     }
-    if let Some(watched) = &mut watched {
-        watched.hand_over(&simulation)?;
+    for listener in &mut listeners {
+        listener.hand_over(&simulation)?;
     }
     let wall = start.elapsed().as_secs_f64();
     let (samples, frames) = simulation.into_logs();
@@ -73,30 +73,55 @@ pub(super) fn run_watched(
     })
 }
 
-/// What of a run has been handed over already.
-struct CellParts<'a> {
-    cell: &'a Cell,
-    watch: &'a Watch,
-    /// Samples a part.
-    length: usize,
+/// Samples and frames of a run that have come since the last part.
+pub(super) struct RunPart {
+    samples: SampleLog,
+    frames: FrameLog,
+    first: bool,
+}
+
+impl RunPart {
+    /// What is shown of it: of the first part the cell as well, of others what moves.
+    pub(super) fn shown(self, cell: &Cell) -> Result<(Recording, Scene), RecordingError> {
+        let samples = self.samples.into_recording()?;
+        let scene = if self.first {
+            scene_of(cell, &samples, &self.frames)?
+        } else {
+            motion_of(cell, &self.frames)
+        };
+        Ok((samples, scene))
+    }
+}
+
+/// Who is given a run part by part while it goes on.
+pub(super) struct Listener<'a> {
+    /// Steps a part.
+    part: usize,
+    hear: Box<dyn FnMut(RunPart) -> Result<(), AppError> + 'a>,
+    /// Samples and frames that were handed over already.
     samples: usize,
     frames: usize,
 }
 
-impl<'a> CellParts<'a> {
-    fn new(cell: &'a Cell, watch: &'a Watch) -> Self {
-        let length = (PART_INTERVAL / cell.scenario.simulation.step).round();
+impl<'a> Listener<'a> {
+    /// One that is given parts of so many steps.
+    pub(super) fn new(part: usize, hear: impl FnMut(RunPart) -> Result<(), AppError> + 'a) -> Self {
         Self {
-            cell,
-            watch,
-            length: length.max(1.0) as usize,
+            part: part.max(1),
+            hear: Box::new(hear),
             samples: 0,
             frames: 0,
         }
     }
 
-    fn is_due(&self, simulation: &Simulation<'_>) -> bool {
-        simulation.steps().is_multiple_of(self.length)
+    /// One that shows the run in a viewer.
+    pub(super) fn watching(cell: &'a Cell, watch: &'a Watch) -> Self {
+        let part = (PART_INTERVAL / cell.scenario.simulation.step).round() as usize;
+        Self::new(part, move |part| {
+            let (samples, scene) = part.shown(cell)?;
+            watch.add(samples, scene);
+            Ok(())
+        })
     }
 
     fn hand_over(&mut self, simulation: &Simulation<'_>) -> Result<(), AppError> {
@@ -104,17 +129,14 @@ impl<'a> CellParts<'a> {
         if samples.count() == self.samples {
             return Ok(());
         }
-        let part = samples.since(self.samples)?;
-        let new = frames.since(self.frames);
-        let scene = if self.samples == 0 {
-            scene_of(self.cell, &part, &new)?
-        } else {
-            motion_of(self.cell, &new)
+        let part = RunPart {
+            samples: samples.since(self.samples),
+            frames: frames.since(self.frames),
+            first: self.samples == 0,
         };
         self.samples = samples.count();
         self.frames = frames.times.len();
-        self.watch.add(part, scene);
-        Ok(())
+        (self.hear)(part)
     }
 }
 

@@ -54,7 +54,7 @@ struct Place<'a> {
     address: Option<&'a str>,
     program: Option<String>,
     rerun: String,
-    files: &'a [PathBuf],
+    files: Vec<String>,
 }
 
 /// Shows the files until the window is closed, or until Ctrl-C.
@@ -111,7 +111,9 @@ fn say_place(
         address,
         program: viewer.map(|viewer| viewer.program().display().to_string()),
         rerun: viewer_version(),
-        files: &arguments.files,
+        files: (arguments.files.iter())
+            .map(|file| file.display().to_string())
+            .collect(),
     };
     say(&format!("{}\n", serde_json::to_string_pretty(&place)?))
 }

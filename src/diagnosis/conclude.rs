@@ -153,9 +153,9 @@ impl Diagnosis {
                 channel: COLUMNS[channel].to_owned(),
                 before: before * noise,
                 after: after * noise,
-                noise,
-                before_sigmas: before,
-                after_sigmas: after,
+                noise: Some(noise),
+                before_sigmas: Some(before),
+                after_sigmas: Some(after),
             }
         };
         if let Some((name, errors)) = &self.unseen {
@@ -330,7 +330,8 @@ impl Diagnosis {
             own += m * m;
             count += 1.0;
         }
-        let share = (left / f64::max(own, f64::MIN_POSITIVE)).sqrt();
+        // Of a channel that reads nought throughout, nothing is a share.
+        let share = if own > 0.0 { (left / own).sqrt() } else { 0.0 };
         ((left / f64::max(count, 1.0)).sqrt(), share)
     }
 

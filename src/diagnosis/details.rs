@@ -51,7 +51,7 @@ pub struct Details {
 pub struct ChannelNoise {
     /// Column.
     pub channel: String,
-    /// Standard deviation taken, in the column's unit.
+    /// Standard deviation taken, in the column's unit: that of the sensor, or what no law explains where that is more.
     pub standard_deviation: f64,
     /// What the recordings show, in the order of them, in the column's unit.
     pub shown: Vec<Option<f64>>,
@@ -214,12 +214,16 @@ pub struct PredictionError {
     pub before: f64,
     /// That by the improved one.
     pub after: f64,
-    /// The sensor's noise.
-    pub noise: f64,
+    /// What departures of the channel are compared with: its sensor's noise, or what no law explains where that is more; none of a drive's torque, of
+    /// which nobody knows it.
+    #[serde(default)]
+    pub noise: Option<f64>,
     /// `before` over noise.
-    pub before_sigmas: f64,
+    #[serde(default)]
+    pub before_sigmas: Option<f64>,
     /// `after` over noise.
-    pub after_sigmas: f64,
+    #[serde(default)]
+    pub after_sigmas: Option<f64>,
 }
 
 /// What to record next.

@@ -72,6 +72,8 @@ const RUNG: f64 = 0.4;
 const SOON: f64 = 0.01;
 /// Speed from which the arm moves [m/s].
 const MOVES: f64 = 0.01;
+/// Speed from which the arm comes to the part, and does not let the flange reach for it [m/s].
+const COMES: f64 = 1e-3;
 /// Time that is left to a force to settle at most [s].
 const LONGEST: f64 = 6.0;
 
@@ -99,6 +101,16 @@ pub enum NoContact {
         /// How long it goes on [s].
         left: f64,
     },
+    /// The arm stands as it touches: what its impact would say of mass and spring is not there.
+    #[error(
+        "{run}: the arm comes at {approach:.4} m/s in the time before contact, expected at least {COMES} m/s towards the part"
+    )]
+    Stands {
+        /// File name.
+        run: String,
+        /// Its speed [m/s].
+        approach: f64,
+    },
     /// Nothing is desired.
     #[error("{run}: the force desired after contact is {desired:.2} N, expected one above zero")]
     Undesired {
@@ -113,7 +125,7 @@ impl Run {
     /// What it shows.
     ///
     /// # Errors
-    /// There is no contact, it is there from the start, or the run ends soon after it; nothing is desired.
+    /// There is no contact, it is there from the start, or the run ends soon after it; the arm stands as it touches; nothing is desired.
     pub fn shown(&self) -> Result<Shown, NoContact> {
         let (time, force) = (&self.time, &self.force);
         let free = force.len().min(200);
@@ -134,6 +146,10 @@ impl Run {
         }
         let approach = mean(&self.speed[approaching.clone()]);
         let before = median(&self.desired[approaching]);
+        if approach.is_nan() || approach < COMES {
+            let run = self.name.clone();
+            return Err(NoContact::Stands { run, approach });
+        }
         let left = time[time.len() - 1] - contact;
         if left < PRESSED {
             let run = self.name.clone();
@@ -142,7 +158,7 @@ impl Run {
         // The arm stands from when it has come to rest until it moves again, or another force is desired.
         let held = between(contact, contact + LONGEST);
         let desired = median(&self.desired[between(contact + 0.3, contact + 1.5)]);
-        if desired.is_nan() || desired <= 0.0 {
+        if desired <= 0.0 {
             let run = self.name.clone();
             return Err(NoContact::Undesired { run, desired });
         }

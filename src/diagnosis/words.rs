@@ -1,5 +1,6 @@
 //! Numbers, units and lines as people read them.
 
+use super::recorded::COLUMNS;
 use crate::plant::CHANNELS;
 
 /// Letters in a line of an account.
@@ -10,7 +11,7 @@ type Shown = (&'static str, &'static str, f64);
 
 /// Units by the end of a name, longer ends first.
 #[rustfmt::skip] // A table: one unit a line.
-const UNITS: [Shown; 33] = [
+const UNITS: [Shown; 34] = [
     ("_1_per_pa_s", "1/(bar s)", 1e5),
     ("_1_per_pa", "1/bar", 1e5),
     ("_1_per_s", "1/s", 1.0),
@@ -22,6 +23,7 @@ const UNITS: [Shown; 33] = [
     ("_n_per_m15", "N/mm^1.5", 3.162_277_660_168_379e-5),
     ("_m_per_s2", "m/s2", 1.0),
     ("_n_m_per_rad", "N m/rad", 1.0),
+    ("_n_m", "N m", 1.0),
     ("_m_per_m", "mm/m", 1e3),
     ("_rad_per_s", "rad/s", 1.0),
     ("_kg_per_s", "g/s", 1e3),
@@ -101,6 +103,28 @@ pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
         format!("{value} ({low} to {high})")
     } else {
         format!("{value} {unit} ({low} to {high})")
+    }
+}
+
+/// What departures are compared with: where no law explains all of them, that is more than noise.
+#[must_use]
+pub fn yardstick(something_remains: bool) -> &'static str {
+    if something_remains {
+        "what no law explains"
+    } else {
+        "the sensor's noise"
+    }
+}
+
+/// A channel's column, or another quantity, in words, with its unit and the factor that a value in SI is multiplied by.
+#[must_use]
+pub fn of_column(column: &str) -> (String, &'static str, f64) {
+    match COLUMNS.iter().position(|own| *own == column) {
+        Some(index) => {
+            let (unit, factor) = CHANNEL_UNITS[index];
+            (CHANNEL_WORDS[index].to_owned(), unit, factor)
+        }
+        None => spoken(column),
     }
 }
 
@@ -200,6 +224,8 @@ mod tests {
             said("cylinder.moving_mass_kg"),
             ("moving mass".to_owned(), "kg", 1.0)
         );
+        // A joint's friction was once told in millimetres.
+        assert_eq!(said("friction_n_m"), ("friction".to_owned(), "N m", 1.0));
         // 1 N/m^1.5 over 1000^1.5 mm^1.5.
         assert!((said("stiffness_n_per_m15").2 * 1000f64.powf(1.5) - 1.0).abs() < 1e-12);
     }

@@ -19,6 +19,21 @@ pub struct Metric<S = Summary> {
     pub value: fn(&S) -> Option<f64>,
 }
 
+impl<S> Metric<S> {
+    /// Name for people where it stands alone, as in `force, mean`.
+    #[must_use]
+    pub fn full_label(&self) -> String {
+        let subjects = ["force", "engagement"];
+        let subject = subjects
+            .into_iter()
+            .find(|subject| self.name.starts_with(subject) && !self.label.contains(subject));
+        subject.map_or_else(
+            || self.label.to_owned(),
+            |subject| format!("{subject}, {}", self.label),
+        )
+    }
+}
+
 pub(super) const fn entry<S>(
     name: &'static str,
     unit: &'static str,
@@ -38,7 +53,7 @@ pub(super) const fn entry<S>(
 /// Every metric, in the order of summary.json.
 #[rustfmt::skip]
 pub const METRICS: &[Metric] = &[
-    entry("desired_force_n", "N", "desired",
+    entry("desired_force_n", "N", "desired force",
         "what the scenario asks for", |s| Some(s.desired_force_n)),
     entry("force_mean_n", "N", "mean",
         "over the following phase", |s| s.force_mean_n),

@@ -84,6 +84,14 @@ impl SweepPlan {
         Ok(tasks)
     }
 
+    /// Can it be done?
+    ///
+    /// # Errors
+    /// An effect that there is not.
+    pub fn check(&self) -> Result<(), ProofError> {
+        self.tasks().map(drop)
+    }
+
     fn made(&self, task: &Task) -> Made {
         Made {
             effect: task.effect.map(|effect| effect.name.to_owned()),

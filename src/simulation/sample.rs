@@ -67,27 +67,30 @@ impl SampleLog {
     /// # Errors
     /// Nothing was recorded.
     pub fn into_recording(self) -> Result<Recording, RecordingError> {
-        let channels = self.channels(0);
+        let channels = self.channels();
         Recording::new(self.time, channels, self.phases)
     }
 
-    /// The recording from a sample on.
-    ///
-    /// # Errors
-    /// Nothing was recorded since.
-    pub fn since(&self, first: usize) -> Result<Recording, RecordingError> {
-        let time = self.time[first.min(self.count())..].to_vec();
+    /// The samples from one on.
+    #[must_use]
+    pub fn since(&self, first: usize) -> Self {
+        let first = first.min(self.count());
+        let time = self.time[first..].to_vec();
         let start = time.first().copied().unwrap_or_default();
         let reaches = |phase: &&PhaseSpan| phase.end > start || Some(&phase.end) == time.last();
         let phases = self.phases.iter().filter(reaches).map(|phase| PhaseSpan {
             start: phase.start.max(start),
             ..phase.clone()
         });
-        let phases = phases.collect();
-        Recording::new(time, self.channels(first), phases)
+        Self {
+            joints: self.joints,
+            phases: phases.collect(),
+            rows: self.rows[first * Self::width(self.joints)..].to_vec(),
+            time,
+        }
     }
 
-    fn channels(&self, first: usize) -> Vec<Channel> {
+    fn channels(&self) -> Vec<Channel> {
         let singles = schema::SIGNALS
             .iter()
             .chain(
@@ -103,7 +106,7 @@ impl SampleLog {
         let column = |index: usize| {
             self.rows
                 .iter()
-                .skip(first * width + index)
+                .skip(index)
                 .step_by(width)
                 .copied()
                 .collect()
@@ -163,14 +166,15 @@ mod tests {
             let row = vec![f64::from(index); width];
             log.push(f64::from(index), phase, &row, &[]);
         }
-        let rest = log.since(3).unwrap();
+        let rest = log.since(3).into_recording().unwrap();
         assert_eq!(rest.time(), [3.0, 4.0, 5.0, 6.0, 7.0]);
         assert_eq!(rest.channels()[width - 1].values, rest.time());
         let spans = rest.phases().iter().map(|p| (p.name.as_str(), p.start));
         let spans: Vec<_> = spans.collect();
         assert_eq!(spans, [("approach", 3.0), ("follow", 5.0)]);
-        assert_eq!(log.since(6).unwrap().phases().len(), 1);
-        assert!(log.since(8).is_err());
-        assert_eq!(log.since(0).unwrap(), log.into_recording().unwrap());
+        assert_eq!(log.since(6).phases.len(), 1);
+        assert!(log.since(8).into_recording().is_err());
+        let all = log.since(0).into_recording().unwrap();
+        assert_eq!(all, log.into_recording().unwrap());
     }
 }

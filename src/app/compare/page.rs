@@ -17,15 +17,13 @@ const SIGNALS: [&str; 6] = [
 ];
 
 pub(super) fn page(compared: &Compared) -> Page<'_> {
-    let names: Vec<String> = compared.names.iter().map(|name| short(name)).collect();
-    let facts = names
-        .iter()
-        .zip(&compared.verdicts)
-        .map(|(name, verdict)| Fact {
-            name: name.clone(),
-            value: String::new(),
-            remark: verdict.clone(),
-        });
+    let names = short(&compared.names);
+    let facts = compared.names.iter().zip(&compared.verdicts);
+    let facts = facts.map(|(name, verdict)| Fact {
+        name: name.clone(),
+        value: String::new(),
+        remark: verdict.clone(),
+    });
     let signals = Section::new("Over one another", over_one_another(compared, &names));
     let numbers = Section::new("Numbers", vec![Block::Table(table(compared, &names))]);
     let sections = [signals, numbers].into_iter();

@@ -11,9 +11,11 @@ use serde::Serialize;
 pub use evaluate::ScenarioEvaluator;
 
 use super::error::AppError;
-use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, Standing};
+use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, Standing, files_of_cell, provenance};
 use super::report::{REPORT, of_design};
 use crate::design::{self, Study, StudyResult};
+use crate::recording::provenance::Provenance;
+use crate::scenario::{self, AnyScenario};
 
 /// All that a study may write.
 const NAMES: [&str; 4] = [DESIGN, OVERRIDE, FRONT, REPORT];
@@ -98,6 +100,24 @@ fn document(study: &Study, result: &StudyResult) -> Result<String, AppError> {
         scenarios: Vec<String>,
         #[serde(flatten)]
         result: &'a StudyResult,
+        provenance: Provenance,
+    }
+    let scenarios: Vec<AnyScenario> = (study.scenarios.iter())
+        .map(|path| scenario::load_any(path))
+        .collect::<Result<_, _>>()?;
+    let mut files = vec![&study.path];
+    for scenario in &scenarios {
+        let own = match scenario {
+            AnyScenario::Cell(cell) => {
+                files_of_cell(&cell.path, &cell.arm, &cell.device, &cell.workpiece)
+            }
+            AnyScenario::Bench(bench) => vec![&bench.path, &bench.device.model],
+        };
+        for file in own {
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
     }
     Ok(serde_json::to_string_pretty(&Document {
         study: study.path.display().to_string(),
@@ -107,5 +127,6 @@ fn document(study: &Study, result: &StudyResult) -> Result<String, AppError> {
             .map(|path| path.display().to_string())
             .collect(),
         result,
+        provenance: provenance(&files, study.seed)?,
     })?)
 }

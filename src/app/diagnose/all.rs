@@ -175,15 +175,18 @@ fn report(
     }
     let failed: Vec<&Outcome> = outcomes.iter().filter(|o| o.result.is_err()).collect();
     for outcome in &failed {
-        if let Err(error) = &outcome.result {
+        // As JSON they stand among the results.
+        if let (Err(error), false) = (&outcome.result, arguments.json) {
             eprintln!("error: {}: {error}", outcome.name);
         }
     }
     if failed.is_empty() {
         return Ok(ExitCode::Done);
     }
-    eprintln!("{} of {} cases failed", failed.len(), outcomes.len());
-    Ok(ExitCode::BadInput)
+    Err(AppError::CasesFailed {
+        failed: failed.len(),
+        of: outcomes.len(),
+    })
 }
 
 fn table(outcomes: &[Outcome]) -> String {

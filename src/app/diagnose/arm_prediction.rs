@@ -18,14 +18,14 @@ pub(super) fn arm_prediction(
     drives: &[DriveLoad],
 ) -> Vec<PredictionError> {
     let mut errors = Vec::new();
-    let error = |channel: String, before: f64, after: f64, noise: f64| PredictionError {
+    let error = |channel: String, before: f64, after: f64, noise: Option<f64>| PredictionError {
         recording: name.to_owned(),
         channel,
         before,
         after,
         noise,
-        before_sigmas: before / noise,
-        after_sigmas: after / noise,
+        before_sigmas: noise.map(|noise| before / noise),
+        after_sigmas: noise.map(|noise| after / noise),
     };
     if let Some(servo) = servo.filter(|servo| servo.differs()) {
         let of = |bandwidth: f64| {
@@ -42,7 +42,7 @@ pub(super) fn arm_prediction(
         if before.is_finite() {
             let after = of(servo.bandwidth);
             let noise = cell.scenario.joint_noise;
-            errors.push(error("joints_rad".to_owned(), before, after, noise));
+            errors.push(error("joints_rad".to_owned(), before, after, Some(noise)));
         }
     }
     for friction in frictions.iter().filter(|friction| friction.differs()) {
@@ -53,7 +53,7 @@ pub(super) fn arm_prediction(
         let channel = format!("joint_{}_torque_n_m", friction.joint + 1);
         let [before, after] = [friction.believed, friction.friction].map(of);
         if before.is_finite() {
-            errors.push(error(channel, before, after, friction.deviation));
+            errors.push(error(channel, before, after, None));
         }
     }
     errors

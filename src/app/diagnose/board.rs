@@ -2,12 +2,12 @@
 
 mod text;
 
-use super::super::report::{lacking, variable};
+use super::super::report::{lacking, most_of, variable};
 use crate::diagnosis::answer::{Answer, Mismatch};
 use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel, Comparison};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::unlisted::report::{ShapeRow, UnlistedReport};
-use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken};
+use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
 use crate::page::kept;
 use crate::plant::CHANNELS;
 use crate::recording::board::{
@@ -19,6 +19,8 @@ use crate::recording::scene::Scene;
 const MOST_SHEETS: usize = 10;
 /// Samples of a recording that are drawn at most.
 const MOST_SAMPLES: usize = 60_000;
+/// Start of a recording from which its heading tells it [s].
+const LATE: f64 = 0.05;
 /// Standard deviations to either end of a 95 % band [1].
 const BAND: f64 = 1.959_964;
 /// Noise bands that a plot of what is left shows at least [1].
@@ -89,6 +91,11 @@ fn sheet(answer: &Answer, recording: &Compared, of_flange: bool) -> Sheet {
         (true, true) => format!("{} (foretold)", recording.name),
         _ => recording.name.clone(),
     };
+    // Sheets share a timeline, so that each begins at nought; the words of the account are in the recording's own time.
+    let title = match start.abs() > LATE {
+        true => format!("{title}, from {start:.1} s on"),
+        false => title,
+    };
     Sheet {
         title,
         time: kept.iter().map(|i| recording.time[*i] - start).collect(),
@@ -141,7 +148,8 @@ fn row(
         let noise = noise.filter(|noise| noise.channel == COLUMNS[index]);
         let guides = noise.flat_map(|noise| {
             let half = BAND * factor * noise.standard_deviation;
-            [half, -half].map(|end| (format!("95 % of the noise [{unit}]"), end))
+            let yardstick = yardstick(answer.details.remaining.is_some());
+            [half, -half].map(|end| (format!("95 % of {yardstick} [{unit}]"), end))
         });
         let guides: Vec<(String, f64)> = guides.collect();
         plots.push(SheetPlot {
@@ -204,6 +212,9 @@ fn of_balance(balance: &Balance) -> Cloud {
     let (words, of, scale) = variable(&balance.variable);
     let mut sorted = balance.values.clone();
     sorted.sort_by(f64::total_cmp);
+    // The few points of an impact would press all others flat.
+    let drawn = most_of(&balance.before).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let is_drawn = |lacking: f64| (drawn[0]..=drawn[1]).contains(&lacking);
     let outermost = (OUTERMOST * sorted.len() as f64) as usize;
     let low = sorted.get(outermost).copied().unwrap_or_default();
     let high = sorted.iter().rev().nth(outermost).copied();
@@ -214,7 +225,8 @@ fn of_balance(balance: &Balance) -> Cloud {
     let is_discrete = apart.len() <= FEW;
     let group = |label: &str, role, lacking: &[f64], side: f64| {
         let pairs = balance.values.iter().zip(lacking).enumerate();
-        let within = pairs.filter(|(_, (value, _))| (low..=high).contains(*value));
+        let within = pairs
+            .filter(|(_, (value, lacking))| (low..=high).contains(*value) && is_drawn(**lacking));
         let spread = |index: usize| match is_discrete {
             true => side + SPREAD * ((GOLDEN * index as f64).fract() - 0.5),
             false => 0.0,
@@ -228,10 +240,18 @@ fn of_balance(balance: &Balance) -> Cloud {
             joined: false,
         }
     };
+    let beyond = [&balance.before, &balance.after].map(|lacking| {
+        let known = lacking.iter().filter(|lacking| lacking.is_finite());
+        known.filter(|lacking| !is_drawn(**lacking)).count()
+    });
+    let beyond = match beyond {
+        [0, 0] => String::new(),
+        [before, after] => format!("; beyond the picture: {before} as believed, {after} improved"),
+    };
     Cloud {
         title: capital(lacking(balance)),
         horizontal: format!("{words} [{of}]"),
-        vertical: format!("what it lacks [{unit}]"),
+        vertical: format!("what it lacks [{unit}]{beyond}"),
         groups: vec![
             group("as believed", BoardRole::Believed, &balance.before, -SIDE),
             group("improved", BoardRole::Improved, &balance.after, SIDE),

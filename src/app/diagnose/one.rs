@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::super::error::AppError;
-use super::super::files::{OutputFolder, Standing};
-use super::super::recordings::{read_rig, shown_columns};
+use super::super::files::{OutputFolder, Standing, files_of_cell, is_same};
+use super::super::recordings::{check_finite, read_rig, shown_columns};
 use super::cell;
 use super::cell_account::add_cell;
 use super::cell_scene::{Drawn, cell_scene};
@@ -21,7 +21,7 @@ use crate::diagnosis::estimate::Number;
 use crate::diagnosis::flange::{NoContact, Run, Shown};
 use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::joint_friction::JointFriction;
-use crate::diagnosis::recorded::{COLUMNS, recorded_of, run_of};
+use crate::diagnosis::recorded::{recorded_of, run_of};
 use crate::diagnosis::servo::{Axes, ServoLink};
 use crate::effects::candidates;
 use crate::plant::{Chain, Channel, PlantParameters, simulate};
@@ -119,7 +119,7 @@ impl Prepared {
                 folder: out.display().to_string(),
             });
         }
-        if same_folder(folder, out) {
+        if is_same(folder, out) {
             return Err(AppError::AmongInputs {
                 folder: out.display().to_string(),
             });
@@ -137,8 +137,6 @@ impl Prepared {
     /// Diagnoses it and writes its files; `say` is told how far it is.
     pub(super) fn run(self, say: &mut dyn FnMut(&str)) -> Result<Finished, AppError> {
         let start = Instant::now();
-        // An old diagnosis beside new files would pass for theirs.
-        self.folder.discard(DIAGNOSIS)?;
         let provenance = provenance(&self.sources)?;
         let (model, case, recordings) = match self.work {
             Work::Plant {
@@ -227,12 +225,12 @@ fn scene(
 /// The files that a case is read from.
 fn sources(folder: &Path, cell: Option<&LoadedCell>, work: &Work) -> Vec<(String, PathBuf)> {
     let within = |name: &str| (name.to_owned(), folder.join(name));
-    let first = match cell {
-        Some(cell) => {
-            let path = &cell.scenario.path;
-            (path.display().to_string(), path.clone())
-        }
-        None => within(RIG),
+    let models: Vec<(String, PathBuf)> = match cell.map(|cell| &cell.scenario) {
+        Some(cell) => files_of_cell(&cell.path, &cell.arm, &cell.device, &cell.workpiece)
+            .into_iter()
+            .map(|path| (path.display().to_string(), path.clone()))
+            .collect(),
+        None => vec![within(RIG)],
     };
     let recordings: Vec<(String, PathBuf)> = match work {
         // Of a run of one's own the recording is a file in the folder that it is called by.
@@ -243,7 +241,7 @@ fn sources(folder: &Path, cell: Option<&LoadedCell>, work: &Work) -> Vec<(String
             .map(|(run, _)| within(&run.name))
             .collect(),
     };
-    std::iter::once(first).chain(recordings).collect()
+    models.into_iter().chain(recordings).collect()
 }
 
 fn provenance(sources: &[(String, PathBuf)]) -> Result<Provenance, AppError> {
@@ -260,17 +258,7 @@ fn prediction(case: &Case, plant: &PlantParameters) -> Result<Option<String>, Ap
     };
     let inputs = &unseen.recorded.inputs;
     let predicted = simulate(plant, inputs).readings;
-    for (column, values) in COLUMNS.into_iter().zip(&predicted) {
-        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            return Err(AppError::Astray {
-                rig: IMPROVED.to_owned(),
-                inputs: unseen.file.clone(),
-                time: inputs.time[index],
-                column,
-                value: values[index],
-            });
-        }
-    }
+    check_finite(IMPROVED, &unseen.file, &inputs.time, &predicted)?;
     let columns = shown_columns(plant.chain, &predicted);
     Ok(Some(columns_text(&inputs.time, &columns)?))
 }
@@ -507,9 +495,4 @@ fn improved(rig: &RigFile, diagnosis: &Diagnosis) -> String {
         });
     }
     improved_text(rig, &tolerated, &effects, diagnosis.best().unlisted())
-}
-
-fn same_folder(one: &Path, other: &Path) -> bool {
-    let canonical = |path: &Path| -> Option<PathBuf> { path.canonicalize().ok() };
-    canonical(one).is_some() && canonical(one) == canonical(other)
 }

@@ -73,12 +73,8 @@ impl Outputs<'_> {
             (PICTURE, self.picture),
             (FIT_PICTURE, self.fit_picture),
         ];
-        for (name, text) in optional {
-            if text.is_none() {
-                // That of another diagnosis would pass for one of this.
-                folder.discard(name)?;
-            }
-        }
+        let absent = optional.iter().filter(|(_, text)| text.is_none());
+        let absent: Vec<&str> = absent.map(|(name, _)| *name).collect();
         let texts = [(ACCOUNT, account.as_str()), (IMPROVED, self.improved)];
         let optional = optional
             .into_iter()
@@ -95,6 +91,10 @@ impl Outputs<'_> {
             let screen = board(&self.answer, self.comparison, self.scene);
             write_board(&unfinished.join(BOARD), &screen)?;
             write_text(&unfinished.join(DIAGNOSIS), &document)?;
+            // Those of another diagnosis would pass for some of this, and an old diagnosis beside new files for theirs.
+            for name in absent.iter().chain([&DIAGNOSIS]) {
+                folder.discard(name)?;
+            }
             let names = texts.iter().map(|(name, _)| *name);
             Ok(names
                 .chain([COMPARISON, BALANCE, REPORT, BOARD, DIAGNOSIS])

@@ -3,8 +3,8 @@
 use crate::diagnosis::answer::{Answer, Mismatch};
 use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel};
 use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::unlisted::report::UnlistedReport;
-use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken};
+use crate::diagnosis::unlisted::report::{ShapeRow, UnlistedReport};
+use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
 use crate::figure::{Band, Horizontal, Panel, Role, Series, Stroke};
 use crate::page::Chart;
 
@@ -13,9 +13,21 @@ const BAND: f64 = 1.959_964;
 
 /// What is taken from the times of a recording [s]: nothing, unless they are those of a clock, which single precision cannot tell apart.
 pub(super) fn origin(recording: &Compared) -> f64 {
-    const CLOCK: f64 = 1e4;
+    const CLOCK: f64 = 100.0;
     let start = recording.time.first().copied().unwrap_or(0.0);
-    if start.abs() > CLOCK { start } else { 0.0 }
+    if start.abs() > CLOCK {
+        start.floor()
+    } else {
+        0.0
+    }
+}
+
+/// What its axis says.
+fn time_axis(origin: f64) -> Horizontal {
+    match origin {
+        0.0 => Horizontal::Time,
+        origin => Horizontal::Quantity(format!("time since {origin} s [s]")),
+    }
 }
 
 /// A channel of a recording: as measured and by the models; and what they leave, with the band of the sensor's noise.
@@ -42,7 +54,7 @@ pub(super) fn channel<'a>(
         panel: Panel {
             title,
             vertical_label: format!("{} [{unit}]", CHANNEL_WORDS[index]),
-            horizontal: Horizontal::Time,
+            horizontal: time_axis(start),
             series,
             bands,
             markers: Vec::new(),
@@ -52,9 +64,9 @@ pub(super) fn channel<'a>(
         within: None,
     };
     let words = capital(CHANNEL_WORDS[index]);
-    // Of what cannot be simulated there is what was desired.
-    let simulated = channel.improved.iter().any(|v| v.is_finite());
-    let believed = if simulated { "as believed" } else { "desired" };
+    // A flange is not simulated: there is what was desired.
+    let is_flange = !answer.details.runs.is_empty();
+    let believed = if is_flange { "desired" } else { "as believed" };
     let models = [
         (&channel.believed, believed, Role::Command, Stroke::Dashed),
         (&channel.improved, "improved", Role::Estimate, Stroke::Plain),
@@ -88,12 +100,15 @@ pub(super) fn channel<'a>(
     let noise = noise.filter(|n| n.channel == COLUMNS[index]).map(|n| {
         let half = BAND * factor * n.standard_deviation;
         Band {
-            label: "noise".to_owned(),
+            label: yardstick(answer.details.remaining.is_some()).to_owned(),
             from: -half,
             to: half,
         }
     });
-    let title = format!("{words}: what is left; the band holds 95 % of the noise");
+    let title = format!(
+        "{words}: what is left; the band holds 95 % of {}",
+        yardstick(answer.details.remaining.is_some())
+    );
     [values, chart(title, left.collect(), noise.collect())]
 }
 
@@ -118,7 +133,7 @@ pub(in crate::app) fn variable(name: &str) -> (&str, &'static str, f64) {
 }
 
 /// Where nearly all values lie, with some room; none where there are none. At an impact a few are ten times as large.
-fn most_of(values: &[f64]) -> Option<[f64; 2]> {
+pub(in crate::app) fn most_of(values: &[f64]) -> Option<[f64; 2]> {
     const BEYOND: f64 = 0.01;
     const ROOM: f64 = 0.35;
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
@@ -171,16 +186,28 @@ pub(super) fn unlisted<'a>(report: &UnlistedReport) -> Chart<'a> {
     let (_, at_unit, at) = spoken(&format!("x_{}", report.at_unit));
     let (_, unit, of) = spoken(&format!("x_{}", report.value_unit));
     // Where nothing was recorded the interval is wider than all that the term does: not drawn.
-    let known =
-        |row: &&crate::diagnosis::unlisted::report::ShapeRow| row.half_width < report.peak_to_peak;
-    let rows: Vec<_> = report.shape.iter().filter(known).collect();
-    let edge = |side: f64| {
-        let rows = rows.iter();
-        rows.map(move |r| (at * r.at, of * (r.value + side * r.half_width)))
+    let known = |row: &ShapeRow| row.half_width < report.peak_to_peak;
+    let runs = report.shape.chunk_by(|a, b| known(a) == known(b));
+    let runs = runs.filter(|run| known(&run[0]));
+    let band = |(index, run): (usize, &[ShapeRow])| {
+        let edge =
+            |row: &ShapeRow, side: f64| (at * row.at, of * (row.value + side * row.half_width));
+        let there = run.iter().map(|row| edge(row, -1.0));
+        let back = run.iter().rev().map(|row| edge(row, 1.0));
+        let (places, values): (Vec<f64>, Vec<f64>) = there.chain(back).unzip();
+        let label = if index == 0 { "95 % band" } else { "" };
+        Series::new(label, places, values, Role::Band, Stroke::Area)
     };
-    let (places, values): (Vec<f64>, Vec<f64>) = edge(-1.0).chain(edge(1.0).rev()).unzip();
+    let bands = runs.enumerate().map(band);
     let all = report.shape.iter().map(|r| (at * r.at, of * r.value));
     let (along, term): (Vec<f64>, Vec<f64>) = all.unzip();
+    let term = Series::new(
+        "fitted in the simulator",
+        along,
+        term,
+        Role::Estimate,
+        Stroke::Truth,
+    );
     let over = match report.period_s {
         Some(_) => "time within the period".to_owned(),
         None => variable(&report.variable).0.replace('_', " "),
@@ -190,16 +217,7 @@ pub(super) fn unlisted<'a>(report: &UnlistedReport) -> Chart<'a> {
             title: format!("The term: {}", report.port.replace('_', " ")),
             vertical_label: format!("{} [{unit}]", report.port.replace('_', " ")),
             horizontal: Horizontal::Quantity(format!("{over} [{at_unit}]")),
-            series: vec![
-                Series::new("95 % band", places, values, Role::Band, Stroke::Area),
-                Series::new(
-                    "fitted in the simulator",
-                    along,
-                    term,
-                    Role::Estimate,
-                    Stroke::Truth,
-                ),
-            ],
+            series: bands.chain([term]).collect(),
             ..Panel::default()
         },
         ..Chart::default()

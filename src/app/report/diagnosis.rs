@@ -7,7 +7,9 @@ use crate::diagnosis::account::Section as Told;
 use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict};
 use crate::diagnosis::comparison::{Compared, Comparison};
 use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, percent, spoken};
+use crate::diagnosis::words::{
+    CHANNEL_WORDS, capital, figures, of_column, percent, spoken, yardstick,
+};
 use crate::effects::meaning;
 use crate::page::{Block, Cell, Fact, Page, Section, Strip, Table, Tone};
 
@@ -74,7 +76,7 @@ fn lead(answer: &Answer) -> Vec<String> {
     };
     let known = answer.effects.iter().filter(|e| e.name != UNLISTED);
     let mut lead: Vec<String> = known.filter_map(said).collect();
-    if answer.verdict == Verdict::NothingMissing {
+    if answer.verdict == Verdict::NothingMissing && answer.details.remaining.is_none() {
         lead.push("What the recordings show lies within the sensors' noise and the tolerances of the rig file.".to_owned());
     }
     lead
@@ -96,8 +98,9 @@ fn facts(answer: &Answer) -> Vec<Fact> {
     let worst = details
         .prediction
         .iter()
-        .max_by(|a, b| a.before_sigmas.total_cmp(&b.before_sigmas));
-    if let Some(error) = worst.filter(|_| answer.verdict != Verdict::NothingMissing) {
+        .filter_map(|error| Some((error, error.noise?, error.before_sigmas?)))
+        .max_by(|(.., a), (.., b)| a.total_cmp(b));
+    if let Some((error, noise, _)) = worst.filter(|_| answer.verdict != Verdict::NothingMissing) {
         let (words, unit, factor) = of_column(&error.channel);
         add(
             &format!("error of {words}, not fitted to"),
@@ -106,7 +109,11 @@ fn facts(answer: &Answer) -> Vec<Fact> {
                 figures(factor * error.before, 3),
                 figures(factor * error.after, 3)
             ),
-            format!("sensor's noise {} {unit}", figures(factor * error.noise, 2)),
+            format!(
+                "{}: {} {unit}",
+                yardstick(details.remaining.is_some()),
+                figures(factor * noise, 2)
+            ),
         );
     }
     let count = details.misfit.iter().map(|m| &m.recording);
@@ -120,17 +127,6 @@ fn facts(answer: &Answer) -> Vec<Fact> {
         );
     }
     facts
-}
-
-/// A channel's column for people.
-pub(super) fn of_column(column: &str) -> (&str, &'static str, f64) {
-    match COLUMNS.iter().position(|own| *own == column) {
-        Some(index) => {
-            let (unit, factor) = CHANNEL_UNITS[index];
-            (CHANNEL_WORDS[index], unit, factor)
-        }
-        None => (column, "", 1.0),
-    }
 }
 
 fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
@@ -214,12 +210,12 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Sectio
         let paragraphs = told.paragraphs.iter();
         blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
     }
-    let mut subsystems: Vec<&str> = answer
-        .effects
-        .iter()
-        .map(|e| e.subsystem.as_str())
-        .collect();
-    subsystems.dedup();
+    let mut subsystems: Vec<&str> = Vec::new();
+    for effect in &answer.effects {
+        if !subsystems.contains(&effect.subsystem.as_str()) {
+            subsystems.push(&effect.subsystem);
+        }
+    }
     for recording in &comparison.recordings {
         let start = origin(recording);
         let own = |column: &str| -> Vec<[f64; 2]> {
@@ -232,7 +228,11 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Sectio
         let rows = rows.map(|(column, words)| (words.to_owned(), own(column)));
         let rows: Vec<_> = rows.filter(|(_, spans)| !spans.is_empty()).collect();
         if let (false, [first, .., last]) = (rows.is_empty(), recording.time.as_slice()) {
-            blocks.push(Block::Heading(recording.name.clone()));
+            let heading = match start {
+                0.0 => recording.name.clone(),
+                start => format!("{}, time since {start} s", recording.name),
+            };
+            blocks.push(Block::Heading(heading));
             blocks.push(Block::Strip(Strip {
                 span: [first - start, last - start],
                 rows,
@@ -243,8 +243,9 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Sectio
         let hint = match answer.details.runs.is_empty() {
             false => "The strips show each run from contact until it has settled.".to_owned(),
             true => format!(
-                "The strips show when the found effects ({}) move a channel by more than three standard deviations of its sensor.",
-                subsystems.join(", ").replace('_', " ")
+                "The strips show when the found effects ({}) move a channel by more than three times {}.",
+                subsystems.join(", ").replace('_', " "),
+                yardstick(answer.details.remaining.is_some())
             ),
         };
         blocks.push(Block::Hint(hint));

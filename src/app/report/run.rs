@@ -4,10 +4,10 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
-use super::provenance;
+use super::provenance_of;
 use super::signals::{along_the_path, joints, signals};
 use crate::diagnosis::words::figures;
-use crate::metrics::{BENCH_METRICS, METRICS};
+use crate::metrics::{BENCH_METRICS, METRICS, Metric};
 use crate::page::{Block, Cell, Fact, Page, Section, Table, Tone};
 use crate::recording::Recording;
 
@@ -19,15 +19,36 @@ pub(in super::super) struct RunResult<'a> {
     pub recording: Cow<'a, Recording>,
 }
 
-/// Name for people, unit and meaning of a metric, by its key in summary.json.
-pub(in super::super) fn labels(key: &str) -> Option<(&'static str, &'static str, &'static str)> {
-    let cell = METRICS.iter().map(|m| (m.name, m.label, m.unit, m.meaning));
-    let bench = BENCH_METRICS
-        .iter()
-        .map(|m| (m.name, m.label, m.unit, m.meaning));
-    let mut own = cell.chain(bench).filter(|(name, ..)| *name == key);
-    own.next()
-        .map(|(_, label, unit, meaning)| (label, unit, meaning))
+/// A metric for people.
+#[derive(Debug, Clone, PartialEq)]
+pub(in super::super) struct Label {
+    /// Key in summary.json.
+    pub key: &'static str,
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty for a plain number.
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+fn labelled<S>(metrics: &[Metric<S>]) -> Vec<Label> {
+    let label = |metric: &Metric<S>| Label {
+        key: metric.name,
+        name: metric.full_label(),
+        unit: if metric.unit == "1" { "" } else { metric.unit },
+        meaning: metric.meaning,
+    };
+    metrics.iter().map(label).collect()
+}
+
+/// The metrics of benches, or of cells.
+pub(super) fn labels(of_bench: bool) -> Vec<Label> {
+    if of_bench {
+        labelled(BENCH_METRICS)
+    } else {
+        labelled(METRICS)
+    }
 }
 
 impl RunResult<'_> {
@@ -36,14 +57,15 @@ impl RunResult<'_> {
         self.document["title"].as_str().unwrap_or("a run")
     }
 
-    /// Its metrics in the order of summary.json: key and value.
-    pub(in super::super) fn metrics(&self) -> Vec<(&str, Option<f64>)> {
-        let summary = self.document["summary"].as_object();
-        let known = summary.into_iter().flatten();
-        let known = known.filter(|(key, _)| labels(key).is_some());
-        known
-            .map(|(key, value)| (key.as_str(), value.as_f64()))
-            .collect()
+    /// Its metrics in their order, with their values.
+    pub(in super::super) fn metrics(&self) -> Vec<(Label, Option<f64>)> {
+        let summary = &self.document["summary"];
+        let own = labels(self.document["kind"] == "bench").into_iter();
+        own.filter_map(|label| {
+            let value = summary.get(label.key)?.as_f64();
+            Some((label, value))
+        })
+        .collect()
     }
 
     fn metric(&self, key: &str) -> Option<f64> {
@@ -80,15 +102,13 @@ fn verdict(run: &RunResult<'_>) -> (String, Tone) {
     }
     let expectations = run.document["expectations"].as_array();
     let all: Vec<&Value> = expectations.into_iter().flatten().collect();
-    let broken: Vec<&str> = (all.iter())
+    let broken: Vec<String> = (all.iter())
         .filter(|e| e["kept"] == false)
-        .filter_map(|e| e["metric"].as_str())
+        .filter_map(|e| told(run, e))
         .collect();
     if !broken.is_empty() {
-        let names = broken.iter().map(|key| labels(key).map_or(*key, |l| l.0));
-        let names: Vec<&str> = names.collect();
         return (
-            format!("Outside its bounds: {}.", names.join(", ")),
+            format!("Outside its bounds: {}.", broken.join("; ")),
             Tone::Bad,
         );
     }
@@ -111,6 +131,33 @@ fn verdict(run: &RunResult<'_>) -> (String, Tone) {
     }
 }
 
+/// A bound that was not kept, in words.
+fn told(run: &RunResult<'_>, bound: &Value) -> Option<String> {
+    let key = bound["metric"].as_str()?;
+    let metrics = run.metrics();
+    let (label, value) = metrics.iter().find(|(label, _)| label.key == key)?;
+    let unit = match label.unit {
+        "" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    let is = value.map_or("not determined".to_owned(), |v| {
+        format!("{}{unit}", figures(v, 4))
+    });
+    Some(format!(
+        "{} is {is}, expected {}{unit}",
+        label.name,
+        ends(bound)
+    ))
+}
+
+/// The ends of a bound, in words.
+fn ends(bound: &Value) -> String {
+    let ends = [("at least", &bound["min"]), ("at most", &bound["max"])].into_iter();
+    let ends = ends.filter_map(|(word, end)| Some(format!("{word} {}", end.as_f64()?)));
+    let ends: Vec<String> = ends.collect();
+    ends.join(", ")
+}
+
 /// Metrics that stand at the top, where a run has them.
 const FACTS: [&str; 8] = [
     "coefficient_of_variation_percent",
@@ -124,12 +171,13 @@ const FACTS: [&str; 8] = [
 ];
 
 fn facts(run: &RunResult<'_>) -> Vec<Fact> {
+    let metrics = run.metrics();
     let fact = |key: &&str| {
-        let (label, unit, meaning) = labels(key)?;
+        let (label, value) = metrics.iter().find(|(label, _)| label.key == *key)?;
         Some(Fact {
-            name: label.to_owned(),
-            value: format!("{} {unit}", figures(run.metric(key)?, 3)),
-            remark: meaning.to_owned(),
+            name: label.name.clone(),
+            value: format!("{} {}", figures((*value)?, 3), label.unit),
+            remark: label.meaning.to_owned(),
         })
     };
     FACTS.iter().filter_map(fact).take(5).collect()
@@ -140,28 +188,22 @@ fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let bounds = |key: &str| {
         let own = |e: &&Value| e["metric"] == key;
         let bound = expectations.into_iter().flatten().find(own)?;
-        let ends = [("at least", &bound["min"]), ("at most", &bound["max"])];
-        let ends = ends.into_iter();
-        let ends = ends.filter_map(|(word, end)| Some(format!("{word} {}", end.as_f64()?)));
-        let ends: Vec<String> = ends.collect();
-        Some((ends.join(", "), bound["kept"] == true))
+        Some((ends(bound), bound["kept"] == true))
     };
-    let row = |(key, value): (&str, Option<f64>)| {
-        let (label, unit, meaning) = labels(key)?;
-        let unit = if unit == "1" { "" } else { unit };
-        Some(vec![
-            Cell::from(label),
+    let row = |(label, value): (Label, Option<f64>)| {
+        vec![
+            Cell::from(label.name),
             Cell::from(value.map_or("–".to_owned(), |v| figures(v, 5))),
-            Cell::from(unit),
-            match bounds(key) {
+            Cell::from(label.unit),
+            match bounds(label.key) {
                 Some((text, kept)) => Cell::Judged(text, kept),
                 None => Cell::from(""),
             },
-            Cell::from(meaning),
-            Cell::from(key),
-        ])
+            Cell::from(label.meaning),
+            Cell::from(label.key),
+        ]
     };
-    let rows: Vec<Vec<Cell>> = run.metrics().into_iter().filter_map(row).collect();
+    let rows: Vec<Vec<Cell>> = run.metrics().into_iter().map(row).collect();
     let columns = [
         "number",
         "#value",
@@ -175,8 +217,7 @@ fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
 }
 
 fn from<'a>(run: &RunResult<'_>) -> Section<'a> {
-    let known = serde_json::from_value(run.document["provenance"].clone());
-    let mut section = provenance(&known.unwrap_or_default());
+    let mut section = provenance_of(&run.document);
     let of = |key: &str| run.document[key].as_str().unwrap_or("–").to_owned();
     let mut told = format!("Scenario {}", of("scenario"));
     if let Some(samples) = run.document["samples"].as_u64() {

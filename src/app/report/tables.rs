@@ -1,15 +1,16 @@
 //! The tables of a diagnosis: how well it fits, the rig's own numbers, what was ruled out.
 
-use super::diagnosis::{of_column, part};
+use super::diagnosis::part;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::details::{
     ChannelMisfit, Considered, PredictionError, RuledOutReport, ToleratedNumber,
 };
-use crate::diagnosis::words::{figures, percent, spoken};
+use crate::diagnosis::words::{figures, of_column, percent, spoken, yardstick};
 use crate::page::{Block, Cell, Section, Table};
 
 pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     let details = &answer.details;
+    let yardstick = yardstick(details.remaining.is_some());
     let mut blocks = Vec::new();
     let row = |m: &ChannelMisfit| {
         let (words, unit, factor) = of_column(&m.channel);
@@ -27,9 +28,22 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
         ]
     };
     if !details.misfit.is_empty() {
+        let caption = format!(
+            "What the models leave of each channel: root mean square, then a robust one in multiples of {yardstick} (1 is as much). The last column is a fit to the other recordings."
+        );
         blocks.push(Block::Table(Table::new(
-            "What the models leave of each channel: root mean square, then in multiples of the sensor's noise (1 is noise). The last column is a fit to the other recordings.",
-            &["recording", "channel", "#readings", "#believed", "#improved", "#believed, σ", "#within tolerances, σ", "#improved, σ", "#not fitted to, σ"],
+            &caption,
+            &[
+                "recording",
+                "channel",
+                "#readings",
+                "#believed",
+                "#improved",
+                "#believed, σ",
+                "#within tolerances, σ",
+                "#improved, σ",
+                "#not fitted to, σ",
+            ],
             details.misfit.iter().map(row).collect(),
         )));
     }
@@ -41,8 +55,9 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
             Cell::from(words),
             number(e.before),
             number(e.after),
-            number(e.noise),
-            Cell::from(figures(e.after_sigmas, 3)),
+            e.noise.map_or(Cell::from("–"), number),
+            e.after_sigmas
+                .map_or(Cell::from("–"), |sigmas| Cell::from(figures(sigmas, 3))),
         ]
     };
     if !details.prediction.is_empty() {
@@ -53,7 +68,7 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
                 "channel",
                 "#before",
                 "#after",
-                "#sensor's noise",
+                &format!("#{yardstick}"),
                 "#after, σ",
             ],
             details.prediction.iter().map(row).collect(),
@@ -133,11 +148,9 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
             details.considered.iter().map(row).collect(),
         )));
     }
-    let unit = details
-        .remaining
-        .as_ref()
-        .map_or("", |r| r.channel.as_str());
-    let (_, unit, factor) = of_column(unit);
+    // A part of the device has one channel.
+    let own = details.misfit.first();
+    let (_, unit, factor) = of_column(own.map_or("", |misfit| misfit.channel.as_str()));
     let row = |variant: &RuledOutReport| {
         vec![
             Cell::from(names(&variant.effects)),

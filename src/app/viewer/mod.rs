@@ -60,7 +60,7 @@ pub enum ViewerError {
     },
     /// A port that is taken.
     #[error(
-        "port {port} of 127.0.0.1 is in use; expected a free one: --port names another, --port 0 takes any"
+        "port {port} of 127.0.0.1 is in use; expected a free one (view: --port names another, --port 0 takes any; run: --view=web:PORT)"
     )]
     PortInUse {
         /// The port.

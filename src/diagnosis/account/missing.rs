@@ -1,11 +1,13 @@
 //! What is missing, how much of the mismatch it explains, and what is left.
 
 use super::super::conclude::IN_TURN;
+use super::super::details::PredictionError;
 use super::super::diagnose::{Diagnosis, spoken_name};
 use super::super::localise::NOISE_ALONE;
 use super::super::recorded::COLUMNS;
 use super::super::words::{
     CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, listed, percent, spoken, with_interval,
+    yardstick,
 };
 use super::MOST_OTHERS;
 use super::link::TELLING;
@@ -77,7 +79,8 @@ impl Diagnosis {
 
     fn prediction_words(&self) -> String {
         let mut errors = self.prediction_errors();
-        errors.sort_by(|a, b| b.before_sigmas.total_cmp(&a.before_sigmas));
+        let sigmas = |error: &PredictionError| error.before_sigmas.unwrap_or_default();
+        errors.sort_by(|a, b| sigmas(b).total_cmp(&sigmas(a)));
         let Some(worst) = errors.first() else {
             return String::new();
         };
@@ -103,16 +106,13 @@ impl Diagnosis {
             said(worst.after),
             CHANNEL_WORDS[index.unwrap_or(0)],
             self.yardstick(),
-            said(worst.noise)
+            said(worst.noise.unwrap_or_default())
         )
     }
 
     /// What departures are compared with.
     pub(super) fn yardstick(&self) -> &'static str {
-        match self.remaining {
-            None => "the sensor's noise",
-            Some(_) => "what no law explains",
-        }
+        yardstick(self.remaining.is_some())
     }
 
     /// What no law explains of a part of the device.

@@ -55,9 +55,15 @@ impl Fingerprint {
     }
 }
 
-/// The number of a recording with its scene.
-pub(super) fn fingerprint(recording: &Recording, scene: &Scene, options: &RerunOptions) -> u64 {
+/// The number of a recording with its scene, and of what it was made of.
+pub(super) fn fingerprint(
+    origin: &str,
+    recording: &Recording,
+    scene: &Scene,
+    options: &RerunOptions,
+) -> u64 {
     let mut hash = Fingerprint::default();
+    hash.text(origin);
     hash.text(&scene.title);
     hash.text(&options.summary_markdown);
     for channel in recording.channels() {
@@ -84,7 +90,7 @@ mod tests {
             let force = Channel::new("contact_force", Unit::Newton, values.to_vec());
             let time = (0..6).map(f64::from).collect();
             let recording = Recording::new(time, vec![force], vec![]).unwrap();
-            fingerprint(&recording, &Scene::default(), &RerunOptions::default())
+            fingerprint("", &recording, &Scene::default(), &RerunOptions::default())
         };
         let values = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
         let mut seen = vec![hash(values)];

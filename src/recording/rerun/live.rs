@@ -69,7 +69,7 @@ impl LiveRecording {
         let mut plots = live_plots(samples, scene)?;
         let lines = known_lines(&plots);
         keep_lines(&mut plots, &lines);
-        let number = fingerprint(samples, scene, options);
+        let number = fingerprint("", samples, scene, options);
         let id = format!("{}-live-{number:016x}", slug(&scene.title));
         let start = || -> Result<Self, RrdError> {
             let kind = StoreKind::Blueprint;
@@ -118,7 +118,8 @@ impl LiveRecording {
         cell::write_frames(&mut self.rrd, scene, self.path_length, &self.options)?;
         let axes = Axes::of(samples, self.path_length);
         for plot in plots {
-            signals::write_values(&mut self.rrd, plot, &axes)?;
+            signals::write_signals(&mut self.rrd, plot, &axes)?;
+            signals::write_guides(&mut self.rrd, plot, &axes)?;
         }
         for phase in samples.phases() {
             if phase.name != self.phase {

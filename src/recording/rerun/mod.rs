@@ -12,6 +12,7 @@ mod check;
 mod colours;
 mod fingerprint;
 mod footer;
+mod growing;
 mod layout;
 mod live;
 mod plots;
@@ -23,22 +24,17 @@ mod view_box;
 
 pub use board::write_board;
 pub use check::{RrdFault, check_rrd, viewer_version};
+pub use growing::{GrowingRrd, PART_SAMPLES};
 pub use live::{LiveOutlet, LiveRecording};
 pub use rrd::LiveWriter;
 
-use std::io::Write as _;
 use std::path::Path;
 
-use ::rerun::archetypes::RecordingInfo;
-use ::rerun::{EntityPath, StoreKind, TextDocument};
 use glam::DVec3;
 
-use self::fingerprint::fingerprint;
 use self::layout::LayoutInput;
 use self::plots::Plot;
 use self::rrd::{RrdError, RrdWriter};
-use self::timelines::Axes;
-use super::atomic::write_atomic;
 use super::scene::Scene;
 use super::{Recording, RecordingError};
 
@@ -97,19 +93,8 @@ pub fn write_rrd(
     scene: &Scene,
     options: &RerunOptions,
 ) -> Result<(), RecordingError> {
-    scene.check()?;
-    let plots = plots::plots(recording, &scene.limits)?;
-    let fingerprint = fingerprint(recording, scene, options);
-    let id = format!("{}-{fingerprint:016x}", slug(&scene.title));
-    let encode = || -> Result<Vec<u8>, RrdError> {
-        let mut rrd = RrdWriter::begin(StoreKind::Blueprint, &id, fingerprint)?;
-        write_layout(&mut rrd, scene, &plots, recording, options)?;
-        rrd.begin_store(StoreKind::Recording, &id)?;
-        write_data(&mut rrd, recording, scene, &plots, options)?;
-        rrd.finish()
-    };
-    let bytes = encode().map_err(|e| RecordingError::write(path, e))?;
-    write_atomic(path, |file| file.write_all(&bytes))
+    let growing = GrowingRrd::begin(path, "", recording, scene, options)?;
+    growing.write(path, recording, scene, &options.summary_markdown)
 }
 
 fn write_layout(
@@ -128,31 +113,6 @@ fn write_layout(
         has_summary: !options.summary_markdown.is_empty(),
     });
     blueprint::write_blueprint(rrd, &screen, &layout::time_panel(options.opening))
-}
-
-fn write_data(
-    rrd: &mut RrdWriter,
-    recording: &Recording,
-    scene: &Scene,
-    plots: &[Plot],
-    options: &RerunOptions,
-) -> Result<(), RrdError> {
-    let info = RecordingInfo::new().with_name(scene.title.clone());
-    rrd.add_static(&EntityPath::properties().to_string(), &info)?;
-    cell::write_bodies(rrd, scene)?;
-    cell::write_edge_path(rrd, &scene.edge_path)?;
-    cell::write_frames(rrd, scene, 0.0, options)?;
-    let axes = Axes::of(recording, 0.0);
-    for plot in plots {
-        signals::write_looks(rrd, plot)?;
-        signals::write_values(rrd, plot, &axes)?;
-    }
-    signals::write_phases(rrd, recording, &axes)?;
-    if !options.summary_markdown.is_empty() {
-        let text = TextDocument::from_markdown(options.summary_markdown.clone());
-        rrd.add_static(SUMMARY, &text)?;
-    }
-    Ok(())
 }
 
 /// Letters and digits of a title, other stretches as a dash each.

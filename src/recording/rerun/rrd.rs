@@ -20,11 +20,6 @@ use ::rerun::{
     AsComponents, EntityPath, SerializationError, SerializedComponentColumn, StoreId, StoreKind,
 };
 
-use super::footer::sort_footer;
-
-/// Memory that a file gets at the start [bytes]: that of a minute of a cell. It is touched only as it is filled.
-const FILE_CAPACITY: usize = 16 << 20;
-
 /// How long a viewer that listens may take to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -79,8 +74,7 @@ impl RrdWriter {
         id_seed: u64,
     ) -> Result<Self, RrdError> {
         let options = EncodingOptions::PROTOBUF_COMPRESSED;
-        let file = Vec::with_capacity(FILE_CAPACITY);
-        let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, file)?;
+        let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, Vec::new())?;
         Self::begin_at(Outlet::File(encoder), kind, recording_id, id_seed)
     }
 
@@ -215,15 +209,13 @@ impl RrdWriter {
         }
     }
 
-    /// The bytes of the whole file; none of what has left already.
+    /// The bytes of the whole file, for [`write_joined`](super::footer::write_joined); none of what has left already.
     pub(super) fn finish(mut self) -> Result<Vec<u8>, RrdError> {
         self.flush()?;
         let Outlet::File(mut encoder) = self.outlet else {
             return Ok(Vec::new());
         };
         encoder.finish()?;
-        let mut file = encoder.into_inner()?;
-        sort_footer(&mut file)?;
-        Ok(file)
+        Ok(encoder.into_inner()?)
     }
 }

@@ -11,7 +11,7 @@ use super::timelines::Axes;
 use crate::recording::Recording;
 
 /// Rows of a chunk of signals: as many as Rerun itself puts into one, and few enough to stay in the processor's cache while they are encoded.
-const CHUNK_ROWS: usize = 4096;
+pub(super) const CHUNK_ROWS: usize = 4096;
 
 /// Writes how a plot's lines look.
 pub(super) fn write_looks(rrd: &mut RrdWriter, plot: &Plot) -> Result<(), RrdError> {
@@ -32,8 +32,8 @@ fn look(series: &[&Series]) -> SeriesLines {
         .with_widths(series.iter().map(|series| series.width))
 }
 
-/// Writes a plot's lines: those of the signals together, so that their times are stored once.
-pub(super) fn write_values(rrd: &mut RrdWriter, plot: &Plot, axes: &Axes) -> Result<(), RrdError> {
+/// Writes the signals of a plot together, so that their times are stored once.
+pub(super) fn write_signals(rrd: &mut RrdWriter, plot: &Plot, axes: &Axes) -> Result<(), RrdError> {
     let signals: Vec<&[f64]> = plot.signals().map(|series| &series.values[..]).collect();
     let count = signals.first().map_or(0, |values| values.len());
     for start in (0..count).step_by(CHUNK_ROWS) {
@@ -45,6 +45,11 @@ pub(super) fn write_values(rrd: &mut RrdWriter, plot: &Plot, axes: &Axes) -> Res
         let columns = scalars.columns(std::iter::repeat_n(signals.len(), rows.len()))?;
         rrd.add_columns(plot.entity, axes.range(rows), columns)?;
     }
+    Ok(())
+}
+
+/// Writes the guides of a plot.
+pub(super) fn write_guides(rrd: &mut RrdWriter, plot: &Plot, axes: &Axes) -> Result<(), RrdError> {
     for guide in plot.guides() {
         let times = match guide.values.len() {
             2 => axes.ends(),

@@ -3,8 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, percent, spoken};
+use crate::diagnosis::words::{capital, figures, of_column, percent, spoken, yardstick};
 
 /// Verdict, numbers, prediction, and the account.
 pub(super) fn markdown(answer: &Answer, left_out: usize, thinned: bool) -> String {
@@ -71,14 +70,7 @@ fn effects(answer: &Answer) -> String {
 fn predictions(answer: &Answer) -> String {
     let mut rows = String::new();
     for error in &answer.details.prediction {
-        let place = COLUMNS.iter().position(|column| *column == error.channel);
-        let (words, unit, factor) = match place {
-            Some(index) => {
-                let (unit, factor) = CHANNEL_UNITS[index];
-                (CHANNEL_WORDS[index].to_owned(), unit, factor)
-            }
-            None => spoken(&error.channel),
-        };
+        let (words, unit, factor) = of_column(&error.channel);
         let number = |value: f64| figures(factor * value, 2);
         let _ = writeln!(
             rows,
@@ -86,13 +78,14 @@ fn predictions(answer: &Answer) -> String {
             error.recording.replace('_', "\\_"),
             number(error.before),
             number(error.after),
-            number(error.noise)
+            error.noise.map_or("–".to_owned(), number)
         );
     }
     if rows.is_empty() {
         return rows;
     }
     format!(
-        "\n| prediction error (RMS) | of | before | after | noise |\n|---|---|---|---|---|\n{rows}"
+        "\n| prediction error (RMS) | of | before | after | {} |\n|---|---|---|---|---|\n{rows}",
+        yardstick(answer.details.remaining.is_some())
     )
 }

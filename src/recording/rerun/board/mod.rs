@@ -4,7 +4,6 @@ mod cloud;
 mod layout;
 mod sheet;
 
-use std::io::Write as _;
 use std::path::Path;
 
 use ::rerun::archetypes::RecordingInfo;
@@ -12,6 +11,7 @@ use ::rerun::{EntityPath, StoreKind, TextDocument};
 
 use super::blueprint::write_blueprint;
 use super::fingerprint::Fingerprint;
+use super::footer::write_joined;
 use super::rrd::{RrdError, RrdWriter};
 use super::{RerunOptions, SUMMARY, cell, slug};
 use crate::recording::RecordingError;
@@ -41,7 +41,7 @@ pub fn write_board(path: &Path, board: &Board) -> Result<(), RecordingError> {
         rrd.finish()
     };
     let bytes = encode().map_err(|error| RecordingError::write(path, error))?;
-    write_atomic(path, |file| file.write_all(&bytes))
+    write_atomic(path, |file| write_joined(&[bytes], file))
 }
 
 fn write_data(rrd: &mut RrdWriter, board: &Board, options: &RerunOptions) -> Result<(), RrdError> {

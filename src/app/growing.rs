@@ -1,0 +1,79 @@
+//! `recording.rrd` of a cell, encoded by a thread of its own while the simulation goes on: the run itself hardly waits for it.
+
+use std::path::Path;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::{Scope, ScopedJoinHandle};
+
+use super::run::{Listener, RunPart};
+use crate::cell::Cell;
+use crate::recording::rerun::{GrowingRrd, PART_SAMPLES, RerunOptions};
+use crate::recording::scene::Scene;
+use crate::recording::{Recording, RecordingError};
+
+/// A recording that is encoded while it is made.
+pub(super) struct GrowingFile<'scope> {
+    parts: Sender<RunPart>,
+    thread: ScopedJoinHandle<'scope, Result<Option<GrowingRrd>, RecordingError>>,
+}
+
+impl<'scope> GrowingFile<'scope> {
+    /// Begins to encode what its listener is given. `file` is where it will stand, `origin` tells what the run is made of.
+    pub(super) fn begin<'env>(
+        scope: &'scope Scope<'scope, 'env>,
+        cell: &'env Cell,
+        file: &'env Path,
+        origin: &'env str,
+        options: RerunOptions,
+    ) -> Self {
+        let (parts, received) = channel();
+        let thread = scope.spawn(move || encode(cell, file, origin, &options, &received));
+        Self { parts, thread }
+    }
+
+    /// The one who is to be given the run.
+    pub(super) fn listener(&self) -> Listener<'static> {
+        let parts = self.parts.clone();
+        Listener::new(PART_SAMPLES, move |part| {
+            // With the thread gone there was an error: `write` gives it back.
+            drop(parts.send(part));
+            Ok(())
+        })
+    }
+
+    /// Waits until all is encoded, and writes the file.
+    pub(super) fn write(
+        self,
+        path: &Path,
+        recording: &Recording,
+        scene: &Scene,
+        summary_markdown: &str,
+    ) -> Result<(), RecordingError> {
+        drop(self.parts);
+        let encoded = self.thread.join();
+        let encoded = encoded.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+        match encoded {
+            Some(growing) => growing.write(path, recording, scene, summary_markdown),
+            None => Err(RecordingError::write(path, "nothing was recorded")),
+        }
+    }
+}
+
+fn encode(
+    cell: &Cell,
+    file: &Path,
+    origin: &str,
+    options: &RerunOptions,
+    parts: &Receiver<RunPart>,
+) -> Result<Option<GrowingRrd>, RecordingError> {
+    let mut growing: Option<GrowingRrd> = None;
+    for part in parts {
+        let (samples, scene) = part.shown(cell)?;
+        match &mut growing {
+            Some(growing) => growing.add(&samples, &scene)?,
+            None => {
+                growing = Some(GrowingRrd::begin(file, origin, &samples, &scene, options)?);
+            }
+        }
+    }
+    Ok(growing)
+}
