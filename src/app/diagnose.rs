@@ -23,7 +23,7 @@ use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};
 use super::files::Standing;
 use super::output::say;
-use super::progress;
+use super::progress::StagedLine;
 use crate::replay::LoadedCell;
 use crate::scenario::load_recorded_cell;
 use stages::Stages;
@@ -56,17 +56,18 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         return Ok(ExitCode::Done);
     }
     let silent = arguments.quiet || arguments.json || arguments.verbose;
-    let spinner = progress::spinner(&Stages::first(), silent);
+    let line = StagedLine::new(&Stages::first(), silent);
     let prepared = one::Prepared::new(&arguments.case, cell, &out, standing)?;
     let mut stages = Stages::default();
-    spinner.set_message(stages.begun());
+    line.tell(stages.begun(), None);
     let finished = prepared.run(&mut |text| {
-        spinner.set_message(stages.told(text));
+        let behind = stages.behind(text);
+        line.tell(stages.told(text), behind);
         if arguments.verbose {
             eprintln!("{text}");
         }
     });
-    spinner.finish_and_clear();
+    line.end();
     let finished = finished?;
     if arguments.json {
         say(&finished.document)?;

@@ -1,8 +1,9 @@
 //! How far a command is: a bar with the time that is left, in a terminal and nowhere else, and only once a second has passed.
 
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// Nothing is drawn of what takes less.
 const PATIENCE: Duration = Duration::from_millis(700);
@@ -48,6 +49,61 @@ pub(super) fn spinner(first: &str, hidden: bool) -> ProgressBar {
     spinner
 }
 
+/// A line for what has stages, of which it is known about what share of the work lies before each.
+pub(super) struct StagedLine {
+    line: ProgressBar,
+    /// When the last mark was passed, and the share of the work that lay before it.
+    mark: Arc<Mutex<Option<(Duration, f64)>>>,
+}
+
+impl StagedLine {
+    /// One that begins with these words.
+    pub(super) fn new(first: &str, hidden: bool) -> Self {
+        let line = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        let mark: Arc<Mutex<Option<(Duration, f64)>>> = Arc::default();
+        let own = Arc::clone(&mark);
+        let left = move |state: &ProgressState, to: &mut dyn std::fmt::Write| {
+            let mark = *own.lock().unwrap_or_else(PoisonError::into_inner);
+            // A line that cannot be drawn is not missed.
+            let _ = to.write_str(&left(state.elapsed(), mark));
+        };
+        let style = ProgressStyle::with_template("{spinner} {elapsed}{left}  {wide_msg}");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
+        line.set_style(style.with_key("left", left));
+        line.set_message(first.to_owned());
+        show_later(&line, hidden);
+        Self { line, mark }
+    }
+
+    /// Shows other words; a share of the work [1] lies behind, if that is known.
+    pub(super) fn tell(&self, words: String, share: Option<f64>) {
+        if let Some(share) = share {
+            let now = (self.line.elapsed(), share);
+            *self.mark.lock().unwrap_or_else(PoisonError::into_inner) = Some(now);
+        }
+        self.line.set_message(words);
+    }
+
+    /// Takes it away.
+    pub(super) fn end(self) {
+        self.line.finish_and_clear();
+    }
+}
+
+/// What is left after a mark, in words: to one digit, as it is a guess; nothing where it has been outlived.
+fn left(elapsed: Duration, mark: Option<(Duration, f64)>) -> String {
+    let Some((then, share)) = mark else {
+        return String::new();
+    };
+    let whole = then.as_secs_f64() / share;
+    let left = whole - elapsed.as_secs_f64();
+    if left < 0.5 {
+        return String::new();
+    }
+    let digit = 10f64.powf(left.log10().floor().max(0.0));
+    format!(", about {:.0} s left", (left / digit).round() * digit)
+}
+
 /// Tells a bar how much is done.
 pub(super) fn tell(bar: &ProgressBar, done: usize, total: usize) {
     bar.set_length(total as u64);
@@ -71,4 +127,21 @@ fn show_later(bar: &ProgressBar, hidden: bool) {
             bar.enable_steady_tick(TURN);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_is_told_to_a_digit_and_no_longer_than_it_holds() {
+        let after = |seconds: f64, mark| left(Duration::from_secs_f64(seconds), mark);
+        assert_eq!(after(3.0, None), "");
+        // A third was done after 10 s.
+        let mark = Some((Duration::from_secs(10), 1.0 / 3.0));
+        assert_eq!(after(10.0, mark), ", about 20 s left");
+        assert_eq!(after(23.4, mark), ", about 7 s left");
+        assert_eq!(after(29.7, mark), "");
+        assert_eq!(after(60.0, mark), "");
+    }
 }

@@ -356,7 +356,7 @@ mod tests {
         let board = board(&answer(&[]), &comparison, None);
         assert_eq!(board.sheets.len(), MOST_SHEETS);
         let last = board.sheets.last().unwrap();
-        assert_eq!(last.title, "last.csv (not fitted to)");
+        assert_eq!(last.title, "last.csv (not fitted to), from 5.0 s on");
         assert!(last.time.len() < 2 * MOST_SAMPLES, "{}", last.time.len());
         assert!(board.text.contains("11 more recordings"), "{}", board.text);
         assert!(board.text.contains("comparison.parquet"));

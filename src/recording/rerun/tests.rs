@@ -270,6 +270,115 @@ fn equal_input_gives_equal_bytes_and_other_input_another_id() {
     assert_ne!(read(&first).0.id(), read(&other).0.id());
 }
 
+/// The samples and the frames of a part of the run, as they come while it goes on.
+fn part(samples: std::ops::Range<usize>, frames: std::ops::Range<usize>) -> (Recording, Scene) {
+    let whole = recording();
+    let channels = whole.channels().iter();
+    let channels = channels.map(|channel| Channel {
+        values: channel.values[samples.clone()].to_vec(),
+        ..channel.clone()
+    });
+    let time = whole.time()[samples.clone()].to_vec();
+    let mut scene = scene();
+    for body in &mut scene.bodies {
+        if let ScenePoses::Moving(poses) = &mut body.world_from_body {
+            *poses = poses[frames.clone()].to_vec();
+        }
+    }
+    scene.frame_times = scene.frame_times[frames.clone()].to_vec();
+    scene.frame_path_lengths = scene.frame_path_lengths[frames.clone()].to_vec();
+    scene.contact_arrows = scene.contact_arrows[frames].to_vec();
+    let recording = Recording::new(time, channels.collect(), vec![]).unwrap();
+    (recording, scene)
+}
+
+/// Times and values of what changes with time, chunk after chunk.
+fn course(store: &ChunkStore, entity: &str) -> (Vec<i64>, Vec<i64>, Vec<f64>) {
+    let mut own = chunks(store, entity);
+    own.retain(|chunk| !chunk.is_static());
+    own.sort_by_key(|chunk| chunk.id().as_tuid());
+    let along = |timeline| own.iter().flat_map(|c| times(c, timeline)).collect();
+    let values = own.iter().flat_map(|chunk| scalars(chunk)).collect();
+    (along(SIM_TIME), along(PATH_LENGTH), values)
+}
+
+#[test]
+fn encoded_while_it_is_made_it_holds_the_same() {
+    let directory = tempfile::tempdir().unwrap();
+    let grown = |name: &str, origin: &str| {
+        let path = directory.path().join(name);
+        let (samples, frames) = part(0..700, 0..35);
+        let mut growing = GrowingRrd::begin(&path, origin, &samples, &frames, &options()).unwrap();
+        for (samples, frames) in [(700..1500, 35..75), (1500..SAMPLES, 75..FRAMES)] {
+            let (samples, frames) = part(samples, frames);
+            growing.add(&samples, &frames).unwrap();
+        }
+        let summary = options().summary_markdown;
+        growing
+            .write(&path, &recording(), &scene(), &summary)
+            .unwrap();
+        path
+    };
+    let path = grown("grown.rrd", "a scenario");
+    let (data, layout) = read(&path);
+    let (whole, whole_layout) = written();
+    for entity in [
+        "/plots/force",
+        "/plots/joint_torque",
+        "/plots/force/band_plus_5",
+    ] {
+        let (time, _, values) = course(&data, entity);
+        assert!(!time.is_empty() && time.len() == values.len(), "{entity}");
+        assert_eq!(course(&data, entity), course(&whole, entity), "{entity}");
+    }
+    let link = |store| course(store, "/cell/arm/link_1");
+    assert_eq!(link(&data), link(&whole));
+    let statics = |store: &ChunkStore| {
+        let all = store.iter_physical_chunks();
+        let all = all.filter(|chunk| chunk.is_static());
+        let mut all: Vec<String> = all.map(|chunk| chunk.entity_path().to_string()).collect();
+        all.sort();
+        all
+    };
+    assert_eq!(statics(&data), statics(&whole));
+    assert_eq!(statics(&layout), statics(&whole_layout));
+    // Equal input gives equal bytes; a run of other files is another recording, even if it begins alike.
+    let again = grown("again.rrd", "a scenario");
+    assert!(fs::read(&path).unwrap() == fs::read(&again).unwrap());
+    let other = read(&grown("other.rrd", "another scenario")).0;
+    assert_ne!(other.id(), data.id());
+}
+
+#[test]
+fn chunks_lie_where_the_footer_says() {
+    use ::rerun::external::re_log_encoding::{
+        Decodable as _, MessageHeader, MessageKind, RrdFooter, StreamFooter, ToApplication as _,
+        ToTransport,
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("recording.rrd");
+    write_rrd(&path, &recording(), &scene(), &options()).unwrap();
+    let file = fs::read(&path).unwrap();
+    let end = file.len() - StreamFooter::ENCODED_SIZE_BYTES;
+    let pointer = StreamFooter::from_rrd_bytes(&file[end..]).unwrap();
+    let start = pointer.entries[0].rrd_footer_byte_span_from_start_excluding_header;
+    let start = start.start as usize;
+    let footer = <RrdFooter as ToTransport>::Output::from_rrd_bytes(&file[start..end]).unwrap();
+    let stores = footer.to_application(()).unwrap().manifests;
+    assert_eq!(stores.len(), 2);
+    for store in stores.values() {
+        let places = store.col_chunk_byte_offset().unwrap();
+        let lengths = store.col_chunk_byte_size().unwrap();
+        for (place, length) in places.zip(lengths) {
+            let place = place as usize;
+            let header = &file[place - MessageHeader::ENCODED_SIZE_BYTES..place];
+            let header = MessageHeader::from_rrd_bytes(header).unwrap();
+            assert_eq!(header.kind, MessageKind::ArrowMsg);
+            assert_eq!(header.len, length);
+        }
+    }
+}
+
 #[test]
 fn a_scene_that_does_not_fit_leaves_no_file() {
     let directory = tempfile::tempdir().unwrap();
