@@ -42,7 +42,7 @@ fn folder() -> Bench {
 }
 
 /// Commands that write, each to `out`, with a file of it.
-const COMMANDS: [(&str, &str); 9] = [
+const COMMANDS: [(&str, &str); 10] = [
     ("run scenario.toml --quiet", "out/summary.json"),
     (
         "design device_design.toml --evaluations 10 --quiet",
@@ -61,6 +61,7 @@ const COMMANDS: [(&str, &str); 9] = [
     ),
     ("new rig --quiet", "out"),
     ("man", "out/idc.1"),
+    ("laboratory --quiet", "out/cases/case-01/rig.toml"),
 ];
 
 #[test]

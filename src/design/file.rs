@@ -11,38 +11,60 @@ use crate::scenario::sections::keys;
 /// Version of the format.
 pub(super) const SCHEMA: u32 = 1;
 
-/// A study file.
+/// A study file: what is varied, what is minimised, and what must be kept.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StudyFile {
+    /// Version of the format.
+    #[schemars(range(min = 1, max = 1))]
     pub schema: u32,
+    /// The study and its scenarios.
     pub study: StudyKeys,
+    /// What is minimised.
     #[serde(default)]
     pub objective: ObjectiveKeys,
+    /// What must be kept in every scenario that gives it: metrics by name, and `force_n`, forces that the device must be able to give at rest [N].
     #[serde(default)]
     pub limits: BTreeMap<String, BoundKeys>,
+    /// What is varied: keys of `[device.override]` or, in quotes, of a controller.
     #[serde(default)]
     pub variables: BTreeMap<String, VariableKeys>,
 }
 
-/// `[study]`.
+/// `[study]`: its scenarios and its search.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StudyKeys {
+    /// Name for people.
     pub title: String,
+    /// Scenario files, of benches or cells, from the study's folder.
+    #[schemars(length(min = 1))]
     pub scenarios: Vec<PathBuf>,
+    /// Seed of the search.
+    #[schemars(extend("default" = 1))]
     pub seed: Option<u64>,
+    /// Most designs that are simulated, at least 50 for each variable.
+    #[schemars(range(min = 50, max = 1_000_000), extend("default" = 2000))]
     pub evaluations: Option<usize>,
 }
 
-/// `[objective]`.
+/// `[objective]`: what is minimised.
 #[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveKeys {
+    /// Metric of docs/METRICS.md.
+    #[schemars(extend("default" = "coefficient_of_variation_percent"))]
     pub minimise: Option<String>,
+    /// How the scenarios make one number of it.
+    #[schemars(extend("default" = "mean"))]
     pub minimise_over: Option<OverKeys>,
+    /// Second objective, for the front: a metric, or one of the variables.
     pub trade_off: Option<String>,
+    /// How the scenarios make one number of it; not of a variable.
+    #[schemars(extend("default" = "mean"))]
     pub trade_off_over: Option<OverKeys>,
+    /// Levels of the second objective at which the front is sought.
+    #[schemars(range(min = 3, max = 50), extend("default" = 8))]
     pub front_points: Option<usize>,
 }
 
@@ -56,23 +78,34 @@ pub(super) enum OverKeys {
     Worst,
 }
 
-/// A quantity in `[limits]`.
+/// A quantity in `[limits]`: one side, or both.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BoundKeys {
+    /// The least that is allowed, in the unit of its name.
     pub min: Option<f64>,
+    /// The most that is allowed, in the unit of its name.
     pub max: Option<f64>,
 }
 
-/// A variable in `[variables]`.
+/// A variable in `[variables]`: a range, or a catalogue.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct VariableKeys {
+    /// The least that is tried, in the key's unit.
     pub min: Option<f64>,
+    /// The most that is tried, in the key's unit.
     pub max: Option<f64>,
+    /// Its value in the design that all is compared with.
     pub start: f64,
+    /// How it is stepped through.
+    #[schemars(extend("default" = "linear"))]
     pub scale: Option<ScaleKeys>,
+    /// Values that there are; for `bore_mm` the standard bores unless given.
+    #[schemars(length(min = 1))]
     pub catalogue: Option<Vec<f64>>,
+    /// Rod that goes with each bore of the catalogue [mm].
+    #[schemars(length(min = 1))]
     pub rod_mm: Option<Vec<f64>>,
 }
 
@@ -101,4 +134,23 @@ pub(super) fn study_sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("limits.*", keys::<BoundKeys>()),
         ("variables.*", keys::<VariableKeys>()),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::study::{
+        DEFAULT_EVALUATIONS, DEFAULT_FRONT_POINTS, DEFAULT_METRIC, DEFAULT_SEED,
+    };
+
+    #[test]
+    fn the_schema_tells_the_defaults_that_are_taken() {
+        let schema = super::schema();
+        let default = |table: &str, key: &str| {
+            schema["properties"][table]["properties"][key]["default"].clone()
+        };
+        assert_eq!(default("study", "seed"), DEFAULT_SEED);
+        assert_eq!(default("study", "evaluations"), DEFAULT_EVALUATIONS);
+        assert_eq!(default("objective", "minimise"), DEFAULT_METRIC);
+        assert_eq!(default("objective", "front_points"), DEFAULT_FRONT_POINTS);
+    }
 }

@@ -16,10 +16,10 @@ use super::limits::{Limit, LimitQuantity, Side};
 use super::variable::{Variable, variable};
 
 /// Metric that is minimised unless the file says otherwise.
-const DEFAULT_METRIC: &str = "coefficient_of_variation_percent";
-const DEFAULT_EVALUATIONS: usize = 2000;
-const DEFAULT_SEED: u64 = 1;
-const DEFAULT_FRONT_POINTS: usize = 8;
+pub(super) const DEFAULT_METRIC: &str = "coefficient_of_variation_percent";
+pub(super) const DEFAULT_EVALUATIONS: usize = 2000;
+pub(super) const DEFAULT_SEED: u64 = 1;
+pub(super) const DEFAULT_FRONT_POINTS: usize = 8;
 
 /// A checked study.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,5 +1,9 @@
 //! A recorded cell in space: the arm as its encoders read, pale, beside that of the improved model, and the edge coloured by where the believed model's
 //! force is off.
+//!
+//!     q = q_s + k (q_r - q_s)                 k = 1, 2, 5, 10 .. 100
+//!
+//! q drawn, q_s simulated, q_r recorded joint angles and stroke. What an arm gives is less than a millimetre, and nobody would see it: k makes it some 30 mm.
 
 use glam::DVec3;
 use glamx::DPose3;
@@ -22,6 +26,10 @@ use crate::workpiece::load_mesh;
 const FRAME_INTERVAL: f64 = 0.02;
 /// The recorded arm.
 const PALE: Colour = [225, 230, 240, 90];
+/// How far the recorded tool is drawn from the simulated one, at most about [m].
+const SEEN: f64 = 0.03;
+/// Departures are drawn this many times as large [1], the largest that keeps within that.
+const SCALES: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 /// Segments of the edge.
 const SEGMENTS: usize = 200;
 
@@ -59,10 +67,23 @@ pub(super) fn cell_scene(
         });
         held(values.unwrap_or_default(), time.len())
     };
+    let [out, measured_out] = [stroke(false), stroke(true)];
+    let apart = largest_departure(
+        &poses(cell, &simulated, &frames),
+        &poses(cell, &recorded, &frames),
+    ) + largest(out.iter().zip(&measured_out).map(|(a, b)| (a - b).abs()));
+    let scale = scale(apart);
+    let drawn_apart = |from: &[f64], to: &[f64]| -> Vec<f64> {
+        let pairs = from.iter().zip(to);
+        pairs.map(|(from, to)| from + scale * (to - from)).collect()
+    };
+    let joints = simulated.iter().zip(&recorded);
+    let recorded: Vec<Vec<f64>> = joints.map(|(from, to)| drawn_apart(from, to)).collect();
+    let measured_out = drawn_apart(&out, &measured_out);
     let mut bodies = Vec::new();
     for (name, angles, stroke, pale) in [
-        ("simulated", &simulated, stroke(false), false),
-        ("recorded", &recorded, stroke(true), true),
+        ("simulated", &simulated, out, false),
+        ("recorded", &recorded, measured_out, true),
     ] {
         let poses = poses(cell, angles, &frames);
         let mut own = arm_bodies(cell, &arm, &poses);
@@ -79,7 +100,7 @@ pub(super) fn cell_scene(
     let edge = &drawn.course.edge;
     let stations = frames.iter().map(|i| edge[*i].station);
     Ok(Scene {
-        title: drawn.compared.name.clone(),
+        title: title(&drawn.compared.name, scale),
         bodies,
         frame_times: frames.iter().map(|i| time[*i] - time[0]).collect(),
         frame_path_lengths: stations.collect(),
@@ -93,6 +114,30 @@ pub(super) fn cell_scene(
         ],
         ..Scene::default()
     })
+}
+
+/// How many times as large departures are drawn [1], of which the largest is `apart` [m].
+fn scale(apart: f64) -> f64 {
+    let scale = SCALES.into_iter().rfind(|scale| scale * apart <= SEEN);
+    scale.unwrap_or(SCALES[0])
+}
+
+fn title(recording: &str, scale: f64) -> String {
+    match scale {
+        1.0 => format!("{recording}, recorded arm pale"),
+        scale => format!("{recording}, recorded arm pale, its departures x{scale}"),
+    }
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, f64::max)
+}
+
+/// How far the last links of two arms are apart at most [m].
+fn largest_departure(one: &[Vec<DPose3>], other: &[Vec<DPose3>]) -> f64 {
+    let last = |links: &Vec<DPose3>| links.last().map(|pose| pose.translation);
+    let pairs = one.iter().zip(other);
+    largest(pairs.filter_map(|(a, b)| Some((last(a)? - last(b)?).length())))
 }
 
 fn frames(time: &[f64]) -> Vec<usize> {
@@ -242,4 +287,19 @@ fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
     }
     path.points_in_world = corners.iter().map(|(_, (_, point))| *point).collect();
     path
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn departures_are_drawn_as_large_as_they_can_be_seen_and_it_is_said() {
+        assert_eq!(scale(0.4e-3), 50.0);
+        assert_eq!(scale(0.0), 100.0);
+        // An arm that is far off is drawn where it is.
+        assert_eq!(scale(0.2), 1.0);
+        assert_eq!(title("a.csv", 1.0), "a.csv, recorded arm pale");
+        assert!(title("a.csv", scale(1e-3)).ends_with("departures x20"));
+    }
 }

@@ -31,8 +31,8 @@ pub(super) fn screen(board: &Board, options: &RerunOptions) -> Panel {
     let verdict = plain_view(ViewKind::TextDocument, "Verdict", SUMMARY);
     let mut pictures = Vec::new();
     if let Some(scene) = &board.scene {
-        let name = "Cell: recorded (pale) beside simulated";
-        pictures.push(cell_view(name, CELL, cell_box(scene), options));
+        let name = format!("Cell: {}", scene.title);
+        pictures.push(cell_view(&name, CELL, cell_box(scene), options));
     }
     let clouds = board.clouds.iter().enumerate();
     pictures.extend(clouds.map(|(index, cloud)| cloud_view(index, cloud)));
