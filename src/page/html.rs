@@ -123,10 +123,14 @@ fn chart(chart: &Chart<'_>, budget: &Budget) -> Markup {
     let (told, [kept, of]) = chart.told(most);
     // `</script>` within a text would end it.
     let told = told.to_string().replace("</", "<\\/");
+    let picked = match chart.is_cloud() {
+        true => "an even pick",
+        false => "the extremes of each stretch",
+    };
     markup! {
         figure.chart aria-label={ (chart.panel.title) ": " (chart.panel.vertical_label) } {
             figcaption {
-                span { (chart.panel.title) @if kept < of { small { " (" (kept) " of " (of) " samples: the extremes of each stretch)" } } }
+                span { (chart.panel.title) @if kept < of { small { " (" (kept) " of " (of) " samples: " (picked) ")" } } }
                 button.reset type="button" { "Show all" }
             }
             div.plot {}
