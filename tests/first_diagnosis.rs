@@ -1,8 +1,8 @@
-//! docs/FIRST-DIAGNOSIS.md, run as printed: what it tells a newcomer to type leads to the right diagnosis.
+//! docs/FIRST-DIAGNOSIS.md, run as printed from where the program stands: what it tells a newcomer to type leads to the right diagnosis.
 
 use std::process::Command;
 
-use crate::common::project;
+use crate::common::{project, skipped};
 use crate::help::{place, shell};
 
 /// Commands of the page, in order.
@@ -91,7 +91,7 @@ fn the_logs_are_those_of_the_case_that_they_come_from() {
         .arg(folder.path().join("assets/first/make_logs.py"))
         .status()
     else {
-        eprintln!("skipped: there is no python3");
+        skipped("there is no python3");
         return;
     };
     assert!(status.success());

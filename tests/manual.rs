@@ -7,7 +7,7 @@ use clap::CommandFactory as _;
 use idc_cell::app::Cli;
 use serde_json::Value;
 
-use crate::common::project;
+use crate::common::{project, skipped};
 use crate::program::Bench;
 
 /// Gives a program a text, and says whether it took it and what it made of it; nothing where there is no such program.
@@ -54,7 +54,7 @@ fn shells_take_the_completions() {
         }
         match check.map(|flag| fed(shell, &[flag], &outcome.out)) {
             Some(Some((well, said))) => assert!(well && said.is_empty(), "{shell}: {said}"),
-            Some(None) => eprintln!("not tried: there is no {shell}"),
+            Some(None) => skipped(&format!("there is no {shell}")),
             None => {}
         }
     }
@@ -91,7 +91,7 @@ fn every_command_has_a_page_that_man_renders() {
     for page in &pages {
         let text = std::fs::read_to_string(bench.path("pages").join(page)).unwrap();
         let Some((well, said)) = fed("groff", &["-man", "-ww", "-Tascii"], &text) else {
-            eprintln!("not tried: there is no groff");
+            skipped("there is no groff");
             return;
         };
         assert!(well && said.contains("Examples:"), "{page}: {said}");

@@ -1,5 +1,6 @@
 //! Errors point into the file: the line, with a caret below what is meant; as JSON where JSON is asked for. Colours only where somebody sees them.
 
+use crate::common::skipped;
 use crate::program::{Bench, Outcome};
 
 fn spoiled(from: &str, to: &str) -> Outcome {
@@ -139,6 +140,6 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
     };
     match (terminal("1"), terminal("")) {
         (Some(with), Some(without)) => assert_eq!((with, without), (false, true)),
-        _ => eprintln!("skipped: there is no `script`"),
+        _ => skipped("there is no `script`"),
     }
 }

@@ -140,7 +140,7 @@ fn note(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
     }
 }
 
-/// The three files of a run.
+/// The files of a run.
 pub const FILES: [&str; 4] = [
     "recording.rrd",
     "report.html",

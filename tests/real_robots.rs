@@ -16,10 +16,9 @@ use idc_cell::arm::{Arm, ArmOptions, VisualShape, load_arm};
 use nalgebra::DMatrix;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::PathBuf;
 
-use crate::common::project;
+use crate::common::{project, skipped};
 
 /// Largest difference accepted. Of the mass matrix: of element i, j against sqrt(M_ii M_jj). Of the gravity
 /// torques: against the largest of them. The project asks for 1e-4; both sides are exact to rounding.
@@ -53,9 +52,7 @@ struct Case {
 /// The reference robots, or none with a message that the test is skipped.
 fn references() -> Option<Vec<Robot>> {
     let Ok(text) = std::fs::read_to_string(project("build/references/robots.json")) else {
-        // Not by eprintln!, which the test harness swallows when a test passes.
-        let message = "skipped: build/references/robots.json is absent; run .ci/install_references";
-        writeln!(std::io::stderr(), "{message}").expect("standard error is open");
+        skipped("build/references/robots.json is absent; run .ci/install_references");
         return None;
     };
     let references: References = serde_json::from_str(&text).expect("robots.json is as written");

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 
 use rerun::{ChunkStore, ChunkStoreConfig, Scalars};
 
-use crate::common::project;
+use crate::common::{project, skipped};
 use crate::program::Bench;
 
 /// The program, with no viewer and no display about.
@@ -341,7 +341,7 @@ fn a_run_can_be_watched_as_a_page_while_and_after_it_goes_on() {
 fn a_run_is_sent_to_a_viewer_that_listens() {
     let receiver = project("build/references/venv/bin/rerun");
     if !receiver.is_file() {
-        println!("skipped: {} is not installed", receiver.display());
+        skipped(&format!("{} is not installed", receiver.display()));
         return;
     }
     let bench = recorded();

@@ -7,7 +7,13 @@
   const charts = [];
   const setTheme = (theme) => {
     root.dataset.theme = theme;
-    for (const chart of charts) chart.plot?.redraw(false, true);
+    for (const chart of charts) {
+      chart.plot?.redraw(false, true);
+      chart.plot?.root.querySelectorAll(".u-marker").forEach((marker, which) => {
+        // uPlot paints them once. The first is that of the horizontal axis.
+        if (which > 0) marker.style.borderColor = chart.plot.series[which].stroke(chart.plot, which);
+      });
+    }
   };
   setTheme(preferred());
   document.getElementById("theme").addEventListener("click", () => {
@@ -107,33 +113,37 @@
   const ends = (u) => [u.data[0][0], u.data[0].at(-1)];
   const all = (u) => { const [min, max] = ends(u); u.setScale("x", { min, max }); };
 
-  let following = false;
+  const alike = (chart) => charts.filter((other) => other !== chart && other.plot && chart.told.group && other.told.group === chart.told.group);
   const zoomed = (chart) => (u, scale) => {
-    if (scale !== "x" || !chart.plot) return;
+    if (scale !== "x") return;
     const { min, max } = u.scales.x;
     const [first, last] = ends(u);
     const is = min > first + 1e-9 * (last - first) || max < last - 1e-9 * (last - first);
     chart.figure.classList.toggle("zoomed", is);
-    if (following || !chart.told.group) return;
-    following = true;
-    for (const other of charts) {
-      if (other !== chart && other.plot && other.told.group === chart.told.group) other.plot.setScale("x", { min, max });
+    // How a chart begins is nobody's zoom.
+    if (u.status === 0) return;
+    for (const { plot } of alike(chart)) {
+      if (plot.scales.x.min !== min || plot.scales.x.max !== max) plot.setScale("x", { min, max });
     }
-    following = false;
   };
 
+  const onScreen = (place) => ({ width: place.clientWidth, height: 280 });
+  // The style fits it to the paper, whose width no script is told: sharp enough, and its texts not too small.
+  const onPaper = { width: 900, height: 280 };
   const build = (chart) => {
     if (chart.plot) return;
     const told = chart.told;
     const place = chart.figure.querySelector(".plot");
+    // Its group may have been zoomed while it was out of sight.
+    const shared = alike(chart).find((other) => other.figure.classList.contains("zoomed"))?.plot.scales.x;
     const axis = { stroke: () => colour("quiet"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { stroke: () => colour("grid"), width: 1 }, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 20 };
     const largest = (values) => Math.max(...values.map((v) => String(Number((v ?? 0).toPrecision(6))).length));
     const plain = (_, values) => values.map((v) => String(Number(v.toPrecision(6))));
     const options = {
-      width: place.clientWidth, height: 280,
+      ...onScreen(place),
       cursor: { sync: told.group ? { key: told.group, setSeries: false } : undefined, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
       legend: { live: true },
-      scales: { x: { time: false }, y: { range: (_, min, max) => told.within ?? (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
+      scales: { x: { time: false, min: shared?.min, max: shared?.max }, y: { range: (_, min, max) => told.within ?? (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
       axes: [{ ...axis, label: told.x, values: plain, size: 30, labelSize: 18 }, { ...axis, label: told.y, values: plain, size: (u, values) => (values ? 22 + 7 * largest(values.map(Number)) : 60) }],
       series: [{ label: told.x, value: (_, v) => shown(v) }, ...told.series.map(series)],
       bands: told.areas.map(([low, high]) => ({ series: [high + 1, low + 1], fill: () => faded("Band", 0.3) })),
@@ -145,7 +155,7 @@
     const rows = place.querySelectorAll(".u-legend .u-series");
     told.series.forEach((one, which) => { if (!one.label) rows[which + 1].style.display = "none"; });
     place.setAttribute("data-drawn", "");
-    new ResizeObserver(() => chart.plot.setSize({ width: place.clientWidth, height: 280 })).observe(place);
+    new ResizeObserver(() => chart.plot.setSize(onScreen(place))).observe(place);
     chart.figure.querySelector(".reset").addEventListener("click", () => all(chart.plot));
   };
 
@@ -160,14 +170,18 @@
   }, { rootMargin: "400px" });
   for (const chart of charts) watch.observe(chart.figure);
   let before = null;
-  const light = () => {
-    before = root.dataset.theme;
+  addEventListener("beforeprint", () => {
+    before ??= root.dataset.theme;
     for (const details of document.querySelectorAll("details")) details.open = true;
     charts.forEach(build);
     setTheme("light");
-  };
-  addEventListener("beforeprint", light);
-  addEventListener("afterprint", () => { if (before) setTheme(before); });
+    for (const chart of charts) chart.plot.setSize(onPaper);
+  });
+  addEventListener("afterprint", () => {
+    if (before) setTheme(before);
+    before = null;
+    for (const chart of charts) chart.plot?.setSize(onScreen(chart.plot.root.parentElement));
+  });
   // For tests: what is drawn, and how far it is zoomed.
   window.idcCharts = charts;
 })();

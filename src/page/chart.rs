@@ -53,8 +53,14 @@ impl Chart<'_> {
         } else {
             on_all_places(&drawn)
         };
-        let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        let kept = kept(places.len(), &views, most);
+        let (mut lines, mut clouds): (Vec<&[f64]>, Vec<&[f64]>) = Default::default();
+        for (drawn, values) in drawn.iter().zip(&columns) {
+            match drawn.series.stroke {
+                Stroke::Points => clouds.push(values),
+                _ => lines.push(values),
+            }
+        }
+        let kept = kept(places.len(), &lines, &clouds, most);
         let of = |values: &[f64]| packed(kept.iter().map(|i| values[*i]));
         let series = drawn.iter().zip(&columns).map(|(drawn, values)| {
             json!({
@@ -87,6 +93,12 @@ impl Chart<'_> {
             "within": self.within.map(|ends| ends.map(coarse)),
         });
         (told, [kept.len(), places.len()])
+    }
+
+    /// Whether all that it shows are points.
+    pub(super) fn is_cloud(&self) -> bool {
+        let mut series = self.panel.series.iter();
+        series.all(|series| series.stroke == Stroke::Points)
     }
 
     /// Numbers that its panel has, the places counted once.
@@ -231,5 +243,39 @@ mod tests {
         assert_eq!(known(2), [8.0, 7.0]);
         assert!(unpacked(&told["at"]).is_sorted());
         assert_eq!(told["series"][2]["joined"], true);
+    }
+    #[test]
+    fn a_thinned_cloud_is_as_wide_as_the_whole_one() {
+        // Sums of four waves of unlike lengths lie about as noise does: thick in the middle, thin far out.
+        let noise = |seed: f64| -> Vec<f64> {
+            let wave = |i: i32, k: i32| (f64::from(i) * (seed + 1.7 * f64::from(k))).sin();
+            (0..4000)
+                .map(|i| (0..4).map(|k| wave(i, k)).sum())
+                .collect()
+        };
+        let places = noise(0.37);
+        let cloud = |label: &'static str, seed| {
+            Series::new(
+                label,
+                places.clone(),
+                noise(seed),
+                Role::Measured,
+                Stroke::Points,
+            )
+        };
+        let both = chart(vec![cloud("before", 0.61), cloud("after", 0.83)]);
+        let (told, [kept, of]) = both.told(1333);
+        assert!(of == 4000 && kept.abs_diff(1333) < 20, "{kept} of {of}");
+        let spread = |values: &[f64]| {
+            let count = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / count;
+            (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt()
+        };
+        for (which, seed) in [(0, 0.61), (1, 0.83)] {
+            let thinned = unpacked(&told["series"][which]["values"]);
+            let thinned: Vec<f64> = thinned.into_iter().map(f64::from).collect();
+            let share = spread(&thinned) / spread(&noise(seed));
+            assert!((share - 1.0).abs() < 0.05, "{share}");
+        }
     }
 }

@@ -121,12 +121,16 @@ fn chart(chart: &Chart<'_>, budget: &Budget) -> Markup {
     let share = (budget.share * chart.numbers() as f64) as usize;
     let most = share.max(budget.least) / columns;
     let (told, [kept, of]) = chart.told(most);
-    // `</script>` within a text would end it.
-    let told = told.to_string().replace("</", "<\\/");
+    // Within a script `</script>` would end it, and `<!--<script>` hide its end.
+    let told = told.to_string().replace('<', "\\u003c");
+    let picked = match chart.is_cloud() {
+        true => "an even pick",
+        false => "the extremes of each stretch",
+    };
     markup! {
         figure.chart aria-label={ (chart.panel.title) ": " (chart.panel.vertical_label) } {
             figcaption {
-                span { (chart.panel.title) @if kept < of { small { " (" (kept) " of " (of) " samples: the extremes of each stretch)" } } }
+                span { (chart.panel.title) @if kept < of { small { " (" (kept) " of " (of) " samples: " (picked) ")" } } }
                 button.reset type="button" { "Show all" }
             }
             div.plot {}
@@ -203,12 +207,16 @@ mod tests {
     #[test]
     fn a_page_holds_all_and_asks_for_nothing() {
         let long = || -> Vec<f64> { (0..600_000).map(|i| f64::from(i % 977)).collect() };
+        let ends_it = "</script><b>";
+        let hides_its_end = "<!--<script>";
+        let series = Series::new(ends_it, long(), long(), Role::Force, Stroke::Plain);
         let chart = Chart {
             panel: Panel {
-                title: "</script><b>".to_owned(),
-                series: vec![Series::new("x", long(), long(), Role::Force, Stroke::Plain)],
+                title: ends_it.to_owned(),
+                series: vec![series],
                 ..Panel::default()
             },
+            group: hides_its_end.to_owned(),
             ..Chart::default()
         };
         let page = Page {
@@ -219,7 +227,14 @@ mod tests {
         let text = html(&page);
         assert!(text.len() < 3_000_000, "{}", text.len());
         assert!(text.contains("A &amp; B") && text.contains("id=\"all-of-it\""));
-        assert!(!text.contains("</script><b>"));
+        assert!(!text.contains(ends_it) && !text.contains(hides_its_end));
+        let (_, rest) = text
+            .split_once("<script type=\"application/json\">")
+            .unwrap();
+        let (told, _) = rest.split_once("</script>").unwrap();
+        let told: serde_json::Value = serde_json::from_str(told).unwrap();
+        assert_eq!(told["series"][0]["label"], ends_it);
+        assert_eq!(told["group"], hides_its_end);
         let fetched = ["src=\"http", "href=\"http", "url(http", "@import"];
         assert!(fetched.iter().all(|way| !text.contains(way)));
         assert_eq!(text, html(&page));

@@ -18,7 +18,7 @@ export const launch = (...more) => chromium.launch({ executablePath: process.env
 
 export const run = (...words) => execFileSync(idc, words, { cwd: project, stdio: ["ignore", "pipe", "inherit"], maxBuffer: 1 << 28 }).toString();
 
-// Results that several tests look at are made once.
+// Results that several tests look at are made once. Files of tests run beside one another: each file has names of its own.
 export const made = (name, ...words) => {
   const folder = join(results, name);
   if (!existsSync(join(folder, "report.html"))) run(...words, "--out", folder);

@@ -59,23 +59,54 @@ for (const name of ["diagnosis", "run", "bench", "compare"]) {
   });
 }
 
-test("a chart zooms with all of its recording, and shows all again", async () => {
-  const { page, faults } = await open(browser, address("run"));
-  await drawn(page);
-  const shown = () => page.evaluate(() => window.idcCharts.filter((chart) => chart.plot && chart.told.group === "run").map((chart) => [chart.plot.scales.x.min, chart.plot.scales.x.max]));
-  const [whole] = await shown();
+// Ranges of the charts of the run that are drawn.
+const shown = (page) => page.evaluate(() => window.idcCharts.filter((chart) => chart.plot && chart.told.group === "run").map((chart) => [chart.plot.scales.x.min, chart.plot.scales.x.max]));
+// Draws over the second quarter of the first chart.
+const zoom = async (page) => {
   const box = await page.locator("figure.chart .u-over").first().boundingBox();
   await page.mouse.move(box.x + 0.25 * box.width, box.y + 50);
   await page.mouse.down();
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 60, { steps: 5 });
   await page.mouse.up();
-  const zoomed = await shown();
+};
+
+test("a chart zooms with all of its recording, and shows all again", async () => {
+  const { page, faults } = await open(browser, address("run"));
+  await drawn(page);
+  const [whole] = await shown(page);
+  await page.evaluate(() => {
+    const { plot } = window.idcCharts[0];
+    const { setScale } = plot;
+    window.told = 0;
+    plot.setScale = (...range) => { window.told += 1; setScale(...range); };
+  });
+  await zoom(page);
+  const zoomed = await shown(page);
   assert.ok(zoomed.length > 1, "several charts of the run are drawn");
   for (const [from, to] of zoomed) {
     assert.ok(Math.abs((to - from) / (whole[1] - whole[0]) - 0.25) < 0.02, `${from} to ${to} of ${whole}`);
+    assert.deepEqual([from, to], zoomed[0]);
   }
+  assert.equal(await page.evaluate(() => window.told), 0, "those that follow do not tell the first chart in turn");
   await page.locator("figure.chart.zoomed button.reset").first().click();
-  for (const ends of await shown()) assert.deepEqual(ends, whole);
+  for (const ends of await shown(page)) assert.deepEqual(ends, whole);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+test("a chart that comes into sight takes the zoom of its recording", async () => {
+  const { page, faults } = await open(browser, address("run"), { viewport: { width: 1280, height: 400 } });
+  await drawn(page);
+  await zoom(page);
+  const [zoomed, ...others] = await shown(page);
+  const last = page.locator("figure.chart").last();
+  assert.equal(await last.locator("[data-drawn]").count(), 0, "the last chart waits");
+  await last.scrollIntoViewIfNeeded();
+  await last.locator("[data-drawn]").waitFor();
+  const ranges = await shown(page);
+  assert.ok(ranges.length > 1 + others.length);
+  for (const range of ranges) assert.deepEqual(range, zoomed);
+  assert.ok(await last.locator("button.reset").isVisible());
   assert.deepEqual(faults, []);
   await page.context().close();
 });
@@ -120,12 +151,51 @@ test("the theme switches and is remembered", async () => {
   await page.context().close();
 });
 
-test("it prints light, with every chart", async () => {
+test("legends keep the colours of their lines in either theme", async () => {
+  const { page } = await open(browser, address("diagnosis"), { colorScheme: "light" });
+  await drawn(page);
+  const colours = () => page.evaluate(() => {
+    const painted = (colour) => Object.assign(document.body.appendChild(document.createElement("i")), { style: `color: ${colour}` });
+    return window.idcCharts.filter((chart) => chart.plot).flatMap(({ plot }) => {
+      const markers = [...plot.root.querySelectorAll(".u-marker")].slice(1);
+      return markers.map((marker, which) => {
+        const line = painted(plot.series[which + 1].stroke(plot, which + 1));
+        return [getComputedStyle(marker).borderTopColor, getComputedStyle(line).color];
+      });
+    });
+  });
+  const light = await colours();
+  await page.getByRole("button", { name: "Light or dark" }).click();
+  const dark = await colours();
+  for (const [marker, line] of [...light, ...dark]) assert.equal(marker, line);
+  assert.notDeepEqual(light, dark);
+  await page.context().close();
+});
+
+test("it prints light, with every chart, and whole", async () => {
   const { page } = await open(browser, address("diagnosis"), { colorScheme: "dark" });
   await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
   const state = await page.evaluate(() => [document.documentElement.dataset.theme, window.idcCharts.every((chart) => chart.plot)]);
   assert.deepEqual(state, ["light", true]);
+  await page.emulateMedia({ media: "print" });
+  // A browser lays out for its paper, narrower than its window, without telling the page: so no frame passes between width and measurement.
+  const charts = await page.evaluate(() => {
+    document.body.style.width = "718px";
+    return window.idcCharts.map(({ plot }) => {
+      const [place, canvas] = [plot.root.parentElement, plot.root.querySelector("canvas")].map((element) => element.getBoundingClientRect());
+      return { place: place.width, width: canvas.width, below: canvas.bottom - place.bottom, stretched: canvas.width / canvas.height / (plot.width / plot.height) };
+    });
+  });
+  for (const { place, width, below, stretched } of charts) {
+    assert.ok(place <= 718 && width <= place && width > 0.9 * place && below <= 0, `${width} px of ${place}, ${below} px below`);
+    assert.ok(Math.abs(stretched - 1) < 0.01, `${stretched}`);
+  }
+  await page.evaluate(() => { document.body.style.width = ""; });
+  await page.emulateMedia({ media: "screen" });
   const pdf = await page.pdf({ format: "A4" });
   assert.ok(pdf.length > 50_000, `${pdf.length} bytes`);
+  await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+  const after = await page.evaluate(() => [document.documentElement.dataset.theme, window.idcCharts.every(({ plot }) => plot.width === plot.root.parentElement.clientWidth)]);
+  assert.deepEqual(after, ["dark", true]);
   await page.context().close();
 });

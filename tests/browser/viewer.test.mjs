@@ -48,8 +48,8 @@ const orange = [0xe6, 0x9f, 0x00];
 const sky = [0x56, 0xb4, 0xe9];
 
 for (const [name, words, file, wanted] of [
-  ["run", ["run", "scenarios/plate_edge.toml"], "plate/recording.rrd", [vermilion, green]],
-  ["diagnosis", ["diagnose", "assets/proof/cases/case-02"], "friction/diagnosis.rrd", [orange, sky]],
+  ["run", ["run", "scenarios/plate_edge.toml"], "viewed/recording.rrd", [vermilion, green]],
+  ["diagnosis", ["diagnose", "assets/proof/cases/case-02"], "viewed_diagnosis/diagnosis.rrd", [orange, sky]],
 ]) {
   test(`the plots of a ${name} are drawn`, { timeout: 180_000 }, async () => {
     made(file.split("/")[0], ...words);

@@ -84,7 +84,7 @@ fn sheet(answer: &Answer, recording: &Compared, of_flange: bool) -> Sheet {
     let all: Vec<&[f64]> = all
         .flat_map(|c| [&c.measured[..], &c.believed, &c.improved])
         .collect();
-    let kept = kept(recording.time.len(), &all, MOST_SAMPLES);
+    let kept = kept(recording.time.len(), &all, &[], MOST_SAMPLES);
     let rows = recording.channels.iter();
     let title = match (recording.unseen, of_flange) {
         (true, false) => format!("{} (not fitted to)", recording.name),
