@@ -253,13 +253,17 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
             .map_err(metrics_error)?;
         let title = &cell.scenario.title;
         let document = SummaryDocument::new(&cell, &finished, &verdicts, &origin).text()?;
-        let report = super::report::page_of_run(&document, &finished.recording)?;
         let scene = scene_of(&cell, &finished.recording, &finished.frames)?;
         let summary = markdown(title, &finished.summary, &verdicts);
+        let (report, encoded) = rayon::join(
+            || super::report::page_of_run(&document, &finished.recording),
+            || growing.end(&finished.recording, &scene, &summary),
+        );
+        let (report, encoded) = (report?, encoded?);
         let names = folder.write(RunOutput {
             title,
             recording: &finished.recording,
-            picture: Box::new(|path| growing.write(path, &finished.recording, &scene, &summary)),
+            picture: Box::new(|path| encoded.write(path)),
             summary: &document,
             figures: None,
             report: &report,

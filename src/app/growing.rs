@@ -6,12 +6,13 @@ use std::thread::{Scope, ScopedJoinHandle};
 
 use super::run::{Listener, RunPart};
 use crate::cell::Cell;
-use crate::recording::rerun::{GrowingRrd, PART_SAMPLES, RerunOptions};
+use crate::recording::rerun::{EncodedRrd, GrowingRrd, PART_SAMPLES, RerunOptions};
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
 
 /// A recording that is encoded while it is made.
 pub(super) struct GrowingFile<'scope> {
+    file: &'scope Path,
     parts: Sender<RunPart>,
     thread: ScopedJoinHandle<'scope, Result<Option<GrowingRrd>, RecordingError>>,
 }
@@ -27,7 +28,11 @@ impl<'scope> GrowingFile<'scope> {
     ) -> Self {
         let (parts, received) = channel();
         let thread = scope.spawn(move || encode(cell, file, origin, &options, &received));
-        Self { parts, thread }
+        Self {
+            file,
+            parts,
+            thread,
+        }
     }
 
     /// The one who is to be given the run.
@@ -40,20 +45,19 @@ impl<'scope> GrowingFile<'scope> {
         })
     }
 
-    /// Waits until all is encoded, and writes the file.
-    pub(super) fn write(
+    /// Waits until all is encoded, and adds what only the whole run tells.
+    pub(super) fn end(
         self,
-        path: &Path,
         recording: &Recording,
         scene: &Scene,
         summary_markdown: &str,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<EncodedRrd, RecordingError> {
         drop(self.parts);
         let encoded = self.thread.join();
         let encoded = encoded.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
         match encoded {
-            Some(growing) => growing.write(path, recording, scene, summary_markdown),
-            None => Err(RecordingError::write(path, "nothing was recorded")),
+            Some(growing) => growing.end(recording, scene, summary_markdown),
+            None => Err(RecordingError::write(self.file, "nothing was recorded")),
         }
     }
 }

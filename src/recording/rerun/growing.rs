@@ -97,23 +97,23 @@ impl GrowingRrd {
         Ok(())
     }
 
-    /// Writes the file: `recording` and `scene` are those of the whole run.
+    /// Adds what only the whole run tells: `recording` and `scene` are those of the whole run.
     ///
     /// # Errors
-    /// As [`Self::begin`]; nothing is left then.
-    pub fn write(
+    /// As [`Self::begin`].
+    pub fn end(
         mut self,
-        path: &Path,
         recording: &Recording,
         scene: &Scene,
         summary_markdown: &str,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<EncodedRrd, RecordingError> {
         scene.check()?;
         let plots = plots(recording, &scene.limits)?;
         summary_markdown.clone_into(&mut self.options.summary_markdown);
+        let file = self.file.clone();
         let files = self.finish(recording, scene, &plots);
-        let files = files.map_err(|error| RecordingError::write(path, error))?;
-        write_atomic(path, |file| write_joined(&files, file))
+        let files = files.map_err(|error| RecordingError::write(&file, error))?;
+        Ok(EncodedRrd { files })
     }
 
     /// The layout and the data, a file each.
@@ -138,5 +138,20 @@ impl GrowingRrd {
         let mut layout = RrdWriter::begin(StoreKind::Blueprint, &self.id, !self.number)?;
         write_layout(&mut layout, scene, plots, recording, &self.options)?;
         Ok([layout.finish()?, self.rrd.finish()?])
+    }
+}
+
+/// A recording that is encoded, all of it.
+pub struct EncodedRrd {
+    files: [Vec<u8>; 2],
+}
+
+impl EncodedRrd {
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// [`RecordingError::Write`] if it cannot be written; nothing is left then.
+    pub fn write(&self, path: &Path) -> Result<(), RecordingError> {
+        write_atomic(path, |file| write_joined(&self.files, file))
     }
 }

@@ -24,7 +24,7 @@ mod view_box;
 
 pub use board::write_board;
 pub use check::{RrdFault, check_rrd, viewer_version};
-pub use growing::{GrowingRrd, PART_SAMPLES};
+pub use growing::{EncodedRrd, GrowingRrd, PART_SAMPLES};
 pub use live::{LiveOutlet, LiveRecording};
 pub use rrd::LiveWriter;
 
@@ -94,7 +94,9 @@ pub fn write_rrd(
     options: &RerunOptions,
 ) -> Result<(), RecordingError> {
     let growing = GrowingRrd::begin(path, "", recording, scene, options)?;
-    growing.write(path, recording, scene, &options.summary_markdown)
+    growing
+        .end(recording, scene, &options.summary_markdown)?
+        .write(path)
 }
 
 fn write_layout(

@@ -314,9 +314,8 @@ fn encoded_while_it_is_made_it_holds_the_same() {
             growing.add(&samples, &frames).unwrap();
         }
         let summary = options().summary_markdown;
-        growing
-            .write(&path, &recording(), &scene(), &summary)
-            .unwrap();
+        let encoded = growing.end(&recording(), &scene(), &summary).unwrap();
+        encoded.write(&path).unwrap();
         path
     };
     let path = grown("grown.rrd", "a scenario");
