@@ -140,3 +140,20 @@ fn a_run_replaces_all_files_of_another() {
         "that of the other run"
     );
 }
+
+#[test]
+fn a_run_without_its_recording_leaves_none_of_an_earlier_one() {
+    for scenario in ["paper_step", "plate_edge"] {
+        let bench = Bench::new(scenario);
+        assert_eq!(bench.run().code, 0);
+        assert!(bench.path("out/recording.rrd").is_file());
+        let summary = std::fs::read(bench.path("out/samples.parquet")).unwrap();
+        let words = ["run", "scenario.toml", "--out", "out", "--force"];
+        let outcome = bench.idc(&[&words[..], &["--no-recording"]].concat(), &[]);
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+        assert!(!outcome.out.contains("recording.rrd"), "{}", outcome.out);
+        assert!(!bench.path("out/recording.rrd").exists());
+        let same = std::fs::read(bench.path("out/samples.parquet")).unwrap();
+        assert!(same == summary && bench.path("out/report.html").is_file());
+    }
+}

@@ -7,8 +7,8 @@ use clap::{Args, Parser, Subcommand};
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
 use super::files::{
-    OutputFolder, RECORDING, RUN_NAMES, RunOutput, Standing, SummaryDocument, files_of_cell,
-    provenance,
+    OutputFolder, Picture, RECORDING, RUN_NAMES, RunOutput, Standing, SummaryDocument,
+    files_of_cell, provenance,
 };
 use super::growing::GrowingFile;
 use super::help;
@@ -115,6 +115,9 @@ struct RunArguments {
     /// Print what summary.json holds instead of the table.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
+    /// Leave recording.rrd away, as for many runs of which only the numbers are wanted.
+    #[arg(long, help_heading = "Output")]
+    no_recording: bool,
     /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
     #[arg(long, hide = true)]
     hold_at_s: Option<f64>,
@@ -243,9 +246,11 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     let bar = progress::bar("simulating", quiet);
     let told = &mut |done, total| progress::tell(&bar, done, total);
     let (code, scene, summary) = std::thread::scope(|scope| -> Result<_, AppError> {
-        let growing = GrowingFile::begin(scope, &cell, &target, &origin_text, options);
+        let growing = (!arguments.no_recording)
+            .then(|| GrowingFile::begin(scope, &cell, &target, &origin_text, options));
         let watching = watch.iter().map(|watch| Listener::watching(&cell, watch));
-        let listeners = watching.chain([growing.listener()]).collect();
+        let growing_too = growing.iter().map(|growing| growing.listener());
+        let listeners = watching.chain(growing_too).collect();
         let finished = run_heard(&cell, told, listeners);
         bar.finish_and_clear();
         let finished = finished?;
@@ -257,13 +262,14 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
         let summary = markdown(title, &finished.summary, &verdicts);
         let (report, encoded) = rayon::join(
             || super::report::page_of_run(&document, &finished.recording),
-            || growing.end(&finished.recording, &scene, &summary),
+            || growing.map(|growing| growing.end(&finished.recording, &scene, &summary)),
         );
-        let (report, encoded) = (report?, encoded?);
+        let (report, encoded) = (report?, encoded.transpose()?);
         let names = folder.write(RunOutput {
             title,
             recording: &finished.recording,
-            picture: Box::new(|path| encoded.write(path)),
+            picture: encoded
+                .map(|encoded| -> Picture<'_> { Box::new(move |path| encoded.write(path)) }),
             summary: &document,
             figures: None,
             report: &report,
@@ -319,10 +325,11 @@ fn run_bench(
         opening: opening(arguments),
         ..RerunOptions::default()
     };
+    let picture = |path: &Path| write_rrd(path, &finished.recording, &scene, &options);
     let names = folder.write(RunOutput {
         title: &scenario.title,
         recording: &finished.recording,
-        picture: Box::new(|path| write_rrd(path, &finished.recording, &scene, &options)),
+        picture: (!arguments.no_recording).then_some(Box::new(picture)),
         summary: &document,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
         report: &report,

@@ -136,12 +136,16 @@ impl OutputFolder {
         // The two large files, side by side.
         let written = rayon::join(
             || write_parquet(&table, output.recording, &metadata),
-            || (output.picture)(&picture),
+            || output.picture.map(|write| write(&picture)),
         );
-        written.0.and(written.1)?;
+        written.0?;
+        let recorded = written.1.transpose()?.is_some();
         write_text(&unfinished.path().join(SUMMARY), output.summary)?;
         write_text(&unfinished.path().join(REPORT), output.report)?;
-        let mut names = vec![RECORDING, SAMPLES, SUMMARY, REPORT];
+        let mut names = vec![SAMPLES, SUMMARY, REPORT];
+        if recorded {
+            names.insert(0, RECORDING);
+        }
         if let Some(figures) = output.figures {
             write_text(&unfinished.path().join(FIGURES), figures)?;
             names.push(FIGURES);
@@ -223,14 +227,17 @@ pub(super) fn files_of_cell<'a>(
     files
 }
 
+/// Writes recording.rrd.
+pub(super) type Picture<'a> = Box<dyn FnOnce(&Path) -> Result<(), RecordingError> + Send + 'a>;
+
 /// What a run leaves behind.
 pub(super) struct RunOutput<'a> {
     /// Name for people.
     pub title: &'a str,
     /// The signals.
     pub recording: &'a Recording,
-    /// Writes recording.rrd.
-    pub picture: Box<dyn FnOnce(&Path) -> Result<(), RecordingError> + Send + 'a>,
+    /// What writes recording.rrd; none where it is not wanted.
+    pub picture: Option<Picture<'a>>,
     /// summary.json.
     pub summary: &'a str,
     /// figures.svg.

@@ -36,7 +36,7 @@ impl<'scope> GrowingFile<'scope> {
     }
 
     /// The one who is to be given the run.
-    pub(super) fn listener(&self) -> Listener<'static> {
+    pub(super) fn listener<'a>(&self) -> Listener<'a> {
         let parts = self.parts.clone();
         Listener::new(PART_SAMPLES, move |part| {
             // With the thread gone there was an error: `write` gives it back.

@@ -42,6 +42,8 @@ Examples:
   idc run scenarios/plate_edge.toml --out runs/first
   # The same again, in place of what is there.
   idc run scenarios/plate_edge.toml --out runs/first --force
+  # Numbers, samples and page alone, as for a run in a test.
+  idc run scenarios/plate_edge.toml --out runs/guard --no-recording
   # Watched in a viewer while it goes on. (opens a window)
   idc run scenarios/plate_edge.toml --out runs/watched --view
   # The device alone, on a bench; its numbers as JSON.

@@ -92,7 +92,7 @@ pub(super) fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
         lead: notes.map(|note| format!("Note: {note}.")).collect(),
         facts: facts(run),
         sections: sections.into_iter().flatten().collect(),
-        footer: "Made by idc, which simulates the device and its cell. recording.rrd beside this page shows the run in space: `idc view recording.rrd`.".to_owned(),
+        footer: "Made by idc, which simulates the device and its cell. recording.rrd, where it stands beside this page, shows the run in space: `idc view recording.rrd`.".to_owned(),
     }
 }
 
