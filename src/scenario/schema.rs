@@ -92,7 +92,10 @@ fn tidy(schema: &mut Value) {
     match schema {
         Value::Object(object) => {
             object.remove("format");
-            object.remove("default");
+            let told = |default: &Value| default.is_number() || default.is_string();
+            if !object.get("default").is_some_and(told) {
+                object.remove("default");
+            }
             if let Some(Value::Array(types)) = object.get_mut("type") {
                 types.retain(|name| name != "null");
                 if let [only] = &types[..] {
