@@ -159,3 +159,78 @@ fn a_comparison_has_changes_against_the_first_and_refuses_what_cannot_be_compare
             .contains("coulomb viscous friction: coulomb force [N]")
     );
 }
+
+#[test]
+fn what_is_read_is_not_written_and_what_is_refused_leaves_nothing() {
+    let bench = Bench::new("paper_step");
+    assert_eq!(bench.run().code, 0);
+    let before = bench.contents();
+    for (words, told) in [
+        (
+            vec!["report", "out", "--out", "out/summary.json", "--force"],
+            "--out is out/summary.json, which is read here",
+        ),
+        (
+            vec![
+                "compare",
+                "out",
+                "out",
+                "--out",
+                "out/samples.parquet",
+                "--force",
+            ],
+            "--out is out/samples.parquet, which is read here",
+        ),
+        (
+            vec!["compare", "nowhere", "out", "--out", "new/page.html"],
+            "nowhere: there is nothing in it to compare",
+        ),
+        (
+            vec!["report", "nowhere", "--out", "new/page.html"],
+            "nowhere: there are no results in it",
+        ),
+        (
+            vec!["sweep", "--effects", "frictoin", "--out", "new"],
+            "frictoin",
+        ),
+        (
+            vec!["new", "cell", "my\"cell.toml"],
+            "my\"cell.toml: its name stands in the file too",
+        ),
+    ] {
+        let outcome = bench.idc(&words, &[]);
+        assert_eq!(outcome.code, 2, "{words:?}: {}", outcome.err);
+        assert!(outcome.err.contains(told), "{words:?}: {}", outcome.err);
+        assert!(before == bench.contents(), "{words:?}");
+        assert!(!bench.path("new").exists(), "{words:?}");
+    }
+}
+
+/// `--json` once ended in a panic where a name was no UTF-8.
+#[cfg(unix)]
+#[test]
+fn names_that_are_no_text_are_told_as_far_as_they_are() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    let bench = Bench::new("paper_step");
+    let folder = OsStr::from_bytes(b"odd\xff");
+    let run = std::process::Command::new(env!("CARGO_BIN_EXE_idc"))
+        .args(["run", "scenario.toml", "--quiet", "--out"])
+        .arg(folder)
+        .current_dir(bench.path(""))
+        .status();
+    assert!(run.unwrap().success());
+    let told = std::process::Command::new(env!("CARGO_BIN_EXE_idc"))
+        .args(["report", "--json"])
+        .arg(folder)
+        .current_dir(bench.path(""))
+        .output()
+        .unwrap();
+    assert!(
+        told.status.success(),
+        "{}",
+        String::from_utf8_lossy(&told.stderr)
+    );
+    let told: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
+    assert_eq!(told["file"], "odd\u{fffd}/report.html");
+}

@@ -463,3 +463,22 @@ pub(super) fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
     };
     out.cloned().unwrap_or_else(default)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_go_to_a_folder_that_is_called_as_the_input() {
+        let folder = tempfile::tempdir().unwrap();
+        let case = folder.path().join("rig.v2");
+        std::fs::create_dir(&case).unwrap();
+        let of = |input: &Path| output_folder(None, input);
+        assert_eq!(of(&case), Path::new("runs/rig.v2"));
+        // As `idc diagnose .` has it.
+        assert_eq!(of(&case.join(".")), Path::new("runs/rig.v2"));
+        assert_eq!(of(Path::new("scenarios/a.b.toml")), Path::new("runs/a.b"));
+        let asked = PathBuf::from("elsewhere");
+        assert_eq!(output_folder(Some(&asked), &case), asked);
+    }
+}

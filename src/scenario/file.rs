@@ -296,6 +296,8 @@ pub(super) struct SimulationKeys {
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BoundKeys {
+    /// The least that is allowed, in the unit of its name.
     pub min: Option<f64>,
+    /// The most that is allowed, in the unit of its name.
     pub max: Option<f64>,
 }

@@ -281,7 +281,7 @@ fn of_unlisted(report: &UnlistedReport) -> Cloud {
     };
     let port = report.port.replace('_', " ");
     Cloud {
-        title: format!("The term without a name: {port}"),
+        title: "The term without a name".to_owned(),
         horizontal: format!("{} [{at_unit}]", over.replace('_', " ")),
         vertical: format!("{port} [{unit}]"),
         groups: vec![
