@@ -204,7 +204,7 @@ fn all_goes_on_past_a_bad_case_and_resumes() {
     std::fs::create_dir(bench.path("cases/notes")).unwrap();
     let outcome = diagnose(&bench, &["cases", "--all", "--out", "out"]);
     assert_eq!(outcome.code, 2);
-    let error = outcome.only_line("error: ");
+    let error = outcome.only_line("error: case-3: ");
     assert!(
         error.contains("case-3: ") && error.contains("column `solenoid` is missing"),
         "{error}"

@@ -78,7 +78,7 @@ fn the_page_of_a_run_comes_again_and_names_bounds_that_were_not_kept() {
     let words = ["run", "scenario.toml", "--out", "broken", "--quiet"];
     assert_eq!(bench.idc(&words, &[]).code, 1);
     let text = fs::read_to_string(bench.path("broken/report.html")).unwrap();
-    assert!(text.contains("Outside its bounds: force, mean is 1"));
+    assert!(text.contains("Outside its bounds: force, mean is 289."));
     assert!(text.contains(" N, expected at most 1 N."));
     // What a bench means by it, not a cell, which follows an edge.
     assert!(text.contains("surface moving; else last level, steady"));
@@ -150,7 +150,7 @@ fn a_comparison_has_changes_against_the_first_and_refuses_what_cannot_be_compare
     assert!(page.contains("one / other") && page.contains("+50.0 %"));
     let outcome = bench.idc(&["compare", "one", "found"], &[]);
     assert_eq!(outcome.code, 2);
-    outcome.only_line("error: found holds a diagnosis and the others runs");
+    outcome.only_line("error: found holds a diagnosis and one a run, expected all of one kind");
     let outcome = bench.idc(&["compare", "found", "found"], &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert!(
