@@ -231,27 +231,25 @@ fn of_balance(balance: &Balance) -> Cloud {
             true => side + SPREAD * ((GOLDEN * index as f64).fract() - 0.5),
             false => 0.0,
         };
+        let points: Vec<[f64; 2]> = within
+            .map(|(i, (value, lacking))| [scale * value + spread(i), factor * lacking])
+            .collect();
+        let known = lacking.iter().filter(|lacking| lacking.is_finite());
+        let label = match known.count() - points.len() {
+            0 => label.to_owned(),
+            beyond => format!("{label} ({beyond} points beyond)"),
+        };
         CloudGroup {
-            label: label.to_owned(),
+            label,
             role,
-            points: within
-                .map(|(i, (value, lacking))| [scale * value + spread(i), factor * lacking])
-                .collect(),
+            points,
             joined: false,
         }
-    };
-    let beyond = [&balance.before, &balance.after].map(|lacking| {
-        let known = lacking.iter().filter(|lacking| lacking.is_finite());
-        known.filter(|lacking| !is_drawn(**lacking)).count()
-    });
-    let beyond = match beyond {
-        [0, 0] => String::new(),
-        [before, after] => format!("; beyond the picture: {before} as believed, {after} improved"),
     };
     Cloud {
         title: capital(lacking(balance)),
         horizontal: format!("{words} [{of}]"),
-        vertical: format!("what it lacks [{unit}]{beyond}"),
+        vertical: format!("what it lacks [{unit}]"),
         groups: vec![
             group("as believed", BoardRole::Believed, &balance.before, -SIDE),
             group("improved", BoardRole::Improved, &balance.after, SIDE),
