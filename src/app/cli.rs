@@ -115,7 +115,7 @@ struct RunArguments {
     /// Print what summary.json holds instead of the table.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
-    /// Leave recording.rrd away, as for many runs of which only the numbers are wanted.
+    /// Leave out recording.rrd, as for many runs of which only the numbers are wanted.
     #[arg(long, help_heading = "Output")]
     no_recording: bool,
     /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
@@ -236,7 +236,7 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
         &scenario.workpiece,
     );
     let origin = provenance(&files, scenario.simulation.seed)?;
-    let origin_text = serde_json::to_string(&origin)?;
+    let origin_text = origin.content();
     let target = folder.path().join(RECORDING);
     let options = RerunOptions {
         opening: opening(arguments),

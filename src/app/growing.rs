@@ -39,7 +39,7 @@ impl<'scope> GrowingFile<'scope> {
     pub(super) fn listener<'a>(&self) -> Listener<'a> {
         let parts = self.parts.clone();
         Listener::new(PART_SAMPLES, move |part| {
-            // With the thread gone there was an error: `write` gives it back.
+            // With the thread gone there was an error: `end` gives it back.
             drop(parts.send(part));
             Ok(())
         })

@@ -57,6 +57,21 @@ impl Provenance {
     }
 }
 
+impl Provenance {
+    /// What the result is made of, however its files were called and wherever they stood.
+    #[must_use]
+    pub fn content(&self) -> String {
+        let mut content = format!("{} {}", self.program, self.libraries.join(" "));
+        for file in &self.files {
+            content += &format!(" {}", file.sha256);
+        }
+        if let Some(seed) = self.seed {
+            content += &format!(" seed {seed}");
+        }
+        content
+    }
+}
+
 fn source(name: &str, path: &Path) -> Result<SourceFile, RecordingError> {
     let bytes = std::fs::read(path).map_err(|e| RecordingError::read(path, e))?;
     let mut sha256 = String::with_capacity(64);
@@ -85,6 +100,21 @@ mod tests {
         let published = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(provenance.files[0].sha256, published);
         assert_eq!(provenance.files[0].bytes, 3);
+    }
+
+    #[test]
+    fn content_is_what_stands_in_the_files_and_not_their_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let content = |name: &str, text: &str, seed: u64| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            let of = Provenance::of([(name, path.as_path())], Some(seed));
+            of.unwrap().content()
+        };
+        let one = content("a.toml", "abc", 1);
+        assert_eq!(one, content("b.toml", "abc", 1));
+        assert_ne!(one, content("a.toml", "abd", 1));
+        assert_ne!(one, content("a.toml", "abc", 2));
     }
 
     #[test]

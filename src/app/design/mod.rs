@@ -25,6 +25,8 @@ pub(super) struct PreparedStudy {
     study: Study,
     evaluator: ScenarioEvaluator,
     folder: OutputFolder,
+    /// Its files as they were when they were read: a search takes minutes.
+    provenance: Provenance,
 }
 
 /// A study that was done.
@@ -52,6 +54,7 @@ impl PreparedStudy {
         let evaluator = ScenarioEvaluator::new(&study)?;
         design::check_start(&study, &evaluator)?;
         Ok(Self {
+            provenance: sources(&study)?,
             folder: OutputFolder::prepare(folder, &NAMES, standing)?,
             study,
             evaluator,
@@ -69,7 +72,7 @@ impl PreparedStudy {
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<FinishedStudy, AppError> {
         let result = design::run(&self.study, &self.evaluator, progress)?;
-        let document = document(&self.study, &result)?;
+        let document = document(&self.study, &result, &self.provenance)?;
         let override_text = result.override_text();
         let front = design::front_svg(&result)?;
         let mut files = vec![
@@ -92,16 +95,8 @@ impl PreparedStudy {
     }
 }
 
-/// design.json.
-fn document(study: &Study, result: &StudyResult) -> Result<String, AppError> {
-    #[derive(Serialize)]
-    struct Document<'a> {
-        study: String,
-        scenarios: Vec<String>,
-        #[serde(flatten)]
-        result: &'a StudyResult,
-        provenance: Provenance,
-    }
+/// The files that a study is made of.
+fn sources(study: &Study) -> Result<Provenance, AppError> {
     let scenarios: Vec<AnyScenario> = (study.scenarios.iter())
         .map(|path| scenario::load_any(path))
         .collect::<Result<_, _>>()?;
@@ -119,6 +114,23 @@ fn document(study: &Study, result: &StudyResult) -> Result<String, AppError> {
             }
         }
     }
+    provenance(&files, study.seed)
+}
+
+/// design.json.
+fn document(
+    study: &Study,
+    result: &StudyResult,
+    provenance: &Provenance,
+) -> Result<String, AppError> {
+    #[derive(Serialize)]
+    struct Document<'a> {
+        study: String,
+        scenarios: Vec<String>,
+        #[serde(flatten)]
+        result: &'a StudyResult,
+        provenance: &'a Provenance,
+    }
     Ok(serde_json::to_string_pretty(&Document {
         study: study.path.display().to_string(),
         scenarios: study
@@ -127,6 +139,6 @@ fn document(study: &Study, result: &StudyResult) -> Result<String, AppError> {
             .map(|path| path.display().to_string())
             .collect(),
         result,
-        provenance: provenance(&files, study.seed)?,
+        provenance,
     })?)
 }

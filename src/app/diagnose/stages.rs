@@ -11,7 +11,7 @@ const STAGES: [&str; 5] = [
 /// The one of them that has many steps.
 const SEARCH: usize = 2;
 /// What the diagnosis says when it passes a mark for the first time, and the share of the whole that lies behind then [1]: medians of six cases, in which
-/// what was left was between half and twice what this says.
+/// what was left was within a factor of 2.2 of what this says.
 const MARKS: [(&str, f64); 4] = [
     ("] rough gain ", 0.32),
     ("] full ", 0.55),

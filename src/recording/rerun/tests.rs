@@ -330,8 +330,20 @@ fn encoded_while_it_is_made_it_holds_the_same() {
         assert!(!time.is_empty() && time.len() == values.len(), "{entity}");
         assert_eq!(course(&data, entity), course(&whole, entity), "{entity}");
     }
-    let link = |store| course(store, "/cell/arm/link_1");
-    assert_eq!(link(&data), link(&whole));
+    let places = |store: &ChunkStore| -> Vec<[f32; 3]> {
+        let mut own = chunks(store, "/cell/arm/link_1");
+        own.retain(|chunk| !chunk.is_static());
+        own.sort_by_key(|chunk| chunk.id().as_tuid());
+        let component = Transform3D::descriptor_translation().component;
+        let rows = own
+            .iter()
+            .flat_map(|chunk| chunk.iter_slices::<[f32; 3]>(component));
+        rows.map(|row| row[0]).collect()
+    };
+    assert_eq!(places(&data).len(), FRAMES);
+    assert_eq!(places(&data), places(&whole));
+    let when = |store| course(store, "/cell/arm/link_1").0;
+    assert_eq!(when(&data), when(&whole));
     let statics = |store: &ChunkStore| {
         let all = store.iter_physical_chunks();
         let all = all.filter(|chunk| chunk.is_static());
