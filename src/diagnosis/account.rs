@@ -9,6 +9,7 @@ mod unlisted;
 use serde::{Deserialize, Serialize};
 
 use super::answer::UNLISTED;
+use super::details::RemainingError;
 use super::diagnose::{Diagnosis, names_of};
 use super::words::{listed, wrapped};
 
@@ -95,7 +96,11 @@ impl Diagnosis {
             *unlisted = "physics that no known effect explains".to_owned();
         }
         if names.is_empty() {
-            "nothing is missing".to_owned()
+            let errors = self.remaining_errors();
+            match errors.iter().any(RemainingError::is_beyond_noise) || self.remaining.is_some() {
+                false => "nothing is missing".to_owned(),
+                true => "no effect is found missing, and more than noise is left".to_owned(),
+            }
         } else {
             format!("missing: {}", listed(&names))
         }

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::details::Details;
+use super::estimate::Limit;
 use super::unlisted::report::UnlistedReport;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
@@ -75,6 +76,22 @@ pub struct Estimate {
     pub low: f64,
     /// Upper end.
     pub high: f64,
+    /// End of its range at which the value stands, if it does: the recordings ask for more than it may be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_limit: Option<Limit>,
+}
+
+impl Estimate {
+    /// A value with its interval, between the ends of its range.
+    #[must_use]
+    pub const fn new(value: f64, low: f64, high: f64) -> Self {
+        Self {
+            value,
+            low,
+            high,
+            at_limit: None,
+        }
+    }
 }
 
 /// Where a recording parts from the model without the effects.
@@ -236,7 +253,7 @@ mod tests {
     use super::*;
 
     fn answer() -> Answer {
-        let estimate = |value: f64, low: f64, high: f64| Estimate { value, low, high };
+        let estimate = Estimate::new;
         Answer {
             schema: SCHEMA,
             verdict: Verdict::Explained,

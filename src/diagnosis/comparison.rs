@@ -8,10 +8,7 @@ use super::diagnose::Diagnosis;
 use super::flange::Run;
 use super::links::{Link, left_by};
 use super::regime::{regimes, values_of};
-use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
-
-/// Points of a balance at most: a cloud of more is a blot.
-const MOST_POINTS: usize = 4000;
+use crate::plant::{CHANNELS, Chain, Channel, PlantInputs, PlantParameters, simulate};
 
 /// Variables that are of the air in the chambers.
 const OF_AIR: [&str; 5] = [
@@ -53,9 +50,16 @@ pub struct ComparedChannel {
     pub measured: Vec<f64>,
     /// By the model as it was believed; of a contact flange the desired force.
     pub believed: Vec<f64>,
+    /// By the believed model moved within its tolerances; all NaN where it cannot be simulated.
+    pub tolerated: Vec<f64>,
     /// By the improved model; all NaN where it cannot be simulated.
     pub improved: Vec<f64>,
+    /// By the improved model fitted to the other recordings; all NaN where there are none.
+    pub left_out: Vec<f64>,
 }
+
+/// Channels of a recording.
+type Channels = [Vec<f64>; CHANNELS.len()];
 
 /// What a link lacks of closing its balance, against the variable that says when.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,9 +70,9 @@ pub struct Balance {
     pub channel: Channel,
     /// Name of the variable, as in [`super::regime::VARIABLES`].
     pub variable: String,
-    /// Its values [SI], one per point.
+    /// Its values [SI], one per sample; NaN where it is not known.
     pub values: Vec<f64>,
-    /// What the believed model lacks, moved within its tolerances [SI].
+    /// What the believed model lacks, moved within its tolerances [SI]; NaN where it does not show.
     pub before: Vec<f64>,
     /// What the improved one lacks [SI].
     pub after: Vec<f64>,
@@ -78,27 +82,20 @@ impl Diagnosis {
     /// The comparison, the improved model as its file says it.
     #[must_use]
     pub fn comparison(&self, case: &Case, improved: &PlantParameters) -> Comparison {
-        let fitted = self.evidence.recordings.iter().map(|measured| {
+        let models = [&self.believed, &self.baseline.plant, improved];
+        let simulated = |inputs: &PlantInputs| models.map(|plant| simulate(plant, inputs).readings);
+        let recordings = self.evidence.recordings.iter().enumerate();
+        let fitted = recordings.map(|(index, measured)| {
             let inputs = &measured.inputs;
-            let believed = simulate(&self.believed, inputs).readings;
-            let improved = simulate(improved, inputs).readings;
-            self.compared(
-                &measured.name,
-                false,
-                &inputs.time,
-                [measured.readings.clone(), believed, improved],
-            )
+            let left_out = self.left_out_of(index);
+            let shown = (measured.name.as_str(), false, inputs.time.as_slice());
+            self.compared(shown, measured.readings.clone(), simulated(inputs), left_out)
         });
         let unseen = case.unseen.iter().map(|unseen| {
             let inputs = &unseen.recorded.inputs;
-            let believed = simulate(&self.believed, inputs).readings;
-            let improved = simulate(improved, inputs).readings;
-            self.compared(
-                &unseen.name,
-                true,
-                &inputs.time,
-                [self.cleaned(case, unseen), believed, improved],
-            )
+            let shown = (unseen.name.as_str(), true, inputs.time.as_slice());
+            let measured = self.cleaned(case, unseen);
+            self.compared(shown, measured, simulated(inputs), None)
         });
         Comparison {
             recordings: fitted.chain(unseen).collect(),
@@ -106,7 +103,18 @@ impl Diagnosis {
         }
     }
 
-    fn cleaned(&self, case: &Case, unseen: &NamedRecording) -> [Vec<f64>; CHANNELS.len()] {
+    /// A recording as it is predicted by a fit to the others.
+    fn left_out_of(&self, recording: usize) -> Option<Channels> {
+        let left = &self.ranked[0].left_out.as_ref()?[recording];
+        let measured = &self.evidence.recordings[recording].readings;
+        Some(std::array::from_fn(|channel| {
+            let noise = self.evidence.noise[channel];
+            let pairs = measured[channel].iter().zip(&left[channel]);
+            pairs.map(|(m, sigmas)| m - noise * sigmas).collect()
+        }))
+    }
+
+    fn cleaned(&self, case: &Case, unseen: &NamedRecording) -> Channels {
         let mut readings = unseen.recorded.readings.clone();
         if readings.iter().flatten().any(|value| value.is_finite()) {
             let mass = self.believed.device.moving_mass;
@@ -122,30 +130,34 @@ impl Diagnosis {
 
     fn compared(
         &self,
-        name: &str,
-        unseen: bool,
-        time: &[f64],
-        [measured, believed, improved]: [[Vec<f64>; CHANNELS.len()]; 3],
+        (name, unseen, time): (&str, bool, &[f64]),
+        measured: Channels,
+        [believed, tolerated, improved]: [Channels; 3],
+        left_out: Option<Channels>,
     ) -> Compared {
         let output = self.believed.chain.output();
         let empty = measured.iter().flatten().all(|value| value.is_nan());
-        let together = measured.into_iter().zip(believed).zip(improved);
-        let channels = CHANNELS.into_iter().zip(together);
+        let own = |all: &Channels, channel: Channel| all[channel as usize].clone();
+        let nothing = || vec![f64::NAN; time.len()];
+        let channels = CHANNELS.into_iter();
         Compared {
             name: name.to_owned(),
             unseen,
             time: time.to_vec(),
             channels: channels
-                .filter(|(channel, _)| output.is_none_or(|output| output == *channel))
-                .filter(|(_, ((m, _), _))| empty || m.iter().any(|value| value.is_finite()))
-                .map(
-                    |(channel, ((measured, believed), improved))| ComparedChannel {
-                        channel,
-                        measured,
-                        believed,
-                        improved,
-                    },
-                )
+                .filter(|channel| output.is_none_or(|output| output == *channel))
+                .filter(|channel| {
+                    empty || measured[*channel as usize].iter().any(|v| v.is_finite())
+                })
+                .map(|channel| ComparedChannel {
+                    channel,
+                    measured: own(&measured, channel),
+                    believed: own(&believed, channel),
+                    tolerated: own(&tolerated, channel),
+                    improved: own(&improved, channel),
+                    left_out: (left_out.as_ref())
+                        .map_or_else(nothing, |all| own(all, channel)),
+                })
                 .collect(),
         }
     }
@@ -175,13 +187,8 @@ impl Diagnosis {
         let values = values_of(variable, &self.evidence, &best.plant, &best.courses)?;
         let noise = self.evidence.noise[channel as usize];
         let after = of(&best.residuals);
-        Some(thinned(
-            ("output", channel, variable),
-            noise,
-            &values,
-            &before,
-            &after,
-        ))
+        let shown = ("output", channel, variable);
+        Some(in_unit(shown, noise, values, &before, &after))
     }
 
     fn balances_of_links(&self, improved: &PlantParameters) -> Vec<Balance> {
@@ -200,32 +207,28 @@ impl Diagnosis {
                     Link::Piston | Link::Contact => Channel::Force,
                 };
                 let shown = (link.link.name(), channel, variable);
-                Some(thinned(shown, link.unit, &values, &link.sigmas, &after))
+                Some(in_unit(shown, link.unit, values, &link.sigmas, &after))
             };
         links.iter().filter_map(balance).collect()
     }
 }
 
-/// A balance with so many points as can be looked at, evenly over the samples.
-fn thinned(
+/// A balance in the unit of its channel.
+fn in_unit(
     (link, channel, variable): (&str, Channel, &str),
     unit: f64,
-    values: &[f64],
+    values: Vec<f64>,
     before: &[f64],
     after: &[f64],
 ) -> Balance {
-    let known = |i: &usize| values[*i].is_finite() && before[*i].is_finite();
-    let kept: Vec<usize> = (0..values.len()).filter(known).collect();
-    let stride = kept.len().div_ceil(MOST_POINTS).max(1);
-    let kept: Vec<usize> = kept.into_iter().step_by(stride).collect();
-    let of = |all: &[f64], factor: f64| kept.iter().map(|i| factor * all[*i]).collect();
+    let of = |all: &[f64]| all.iter().map(|sigmas| unit * sigmas).collect();
     Balance {
         link: link.to_owned(),
         channel,
         variable: variable.to_owned(),
-        values: of(values, 1.0),
-        before: of(before, unit),
-        after: of(after, unit),
+        values,
+        before: of(before),
+        after: of(after),
     }
 }
 
@@ -240,7 +243,9 @@ pub fn of_flange(runs: &[Run], unseen: Option<&Run>) -> Comparison {
             channel: Channel::Force,
             measured: run.force.clone(),
             believed: run.desired.clone(),
+            tolerated: vec![f64::NAN; run.time.len()],
             improved: vec![f64::NAN; run.time.len()],
+            left_out: vec![f64::NAN; run.time.len()],
         }],
     };
     let runs = runs.iter().map(|run| compared(run, false));

@@ -4,19 +4,19 @@ use super::answer::{
     Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, UNLISTED, Verdict,
 };
 use super::details::{
-    ChannelMisfit, ChannelNoise, Considered, Details, LinkReport, NextExperiment, PredictionError,
-    RegimeReport, RemainingReport, RuledOutReport, ToleratedNumber,
+    ChannelMisfit, ChannelNoise, Considered, Details, IN_TURN, LinkReport, NextExperiment, PredictionError,
+    RegimeReport, RemainingError, RemainingReport, RuledOutReport, ToleratedNumber,
+    remaining_errors,
 };
-use super::diagnose::{Diagnosis, names_of, spoken_name};
+use super::diagnose::{Diagnosis, ErrorSize, Unseen, names_of, spoken_name};
 use super::estimate::Number;
 use super::evidence::Prediction;
 use super::fit::robust_sum;
 use super::hypothesis::Hypothesis;
 use super::links::Link;
-use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms};
+use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms, root_mean_square};
 use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
-use super::search::RoughFit;
 use crate::effects::Effect;
 use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, Chain, Channel};
@@ -25,8 +25,6 @@ use crate::plant::{CHANNELS, Chain, Channel};
 const MOST_REGIMES: usize = 5;
 /// Explanations that were not given, named at most.
 const MOST_CONSIDERED: usize = 8;
-/// Stands for each recording in turn.
-pub const IN_TURN: &str = "left out in turn";
 
 impl Link {
     /// Name in an answer.
@@ -146,42 +144,47 @@ impl Diagnosis {
     /// Errors of prediction: of the recording to be predicted where it was measured, otherwise of each left out in turn.
     #[must_use]
     pub fn prediction_errors(&self) -> Vec<PredictionError> {
-        let error = |recording: &str, channel: usize, before: f64, after: f64| {
-            let noise = self.evidence.noise[channel];
-            PredictionError {
-                recording: recording.to_owned(),
-                channel: COLUMNS[channel].to_owned(),
-                before: before * noise,
-                after: after * noise,
-                noise: Some(noise),
-                before_sigmas: Some(before),
-                after_sigmas: Some(after),
-            }
+        let error = |recording: &str, unseen: &Unseen| PredictionError {
+            recording: recording.to_owned(),
+            channel: COLUMNS[unseen.channel as usize].to_owned(),
+            believed: unseen.believed.rms,
+            before: unseen.before.rms,
+            after: unseen.after.rms,
+            noise: Some(self.evidence.noise[unseen.channel as usize]),
+            before_sigmas: Some(unseen.before.sigmas),
+            after_sigmas: Some(unseen.after.sigmas),
         };
         if let Some((name, errors)) = &self.unseen {
-            let errors = errors.iter();
-            return errors
-                .map(|e| error(name, e.channel, e.before, e.after))
-                .collect();
+            return errors.iter().map(|e| error(name, e)).collect();
         }
         let Some(left) = &self.ranked[0].left_out else {
             return Vec::new();
         };
-        let of_channel = |channel: usize| {
-            let after: Vec<f64> = left
-                .iter()
-                .flat_map(|r| r[channel].iter().copied())
-                .collect();
-            let before: Vec<f64> = self
-                .by_channel(&self.baseline.prediction.residuals)
-                .filter(|(_, of, _)| *of as usize == channel)
-                .flat_map(|(_, _, residuals)| residuals.iter().copied())
-                .collect();
-            let (_, before) = robust_rms(&before)?;
-            let (_, after) = robust_rms(&after)?;
-            Some(error(IN_TURN, channel, before, after))
+        let of_channel = |channel: Channel| {
+            let noise = self.evidence.noise[channel as usize];
+            let size = |prediction: &Prediction| {
+                let own = self.by_channel(&prediction.residuals);
+                let own = own.filter(|(_, of, _)| *of == channel);
+                let all: Vec<f64> = own.flat_map(|(.., r)| r.iter().copied()).collect();
+                ErrorSize::of(&all, noise)
+            };
+            let after = left.iter().flat_map(|r| r[channel as usize].iter());
+            let after: Vec<f64> = after.copied().collect();
+            let in_turn = Unseen {
+                channel,
+                believed: size(&self.as_believed)?,
+                before: size(&self.baseline.prediction)?,
+                after: ErrorSize::of(&after, noise)?,
+            };
+            Some(error(IN_TURN, &in_turn))
         };
-        (0..CHANNELS.len()).filter_map(of_channel).collect()
+        CHANNELS.into_iter().filter_map(of_channel).collect()
+    }
+
+    /// Errors that the best explanation leaves, the largest beside its noise first.
+    #[must_use]
+    pub fn remaining_errors(&self) -> Vec<RemainingError> {
+        remaining_errors(&self.misfits(), &self.prediction_errors())
     }
 
     pub(super) fn by_channel<'a>(
@@ -218,7 +221,9 @@ impl Diagnosis {
             links: self.link_reports(),
             explained_share: self.explained_share(),
             remaining: self.remaining_report(),
-            considered: self.considered(),
+            considered: (self.considered().into_iter())
+                .take(MOST_CONSIDERED)
+                .collect(),
             ruled_out: (self.ruled_out.iter())
                 .map(|variant| RuledOutReport {
                     effects: variant
@@ -239,7 +244,8 @@ impl Diagnosis {
         }
     }
 
-    fn considered(&self) -> Vec<Considered> {
+    /// Explanations that were tried beside the best one: those fitted in full first, each the best first.
+    pub(super) fn considered(&self) -> Vec<Considered> {
         let power = |score: f64, best: f64| -0.5 * (score - best) / std::f64::consts::LN_10;
         let best = self.ranked[0].score;
         let others = self.ranked[1..].iter().map(|ranked| Considered {
@@ -249,34 +255,26 @@ impl Diagnosis {
             explained_share: self.share_explained_by(&ranked.hypothesis),
         });
         let mut found: Vec<Considered> = others.collect();
-        // A rough fit is compared with the rough fit of the same effects, or with the best rough one where there is none.
         let own = names_of(self.best());
-        let names = |rough: &RoughFit| -> Vec<String> {
-            rough.effects.iter().map(|e| spoken_name(e)).collect()
-        };
-        let same = self.roughly.iter().find(|rough| {
-            let names = names(rough);
-            names.len() == own.len() && names.iter().all(|name| own.contains(name))
-        });
-        let Some(reference) = same.or_else(|| self.roughly.first()).map(|r| r.score) else {
-            return found;
-        };
         for rough in &self.roughly {
-            let effects = names(rough);
-            let told = |known: &[String]| {
+            let effects: Vec<String> = rough.effects.iter().map(|e| spoken_name(e)).collect();
+            let same = |known: &[String]| {
                 known.len() == effects.len() && known.iter().all(|name| effects.contains(name))
             };
-            let behind = rough.score > reference;
-            if behind && !told(&own) && !found.iter().any(|other| told(&other.effects)) {
+            if !same(&own) && !found.iter().any(|other| same(&other.effects)) {
                 found.push(Considered {
                     effects,
                     in_full: false,
-                    log10_odds: power(rough.score, reference),
+                    log10_odds: power(rough.behind, 0.0),
                     explained_share: rough.explained_share,
                 });
             }
         }
-        found.truncate(MOST_CONSIDERED);
+        // Those that were fitted in full come first; of each kind the nearest.
+        found.sort_by(|a, b| {
+            let nearest = b.log10_odds.total_cmp(&a.log10_odds);
+            b.in_full.cmp(&a.in_full).then(nearest)
+        });
         found
     }
 
@@ -308,44 +306,28 @@ impl Diagnosis {
                 tolerated_sigmas: baseline.sigmas,
                 improved_sigmas: improved.sigmas,
                 left_out_sigmas: left(believed.recording, believed.channel as usize),
-                believed_rms: self.size(&self.as_believed, believed).0,
-                improved_rms: self.size(&self.best().fit.prediction, believed).0,
-                improved_share: self.size(&self.best().fit.prediction, believed).1,
+                believed_rms: believed.rms,
+                tolerated_rms: baseline.rms,
+                improved_rms: improved.rms,
+                improved_share: self.share_of_channel(improved),
             })
             .collect()
     }
 
-    /// Root mean square of what a prediction leaves of a channel, in its unit, and its share of the root mean square of the channel itself [1].
-    fn size(&self, prediction: &Prediction, misfit: &Misfit) -> (f64, f64) {
-        let channel = misfit.channel as usize;
-        let measured = &self.evidence.recordings[misfit.recording].readings[channel];
-        let predicted = &prediction.courses[misfit.recording].readings[channel];
-        let (mut left, mut own, mut count) = (0.0, 0.0, 0.0);
-        for (m, p) in measured
-            .iter()
-            .zip(predicted)
-            .filter(|(m, _)| m.is_finite())
-        {
-            left += (m - p).powi(2);
-            own += m * m;
-            count += 1.0;
-        }
-        // Of a channel that reads nought throughout, nothing is a share.
-        let share = if own > 0.0 { (left / own).sqrt() } else { 0.0 };
-        ((left / f64::max(count, 1.0)).sqrt(), share)
+    /// What is left of a channel as a share of the root mean square of the channel itself [1]; of one that reads nought throughout, nothing is a share.
+    fn share_of_channel(&self, left: &Misfit) -> f64 {
+        let measured = &self.evidence.recordings[left.recording].readings[left.channel as usize];
+        let own = root_mean_square(measured.iter().copied()).unwrap_or_default();
+        if own > 0.0 { left.rms / own } else { 0.0 }
     }
 
     /// Root mean square of what the best explanation leaves of a channel, in its unit.
     pub(super) fn left_of(&self, channel: Channel) -> f64 {
         let best = &self.best().fit.prediction;
-        let of_channel = misfits(&self.evidence, &best.residuals);
-        let of_channel = of_channel.iter().filter(|m| m.channel == channel);
-        let (mut squares, mut count) = (0.0, 0.0);
-        for misfit in of_channel {
-            squares += misfit.samples as f64 * self.size(best, misfit).0.powi(2);
-            count += misfit.samples as f64;
-        }
-        (squares / f64::max(count, 1.0)).sqrt()
+        let own = self.by_channel(&best.residuals);
+        let own = own.filter(|(_, of, _)| *of == channel);
+        let sigmas = root_mean_square(own.flat_map(|(.., residuals)| residuals.iter().copied()));
+        sigmas.unwrap_or_default() * self.evidence.noise[channel as usize]
     }
 
     fn link_reports(&self) -> Vec<LinkReport> {
@@ -443,16 +425,13 @@ impl Diagnosis {
 /// The joint that an effect is about, as one of its numbers.
 fn joint_of(name: &str) -> Option<(String, Estimate)> {
     let joint = vocabulary(name).1? as f64;
-    let certain = Estimate {
-        value: joint,
-        low: joint,
-        high: joint,
-    };
-    Some(("joint".to_owned(), certain))
+    Some(("joint".to_owned(), Estimate::new(joint, joint, joint)))
 }
 
 fn estimate(number: &Number) -> Estimate {
     let [low, high] = number.interval;
-    let value = number.value;
-    Estimate { value, low, high }
+    Estimate {
+        at_limit: number.at_limit,
+        ..Estimate::new(number.value, low, high)
+    }
 }

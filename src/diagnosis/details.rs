@@ -4,7 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::account::Account;
 use super::answer::Estimate;
+use super::localise::NOISE_ALONE;
+use super::recorded::COLUMNS;
 use crate::recording::provenance::Provenance;
+
+/// Stands for each recording in turn.
+pub const IN_TURN: &str = "left out in turn";
 
 /// All of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -66,7 +71,7 @@ pub struct ChannelMisfit {
     pub channel: String,
     /// Samples that count.
     pub samples: usize,
-    /// As believed.
+    /// Robust root mean square as believed.
     pub believed_sigmas: f64,
     /// Moved within its tolerances.
     pub tolerated_sigmas: f64,
@@ -77,6 +82,9 @@ pub struct ChannelMisfit {
     /// Root mean square of what the believed model leaves, in the column's unit.
     #[serde(default)]
     pub believed_rms: f64,
+    /// The same, moved within its tolerances.
+    #[serde(default)]
+    pub tolerated_rms: f64,
     /// The same with what was found.
     #[serde(default)]
     pub improved_rms: f64,
@@ -210,7 +218,10 @@ pub struct PredictionError {
     pub recording: String,
     /// Column.
     pub channel: String,
-    /// Root mean square by the believed model moved within its tolerances, in the column's unit.
+    /// Root mean square by the model as it was believed, in the column's unit.
+    #[serde(default)]
+    pub believed: f64,
+    /// That by the believed model moved within its tolerances.
     pub before: f64,
     /// That by the improved one.
     pub after: f64,
@@ -218,12 +229,67 @@ pub struct PredictionError {
     /// which nobody knows it.
     #[serde(default)]
     pub noise: Option<f64>,
-    /// `before` over noise.
+    /// Robust root mean square of the error before, over the noise.
     #[serde(default)]
     pub before_sigmas: Option<f64>,
-    /// `after` over noise.
+    /// The same of the error after.
     #[serde(default)]
     pub after_sigmas: Option<f64>,
+}
+
+/// Error that the improved model leaves in a channel of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RemainingError {
+    /// File name.
+    pub recording: String,
+    /// Was it kept from the fit?
+    pub kept_back: bool,
+    /// Index of the channel.
+    pub channel: usize,
+    /// Root mean square, in the column's unit.
+    pub rms: f64,
+    /// Robust root mean square over the noise [1].
+    pub sigmas: f64,
+}
+
+impl RemainingError {
+    /// Is it more than the sensor's noise, which is known no better?
+    #[must_use]
+    pub fn is_beyond_noise(&self) -> bool {
+        self.sigmas > NOISE_ALONE
+    }
+}
+
+/// Errors that the improved model leaves of the device's channels, the largest beside its noise first: in the recordings that were fitted to and in the one
+/// that was kept back. What is predicted of recordings left out in turn is not among them: by a fit to fewer recordings, that may be less sure than any.
+#[must_use]
+pub fn remaining_errors(
+    misfit: &[ChannelMisfit],
+    prediction: &[PredictionError],
+) -> Vec<RemainingError> {
+    let index = |column: &str| COLUMNS.iter().position(|own| *own == column);
+    let fitted = misfit.iter().filter_map(|m| {
+        Some(RemainingError {
+            recording: m.recording.clone(),
+            kept_back: false,
+            channel: index(&m.channel)?,
+            rms: m.improved_rms,
+            sigmas: m.improved_sigmas,
+        })
+    });
+    let kept = prediction.iter().filter(|e| e.recording != IN_TURN);
+    let kept = kept.filter_map(|e| {
+        Some(RemainingError {
+            recording: e.recording.clone(),
+            kept_back: true,
+            channel: index(&e.channel)?,
+            rms: e.after,
+            sigmas: e.after_sigmas?,
+        })
+    });
+    let mut all: Vec<RemainingError> = fitted.chain(kept).collect();
+    all.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
+    all
 }
 
 /// What to record next.

@@ -10,7 +10,7 @@ use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
 use super::left_out::{self, left_out};
 use super::links::{LinkResidual, links};
-use super::localise::{Parting, partings, robust_rms};
+use super::localise::{Parting, partings, robust_rms, root_mean_square};
 use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
 use super::regime::{Regime, regimes};
@@ -19,7 +19,7 @@ use super::ruled_out::{RuledOut, ruled_out};
 use super::search::{MOST_EFFECTS, MOST_OF_LINK, RoughFit, Search};
 use super::unlisted::Shape;
 use crate::effects::vocabulary;
-use crate::plant::{CHANNELS, Chain, PlantParameters, simulate};
+use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
 
 /// Times that what no law explains is looked at anew.
 const MOST_ROUNDS: usize = 3;
@@ -61,15 +61,37 @@ pub struct Baseline {
     pub partings: Vec<Parting>,
 }
 
-/// Error of prediction of a channel of a recording that was not fitted to, in standard deviations of the noise [1].
+/// Errors of prediction of a channel of a recording that was not fitted to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unseen {
-    /// Index of the channel.
-    pub channel: usize,
-    /// Of the baseline.
-    pub before: f64,
+    /// The channel.
+    pub channel: Channel,
+    /// Of the believed model as it stands in the rig file.
+    pub believed: ErrorSize,
+    /// Of the believed model, moved within its tolerances.
+    pub before: ErrorSize,
     /// Of the best explanation.
-    pub after: f64,
+    pub after: ErrorSize,
+}
+
+/// Size of an error of prediction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorSize {
+    /// Root mean square, in the channel's unit.
+    pub rms: f64,
+    /// Robust root mean square, in standard deviations of the noise [1].
+    pub sigmas: f64,
+}
+
+impl ErrorSize {
+    /// Of residuals in standard deviations of a noise; none where nothing counts.
+    #[must_use]
+    pub fn of(residuals: &[f64], noise: f64) -> Option<Self> {
+        Some(Self {
+            rms: noise * root_mean_square(residuals.iter().copied())?,
+            sigmas: robust_rms(residuals)?.1,
+        })
+    }
 }
 
 /// What was found.
@@ -87,6 +109,8 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
     /// Explanations, best first.
     pub ranked: Vec<Ranked>,
+    /// Effects that were looked at.
+    pub looked_at: usize,
     /// Explanations that were fitted roughly on the way, the best first.
     pub roughly: Vec<RoughFit>,
     /// What no law explains of a part of the device; none where that is noise, or where there is the whole of it.
@@ -163,6 +187,7 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     Diagnosis {
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
+        looked_at: case.candidates.len(),
         ruled_out: match case.believed.chain.output() {
             Some(channel) => ruled_out(&search, best, channel),
             None => Vec::new(),
@@ -331,19 +356,22 @@ fn unseen_errors(
         &case.noise,
         case.believed.device.moving_mass,
     );
-    let before = simulate(baseline, inputs).readings;
-    let after = simulate(&best.fit.prediction.plant, inputs).readings;
-    let error = |channel: usize, predicted: &[f64]| {
-        let pairs = measured[channel].iter().zip(predicted);
-        let noise = evidence.noise[channel];
-        let sigmas: Vec<f64> = pairs.map(|(m, p)| (m - p) / noise).collect();
-        robust_rms(&sigmas).map(|(_, rms)| rms)
+    let models = [&case.believed, baseline, &best.fit.prediction.plant];
+    let predictions = models.map(|plant| simulate(plant, inputs).readings);
+    let error = |channel: Channel, predicted: &[Vec<f64>; CHANNELS.len()]| {
+        let index = channel as usize;
+        let pairs = measured[index].iter().zip(&predicted[index]);
+        let noise = evidence.noise[index];
+        let residuals: Vec<f64> = pairs.map(|(m, p)| (m - p) / noise).collect();
+        ErrorSize::of(&residuals, noise)
     };
-    let channels = (0..CHANNELS.len()).filter_map(|channel| {
+    let channels = CHANNELS.into_iter().filter_map(|channel| {
+        let [believed, before, after] = predictions.each_ref().map(|p| error(channel, p));
         Some(Unseen {
             channel,
-            before: error(channel, &before[channel])?,
-            after: error(channel, &after[channel])?,
+            believed: believed?,
+            before: before?,
+            after: after?,
         })
     });
     Some(channels.collect())

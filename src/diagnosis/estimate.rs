@@ -14,11 +14,44 @@ use super::hypothesis::Hypothesis;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 /// Standard deviation of what a law leaves out, as a share of its own effect [1].
 const IDEALISATION: f64 = 0.005;
 /// Standard deviations to either side in a 95 % interval [1].
 const INTERVAL: f64 = 1.96;
+
+/// Share of a range, in the fit's coordinate, within which a number stands at its end [1]: a prior keeps a tolerated one a little short of it.
+const AT_LIMIT: f64 = 0.01;
+
+/// An end of a number's range: of its tolerance, or of what an effect's number may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limit {
+    /// The least value.
+    Lower,
+    /// The largest value.
+    Upper,
+}
+
+impl Limit {
+    /// The end of a quantity's range at which a value stands.
+    #[must_use]
+    pub fn of(free: &Free, value: f64) -> Option<Self> {
+        let at = |value: f64| free.coordinate.of(value);
+        let [low, high] = free.bounds.map(at);
+        // Of a range without an end in the fit's coordinate, such as a logarithm's down to 0, nothing is near but the end itself.
+        let near = Some(AT_LIMIT * (high - low)).filter(|near| near.is_finite());
+        let stands = |end: f64, bound: f64| {
+            value == bound || near.is_some_and(|near| (at(value) - end).abs() < near)
+        };
+        if stands(low, free.bounds[0]) {
+            Some(Self::Lower)
+        } else {
+            stands(high, free.bounds[1]).then_some(Self::Upper)
+        }
+    }
+}
 
 /// A number with its 95 % interval.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +62,8 @@ pub struct Number {
     pub value: f64,
     /// Interval.
     pub interval: [f64; 2],
+    /// End of its range at which it stands; none where it stands between them.
+    pub at_limit: Option<Limit>,
     /// Is it a part of the answer?
     pub reported: bool,
 }
@@ -91,6 +126,7 @@ pub fn estimates(
         Number {
             name: free.quantity.name,
             value: fit.values[index],
+            at_limit: Limit::of(free, fit.values[index]),
             interval: [ends[0].min(ends[1]), ends[0].max(ends[1])],
             reported,
         }
@@ -146,6 +182,41 @@ fn amplitude(
         name: "amplitude_m",
         value,
         interval: [(value - half).max(0.0), value + half],
+        at_limit: None,
         reported: true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::case::tolerated;
+    use crate::diagnosis::free::Prior;
+    use crate::effects::Quantity;
+
+    const MASS: Quantity = Quantity {
+        name: "cylinder.moving_mass_kg",
+        get: |p| p.device.moving_mass,
+        set: |p, v| p.device.moving_mass = v,
+    };
+
+    #[test]
+    fn a_number_at_the_end_of_its_range_is_told_from_one_between() {
+        // 5 kg to 10 %: a parameter once stood at its tolerance's limit without a word.
+        let mass = tolerated(MASS, 5.0, 0.1);
+        let at = |value: f64| Limit::of(&mass, value);
+        assert_eq!([at(4.5), at(5.5)], [Some(Limit::Lower), Some(Limit::Upper)]);
+        // A prior keeps it a little short of the end.
+        assert_eq!(at(5.495), Some(Limit::Upper));
+        assert_eq!([at(5.48), at(5.0), at(4.52)], [None; 3]);
+        // Of a logarithm down to nothing the end itself counts alone.
+        let wide = Free {
+            coordinate: Coordinate::Logarithmic,
+            bounds: [0.0, 100.0],
+            prior: Prior::Flat,
+            ..mass
+        };
+        assert_eq!(Limit::of(&wide, 1e-9), None);
+        assert_eq!(Limit::of(&wide, 0.0), Some(Limit::Lower));
     }
 }

@@ -82,7 +82,7 @@ impl FlangeDiagnosis {
     /// diagnosis.json.
     #[must_use]
     pub fn answer(&self, seconds: f64) -> Answer {
-        let estimate = |[value, low, high]: [f64; 3]| Estimate { value, low, high };
+        let estimate = |[value, low, high]: [f64; 3]| Estimate::new(value, low, high);
         let effect = |name: &str, subsystem: &str, parameters: Vec<(&str, Estimate)>| FoundEffect {
             name: name.to_owned(),
             subsystem: subsystem.to_owned(),

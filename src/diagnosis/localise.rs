@@ -23,6 +23,8 @@ pub struct Misfit {
     pub samples: usize,
     /// Robust root mean square, in standard deviations of the noise [1].
     pub sigmas: f64,
+    /// Root mean square, in the channel's unit.
+    pub rms: f64,
 }
 
 /// A time in which a channel parts from a model.
@@ -54,7 +56,17 @@ pub fn by_channel<'a>(
     })
 }
 
-/// Robust root mean square; none where nothing counts.
+/// Root mean square of what is finite; none where nothing is.
+#[must_use]
+pub fn root_mean_square(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    let (squares, count) = finite.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));
+    (count > 0.0).then(|| f64::sqrt(squares / count))
+}
+
+/// Robust root mean square (Huber's loss, [`robust_sum`]) with the count of samples; none where nothing counts. Of residuals in standard deviations, and
+/// meant for judging them: an impact that is met a sample late counts in proportion to its size and not to its square. It has no unit but one
+/// standard deviation: a size in N or mm is [`root_mean_square`].
 pub fn robust_rms(residuals: &[f64]) -> Option<(usize, f64)> {
     let samples = residuals.iter().filter(|r| r.is_finite()).count();
     (samples > 0).then(|| (samples, (robust_sum(residuals) / samples as f64).sqrt()))
@@ -71,6 +83,8 @@ pub fn misfits(evidence: &Evidence, residuals: &[f64]) -> Vec<Misfit> {
                 channel,
                 samples,
                 sigmas,
+                rms: evidence.noise[channel as usize]
+                    * root_mean_square(residuals.iter().copied())?,
             })
         })
         .collect()

@@ -80,7 +80,13 @@ pub(super) fn merged(time: &[f64], moved: impl Fn(usize) -> bool) -> Vec<[f64; 2
     }
     runs.into_iter()
         .filter(|(_, count)| *count > 1)
-        .map(|([start, end], _)| [(start - ADDED).max(time[0]), end + ADDED])
+        .map(|([start, end], _)| {
+            // Nothing is said of times that were not recorded.
+            [
+                (start - ADDED).max(time[0]),
+                (end + ADDED).min(time[time.len() - 1]),
+            ]
+        })
         .collect()
 }
 
@@ -96,5 +102,13 @@ mod tests {
         assert_eq!(found.len(), 2);
         assert!((found[0][0] - 0.18).abs() < 1e-9 && (found[0][1] - 0.26).abs() < 1e-9);
         assert!((found[1][0] - 0.58).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_interval_ends_with_the_recording() {
+        // A recording of 3.996 s was once said to differ until 4.02 s.
+        let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.004).collect();
+        let found = merged(&time, |i| i < 3 || i > 996);
+        assert_eq!(found, [[0.0, 0.028], [3.968, 3.996]]);
     }
 }

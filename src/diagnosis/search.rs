@@ -64,8 +64,8 @@ pub struct Shown {
 pub struct RoughFit {
     /// Names of its effects.
     pub effects: Vec<&'static str>,
-    /// What it costs, penalty included [1].
-    pub score: f64,
+    /// Cost beyond that of the best explanation by the same rough measure, penalties included [1].
+    pub behind: f64,
     /// Share of the mismatch that it explains [1].
     pub explained_share: Option<f64>,
 }
@@ -182,14 +182,18 @@ impl Search<'_> {
         }
         self.eliminate(&mut full, say);
         self.add_plainer(&mut full, &all, say);
+        self.add_close(&mut full, &all, say);
         self.add_small(&mut full, &scale, say);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.prefer_plain(&mut full, &scale);
         self.add_unlisted(&mut full, &unexplained, &scale, say);
         let before = unexplained.fit.rough - noise;
+        let reference = full
+            .first()
+            .map_or(0.0, |best| self.rough_reference(best, &all));
         let roughly = all.iter().map(|hypothesis| RoughFit {
             effects: hypothesis.effects.iter().map(|e| e.name).collect(),
-            score: self.rough_score(hypothesis),
+            behind: self.rough_score(hypothesis) - reference,
             explained_share: (before > 0.0)
                 .then(|| ((unexplained.fit.rough - hypothesis.fit.rough) / before).clamp(0.0, 1.0)),
         });

@@ -1,7 +1,7 @@
 //! Numbers, units and lines as people read them.
 
 use super::recorded::COLUMNS;
-use crate::plant::CHANNELS;
+use crate::plant::{CHANNELS, Channel};
 
 /// Letters in a line of an account.
 const WIDTH: usize = 100;
@@ -106,6 +106,13 @@ pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
     }
 }
 
+/// A size of a channel in its unit, to two digits.
+#[must_use]
+pub fn in_unit(channel: Channel, size: f64) -> String {
+    let (unit, factor) = CHANNEL_UNITS[channel as usize];
+    format!("{} {unit}", figures(size * factor, 2))
+}
+
 /// What departures are compared with: where no law explains all of them, that is more than noise.
 #[must_use]
 pub fn yardstick(something_remains: bool) -> &'static str {
@@ -136,6 +143,17 @@ pub fn percent(share: f64) -> String {
         "more than 99.9 %".to_owned()
     } else {
         format!("{percent:.1} %")
+    }
+}
+
+/// Odds from their power of ten, against what they are compared with: `1 to 6.9`, `below 1 to 10^6`.
+#[must_use]
+pub fn odds(log10: f64) -> String {
+    /// Power of ten from which the number itself says no more.
+    const LARGE: f64 = 6.0;
+    match -log10 {
+        power if power >= LARGE => format!("below 1 to 10^{LARGE:.0}"),
+        power => format!("1 to {}", figures(10f64.powf(power), 2)),
     }
 }
 

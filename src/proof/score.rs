@@ -256,7 +256,7 @@ mod tests {
                 name: "force_sensor_gain_error".to_owned(),
                 subsystem: "sensors".to_owned(),
                 confidence: 1.0,
-                parameters: vec![("gain".to_owned(), Estimate { value, low, high })],
+                parameters: vec![("gain".to_owned(), Estimate::new(value, low, high))],
                 depends_on: Vec::new(),
                 unlisted: None,
             }],

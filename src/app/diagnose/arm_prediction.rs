@@ -3,6 +3,7 @@
 
 use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::joint_friction::{DriveLoad, JointFriction};
+use crate::diagnosis::localise::root_mean_square;
 use crate::diagnosis::servo::ServoLink;
 use crate::plant::follow;
 use crate::recording::csv::CellRecording;
@@ -21,6 +22,7 @@ pub(super) fn arm_prediction(
     let error = |channel: String, before: f64, after: f64, noise: Option<f64>| PredictionError {
         recording: name.to_owned(),
         channel,
+        believed: before,
         before,
         after,
         noise,
@@ -38,9 +40,8 @@ pub(super) fn arm_prediction(
             });
             root_mean_square(departures)
         };
-        let before = of(cell.scenario.servo_bandwidth);
-        if before.is_finite() {
-            let after = of(servo.bandwidth);
+        let sizes = [cell.scenario.servo_bandwidth, servo.bandwidth].map(of);
+        if let [Some(before), Some(after)] = sizes {
             let noise = cell.scenario.joint_noise;
             errors.push(error("joints_rad".to_owned(), before, after, Some(noise)));
         }
@@ -49,20 +50,12 @@ pub(super) fn arm_prediction(
         let Some(drive) = drives.get(friction.joint) else {
             continue;
         };
-        let of = |rubs: f64| root_mean_square(drive.departures(rubs).into_iter());
+        let of = |rubs: f64| root_mean_square(drive.departures(rubs));
         let channel = format!("joint_{}_torque_n_m", friction.joint + 1);
-        let [before, after] = [friction.believed, friction.friction].map(of);
-        if before.is_finite() {
+        let sizes = [friction.believed, friction.friction].map(of);
+        if let [Some(before), Some(after)] = sizes {
             errors.push(error(channel, before, after, None));
         }
     }
     errors
-}
-
-/// Of the values that there are; not finite where there is none.
-fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
-    let (square, count) = values
-        .filter(|value| value.is_finite())
-        .fold((0.0, 0.0), |(s, n), v| (s + v * v, n + 1.0));
-    (square / count).sqrt()
 }

@@ -21,6 +21,8 @@ const MOST_SHEETS: usize = 10;
 const MOST_SAMPLES: usize = 60_000;
 /// Start of a recording from which its heading tells it [s].
 const LATE: f64 = 0.05;
+/// Points of a cloud at most, evenly over the samples: more are a blot.
+const MOST_POINTS: usize = 4000;
 /// Standard deviations to either end of a 95 % band [1].
 const BAND: f64 = 1.959_964;
 /// Noise bands that a plot of what is left shows at least [1].
@@ -210,7 +212,11 @@ fn lanes(answer: &Answer, recording: &Compared, start: f64) -> Vec<Lane> {
 fn of_balance(balance: &Balance) -> Cloud {
     let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
     let (words, of, scale) = variable(&balance.variable);
-    let mut sorted = balance.values.clone();
+    let known = |i: &usize| balance.values[*i].is_finite() && balance.before[*i].is_finite();
+    let known: Vec<usize> = (0..balance.values.len()).filter(known).collect();
+    let stride = known.len().div_ceil(MOST_POINTS).max(1);
+    let kept: Vec<usize> = known.into_iter().step_by(stride).collect();
+    let mut sorted: Vec<f64> = kept.iter().map(|i| balance.values[*i]).collect();
     sorted.sort_by(f64::total_cmp);
     // The few points of an impact would press all others flat.
     let drawn = most_of(&balance.before).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
@@ -224,9 +230,10 @@ fn of_balance(balance: &Balance) -> Cloud {
     apart.dedup();
     let is_discrete = apart.len() <= FEW;
     let group = |label: &str, role, lacking: &[f64], side: f64| {
-        let pairs = balance.values.iter().zip(lacking).enumerate();
+        let pairs = kept.iter().map(|i| (balance.values[*i], lacking[*i]));
         let within = pairs
-            .filter(|(_, (value, lacking))| (low..=high).contains(*value) && is_drawn(**lacking));
+            .enumerate()
+            .filter(|(_, (value, lacking))| (low..=high).contains(value) && is_drawn(*lacking));
         let spread = |index: usize| match is_discrete {
             true => side + SPREAD * ((GOLDEN * index as f64).fract() - 0.5),
             false => 0.0,
@@ -234,7 +241,7 @@ fn of_balance(balance: &Balance) -> Cloud {
         let points: Vec<[f64; 2]> = within
             .map(|(i, (value, lacking))| [scale * value + spread(i), factor * lacking])
             .collect();
-        let known = lacking.iter().filter(|lacking| lacking.is_finite());
+        let known = kept.iter().filter(|i| lacking[**i].is_finite());
         let label = match known.count() - points.len() {
             0 => label.to_owned(),
             beyond => format!("{label} ({beyond} points beyond)"),
@@ -322,7 +329,9 @@ mod tests {
                 channel: Channel::Force,
                 measured: values(0.0),
                 believed: values(2.0),
+                tolerated: values(1.0),
                 improved: values(-1.0),
+                left_out: values(-2.0),
             }],
         }
     }

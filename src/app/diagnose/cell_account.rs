@@ -7,6 +7,7 @@ use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::servo::ServoLink;
+use crate::diagnosis::words::{figures, of_column};
 use crate::effects::vocabulary;
 use crate::plant::{Channel, simulate};
 use crate::replay::LoadedCell;
@@ -73,9 +74,13 @@ pub(super) fn add_cell(
         ));
     }
     for error in of_arm {
+        let (words, unit, factor) = of_column(&error.channel);
+        let size = |value: f64| format!("{} {unit}", figures(factor * value, 3));
         arm.push(format!(
-            "Error of {} in {}, which was not looked at: {:.3e} as believed, {:.3e} improved.",
-            error.channel, error.recording, error.before, error.after
+            "RMS error of the {words} in {}, which was kept back: {} as believed, {} improved.",
+            error.recording,
+            size(error.before),
+            size(error.after)
         ));
     }
     account.add("The arm", arm);

@@ -1,8 +1,9 @@
 //! comparison.parquet and balance.parquet: what a diagnosis compared, for pages, notebooks and other programs.
 //!
 //! comparison.parquet has a row per sample of each recording: `recording`, `kept` (`fitted`, or `unseen` where it was kept from the fit), `time_s`, then
-//! `measured_`, `believed_` and `improved_` of each channel. balance.parquet has a row per point: `link`, `variable` and `value` (what says when the link
-//! lacks something), `channel` (in whose unit it lacks) and `before` and `after`.
+//! `measured_`, `believed_`, `tolerated_` (the believed model moved within its tolerances), `improved_` and `left_out_` (the improved model fitted to the
+//! other recordings) of each channel. balance.parquet has a row per sample: `link`, `variable` and `value` (what says when the link lacks something),
+//! `channel` (in whose unit it lacks) and `before` and `after`.
 
 use std::path::Path;
 
@@ -19,7 +20,7 @@ pub(in super::super) const COMPARISON: &str = "comparison.parquet";
 pub(in super::super) const BALANCE: &str = "balance.parquet";
 const FITTED: &str = "fitted";
 const UNSEEN: &str = "unseen";
-const MODELS: [&str; 3] = ["measured", "believed", "improved"];
+const MODELS: [&str; 5] = ["measured", "believed", "tolerated", "improved", "left_out"];
 
 /// Writes the recordings beside the models.
 pub(super) fn write_recordings(path: &Path, comparison: &Comparison) -> Result<(), RecordingError> {
@@ -61,7 +62,13 @@ pub(super) fn write_recordings(path: &Path, comparison: &Comparison) -> Result<(
 }
 
 fn of_model(channel: &ComparedChannel, place: usize) -> &[f64] {
-    [&channel.measured, &channel.believed, &channel.improved][place]
+    [
+        &channel.measured,
+        &channel.believed,
+        &channel.tolerated,
+        &channel.improved,
+        &channel.left_out,
+    ][place]
 }
 
 /// Writes the balances.
@@ -152,10 +159,11 @@ fn recordings(path: &Path) -> Result<Vec<Compared>, AppError> {
             if rows.find(&column(MODELS[1])).is_none() {
                 continue;
             }
-            let [measured, believed, improved] = MODELS.map(|model| {
-                Ok::<_, AppError>(rows.numbers(&column(model))?[span.clone()].to_vec())
-            });
-            let (measured, believed, improved) = (measured?, believed?, improved?);
+            let read = |place: usize| -> Result<Vec<f64>, AppError> {
+                Ok(rows.numbers(&column(MODELS[place]))?[span.clone()].to_vec())
+            };
+            let (measured, believed, tolerated) = (read(0)?, read(1)?, read(2)?);
+            let (improved, left_out) = (read(3)?, read(4)?);
             if believed.iter().all(|value| value.is_nan()) {
                 continue;
             }
@@ -163,7 +171,9 @@ fn recordings(path: &Path) -> Result<Vec<Compared>, AppError> {
                 channel,
                 measured,
                 believed,
+                tolerated,
                 improved,
+                left_out,
             });
         }
         found.push(Compared {
@@ -214,7 +224,9 @@ mod tests {
             channel,
             measured: vec![f64::NAN, offset],
             believed: vec![offset, 1.0],
+            tolerated: vec![offset, 0.75],
             improved: vec![0.5, offset],
+            left_out: vec![f64::NAN, 0.25],
         };
         let recording = |name: &str, unseen, channels| Compared {
             name: name.to_owned(),

@@ -160,9 +160,11 @@ pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
     let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
     let (words, of, scale) = variable(&balance.variable);
     let lacking = lacking(balance);
-    let places: Vec<f64> = balance.values.iter().map(|v| v * scale).collect();
+    let known = |i: &usize| balance.values[*i].is_finite() && balance.before[*i].is_finite();
+    let known: Vec<usize> = (0..balance.values.len()).filter(known).collect();
+    let places: Vec<f64> = known.iter().map(|i| balance.values[*i] * scale).collect();
     let cloud = |values: &[f64], label: &str, role| {
-        let values: Vec<f64> = values.iter().map(|v| v * factor).collect();
+        let values: Vec<f64> = known.iter().map(|i| values[*i] * factor).collect();
         Series::new(label, places.clone(), values, role, Stroke::Points)
     };
     Chart {

@@ -6,11 +6,13 @@ use super::tables::{how_well, own_numbers, ruled_out};
 use crate::diagnosis::account::Section as Told;
 use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict};
 use crate::diagnosis::comparison::{Compared, Comparison};
+use crate::diagnosis::details::remaining_errors;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::words::{
-    CHANNEL_WORDS, capital, figures, of_column, percent, spoken, yardstick,
+    CHANNEL_WORDS, capital, figures, in_unit, of_column, percent, spoken, yardstick,
 };
 use crate::effects::meaning;
+use crate::plant::CHANNELS;
 use crate::page::{Block, Cell, Fact, Page, Section, Strip, Table, Tone};
 
 /// Recordings that are shown at once; the others are folded away.
@@ -76,8 +78,9 @@ fn lead(answer: &Answer) -> Vec<String> {
     };
     let known = answer.effects.iter().filter(|e| e.name != UNLISTED);
     let mut lead: Vec<String> = known.filter_map(said).collect();
-    if answer.verdict == Verdict::NothingMissing && answer.details.remaining.is_none() {
-        lead.push("What the recordings show lies within the sensors' noise and the tolerances of the rig file.".to_owned());
+    if answer.verdict == Verdict::NothingMissing {
+        let left = part(answer, "What is left").into_iter();
+        lead.extend(left.flat_map(|told| told.paragraphs.clone()));
     }
     lead
 }
@@ -93,7 +96,17 @@ fn facts(answer: &Answer) -> Vec<Fact> {
         });
     };
     if let Some(share) = details.explained_share {
-        add("of the mismatch explained", percent(share), String::new());
+        let errors = remaining_errors(&details.misfit, &details.prediction);
+        let left = match errors.first() {
+            Some(error) if error.is_beyond_noise() => format!(
+                "left: {} RMS in the {} ({} σ, robust)",
+                in_unit(CHANNELS[error.channel], error.rms),
+                CHANNEL_WORDS[error.channel],
+                figures(error.sigmas, 2)
+            ),
+            _ => format!("no more than {} is left", yardstick(details.remaining.is_some())),
+        };
+        add("of the mismatch explained", percent(share), left);
     }
     let worst = details
         .prediction
@@ -103,7 +116,7 @@ fn facts(answer: &Answer) -> Vec<Fact> {
     if let Some((error, noise, _)) = worst.filter(|_| answer.verdict != Verdict::NothingMissing) {
         let (words, unit, factor) = of_column(&error.channel);
         add(
-            &format!("error of {words}, not fitted to"),
+            &format!("RMS error of {words}, not fitted to"),
             format!(
                 "{} → {} {unit}",
                 figures(factor * error.before, 3),
@@ -161,7 +174,10 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
             },
             unless_certain(number(estimate.low)),
             unless_certain(number(estimate.high)),
-            Cell::from(unit),
+            Cell::from(match estimate.at_limit {
+                Some(_) => format!("{unit}, at the end of its range"),
+                None => unit.to_owned(),
+            }),
             match low.is_finite() && high.is_finite() {
                 true => unless_certain(Cell::Interval([-widest, low, 0.0, high, widest])),
                 false => Cell::from(""),

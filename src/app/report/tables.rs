@@ -5,7 +5,8 @@ use crate::diagnosis::answer::Answer;
 use crate::diagnosis::details::{
     ChannelMisfit, Considered, PredictionError, RuledOutReport, ToleratedNumber,
 };
-use crate::diagnosis::words::{figures, of_column, percent, spoken, yardstick};
+use crate::diagnosis::estimate::Limit;
+use crate::diagnosis::words::{figures, odds, of_column, percent, spoken, yardstick};
 use crate::page::{Block, Cell, Section, Table};
 
 pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
@@ -53,6 +54,7 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
         vec![
             Cell::from(e.recording.clone()),
             Cell::from(words),
+            number(e.believed),
             number(e.before),
             number(e.after),
             e.noise.map_or(Cell::from("–"), number),
@@ -62,14 +64,15 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     };
     if !details.prediction.is_empty() {
         blocks.push(Block::Table(Table::new(
-            "Errors on what was not fitted to.",
+            "Root mean square of the errors on what was not fitted to; σ: the robust one in multiples of the last but one column.",
             &[
                 "recording",
                 "channel",
-                "#before",
-                "#after",
+                "#believed",
+                "#within tolerances",
+                "#improved",
                 &format!("#{yardstick}"),
-                "#after, σ",
+                "#improved, σ",
             ],
             details.prediction.iter().map(row).collect(),
         )));
@@ -98,6 +101,11 @@ pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
                 true => format!("{shift:+.1} %"),
                 false => String::new(),
             }),
+            match found.at_limit {
+                Some(Limit::Lower) => Cell::Judged("lower end".to_owned(), false),
+                Some(Limit::Upper) => Cell::Judged("upper end".to_owned(), false),
+                None => Cell::from(""),
+            },
         ]
     };
     let rows: Vec<Vec<Cell>> = tolerated.iter().map(row).collect();
@@ -111,6 +119,7 @@ pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
             "#high",
             "unit",
             "#change",
+            "at a limit",
         ],
         rows,
     );
@@ -130,12 +139,17 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     };
     let row = |other: &Considered| {
         let against = match other.log10_odds {
-            odds if odds > -2.0 && other.in_full => Cell::Judged("not ruled out".to_owned(), false),
-            odds if odds > -15.0 => Cell::from(format!("1 to {}", figures(10f64.powf(-odds), 2))),
-            odds => Cell::from(format!("1 to 10^{:.0}", -odds)),
+            power if other.is_close() => Cell::Judged(odds(power), false),
+            power => Cell::from(odds(power)),
+        };
+        let judged = match (other.is_close(), other.is_ruled_out()) {
+            (true, _) => "not ruled out",
+            (_, true) => "ruled out",
+            _ => "fell behind",
         };
         vec![
             Cell::from(names(&other.effects)),
+            Cell::from(judged),
             against,
             Cell::from(other.explained_share.map_or("–".to_owned(), percent)),
             Cell::from(if other.in_full { "in full" } else { "roughly" }),
@@ -143,8 +157,8 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     };
     if !details.considered.is_empty() {
         blocks.push(Block::Table(Table::new(
-            "Other explanations, against the one given; roughly: with the piston held to its measured motion, where a law that acts on the motion alone can seem to explain more than it does.",
-            &["explanation", "#odds", "#of the mismatch explained", "fitted"],
+            "Other explanations, against the one given. Ruled out: fitted in full, at odds below 1 to 100; fell behind: the same by a rough fit, with the piston held to its measured motion, where a law that acts on the motion alone can seem to explain more than it does.",
+            &["explanation", "", "#odds", "#of the mismatch explained", "fitted"],
             details.considered.iter().map(row).collect(),
         )));
     }
@@ -167,5 +181,5 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     let title = "What the recordings do not tell apart";
     let paragraphs = part(answer, title).into_iter().flat_map(|t| &t.paragraphs);
     blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
-    (!blocks.is_empty()).then(|| Section::new("What was ruled out", blocks))
+    (!blocks.is_empty()).then(|| Section::new("Other explanations", blocks))
 }

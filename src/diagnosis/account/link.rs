@@ -2,7 +2,7 @@
 
 use super::super::diagnose::Diagnosis;
 use super::super::links::{Link, LinkResidual};
-use super::super::localise::NOISE_ALONE;
+use super::super::localise::{NOISE_ALONE, root_mean_square};
 use super::super::regime::Regime;
 use super::super::words::{figures, listed};
 
@@ -27,13 +27,13 @@ fn link_words(link: &LinkResidual, regimes: &[Regime]) -> String {
     if explained {
         return match link.link {
             Link::Regulator => format!(
-                "The regulator explains its own recording: {size} times its sensor's noise."
+                "The regulator explains its own recording: {size} times its sensor's noise (robust RMS)."
             ),
             Link::Piston => format!(
-                "Chambers and piston explain the measured motion: no force is lacking beyond {size} times the noise."
+                "Chambers and piston explain the measured motion: no force is lacking beyond {size} times the noise (robust RMS)."
             ),
             Link::Contact => format!(
-                "The contact explains the force at the measured stroke: {size} times the noise."
+                "The contact explains the force at the measured stroke: {size} times the noise (robust RMS)."
             ),
         };
     }
@@ -61,16 +61,17 @@ fn link_words(link: &LinkResidual, regimes: &[Regime]) -> String {
         Link::Regulator => ("mbar", 1e-2),
         Link::Piston | Link::Contact => ("N", 1.0),
     };
-    let amount = format!("{} {unit}", figures(link.size * link.unit * factor, 2));
+    let rms = root_mean_square(link.sigmas.iter().copied()).unwrap_or_default();
+    let amount = format!("{} {unit}", figures(rms * link.unit * factor, 2));
     match link.link {
         Link::Regulator => format!(
-            "The regulator does not explain its own recording: {amount} RMS, {size} times its sensor's noise{when}."
+            "The regulator does not explain its own recording: {amount} RMS; robust, {size} times its sensor's noise{when}."
         ),
         Link::Piston => format!(
-            "Along its measured motion the piston lacks a force of {amount} RMS, {size} times the noise{when}."
+            "Along its measured motion the piston lacks a force of {amount} RMS; robust, {size} times the noise{when}."
         ),
         Link::Contact => format!(
-            "The contact does not explain the force at the measured stroke: {size} times the noise{when}."
+            "The contact does not explain the force at the measured stroke: {amount} RMS are left; robust, {size} times the noise{when}."
         ),
     }
 }

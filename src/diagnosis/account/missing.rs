@@ -1,17 +1,17 @@
 //! What is missing, how much of the mismatch it explains, and what is left.
 
-use super::super::conclude::IN_TURN;
-use super::super::details::PredictionError;
+use super::super::details::{IN_TURN, PredictionError, RemainingError};
 use super::super::diagnose::{Diagnosis, spoken_name};
-use super::super::localise::NOISE_ALONE;
+use super::super::estimate::Limit;
 use super::super::recorded::COLUMNS;
 use super::super::words::{
-    CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, listed, percent, spoken, with_interval,
-    yardstick,
+    CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, in_unit, listed, percent, spoken,
+    with_interval, yardstick,
 };
 use super::MOST_OTHERS;
 use super::link::TELLING;
 use crate::effects::meaning;
+use crate::plant::CHANNELS;
 
 impl Diagnosis {
     pub(super) fn what_is_missing(&self) -> Vec<String> {
@@ -23,10 +23,14 @@ impl Diagnosis {
                 .map(|n| {
                     let (words, unit, factor) = spoken(n.name);
                     let interval = n.interval.map(|end| end * factor);
-                    format!(
-                        "{words} {}",
-                        with_interval(n.value * factor, interval, unit)
-                    )
+                    let value = with_interval(n.value * factor, interval, unit);
+                    match n.at_limit {
+                        Some(limit) => format!(
+                            "{words} {value}, at the {} end of the range that is searched",
+                            end(limit)
+                        ),
+                        None => format!("{words} {value}"),
+                    }
                 })
                 .collect();
             let subsystem = effect.subsystem.name().replace('_', " ");
@@ -48,17 +52,29 @@ impl Diagnosis {
         }
         if let Some(share) = self.explained_share() {
             paragraphs.push(format!(
-                "{} {} of the mismatch{}.",
+                "{} {} of the mismatch, {}{}.",
                 if self.best().effects.len() + usize::from(self.shape.is_some()) > 1 {
                     "Together they explain"
                 } else {
                     "It explains"
                 },
                 percent(share),
+                self.most_left(),
                 self.prediction_words()
             ));
         }
         paragraphs
+    }
+
+    /// The largest remaining error beside its noise: a share of what is explained says nothing of the size of the rest.
+    fn most_left(&self) -> String {
+        let errors = self.remaining_errors();
+        match errors.first() {
+            Some(error) if error.is_beyond_noise() => {
+                format!("and leaves {}", error.words(self.yardstick()))
+            }
+            _ => format!("and leaves no more than {}", self.yardstick()),
+        }
     }
 
     /// Tolerated numbers of the rig file that an effect has taken the place of.
@@ -96,7 +112,7 @@ impl Diagnosis {
             )
         };
         format!(
-            "; {what} {} from {} to {} in the {}, where {} is {}",
+            "; {what} {} from {} to {} RMS in the {}, where {} is {}",
             if worst.after < worst.before {
                 "falls"
             } else {
@@ -137,7 +153,7 @@ impl Diagnosis {
             )
         };
         Some(format!(
-            "The best laws leave {} RMS in the {}, where the sensor's noise is {}, alike for {} s; {when}. No known effect explains that, and every effect was judged against it.",
+            "The best laws leave {} RMS in the {}, where the sensor's noise is {}, alike for {} s; {when}. Every effect was judged against that in place of the noise.",
             said(remaining.size),
             CHANNEL_WORDS[remaining.channel as usize],
             said(remaining.noise),
@@ -146,34 +162,36 @@ impl Diagnosis {
     }
 
     pub(super) fn what_is_left(&self) -> Vec<String> {
-        if let Some(unexplained) = self.unexplained() {
-            return vec![unexplained];
-        }
-        let left: Vec<String> = self
-            .by_misfit(&self.best().fit.prediction.residuals)
-            .iter()
-            .filter(|m| m.sigmas > NOISE_ALONE)
+        let errors = self.remaining_errors();
+        let Some(largest) = errors.first() else {
+            return self.unexplained().into_iter().collect();
+        };
+        let yardstick = self.yardstick();
+        let beyond: Vec<String> = (errors.iter())
+            .filter(|error| error.is_beyond_noise())
             .take(MOST_OTHERS)
-            .map(|m| {
-                format!(
-                    "the {} of {} departs by {} times its noise",
-                    CHANNEL_WORDS[m.channel as usize],
-                    self.name(m.recording),
-                    figures(m.sigmas, 3)
-                )
-            })
+            .map(|error| error.words(yardstick))
             .collect();
-        if left.is_empty() {
-            return if self.best().finds_nothing() {
-                Vec::new()
-            } else {
-                vec!["Noise.".to_owned()]
+        let kept = errors.iter().any(|error| error.kept_back);
+        let besides = if kept { " and kept back from the fit" } else { "" };
+        let rest = if beyond.is_empty() {
+            format!(
+                "No more than {yardstick} in the recordings fitted to{besides}: the largest error beside it is {}.",
+                largest.words(yardstick)
+            )
+        } else {
+            let count = errors.iter().filter(|e| e.is_beyond_noise()).count();
+            let others = match count - beyond.len() {
+                0 => String::new(),
+                others => format!(", and in {others} more"),
             };
-        }
-        vec![format!(
-            "More than noise: {}. No known effect explains that.",
-            listed(&left)
-        )]
+            format!(
+                "More than {yardstick} in {count} of {} channels of the recordings fitted to{besides}: {}{others}.",
+                errors.len(),
+                listed(&beyond)
+            )
+        };
+        self.unexplained().into_iter().chain([rest]).collect()
     }
 
     /// Variants of the explanation of a part of the device, with what they leave.
@@ -219,13 +237,49 @@ impl Diagnosis {
                     format!(" ({:+.1} %)", 100.0 * (n.value / believed.start - 1.0))
                 };
                 let value = figures(n.value * factor, 4);
-                Some(format!("{table} {words} {value} {unit}").trim().to_owned() + &change)
+                let limit = n.at_limit.map_or_else(String::new, |limit| {
+                    format!(" at the {} end of its tolerance", end(limit))
+                });
+                Some(format!("{table} {words} {value} {unit}").trim().to_owned() + &change + &limit)
             })
             .collect();
         if numbers.is_empty() {
             return String::new();
         }
-        format!("Within their tolerances: {}.", numbers.join("; "))
+        let limits = self.estimates.tolerated.iter();
+        let limits = limits.filter(|n| n.at_limit.is_some()).count();
+        let doubt = match limits {
+            0 => "",
+            1 => " One stands at the end of its tolerance: either that is too narrow, or the number stands in for something that the model lacks.",
+            _ => " Some stand at the ends of their tolerances: either those are too narrow, or the numbers stand in for something that the model lacks.",
+        };
+        format!("Within their tolerances: {}.{doubt}", numbers.join("; "))
+    }
+}
+
+impl RemainingError {
+    /// The error in words: `0.51 N RMS in the force of ride.csv (robust, 3.4 times the sensor's noise)`.
+    fn words(&self, yardstick: &str) -> String {
+        let channel = CHANNELS[self.channel];
+        let kept = match self.kept_back {
+            true => ", which was kept back",
+            false => "",
+        };
+        format!(
+            "{} RMS in the {} of {}{kept} (robust, {} times {yardstick})",
+            in_unit(channel, self.rms),
+            CHANNEL_WORDS[self.channel],
+            self.recording,
+            figures(self.sigmas, 2)
+        )
+    }
+}
+
+/// An end of a range in words.
+fn end(limit: Limit) -> &'static str {
+    match limit {
+        Limit::Lower => "lower",
+        Limit::Upper => "upper",
     }
 }
 

@@ -1,8 +1,8 @@
-//! Where recordings and believed model part.
+//! Where the recordings differ from the believed model.
 
 use super::super::diagnose::Diagnosis;
-use super::super::localise::{Misfit, NOISE_ALONE, misfits};
-use super::super::words::{CHANNEL_UNITS, CHANNEL_WORDS, figures, listed};
+use super::super::localise::{Misfit, NOISE_ALONE, misfits, root_mean_square};
+use super::super::words::{CHANNEL_WORDS, figures, in_unit, listed};
 use super::MOST_OTHERS;
 use crate::plant::Channel;
 
@@ -14,11 +14,18 @@ impl Diagnosis {
         all
     }
 
-    /// A size in standard deviations of a channel, in its unit.
-    fn in_unit(&self, channel: Channel, sigmas: f64) -> String {
-        let (unit, factor) = CHANNEL_UNITS[channel as usize];
-        let size = sigmas * self.evidence.noise[channel as usize] * factor;
-        format!("{} {unit}", figures(size, 2))
+    /// Root mean square of what the baseline leaves of a channel from a time to another, in its unit.
+    fn baseline_rms(&self, misfit: &Misfit, [from, to]: [f64; 2]) -> String {
+        let channel = misfit.channel as usize;
+        let time = &self.evidence.recordings[misfit.recording].inputs.time;
+        let of = |(recording, of, _): &(usize, Channel, &[f64])| {
+            *recording == misfit.recording && *of == misfit.channel
+        };
+        let own = self.by_channel(&self.baseline.prediction.residuals);
+        let own = own.filter(of).flat_map(|(.., residuals)| residuals);
+        let within = own.zip(time).filter(|(_, t)| (from..=to).contains(*t));
+        let sigmas = root_mean_square(within.map(|(r, _)| *r)).unwrap_or_default();
+        in_unit(misfit.channel, sigmas * self.evidence.noise[channel])
     }
 
     pub(super) fn where_it_parts(&self) -> Vec<String> {
@@ -30,17 +37,22 @@ impl Diagnosis {
                 format!("all {count} recordings")
             };
             let worst = self.by_misfit(&self.best().fit.prediction.residuals);
-            let to = worst.first().map_or_else(String::new, |worst| {
-                format!(
-                    ": the worst channel, the {} of {}, departs by {} times {}",
-                    CHANNEL_WORDS[worst.channel as usize],
-                    self.name(worst.recording),
-                    figures(worst.sigmas, 3),
-                    self.yardstick()
-                )
-            });
+            let Some(worst) = worst.first() else {
+                return Vec::new();
+            };
+            let (verdict, but) = match worst.sigmas > NOISE_ALONE {
+                true => ("No effect was found in", " but for more than noise"),
+                false => (
+                    "Nowhere. The believed model, moved within its tolerances, explains",
+                    "",
+                ),
+            };
             return vec![format!(
-                "Nowhere. The believed model, moved within its tolerances, explains {recordings}{to}."
+                "{verdict} {recordings}{but}: the worst channel, the {} of {}, departs by {} times {} (robust RMS).",
+                CHANNEL_WORDS[worst.channel as usize],
+                self.name(worst.recording),
+                figures(worst.sigmas, 3),
+                self.yardstick()
             )];
         }
         let all = self.by_misfit(&self.baseline.prediction.residuals);
@@ -61,7 +73,7 @@ impl Diagnosis {
                     "the {} of {} from {from:.2} to {to:.2} s ({} RMS)",
                     CHANNEL_WORDS[m.channel as usize],
                     self.name(m.recording),
-                    self.in_unit(m.channel, m.sigmas)
+                    self.baseline_rms(m, [from, to])
                 ))
             })
             .collect();
@@ -96,9 +108,12 @@ impl Diagnosis {
             "Between {from:.2} and {to:.2} s of {} the {} parts from the believed model, whatever its tolerances allow{times}: by {} RMS, where {} is {}.",
             self.name(worst.recording),
             CHANNEL_WORDS[worst.channel as usize],
-            self.in_unit(worst.channel, worst.sigmas),
+            self.baseline_rms(worst, [from, to]),
             self.yardstick(),
-            self.in_unit(worst.channel, 1.0),
+            in_unit(
+                worst.channel,
+                self.evidence.noise[worst.channel as usize]
+            ),
         )
     }
 }

@@ -139,18 +139,13 @@ fn fixed(value: f64, digits: usize) -> String {
 /// What the known effects come to, beside the term's share.
 fn near(effects: &[NearEffects], term: Option<f64>) -> String {
     let Some(best) = effects.first() else {
-        return "No known effect explains a part of it.".to_owned();
-    };
-    let verb = if best.effects.len() > 1 {
-        "together explain"
-    } else {
-        "explains"
+        return "No known effect was found to explain a part of it.".to_owned();
     };
     let shares = best.share_explained.zip(term);
     let said = shares.map_or_else(String::new, |(share, term)| {
         let (share, term) = (percent(share), percent(term));
         format!(
-            ": {} {verb} {share} of the mismatch, the term {term}",
+            ", {}, explains {share} of the mismatch, the term {term}",
             listed(&best.effects)
         )
     });
@@ -160,7 +155,7 @@ fn near(effects: &[NearEffects], term: Option<f64>) -> String {
             listed(&best.effects)
         )
     } else {
-        format!("No known explanation comes near{said}.")
+        format!("The nearest known explanation{said}.")
     }
 }
 

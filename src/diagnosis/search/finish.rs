@@ -1,5 +1,6 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
+use super::super::diagnose::LEAST_ODDS;
 use super::super::fit::{FULL, ROUGH};
 use super::super::free::Free;
 use super::super::hypothesis::{Hypothesis, stands_for};
@@ -9,6 +10,8 @@ use super::{FULL_ITERATIONS, HOPELESS, LOOK_ELSEWHERE, Search, same};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
+/// Close rivals that are fitted in full beside those that the search has fitted, at most.
+const MOST_CLOSE: usize = 6;
 /// Iterations of a rough fit without one of the effects.
 const LIGHTER: usize = 8;
 
@@ -37,6 +40,40 @@ impl Search<'_> {
         }
         full.extend(more);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
+    /// Fits in full the explanations that a rough fit cannot rule out beside the best one: nothing is said of a close rival by a rough fit.
+    pub(super) fn add_close(
+        &self,
+        full: &mut Vec<Hypothesis>,
+        rough: &[Hypothesis],
+        say: &mut dyn FnMut(&str),
+    ) {
+        let Some(best) = full.first() else { return };
+        let limit = self.rough_reference(best, rough) - 2.0 * LEAST_ODDS.ln();
+        let is_fitted = |h: &Hypothesis| full.iter().any(|known| known.names() == h.names());
+        let mut close: Vec<&Hypothesis> = rough
+            .iter()
+            .filter(|h| self.rough_score(h) < limit && !is_fitted(h))
+            .collect();
+        close.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
+        let more: Vec<Hypothesis> = (close.into_iter().take(MOST_CLOSE))
+            .map(|h| self.refine(h, FULL, FULL_ITERATIONS))
+            .collect();
+        for h in &more {
+            say(&format!("  close: {:?} {:.1}", h.effects, self.score(h)));
+        }
+        full.extend(more);
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
+    /// Rough cost that others are compared with: of the same effects as the best explanation, fitted roughly where that was done.
+    pub(super) fn rough_reference(&self, best: &Hypothesis, rough: &[Hypothesis]) -> f64 {
+        let own = self.rough_score(best);
+        let same = rough
+            .iter()
+            .filter(|h| best.unlisted().is_none() && h.names() == best.names());
+        same.map(|h| self.rough_score(h)).fold(own, f64::min)
     }
 
     /// Of laws that exclude one another puts the plainest first that explains as much but for what idealisation leaves: a richer law bends to the errors
