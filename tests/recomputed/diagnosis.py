@@ -1,6 +1,7 @@
 """Diagnoses: every number that is printed recomputed from comparison.parquet and balance.parquet, every statement held to its definition.
 
-    diagnosis.py FOLDER [CASE] ..    folders of diagnoses, or folders of such folders; `CASE`: where their rig files stand, for tolerances
+    diagnosis.py                     three diagnoses of what the project holds: the README's log with a recording kept back, two effects at once, nothing missing
+    diagnosis.py FOLDER [CASES]      a diagnosis, or a folder of them; `CASES`: the folder of their cases, for the tolerances of their rig files
 
 The definitions are those of docs/DIAGNOSIS.md, "Words and what they rest on"; nothing here is taken from the program.
 """
@@ -8,6 +9,7 @@ The definitions are those of docs/DIAGNOSIS.md, "Words and what they rest on"; n
 import json
 import math
 import re
+import shutil
 import sys
 import tomllib
 from pathlib import Path
@@ -15,7 +17,7 @@ from pathlib import Path
 import numpy
 import pandas
 
-from common import Checked, Page, markdown_tables, viewer_text
+from common import PROJECT, RESULTS, Checked, Page, markdown_tables, run, viewer_text
 
 # Words, unit and what a value in SI is multiplied by.
 CHANNELS = {
@@ -431,9 +433,27 @@ def examine(path, case=None):
     return [Examination(folder, case).run() for folder in folders(Path(path))]
 
 
+def three():
+    """Diagnoses of cases that the project holds, and the folder of those cases."""
+    cases, found = RESULTS / "cases", RESULTS / "diagnoses"
+    own = cases / "first"
+    logs = sorted((PROJECT / "assets/first").glob("*.csv"))
+    run("import", "assets/first/map.toml", *logs, "--out", f"{own}/", "--force")
+    run("new", "rig", own / "rig.toml", "--force")
+    rig = (own / "rig.toml").read_text()
+    kept_back = rig.replace('# predict = "unseen.parquet"', 'predict = "cycle.parquet"')
+    assert kept_back != rig, "the rig file's line of the recording to be predicted has changed"
+    (own / "rig.toml").write_text(kept_back)
+    for name in ("case-06", "case-09"):
+        shutil.copytree(PROJECT / "assets/proof/cases" / name, cases / name, dirs_exist_ok=True)
+    run("diagnose", cases, "--all", "--out", found, "--force")
+    return found, cases
+
+
 if __name__ == "__main__":
-    done = examine(sys.argv[1], Path(sys.argv[2]) if len(sys.argv) > 2 else None)
+    where, cases = (sys.argv[1:] + [None])[:2] if len(sys.argv) > 1 else three()
+    done = examine(where, cases and Path(cases))
     wrong = [line for check in done for line in check.wrong]
     print("\n".join(wrong))
     print(f"{len(done)} diagnoses, {sum(check.compared for check in done)} numbers and statements compared, {len(wrong)} wrong")
-    sys.exit(bool(wrong))
+    sys.exit(bool(wrong) or not done)
