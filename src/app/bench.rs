@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::bench_picture::scene_of;
 use super::error::AppError;
-use super::files::provenance;
+use super::run::Source;
 use super::viewer::{PART_INTERVAL, Watch};
 use crate::metrics::{BenchLimits, BenchSummary, Timing, Verdict, summarise_bench};
 use crate::recording::Recording;
@@ -97,29 +97,35 @@ pub(super) fn document(
     scenario: &BenchScenario,
     finished: &FinishedBench,
     expectations: &[Verdict],
+    source: &Source,
+    origin: &Provenance,
 ) -> Result<String, AppError> {
     #[derive(Serialize)]
     struct Document<'a> {
         schema: u32,
         kind: &'static str,
-        scenario: String,
+        scenario: &'a str,
         title: &'a str,
+        /// Keys that have other values than in the scenario's file.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        set: Option<serde_json::Value>,
         /// What stopped the run early; null if it ran to its end.
         stopped: Option<String>,
         summary: &'a BenchSummary,
         expectations: &'a [Verdict],
         samples: usize,
-        provenance: Provenance,
+        provenance: &'a Provenance,
     }
     Ok(serde_json::to_string_pretty(&Document {
         schema: 1,
         kind: "bench",
-        scenario: scenario.path.display().to_string(),
+        scenario: &source.name,
         title: &scenario.title,
+        set: source.set(),
         stopped: finished.stop.as_ref().map(ToString::to_string),
         summary: &finished.summary,
         expectations,
         samples: finished.recording.sample_count(),
-        provenance: provenance(&[&scenario.path, &scenario.device.model], scenario.seed)?,
+        provenance: origin,
     })?)
 }

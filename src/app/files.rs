@@ -1,4 +1,4 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, and figures.svg of a bench; those of a study: design.json, override.toml,
+//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, figures.svg of a bench, varied.toml of `--set`; those of a study: design.json, override.toml,
 //! front.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use super::error::AppError;
 use super::report::REPORT;
-use super::run::Finished;
+use super::run::{Finished, Source};
 use crate::cell::Cell;
 use crate::metrics::{Summary, Verdict};
-use crate::recording::atomic::{UnfinishedFolder, write_text};
+use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
@@ -18,9 +18,11 @@ use crate::scenario::{ArmScenario, BurrScenario, DeviceScenario, WorkpieceScenar
 pub(super) const RECORDING: &str = "recording.rrd";
 pub(super) const SAMPLES: &str = "samples.parquet";
 pub(super) const SUMMARY: &str = "summary.json";
-const FIGURES: &str = "figures.svg";
+pub(super) const FIGURES: &str = "figures.svg";
+/// The scenario as `--set` made it.
+pub(super) const VARIED: &str = "varied.toml";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 5] = [RECORDING, SAMPLES, SUMMARY, FIGURES, REPORT];
+pub(super) const RUN_NAMES: [&str; 6] = [RECORDING, SAMPLES, SUMMARY, FIGURES, REPORT, VARIED];
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
 pub(super) const FRONT: &str = "front.svg";
@@ -72,7 +74,7 @@ pub(super) fn prepare_file(
         });
     }
     match path.parent() {
-        Some(folder) => std::fs::create_dir_all(folder).map_err(|error| refuse(&error)),
+        Some(folder) => make_folder(folder).map_err(|error| refuse(&error)),
         None => Ok(()),
     }
 }
@@ -89,6 +91,19 @@ impl OutputFolder {
         names: &[&str],
         standing: Standing,
     ) -> Result<Self, AppError> {
+        Self::check(path, names, standing)?;
+        make_folder(path).map_err(|error| AppError::OutputFolder {
+            folder: path.display().to_string(),
+            reason: error.to_string(),
+        })?;
+        drop(UnfinishedFolder::within(path)?);
+        Ok(Self {
+            path: path.to_owned(),
+        })
+    }
+
+    /// Refuses a folder that files of these names cannot go to, without making it.
+    pub(super) fn check(path: &Path, names: &[&str], standing: Standing) -> Result<(), AppError> {
         let refuse = |reason: String| AppError::OutputFolder {
             folder: path.display().to_string(),
             reason,
@@ -105,14 +120,10 @@ impl OutputFolder {
                 name: (*name).to_owned(),
             });
         }
-        std::fs::create_dir_all(path).map_err(|error| refuse(error.to_string()))?;
-        if let Some(name) = names.iter().find(|name| path.join(name).is_dir()) {
-            return Err(refuse(format!("{name} in it is a folder")));
+        match names.iter().find(|name| path.join(name).is_dir()) {
+            Some(name) => Err(refuse(format!("{name} in it is a folder"))),
+            None => Ok(()),
         }
-        drop(UnfinishedFolder::within(path)?);
-        Ok(Self {
-            path: path.to_owned(),
-        })
     }
 
     /// Its path.
@@ -146,9 +157,11 @@ impl OutputFolder {
         if recorded {
             names.insert(0, RECORDING);
         }
-        if let Some(figures) = output.figures {
-            write_text(&unfinished.path().join(FIGURES), figures)?;
-            names.push(FIGURES);
+        for (name, text) in [(FIGURES, output.figures), (VARIED, output.varied)] {
+            if let Some(text) = text {
+                write_text(&unfinished.path().join(name), text)?;
+                names.push(name);
+            }
         }
         unfinished.finish(&names)?;
         for other in RUN_NAMES.iter().filter(|name| !names.contains(name)) {
@@ -242,6 +255,8 @@ pub(super) struct RunOutput<'a> {
     pub summary: &'a str,
     /// figures.svg.
     pub figures: Option<&'a str>,
+    /// varied.toml.
+    pub varied: Option<&'a str>,
     /// report.html.
     pub report: &'a str,
 }
@@ -250,8 +265,11 @@ pub(super) struct RunOutput<'a> {
 #[derive(serde::Serialize)]
 pub(super) struct SummaryDocument<'a> {
     schema: u32,
-    scenario: String,
+    scenario: &'a str,
     title: &'a str,
+    /// Keys that have other values than in the scenario's file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<serde_json::Value>,
     /// What stopped the run early; null if it ran to its end.
     stopped: Option<String>,
     summary: &'a Summary,
@@ -268,12 +286,14 @@ impl<'a> SummaryDocument<'a> {
         cell: &'a Cell,
         finished: &'a Finished,
         expectations: &'a [Verdict],
+        source: &'a Source,
         origin: &'a Provenance,
     ) -> Self {
         Self {
             schema: 1,
-            scenario: cell.scenario.path.display().to_string(),
+            scenario: &source.name,
             title: &cell.scenario.title,
+            set: source.set(),
             stopped: finished.stop.as_ref().map(ToString::to_string),
             summary: &finished.summary,
             expectations,

@@ -1,5 +1,6 @@
 //! Names and units for people, from keys that end in their unit.
 
+use crate::numbers::{short, signed};
 use crate::scenario::units::{Unit, stem};
 
 /// Suffixes of metrics that no file key has.
@@ -43,29 +44,15 @@ pub(super) fn with_unit(key: &str, value: f64) -> String {
     }
 }
 
-/// A number as people read it: up to five significant digits, without trailing zeros.
+/// A number to five significant digits, without trailing zeros.
 pub(super) fn number(value: f64) -> String {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    let size = rounded.abs();
-    if size != 0.0 && !(1e-4..1e7).contains(&size) {
-        format!("{rounded:e}")
-    } else {
-        rounded.to_string()
-    }
+    short(value, 5)
 }
 
 /// A change in percent with its sign.
 pub(super) fn percent(change: f64) -> String {
-    let text = if change.abs() < 9.95 {
-        format!("{change:+.1} %")
-    } else {
-        format!("{change:+.0} %")
-    };
-    if text == "-0.0 %" {
-        "+0.0 %".to_owned()
-    } else {
-        text
-    }
+    let decimals = usize::from(change.abs() < 9.95);
+    format!("{} %", signed(change, decimals))
 }
 
 #[cfg(test)]
@@ -99,7 +86,7 @@ mod tests {
             (40.0, "40"),
             (2.34561789, "2.3456"),
             (1.5e5, "150000"),
-            (2.5e-7, "2.5e-7"),
+            (2.5e-7, "2.5 x 10^-7"),
         ] {
             assert_eq!(number(value), text);
         }

@@ -8,6 +8,7 @@ use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::servo::ServoLink;
 use crate::effects::vocabulary;
+use crate::numbers::significant;
 use crate::plant::{Channel, simulate};
 use crate::replay::LoadedCell;
 
@@ -74,8 +75,11 @@ pub(super) fn add_cell(
     }
     for error in of_arm {
         arm.push(format!(
-            "Error of {} in {}, which was not looked at: {:.3e} as believed, {:.3e} improved.",
-            error.channel, error.recording, error.before, error.after
+            "Error of {} in {}, which was not looked at: {} as believed, {} improved.",
+            error.channel,
+            error.recording,
+            significant(error.before, 3),
+            significant(error.after, 3)
         ));
     }
     account.add("The arm", arm);
