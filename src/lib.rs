@@ -20,7 +20,6 @@
 //! - [`metrics`]: the numbers of a run
 //! - [`figure`]: signals as SVG pictures
 //! - [`report`]: tables for people
-//! - [`numbers`]: numbers as people write them
 //! - [`app`]: the command line and the files that it writes
 // Units stand in square brackets, which rustdoc would take for links.
 #![allow(rustdoc::broken_intra_doc_links)]
@@ -38,7 +37,6 @@ pub mod figure;
 pub mod import;
 pub mod laboratory;
 pub mod metrics;
-pub mod numbers;
 pub mod page;
 pub mod path;
 pub mod physics;

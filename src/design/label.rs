@@ -1,6 +1,5 @@
 //! Names and units for people, from keys that end in their unit.
 
-use crate::numbers::{short, signed};
 use crate::scenario::units::{Unit, stem};
 
 /// Suffixes of metrics that no file key has.
@@ -44,15 +43,29 @@ pub(super) fn with_unit(key: &str, value: f64) -> String {
     }
 }
 
-/// A number to five significant digits, without trailing zeros.
+/// A number as people read it: up to five significant digits, without trailing zeros.
 pub(super) fn number(value: f64) -> String {
-    short(value, 5)
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    let size = rounded.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    }
 }
 
 /// A change in percent with its sign.
 pub(super) fn percent(change: f64) -> String {
-    let decimals = usize::from(change.abs() < 9.95);
-    format!("{} %", signed(change, decimals))
+    let text = if change.abs() < 9.95 {
+        format!("{change:+.1} %")
+    } else {
+        format!("{change:+.0} %")
+    };
+    if text == "-0.0 %" {
+        "+0.0 %".to_owned()
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]
@@ -86,7 +99,7 @@ mod tests {
             (40.0, "40"),
             (2.34561789, "2.3456"),
             (1.5e5, "150000"),
-            (2.5e-7, "2.5 x 10^-7"),
+            (2.5e-7, "2.5e-7"),
         ] {
             assert_eq!(number(value), text);
         }

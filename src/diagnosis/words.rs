@@ -68,7 +68,22 @@ pub fn spoken(name: &str) -> (String, &'static str, f64) {
     (stem.replace('_', " "), unit, factor)
 }
 
-pub use crate::numbers::significant as figures;
+/// A number with so many significant digits, without an exponent as long as that can be read.
+#[must_use]
+pub fn figures(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
+        .parse()
+        .unwrap_or(value);
+    let order = rounded.abs().log10().floor();
+    if !(-4.0..7.0).contains(&order) {
+        return format!("{value:.*e}", digits.saturating_sub(1));
+    }
+    let decimals = (digits as f64 - 1.0 - order).max(0.0) as usize;
+    format!("{rounded:.decimals$}")
+}
 
 /// A value with its interval, to two digits of the interval's half-width, in its unit: `13.2 N (12.8 to 13.6)`.
 #[must_use]
@@ -220,6 +235,7 @@ mod tests {
         assert_eq!(figures(13.2143, 3), "13.2");
         assert_eq!(figures(0.99996, 3), "1.00");
         assert_eq!(figures(1234.5, 2), "1200");
+        assert_eq!(figures(1.5e-9, 2), "1.5e-9");
         assert_eq!(
             with_interval(13.2143, [12.81, 13.62], "N"),
             "13.21 N (12.81 to 13.62)"
