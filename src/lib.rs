@@ -19,6 +19,7 @@
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
 //! - [`metrics`]: the numbers of a run
 //! - [`figure`]: signals as SVG pictures
+//! - [`quantity`]: numbers with their units as people read them
 //! - [`report`]: tables for people
 //! - [`app`]: the command line and the files that it writes
 // Units stand in square brackets, which rustdoc would take for links.
@@ -42,6 +43,7 @@ pub mod path;
 pub mod physics;
 pub mod plant;
 pub mod proof;
+pub mod quantity;
 pub mod recording;
 pub mod replay;
 pub mod report;
