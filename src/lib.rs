@@ -18,6 +18,7 @@
 //! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
 //! - [`metrics`]: the numbers of a run
+//! - [`drawing`]: a scene as an SVG picture
 //! - [`figure`]: signals as SVG pictures
 //! - [`quantity`]: numbers with their units as people read them
 //! - [`report`]: tables for people
@@ -32,6 +33,7 @@ pub mod control;
 pub mod design;
 pub mod device;
 pub mod diagnosis;
+pub mod drawing;
 pub mod effects;
 pub mod estimation;
 pub mod figure;

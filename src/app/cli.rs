@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
 use super::files::{
-    OutputFolder, Picture, RECORDING, RUN_NAMES, RunOutput, Standing, SummaryDocument,
+    OutputFolder, Picture, RECORDING, RUN_NAMES, RunOutput, Sketches, Standing, SummaryDocument,
     files_of_cell, provenance,
 };
 use super::growing::GrowingFile;
@@ -261,10 +261,14 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
         let scene = scene_of(&cell, &finished.recording, &finished.frames)?;
         let summary = markdown(title, &finished.summary, &verdicts);
         let (report, encoded) = rayon::join(
-            || super::report::page_of_run(&document, &finished.recording),
+            || {
+                let sketches = Sketches::of(&scene, &finished.recording);
+                let page = super::report::page_of_run(&document, &finished.recording, &sketches);
+                page.map(|page| (page, sketches))
+            },
             || growing.map(|growing| growing.end(&finished.recording, &scene, &summary)),
         );
-        let (report, encoded) = (report?, encoded.transpose()?);
+        let ((report, sketches), encoded) = (report?, encoded.transpose()?);
         let names = folder.write(RunOutput {
             title,
             recording: &finished.recording,
@@ -272,6 +276,7 @@ fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
                 .map(|encoded| -> Picture<'_> { Box::new(move |path| encoded.write(path)) }),
             summary: &document,
             figures: None,
+            sketches: &sketches,
             report: &report,
         })?;
         let table = text(title, &finished.summary, &verdicts, style());
@@ -318,8 +323,9 @@ fn run_bench(
     let verdicts = metrics::check(metrics::BENCH_METRICS, &finished.summary, &scenario.expect)
         .map_err(metrics_error)?;
     let document = bench::document(scenario, &finished, &verdicts)?;
-    let report = super::report::page_of_run(&document, &finished.recording)?;
     let scene = bench_picture::scene_of(scenario, &finished.recording)?;
+    let sketches = Sketches::of(&scene, &finished.recording);
+    let report = super::report::page_of_run(&document, &finished.recording, &sketches)?;
     let options = RerunOptions {
         summary_markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
         opening: opening(arguments),
@@ -332,6 +338,7 @@ fn run_bench(
         picture: (!arguments.no_recording).then_some(Box::new(picture)),
         summary: &document,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
+        sketches: &sketches,
         report: &report,
     })?;
     let table = bench_text(&scenario.title, &finished.summary, &verdicts, style());

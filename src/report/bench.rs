@@ -88,7 +88,7 @@ pub fn bench_text(
         line(format!(
             "{:<28} {:>10} {:<6}  {}",
             metric.label,
-            shown(metric, Some(value)),
+            shown(Some(value), metric.shown_unit()),
             metric.shown_unit(),
             style.faint(metric.meaning),
         ));
@@ -139,7 +139,7 @@ pub fn bench_markdown(title: &str, summary: &BenchSummary, verdicts: &[Verdict])
     for (metric, value) in rows(&untimed) {
         let cells = [
             metric.label,
-            &shown(metric, Some(value)),
+            &shown(Some(value), metric.shown_unit()),
             metric.shown_unit(),
             metric.meaning,
         ];
@@ -175,16 +175,16 @@ mod tests {
     #[test]
     fn it_fits_a_terminal_and_names_what_was_measured() {
         let out = bench_text("paper", &summary(), &[], Style::Plain);
-        assert!(
-            out.lines().all(|line| line.chars().count() <= 88),
-            "{out}"
-        );
+        assert!(out.lines().all(|line| line.chars().count() <= 88), "{out}");
         for part in ["set", "[bar]", "1.800", "290.0", "mean", "N"] {
             assert!(out.contains(part), "{part}");
         }
         assert!(!out.contains("overshoot"), "undefined numbers are left out");
         let page = bench_markdown("paper", &summary(), &[]);
-        assert!(page.contains("| at, s | set, bar | outlet, bar |"), "{page}");
+        assert!(
+            page.contains("| at, s | set, bar | outlet, bar |"),
+            "{page}"
+        );
         assert!(page.contains("| 0.500 | 1.800 |"), "{page}");
     }
 }

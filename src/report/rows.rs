@@ -1,7 +1,7 @@
 //! The rows of the reports: which metrics, in which parts, with what beside them.
 
 use super::printable;
-use crate::metrics::{Metric, NARROW_BAND, Summary, WIDE_BAND, Verdict, metric};
+use crate::metrics::{Metric, NARROW_BAND, Summary, Verdict, WIDE_BAND, metric};
 use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
 /// Parts of a report and the metrics in each, by key.
@@ -61,7 +61,7 @@ pub(super) struct Row {
 impl Row {
     /// The value as it is printed.
     pub(super) fn text(&self) -> String {
-        shown(self.metric, self.value)
+        shown(self.value, self.unit())
     }
 
     /// The unit as it is printed; nothing for a pure number.
@@ -70,13 +70,13 @@ impl Row {
     }
 }
 
-/// A metric's value as it is printed.
+/// A metric's value in its unit as it is printed.
 #[must_use]
-pub fn shown<S>(metric: &Metric<S>, value: Option<f64>) -> String {
+pub fn shown(value: Option<f64>, unit: &str) -> String {
     match value {
         // A share that falls short must not read as the whole.
-        Some(value) if metric.unit == "%" && (99.995..100.0).contains(&value) => "<100".to_owned(),
-        value => quantity::optional(value, metric.shown_unit()),
+        Some(value) if unit == "%" && (99.995..100.0).contains(&value) => "<100".to_owned(),
+        value => quantity::optional(value, unit),
     }
 }
 
@@ -169,7 +169,11 @@ pub(super) fn comparison(verdict: &Verdict) -> (String, String) {
         let same = |bound: f64| value.total_cmp(&bound) == shown.total_cmp(&bound);
         bounds.clone().all(same)
     };
-    let unit = if verdict.unit == "1" { "" } else { verdict.unit };
+    let unit = if verdict.unit == "1" {
+        ""
+    } else {
+        verdict.unit
+    };
     let short = std::iter::once(quantity::number(value, unit));
     let longer = (DIGITS..17).map(|digits| significant(value, digits));
     let told = short.chain(longer).find(tells);

@@ -20,10 +20,8 @@ use super::plots::Plot;
 use super::timelines::SIM_TIME;
 use super::view_box::ViewBox;
 use super::{Opening, PHASES, RerunOptions, SUMMARY};
+use crate::recording::error_scale::ErrorScale;
 use crate::recording::schema::PlotGroup;
-
-/// Heading of the edge's view: how to read the colours of the path.
-const EDGE_VIEW: &str = "Force error: blue -10 %, orange +10 %";
 
 /// Distance of the eye from the cell, in radii of the cell.
 const CELL_EYE_RADII: f64 = 1.8;
@@ -37,6 +35,8 @@ pub(super) struct LayoutInput<'a> {
     pub(super) cell: Option<ViewBox>,
     /// What the edge path fills.
     pub(super) edge: Option<ViewBox>,
+    /// How the edge path is coloured; none while its force errors are not known.
+    pub(super) scale: Option<ErrorScale>,
     /// From the middle of what is shown towards the eye.
     pub(super) eye_direction: DVec3,
     pub(super) has_phases: bool,
@@ -139,6 +139,14 @@ fn plot_view(plot: &Plot) -> Panel {
     })
 }
 
+/// Heading of the edge's view: how to read the colours of the path.
+pub(super) fn edge_heading(scale: Option<ErrorScale>) -> String {
+    match scale.map(ErrorScale::percent) {
+        Some(end) => format!("Force error: blue −{end} %, white 0, orange +{end} %"),
+        None => "Edge".to_owned(),
+    }
+}
+
 /// The whole cell and, if there is one, the edge from nearby.
 fn spatial_views(input: &LayoutInput) -> (Panel, Option<Panel>) {
     let eye_on = |framed: &ViewBox, radii| {
@@ -148,7 +156,7 @@ fn spatial_views(input: &LayoutInput) -> (Panel, Option<Panel>) {
     let eye_on_cell = input.cell.map(|cell| eye_on(&cell, CELL_EYE_RADII));
     let edge = input.edge.map(|edge| {
         let eye_on_edge = eye_on(&edge, EDGE_EYE_RADII);
-        spatial_view(EDGE_VIEW, Some(eye_on_edge), 0.05)
+        spatial_view(&edge_heading(input.scale), Some(eye_on_edge), 0.05)
     });
     (spatial_view("Cell", eye_on_cell, 0.25), edge)
 }

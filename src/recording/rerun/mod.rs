@@ -35,6 +35,7 @@ use glam::DVec3;
 use self::layout::LayoutInput;
 use self::plots::Plot;
 use self::rrd::{RrdError, RrdWriter};
+use super::error_scale::ErrorScale;
 use super::scene::Scene;
 use super::{Recording, RecordingError};
 
@@ -106,8 +107,11 @@ fn write_layout(
     recording: &Recording,
     options: &RerunOptions,
 ) -> Result<(), RrdError> {
+    let errors = &scene.edge_path.relative_force_error;
+    let known = errors.iter().any(|error| error.is_finite());
     let screen = layout::screen(&LayoutInput {
         plots,
+        scale: known.then(|| ErrorScale::of(&scene.edge_path)),
         cell: view_box::cell_box(scene),
         edge: view_box::ViewBox::around(scene.edge_path.points_in_world.iter().copied()),
         eye_direction: options.eye_direction,
