@@ -449,13 +449,9 @@ fn style() -> Style {
 }
 
 fn opening(arguments: &RunArguments) -> Opening {
-    // A short span played fast: the viewer stands still for the eye.
     arguments
         .hold_at_s
-        .map_or(Opening::Paused, |time| Opening::Playing {
-            span: [time, time + 0.04],
-            speed: 50.0,
-        })
+        .map_or(Opening::Following, Opening::At)
 }
 
 /// Where results go: as asked, or to a folder in `runs` that is called as the input, a file without its extension.

@@ -1,6 +1,7 @@
 //! Turns channels into plots: named, coloured series in the units an engineer reads, with their
 //! bands and limits.
 
+use super::FOLLOW_PHASE;
 use super::colours::{
     BLUE, GREEN, GREY, ORANGE, PALE_GREY, PALETTE, PURPLE, SKY_BLUE, VERMILLION, YELLOW,
 };
@@ -290,8 +291,6 @@ fn add_force_band(plot: &mut Plot, recording: &Recording) {
     };
 }
 
-/// Phase to which the axis of the force is scaled: what is judged.
-const FOLLOW_PHASE: &str = "follow";
 /// The axis reaches at most so many times the desired force.
 const HIGHEST: f64 = 3.0;
 
