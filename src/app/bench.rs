@@ -76,6 +76,12 @@ pub(super) fn run_watched(
 
 fn limits(scenario: &BenchScenario) -> BenchLimits {
     let steps = scenario.command.steps();
+    let motion = match scenario.load {
+        LoadScenario::Contact { motion, .. } => motion.map(|motion| motion.start),
+        LoadScenario::Free => None,
+    };
+    let hand = scenario.hand.map(|hand| hand.start);
+    let disturbed_from = motion.into_iter().chain(hand).reduce(f64::min);
     // The first period brings the rig into its swing.
     let moving = match scenario.load {
         LoadScenario::Contact {
@@ -86,6 +92,7 @@ fn limits(scenario: &BenchScenario) -> BenchLimits {
     };
     BenchLimits {
         command_times: steps.iter().map(|(time, _)| *time).collect(),
+        disturbed_from,
         moving,
         stroke_limits: (0.0, scenario.device.parameters.full_stroke),
         atmosphere: scenario.device.parameters.gas.atmosphere,

@@ -15,8 +15,8 @@ use super::output::say;
 use super::report::{Label, ROLES, RunResult, read_json, read_run};
 use crate::diagnosis::answer::{Answer, Estimate};
 use crate::diagnosis::words::{capital, figures, of_column, percent, spoken};
-use crate::numbers::signed;
 use crate::page::html;
+use crate::quantity::{change, optional};
 use crate::recording::atomic::write_text;
 
 /// For the help.
@@ -259,7 +259,7 @@ fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
 
 impl Row {
     fn shown(&self, place: usize) -> String {
-        self.values[place].map_or("–".to_owned(), |v| figures(self.factor * v, 4))
+        optional(self.values[place].map(|v| self.factor * v), &self.unit)
     }
 
     /// Change against the first; none where either is absent, or the first is nothing.
@@ -270,7 +270,7 @@ impl Row {
             _ if own == first => Some("=".to_owned()),
             share if !share.is_finite() => None,
             share if share.abs() >= 1000.0 => Some(format!("x{}", figures(own / first, 2))),
-            share => Some(format!("{} %", signed(share, 1))),
+            share => Some(change(share)),
         }
     }
 }

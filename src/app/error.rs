@@ -7,7 +7,7 @@ use crate::diagnosis::flange::NoContact;
 use crate::diagnosis::recorded::RecordedError;
 use crate::import::ImportError;
 use crate::metrics::MetricsError;
-use crate::numbers::counted;
+use crate::quantity::counted;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
 use crate::workpiece::WorkpieceError;

@@ -1,4 +1,5 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, figures.svg of a bench, varied.toml of `--set`; those of a study: design.json, override.toml,
+//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, figures.svg of a bench, varied.toml of `--set`; those of a
+//! study: design.json, override.toml,
 //! front.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
@@ -8,10 +9,12 @@ use super::error::AppError;
 use super::report::REPORT;
 use super::run::{Finished, Source};
 use crate::cell::Cell;
-use crate::metrics::{Summary, Verdict};
+use crate::drawing;
+use crate::metrics::{FOLLOW_PHASE, Summary, Verdict};
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
+use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::{ArmScenario, BurrScenario, DeviceScenario, WorkpieceScenario};
 
@@ -19,10 +22,14 @@ pub(super) const RECORDING: &str = "recording.rrd";
 pub(super) const SAMPLES: &str = "samples.parquet";
 pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const FIGURES: &str = "figures.svg";
+pub(super) const CELL: &str = "cell.svg";
+pub(super) const EDGE: &str = "edge.svg";
 /// The scenario as `--set` made it.
 pub(super) const VARIED: &str = "varied.toml";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 6] = [RECORDING, SAMPLES, SUMMARY, FIGURES, REPORT, VARIED];
+pub(super) const RUN_NAMES: [&str; 8] = [
+    RECORDING, SAMPLES, SUMMARY, FIGURES, CELL, EDGE, REPORT, VARIED,
+];
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
 pub(super) const FRONT: &str = "front.svg";
@@ -153,7 +160,12 @@ impl OutputFolder {
         let recorded = written.1.transpose()?.is_some();
         write_text(&unfinished.path().join(SUMMARY), output.summary)?;
         write_text(&unfinished.path().join(REPORT), output.report)?;
-        let mut names = vec![SAMPLES, SUMMARY, REPORT];
+        write_text(&unfinished.path().join(CELL), &output.sketches.cell)?;
+        let mut names = vec![SAMPLES, SUMMARY, REPORT, CELL];
+        if let Some(edge) = &output.sketches.edge {
+            write_text(&unfinished.path().join(EDGE), edge)?;
+            names.push(EDGE);
+        }
         if recorded {
             names.insert(0, RECORDING);
         }
@@ -257,8 +269,31 @@ pub(super) struct RunOutput<'a> {
     pub figures: Option<&'a str>,
     /// varied.toml.
     pub varied: Option<&'a str>,
+    /// cell.svg and edge.svg.
+    pub sketches: &'a Sketches,
     /// report.html.
     pub report: &'a str,
+}
+
+/// Pictures of a run.
+pub(super) struct Sketches {
+    /// The cell, or the bench.
+    pub cell: String,
+    /// The edge in the colours of its force error; none on a bench.
+    pub edge: Option<String>,
+}
+
+impl Sketches {
+    /// The scene in the middle of following, or at the end of a run that does not follow an edge.
+    pub(super) fn of(scene: &Scene, recording: &Recording) -> Self {
+        let follow = recording.phase(FOLLOW_PHASE);
+        let end = recording.time().last().copied().unwrap_or_default();
+        let moment = follow.map_or(end, |follow| 0.5 * (follow.start + follow.end.min(end)));
+        Self {
+            cell: drawing::cell(scene, moment),
+            edge: drawing::edge(scene),
+        }
+    }
 }
 
 /// What summary.json holds, and `--json` prints.

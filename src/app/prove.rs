@@ -11,8 +11,8 @@ use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
 use crate::laboratory::{Recipe, shipped, write_case};
-use crate::numbers::counted;
 use crate::proof::{Claims, Diagnose, SweepPlan, folders, page, prove, sweep};
+use crate::quantity::counted;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 
 /// The cases that come with the project, from its folder.

@@ -7,7 +7,7 @@ use super::binomial::upper_bound;
 use super::outcome::Outcome;
 use super::summary::percentile;
 use crate::laboratory::LOST;
-use crate::numbers::significant;
+use crate::quantity::significant;
 
 /// A page in Markdown; outcomes in any order.
 pub fn page(outcomes: &[Outcome]) -> String {

@@ -7,7 +7,7 @@ use super::report::{Report, shown};
 use crate::design::{self, Domain};
 use crate::import::load_map;
 use crate::import::map::{Clock, Form};
-use crate::numbers::counted;
+use crate::quantity::counted;
 use crate::scenario::{load_any, load_device};
 
 /// A design study.

@@ -8,8 +8,8 @@ use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::servo::ServoLink;
 use crate::effects::vocabulary;
-use crate::numbers::significant;
 use crate::plant::{Channel, simulate};
+use crate::quantity::significant;
 use crate::replay::LoadedCell;
 
 /// Adds joints, servos and places.

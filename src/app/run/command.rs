@@ -60,13 +60,7 @@ impl RunArguments {
     pub(super) fn manner(&self) -> Manner {
         Manner {
             recorded: !self.no_recording,
-            // A short span played fast: the viewer stands still for the eye.
-            opening: self
-                .hold_at_s
-                .map_or(Opening::Paused, |time| Opening::Playing {
-                    span: [time, time + 0.04],
-                    speed: 50.0,
-                }),
+            opening: self.hold_at_s.map_or(Opening::Following, Opening::At),
             style: match anstream::AutoStream::choice(&std::io::stdout()) {
                 anstream::ColorChoice::Never => Style::Plain,
                 _ => Style::Coloured,

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{
-    FIGURES, OutputFolder, Picture, RECORDING, RunOutput, SummaryDocument, files_of_cell,
+    EDGE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches, SummaryDocument,
+    files_of_cell,
 };
 use super::super::growing::GrowingFile;
 use super::super::picture::scene_of;
@@ -91,6 +92,8 @@ impl Job {
         match name {
             RECORDING => recorded,
             FIGURES => matches!(self, Self::Bench(_)),
+            // Of a run that followed one.
+            EDGE => false,
             _ => true,
         }
     }
@@ -164,10 +167,14 @@ fn perform_cell(
         let scene = scene_of(cell, &finished.recording, &finished.frames)?;
         let summary = markdown(title, &finished.summary, &verdicts);
         let (report, encoded) = rayon::join(
-            || page_of_run(&document, &finished.recording),
+            || {
+                let sketches = Sketches::of(&scene, &finished.recording);
+                let page = page_of_run(&document, &finished.recording, &sketches);
+                page.map(|page| (page, sketches))
+            },
             || growing.map(|growing| growing.end(&finished.recording, &scene, &summary)),
         );
-        let (report, encoded) = (report?, encoded.transpose()?);
+        let ((report, sketches), encoded) = (report?, encoded.transpose()?);
         let names = folder.write(RunOutput {
             title,
             recording: &finished.recording,
@@ -176,6 +183,7 @@ fn perform_cell(
             summary: &document,
             figures: None,
             varied: source.copy(),
+            sketches: &sketches,
             report: &report,
         })?;
         let (code, told) = judged(finished.stop.as_ref(), &verdicts);
@@ -204,8 +212,9 @@ fn perform_bench(
     let verdicts = metrics::check(metrics::BENCH_METRICS, &finished.summary, &scenario.expect)
         .map_err(|source| unmeasured(&scenario.path, source))?;
     let document = bench::document(scenario, &finished, &verdicts, source, &origin)?;
-    let report = page_of_run(&document, &finished.recording)?;
     let scene = bench_picture::scene_of(scenario, &finished.recording)?;
+    let sketches = Sketches::of(&scene, &finished.recording);
+    let report = page_of_run(&document, &finished.recording, &sketches)?;
     let options = RerunOptions {
         summary_markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
         opening: manner.opening,
@@ -219,6 +228,7 @@ fn perform_bench(
         summary: &document,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
         varied: source.copy(),
+        sketches: &sketches,
         report: &report,
     })?;
     let (code, told) = judged(finished.stop.as_ref(), &verdicts);

@@ -6,7 +6,7 @@ use super::super::error::ExitCode;
 use super::settings::short;
 use super::variants::Done;
 use crate::metrics::{BENCH_METRICS, METRICS};
-use crate::numbers::significant;
+use crate::quantity::column;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;
@@ -148,20 +148,18 @@ fn metrics(runs: &[Done]) -> Vec<Column> {
         let (label, unit) = if bench { of_bench } else { of_cell }?;
         // A heading of two lines, as the others.
         let label = label.replace("coefficient of variation", "variation");
-        Some(format!("{label} [{unit}]"))
+        Some((format!("{label} [{unit}]"), unit))
     };
-    let column = |name: &str| {
+    let of = |name: &str| {
         let value = |run: &Done| run.document["summary"][name].as_f64();
         let values: Vec<Option<f64>> = runs.iter().map(value).collect();
         values.iter().any(Option::is_some).then_some(())?;
         let cell =
             |value: &Option<f64>| value.map_or("-".to_owned(), |value| significant(value, 4));
-        Some(Column::new(
-            &heading(name)?,
-            values.iter().map(cell).collect(),
-        ))
+        let (heading, unit) = heading(name)?;
+        Some(Column::new(&heading, column(&values, unit)))
     };
-    names.into_iter().filter_map(column).collect()
+    names.into_iter().filter_map(of).collect()
 }
 
 fn word(run: &Done) -> &'static str {
