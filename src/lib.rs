@@ -18,7 +18,9 @@
 //! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
 //! - [`metrics`]: the numbers of a run
+//! - [`drawing`]: a scene as an SVG picture
 //! - [`figure`]: signals as SVG pictures
+//! - [`quantity`]: numbers with their units as people read them
 //! - [`report`]: tables for people
 //! - [`app`]: the command line and the files that it writes
 // Units stand in square brackets, which rustdoc would take for links.
@@ -31,6 +33,7 @@ pub mod control;
 pub mod design;
 pub mod device;
 pub mod diagnosis;
+pub mod drawing;
 pub mod effects;
 pub mod estimation;
 pub mod figure;
@@ -42,6 +45,7 @@ pub mod path;
 pub mod physics;
 pub mod plant;
 pub mod proof;
+pub mod quantity;
 pub mod recording;
 pub mod replay;
 pub mod report;

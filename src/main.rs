@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches};
-use idc_cell::app::{Cli, complain, execute, wants_json};
+use idc_cell::app::{Cli, complain, execute, listen, wants_json};
 
 fn main() -> ExitCode {
     let matches = Cli::command().get_matches();
@@ -13,6 +13,7 @@ fn main() -> ExitCode {
         Err(error) => error.exit(),
     };
     cli.colour.write_global();
+    listen(json);
     match execute(&cli) {
         Ok(code) => code.into(),
         Err(error) => {

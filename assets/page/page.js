@@ -67,22 +67,57 @@
       ctx.fillStyle = faded("Band", 0.25);
       ctx.fillRect(bbox.left, top, bbox.width, Math.max(bottom - top, ratio));
     }
-    ctx.font = `${11 * ratio}px system-ui, sans-serif`;
-    ctx.strokeStyle = ctx.fillStyle = colour("quiet");
+    ctx.strokeStyle = colour("quiet");
     ctx.lineWidth = ratio;
-    // A label that would lie on the one before goes a line lower.
-    let taken = [-Infinity, 0];
+    ctx.setLineDash([3 * ratio, 3 * ratio]);
     for (const marker of told.markers) {
       const at = u.valToPos(marker.at, "x", true);
       ctx.beginPath();
-      ctx.setLineDash([3 * ratio, 3 * ratio]);
       ctx.moveTo(at, bbox.top);
       ctx.lineTo(at, bbox.top + bbox.height);
       ctx.stroke();
-      const line = at < taken[0] ? (taken[1] + 1) % 3 : 0;
-      taken = [at + 10 * ratio + ctx.measureText(marker.label).width, line];
-      ctx.fillText(marker.label, at + 4 * ratio, bbox.top + (12 + 13 * line) * ratio);
     }
+    ctx.restore();
+    names(told)(u);
+  };
+
+  // Names of the phases in a band of their own above the signals, each from where its phase begins, one that would lie on another a line lower.
+  const line = 14;
+  const lines = (told) => Math.min(3, told.markers.length);
+  const names = (told) => (u) => {
+    const { ctx, bbox } = u;
+    const ratio = uPlot.pxRatio;
+    const [left, right, top] = [bbox.left, bbox.left + bbox.width, bbox.top - (lines(told) * line + 4) * ratio];
+    u.names = [];
+    ctx.save();
+    ctx.font = `${11 * ratio}px system-ui, sans-serif`;
+    ctx.textAlign = "left";
+    ctx.textBaseline = "middle";
+    ctx.strokeStyle = ctx.fillStyle = colour("quiet");
+    ctx.lineWidth = ratio;
+    const ends = Array(lines(told)).fill(-Infinity);
+    told.markers.forEach((marker, which) => {
+      const begins = u.valToPos(marker.at, "x", true);
+      const next = told.markers[which + 1];
+      const over = next ? u.valToPos(next.at, "x", true) : Infinity;
+      if (begins > right || over <= left) return;
+      const width = ctx.measureText(marker.label).width;
+      const at = Math.max(left, begins);
+      const word = Math.max(left, Math.min(at + 4 * ratio, right - width));
+      const free = ends.findIndex((end) => end < word);
+      if (free < 0) return;
+      ends[free] = word + width + 6 * ratio;
+      const middle = top + (free + 0.5) * line * ratio;
+      ctx.fillText(marker.label, word, middle);
+      // From its name down to its line.
+      if (begins >= left) {
+        ctx.beginPath();
+        ctx.moveTo(at, middle - 5 * ratio);
+        ctx.lineTo(at, bbox.top);
+        ctx.stroke();
+      }
+      u.names.push({ label: marker.label, left: word / ratio, right: (word + width) / ratio, top: (middle - 6 * ratio) / ratio, bottom: (middle + 6 * ratio) / ratio });
+    });
     ctx.restore();
   };
 
@@ -141,6 +176,7 @@
     const plain = (_, values) => values.map((v) => String(Number(v.toPrecision(6))));
     const options = {
       ...onScreen(place),
+      padding: [told.markers.length ? lines(told) * line + 8 : 10, 12, 0, 0],
       cursor: { sync: told.group ? { key: told.group, setSeries: false } : undefined, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
       legend: { live: true },
       scales: { x: { time: false, min: shared?.min, max: shared?.max }, y: { range: (_, min, max) => told.within ?? (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },

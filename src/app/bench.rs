@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::bench_picture::scene_of;
 use super::error::AppError;
-use super::files::provenance;
+use super::run::Source;
 use super::viewer::{PART_INTERVAL, Watch};
 use crate::metrics::{BenchLimits, BenchSummary, Timing, Verdict, summarise_bench};
 use crate::recording::Recording;
@@ -76,6 +76,12 @@ pub(super) fn run_watched(
 
 fn limits(scenario: &BenchScenario) -> BenchLimits {
     let steps = scenario.command.steps();
+    let motion = match scenario.load {
+        LoadScenario::Contact { motion, .. } => motion.map(|motion| motion.start),
+        LoadScenario::Free => None,
+    };
+    let hand = scenario.hand.map(|hand| hand.start);
+    let disturbed_from = motion.into_iter().chain(hand).reduce(f64::min);
     // The first period brings the rig into its swing.
     let moving = match scenario.load {
         LoadScenario::Contact {
@@ -86,6 +92,7 @@ fn limits(scenario: &BenchScenario) -> BenchLimits {
     };
     BenchLimits {
         command_times: steps.iter().map(|(time, _)| *time).collect(),
+        disturbed_from,
         moving,
         stroke_limits: (0.0, scenario.device.parameters.full_stroke),
         atmosphere: scenario.device.parameters.gas.atmosphere,
@@ -97,29 +104,35 @@ pub(super) fn document(
     scenario: &BenchScenario,
     finished: &FinishedBench,
     expectations: &[Verdict],
+    source: &Source,
+    origin: &Provenance,
 ) -> Result<String, AppError> {
     #[derive(Serialize)]
     struct Document<'a> {
         schema: u32,
         kind: &'static str,
-        scenario: String,
+        scenario: &'a str,
         title: &'a str,
+        /// Keys that have other values than in the scenario's file.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        set: Option<serde_json::Value>,
         /// What stopped the run early; null if it ran to its end.
         stopped: Option<String>,
         summary: &'a BenchSummary,
         expectations: &'a [Verdict],
         samples: usize,
-        provenance: Provenance,
+        provenance: &'a Provenance,
     }
     Ok(serde_json::to_string_pretty(&Document {
         schema: 1,
         kind: "bench",
-        scenario: scenario.path.display().to_string(),
+        scenario: &source.name,
         title: &scenario.title,
+        set: source.set(),
         stopped: finished.stop.as_ref().map(ToString::to_string),
         summary: &finished.summary,
         expectations,
         samples: finished.recording.sample_count(),
-        provenance: provenance(&[&scenario.path, &scenario.device.model], scenario.seed)?,
+        provenance: origin,
     })?)
 }

@@ -6,23 +6,10 @@ use clap::{Args, Parser, Subcommand};
 
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
-use super::files::{
-    OutputFolder, Picture, RECORDING, RUN_NAMES, RunOutput, Standing, SummaryDocument,
-    files_of_cell, provenance,
-};
-use super::growing::GrowingFile;
-use super::help;
+use super::files::{OutputFolder, Standing};
+use super::interrupt::Interruptible;
 use super::output::say;
-use super::picture::scene_of;
-use super::run::{Listener, run_heard};
-use super::viewer::{Viewing, Watch};
-use super::{bench, bench_figures, bench_picture, progress};
-use crate::cell::Cell;
-use crate::metrics::{self, Verdict};
-use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
-use crate::report::{Style, bench_markdown, bench_text, markdown, text};
-use crate::rig::Rig;
-use crate::scenario::{self, AnyScenario, BenchScenario};
+use super::{help, progress};
 
 /// Simulate a robot deburring cell with a pneumatic constant-force end effector, and find out what physics recordings of a real one contain
 /// that its model leaves out.
@@ -45,7 +32,7 @@ pub struct Cli {
 enum Command {
     /// Run a scenario: simulate, record, print how uniform the contact force was.
     #[command(after_help = help::RUN)]
-    Run(RunArguments),
+    Run(super::run::RunArguments),
     /// Explain a file without running it: what it describes, what would be done, what is missing.
     #[command(after_help = super::check::EXAMPLES)]
     Check(super::check::CheckArguments),
@@ -94,33 +81,6 @@ enum Command {
     /// Print the manual page, or write one of each command.
     #[command(after_help = super::manual::MAN_EXAMPLES)]
     Man(super::manual::ManArguments),
-}
-
-#[derive(Debug, Args)]
-struct RunArguments {
-    /// Scenario file.
-    scenario: PathBuf,
-    /// Folder for recording.rrd, samples.parquet and summary.json [default: runs/<scenario name>].
-    #[arg(long, help_heading = "Output")]
-    out: Option<PathBuf>,
-    /// Watch the run while it goes on: `native` or `web` viewer, `web:PORT`, or the address at which one listens [default: native where it is installed, otherwise web].
-    #[arg(long, value_name = "WHERE", num_args = 0..=1, require_equals = true, default_missing_value = "")]
-    view: Option<String>,
-    /// Put new results in place of old ones.
-    #[arg(long, help_heading = "Output")]
-    force: bool,
-    /// Print nothing but errors.
-    #[arg(long, help_heading = "Output")]
-    quiet: bool,
-    /// Print what summary.json holds instead of the table.
-    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
-    json: bool,
-    /// Leave out recording.rrd, as for many runs of which only the numbers are wanted.
-    #[arg(long, help_heading = "Output")]
-    no_recording: bool,
-    /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
-    #[arg(long, hide = true)]
-    hold_at_s: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -183,7 +143,7 @@ pub(super) struct DiagnoseArguments {
 /// One message that names file, key or waypoint and what was expected.
 pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
-        Command::Run(arguments) => run(arguments),
+        Command::Run(arguments) => super::run::run(arguments),
         Command::Check(arguments) => super::check::run(arguments),
         Command::New(arguments) => super::new::run(arguments),
         Command::Design(arguments) => design(arguments),
@@ -203,157 +163,6 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     }
 }
 
-fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
-    let scenario = scenario::load_any(&arguments.scenario)?;
-    let viewing = arguments.view.as_deref().map(Viewing::parse).transpose()?;
-    let scenario = match scenario {
-        AnyScenario::Cell(cell) => *cell,
-        AnyScenario::Bench(bench) => return run_bench(arguments, *bench, viewing),
-    };
-    let file = arguments.scenario.display().to_string();
-    let metrics_error = |source| AppError::Metrics {
-        file: file.clone(),
-        source,
-    };
-    metrics::validate(metrics::METRICS, &scenario.expect).map_err(metrics_error)?;
-    let cell = Cell::new(scenario)?;
-    let folder = OutputFolder::prepare(
-        &output_folder(arguments.out.as_ref(), &arguments.scenario),
-        &RUN_NAMES,
-        Standing::of(arguments.force),
-    )?;
-    let quiet = arguments.quiet || arguments.json;
-    if !quiet {
-        for note in &cell.notes {
-            eprintln!("note: {note}");
-        }
-    }
-    let scenario = &cell.scenario;
-    let files = files_of_cell(
-        &scenario.path,
-        &scenario.arm,
-        &scenario.device,
-        &scenario.workpiece,
-    );
-    let origin = provenance(&files, scenario.simulation.seed)?;
-    let origin_text = origin.content();
-    let target = folder.path().join(RECORDING);
-    let options = RerunOptions {
-        opening: opening(arguments),
-        ..RerunOptions::default()
-    };
-    let watch = open_watch(viewing, arguments.quiet)?;
-    let bar = progress::bar("simulating", quiet);
-    let told = &mut |done, total| progress::tell(&bar, done, total);
-    let (code, scene, summary) = std::thread::scope(|scope| -> Result<_, AppError> {
-        let growing = (!arguments.no_recording)
-            .then(|| GrowingFile::begin(scope, &cell, &target, &origin_text, options));
-        let watching = watch.iter().map(|watch| Listener::watching(&cell, watch));
-        let growing_too = growing.iter().map(|growing| growing.listener());
-        let listeners = watching.chain(growing_too).collect();
-        let finished = run_heard(&cell, told, listeners);
-        bar.finish_and_clear();
-        let finished = finished?;
-        let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect)
-            .map_err(metrics_error)?;
-        let title = &cell.scenario.title;
-        let document = SummaryDocument::new(&cell, &finished, &verdicts, &origin).text()?;
-        let scene = scene_of(&cell, &finished.recording, &finished.frames)?;
-        let summary = markdown(title, &finished.summary, &verdicts);
-        let (report, encoded) = rayon::join(
-            || super::report::page_of_run(&document, &finished.recording),
-            || growing.map(|growing| growing.end(&finished.recording, &scene, &summary)),
-        );
-        let (report, encoded) = (report?, encoded.transpose()?);
-        let names = folder.write(RunOutput {
-            title,
-            recording: &finished.recording,
-            picture: encoded
-                .map(|encoded| -> Picture<'_> { Box::new(move |path| encoded.write(path)) }),
-            summary: &document,
-            figures: None,
-            report: &report,
-        })?;
-        let table = text(title, &finished.summary, &verdicts, style());
-        let output = [arguments.quiet, arguments.json];
-        show(output, &document, &table, &folder, &names)?;
-        Ok((end(finished.stop.as_ref(), &verdicts), scene, summary))
-    })?;
-    if let Some(watch) = watch {
-        watch.close(scene, summary, quiet);
-    }
-    Ok(code)
-}
-
-fn run_bench(
-    arguments: &RunArguments,
-    scenario: BenchScenario,
-    viewing: Option<Viewing>,
-) -> Result<ExitCode, AppError> {
-    let file = arguments.scenario.display().to_string();
-    let metrics_error = |source| AppError::Metrics {
-        file: file.clone(),
-        source,
-    };
-    metrics::validate(metrics::BENCH_METRICS, &scenario.expect).map_err(metrics_error)?;
-    if arguments.hold_at_s.is_some() {
-        return Err(AppError::NoBench {
-            option: "hold-at-s",
-        });
-    }
-    let rig = Rig::new(scenario)?;
-    let folder = OutputFolder::prepare(
-        &output_folder(arguments.out.as_ref(), &arguments.scenario),
-        &RUN_NAMES,
-        Standing::of(arguments.force),
-    )?;
-    let quiet = arguments.quiet || arguments.json;
-    let watch = open_watch(viewing, arguments.quiet)?;
-    let bar = progress::bar("simulating", quiet);
-    let told = &mut |done, total| progress::tell(&bar, done, total);
-    let finished = bench::run_watched(&rig, told, watch.as_ref());
-    bar.finish_and_clear();
-    let finished = finished?;
-    let scenario = &rig.scenario;
-    let verdicts = metrics::check(metrics::BENCH_METRICS, &finished.summary, &scenario.expect)
-        .map_err(metrics_error)?;
-    let document = bench::document(scenario, &finished, &verdicts)?;
-    let report = super::report::page_of_run(&document, &finished.recording)?;
-    let scene = bench_picture::scene_of(scenario, &finished.recording)?;
-    let options = RerunOptions {
-        summary_markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
-        opening: opening(arguments),
-        ..RerunOptions::default()
-    };
-    let picture = |path: &Path| write_rrd(path, &finished.recording, &scene, &options);
-    let names = folder.write(RunOutput {
-        title: &scenario.title,
-        recording: &finished.recording,
-        picture: (!arguments.no_recording).then_some(Box::new(picture)),
-        summary: &document,
-        figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
-        report: &report,
-    })?;
-    let table = bench_text(&scenario.title, &finished.summary, &verdicts, style());
-    let output = [arguments.quiet, arguments.json];
-    show(output, &document, &table, &folder, &names)?;
-    let code = end(finished.stop.as_ref(), &verdicts);
-    if let Some(watch) = watch {
-        watch.close(scene, options.summary_markdown, quiet);
-    }
-    Ok(code)
-}
-
-/// Opens the viewer that `--view` asks for.
-fn open_watch(viewing: Option<Viewing>, quiet: bool) -> Result<Option<Watch>, AppError> {
-    let watch = viewing.map(Watch::begin).transpose()?;
-    let address = watch.as_ref().and_then(Watch::address);
-    if let (Some(address), false) = (address, quiet) {
-        eprintln!("watch the run at {address}");
-    }
-    Ok(watch)
-}
-
 fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {
     let out = output_folder(arguments.out.as_ref(), &arguments.study);
     let study = PreparedStudy::new(
@@ -363,9 +172,11 @@ fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {
         Standing::of(arguments.force),
     )?;
     let bar = progress::bar("searching", arguments.quiet || arguments.json);
+    let interruptible = Interruptible::of_one("study", &out);
     let finished = study.run(&|done, most| progress::tell(&bar, done, most));
     bar.finish_and_clear();
     let finished = finished?;
+    drop(interruptible);
     show(
         [arguments.quiet, arguments.json],
         &finished.document,
@@ -377,7 +188,7 @@ fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {
 }
 
 /// Prints what the user asked to see.
-fn show(
+pub(super) fn show(
     [quiet, json]: [bool; 2],
     document: &str,
     table: &str,
@@ -395,60 +206,6 @@ fn show(
         ))?;
     }
     Ok(())
-}
-
-/// Says why a run stopped early, if it did, and which bounds were not kept.
-fn end(stop: Option<&impl std::fmt::Display>, verdicts: &[Verdict]) -> ExitCode {
-    if let Some(stop) = stop {
-        eprintln!("stopped: {stop}");
-        return ExitCode::Stopped;
-    }
-    judge(verdicts)
-}
-
-/// Says on standard error which results lie outside their bounds, whatever else is printed.
-fn judge(verdicts: &[Verdict]) -> ExitCode {
-    let mut code = ExitCode::Done;
-    for verdict in verdicts.iter().filter(|verdict| !verdict.kept) {
-        code = ExitCode::OutsideBounds;
-        let bound = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {bound}"));
-        let bounds = [
-            bound("at least", verdict.min),
-            bound("at most", verdict.max),
-        ];
-        let bounds = bounds
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(" and ");
-        let value = verdict
-            .value
-            .map_or("not determined by this run".to_owned(), |value| {
-                format!("{value:.6}")
-            });
-        eprintln!(
-            "outside its bounds: {} is {value}, expected {bounds}",
-            verdict.metric
-        );
-    }
-    code
-}
-
-fn style() -> Style {
-    match anstream::AutoStream::choice(&std::io::stdout()) {
-        anstream::ColorChoice::Never => Style::Plain,
-        _ => Style::Coloured,
-    }
-}
-
-fn opening(arguments: &RunArguments) -> Opening {
-    // A short span played fast: the viewer stands still for the eye.
-    arguments
-        .hold_at_s
-        .map_or(Opening::Paused, |time| Opening::Playing {
-            span: [time, time + 0.04],
-            speed: 50.0,
-        })
 }
 
 /// Where results go: as asked, or to a folder in `runs` that is called as the input, a file without its extension.

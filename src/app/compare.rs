@@ -14,8 +14,9 @@ use super::files::{SAMPLES, SUMMARY, Standing, is_same, prepare_file};
 use super::output::say;
 use super::report::{Label, ROLES, RunResult, read_json, read_run};
 use crate::diagnosis::answer::{Answer, Estimate};
-use crate::diagnosis::words::{capital, figures, of_column, percent, spoken};
+use crate::diagnosis::words::{capital, of_column, percent, spoken};
 use crate::page::html;
+use crate::quantity::{change, optional, significant};
 use crate::recording::atomic::write_text;
 
 /// For the help.
@@ -70,7 +71,8 @@ struct Compared {
     /// A sentence per folder.
     verdicts: Vec<String>,
     rows: Vec<Row>,
-    runs: Vec<RunResult<'static>>,
+    /// Runs whose signals are drawn, by their places.
+    drawn: Vec<(usize, RunResult<'static>)>,
 }
 
 /// Compares and prints.
@@ -100,6 +102,21 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
+/// Writes the page of runs: the numbers of all of them, signals of as many as there are colours.
+pub(super) fn write_page(folders: &[PathBuf], page: &Path) -> Result<(), AppError> {
+    Ok(write_text(page, &html(&page::page(&read(folders)?)))?)
+}
+
+/// Which of so many runs are drawn over one another: from the first to the last, evenly.
+fn drawn(count: usize) -> Vec<usize> {
+    match count {
+        0..=MOST => (0..count).collect(),
+        _ => (0..MOST)
+            .map(|place| place * (count - 1) / (MOST - 1))
+            .collect(),
+    }
+}
+
 fn read(folders: &[PathBuf]) -> Result<Compared, AppError> {
     let diagnosed = |folder: &PathBuf| folder.join(DIAGNOSIS).is_file();
     let is_run = |folder: &PathBuf| folder.join(SUMMARY).is_file();
@@ -126,36 +143,46 @@ fn read(folders: &[PathBuf]) -> Result<Compared, AppError> {
             run: run.display().to_string(),
         });
     }
-    let runs: Vec<RunResult<'static>> = folders
-        .iter()
-        .map(|f| read_run(f))
-        .collect::<Result<_, _>>()?;
-    Ok(of_runs(names, runs))
+    let documents = folders.iter().map(|f| read_json(&f.join(SUMMARY)));
+    let documents = documents.collect::<Result<Vec<Value>, _>>()?;
+    let drawn: Vec<(usize, RunResult<'static>)> = drawn(folders.len())
+        .into_iter()
+        .map(|place| Ok((place, read_run(&folders[place])?)))
+        .collect::<Result<_, AppError>>()?;
+    Ok(of_runs(names, &documents, drawn))
 }
 
-fn of_runs(names: Vec<String>, runs: Vec<RunResult<'static>>) -> Compared {
+fn of_runs(
+    names: Vec<String>,
+    documents: &[Value],
+    drawn: Vec<(usize, RunResult<'static>)>,
+) -> Compared {
     let mut labels: Vec<Label> = Vec::new();
-    for (label, _) in runs.iter().flat_map(RunResult::metrics) {
+    for (label, _) in drawn.iter().flat_map(|(_, run)| run.metrics()) {
         if !labels.iter().any(|known| known.key == label.key) {
             labels.push(label);
         }
     }
     let row = |label: Label| {
-        let value = |run: &RunResult<'_>| run.document["summary"][label.key].as_f64();
+        let value = |document: &Value| document["summary"][label.key].as_f64();
         Row {
             unit: label.unit.to_owned(),
             key: label.key.to_owned(),
             factor: 1.0,
-            values: runs.iter().map(value).collect(),
+            values: documents.iter().map(value).collect(),
             name: label.name,
         }
     };
     Compared {
         rows: labels.into_iter().map(row).collect(),
-        verdicts: runs.iter().map(|run| run.title().to_owned()).collect(),
+        verdicts: documents.iter().map(title).collect(),
         names,
-        runs,
+        drawn,
     }
+}
+
+fn title(document: &Value) -> String {
+    document["title"].as_str().unwrap_or("a run").to_owned()
 }
 
 fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
@@ -226,13 +253,13 @@ fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
         names,
         verdicts: answers.iter().map(verdict).collect(),
         rows,
-        runs: Vec::new(),
+        drawn: Vec::new(),
     }
 }
 
 impl Row {
     fn shown(&self, place: usize) -> String {
-        self.values[place].map_or("–".to_owned(), |v| figures(self.factor * v, 4))
+        optional(self.values[place].map(|v| self.factor * v), &self.unit)
     }
 
     /// Change against the first; none where either is absent, or the first is nothing.
@@ -242,8 +269,8 @@ impl Row {
         match share {
             _ if own == first => Some("=".to_owned()),
             share if !share.is_finite() => None,
-            share if share.abs() >= 1000.0 => Some(format!("x{}", figures(own / first, 2))),
-            share => Some(format!("{share:+.1} %")),
+            share if share.abs() >= 1000.0 => Some(format!("x{}", significant(own / first, 2))),
+            share => Some(change(share)),
         }
     }
 }

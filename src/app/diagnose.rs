@@ -15,13 +15,15 @@ mod unlisted_picture;
 
 use std::path::Path;
 
+pub(super) use all::natural;
 pub(super) use comparison_files::{BALANCE, COMPARISON, read_comparison};
 pub(super) use one::{rig_of, to_fit};
-pub(super) use outputs::DIAGNOSIS;
+pub(super) use outputs::{BOARD, DIAGNOSIS};
 
 use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};
 use super::files::Standing;
+use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress::StagedLine;
 use crate::replay::LoadedCell;
@@ -56,6 +58,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         return Ok(ExitCode::Done);
     }
     let silent = arguments.quiet || arguments.json || arguments.verbose;
+    let _interruptible = Interruptible::of_one("diagnosis", &out);
     let line = StagedLine::new(&Stages::first(), silent);
     let prepared = one::Prepared::new(&arguments.case, cell, &out, standing)?;
     let mut stages = Stages::default();

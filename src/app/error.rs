@@ -7,6 +7,7 @@ use crate::diagnosis::flange::NoContact;
 use crate::diagnosis::recorded::RecordedError;
 use crate::import::ImportError;
 use crate::metrics::MetricsError;
+use crate::quantity::counted;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
 use crate::workpiece::WorkpieceError;
@@ -181,6 +182,66 @@ pub enum AppError {
         /// Why.
         reason: String,
     },
+    /// Flags that ask for no runs.
+    #[error("--set: {reason}")]
+    Setting {
+        /// What is wrong, and what was expected.
+        reason: String,
+    },
+    /// A scenario that cannot be with what is set.
+    #[error("{flags}: {source}")]
+    Set {
+        /// The flags.
+        flags: String,
+        /// What is wrong.
+        source: Box<AppError>,
+    },
+    /// Several runs where one can be watched.
+    #[error(
+        "--view shows one run, and --set asks for {runs}; expected one of the two, and idc view FOLDER for all of them afterwards"
+    )]
+    ViewOfSeveral {
+        /// How many.
+        runs: usize,
+    },
+    /// A case that does not come with the project.
+    #[error(
+        "--only {name}: no case of that name comes with the project, which has {known}; expected one of them, or your own cases (--cases)"
+    )]
+    NoShippedCase {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// A folder without recordings.
+    #[error(
+        "{folder}: there is nothing in it to look at, expected a folder that run (recording.rrd) or diagnose (diagnosis.rrd) wrote, or a folder of such folders; --no-recording leaves the recording out, and report.html needs a browser alone"
+    )]
+    NothingToView {
+        /// The folder.
+        folder: String,
+    },
+    /// A folder with too many recordings.
+    #[error(
+        "{folder} holds {count} recordings, {some} and others, expected at most {most}; name the folders or files to look at"
+    )]
+    TooManyToView {
+        /// The folder.
+        folder: String,
+        /// How many.
+        count: usize,
+        /// How many are opened at most.
+        most: usize,
+        /// The first ones.
+        some: String,
+    },
+    /// A part of many that ended in a panic.
+    #[error("{part}: a fault of the program, see above; please report it")]
+    Fault {
+        /// The part.
+        part: String,
+    },
     /// A number on the command line.
     #[error("--{option} is {value}, expected {expected}")]
     Option {
@@ -219,7 +280,7 @@ pub enum AppError {
         reason: String,
     },
     /// Cases of which some could not be diagnosed.
-    #[error("{failed} of {of} cases failed; the others are done")]
+    #[error("{failed} of {} failed; the others are done", counted(*of, "case"))]
     CasesFailed {
         /// How many failed.
         failed: usize,

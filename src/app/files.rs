@@ -1,4 +1,5 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, and figures.svg of a bench; those of a study: design.json, override.toml,
+//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, figures.svg of a bench, varied.toml of `--set`; those of a
+//! study: design.json, override.toml,
 //! front.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
@@ -6,21 +7,29 @@ use std::path::{Path, PathBuf};
 
 use super::error::AppError;
 use super::report::REPORT;
-use super::run::Finished;
+use super::run::{Finished, Source};
 use crate::cell::Cell;
-use crate::metrics::{Summary, Verdict};
-use crate::recording::atomic::{UnfinishedFolder, write_text};
+use crate::drawing;
+use crate::metrics::{FOLLOW_PHASE, Summary, Verdict};
+use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
+use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::{ArmScenario, BurrScenario, DeviceScenario, WorkpieceScenario};
 
 pub(super) const RECORDING: &str = "recording.rrd";
 pub(super) const SAMPLES: &str = "samples.parquet";
 pub(super) const SUMMARY: &str = "summary.json";
-const FIGURES: &str = "figures.svg";
+pub(super) const FIGURES: &str = "figures.svg";
+pub(super) const CELL: &str = "cell.svg";
+pub(super) const EDGE: &str = "edge.svg";
+/// The scenario as `--set` made it.
+pub(super) const VARIED: &str = "varied.toml";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 5] = [RECORDING, SAMPLES, SUMMARY, FIGURES, REPORT];
+pub(super) const RUN_NAMES: [&str; 8] = [
+    RECORDING, SAMPLES, SUMMARY, FIGURES, CELL, EDGE, REPORT, VARIED,
+];
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
 pub(super) const FRONT: &str = "front.svg";
@@ -72,7 +81,7 @@ pub(super) fn prepare_file(
         });
     }
     match path.parent() {
-        Some(folder) => std::fs::create_dir_all(folder).map_err(|error| refuse(&error)),
+        Some(folder) => make_folder(folder).map_err(|error| refuse(&error)),
         None => Ok(()),
     }
 }
@@ -89,6 +98,19 @@ impl OutputFolder {
         names: &[&str],
         standing: Standing,
     ) -> Result<Self, AppError> {
+        Self::check(path, names, standing)?;
+        make_folder(path).map_err(|error| AppError::OutputFolder {
+            folder: path.display().to_string(),
+            reason: error.to_string(),
+        })?;
+        drop(UnfinishedFolder::within(path)?);
+        Ok(Self {
+            path: path.to_owned(),
+        })
+    }
+
+    /// Refuses a folder that files of these names cannot go to, without making it.
+    pub(super) fn check(path: &Path, names: &[&str], standing: Standing) -> Result<(), AppError> {
         let refuse = |reason: String| AppError::OutputFolder {
             folder: path.display().to_string(),
             reason,
@@ -105,14 +127,10 @@ impl OutputFolder {
                 name: (*name).to_owned(),
             });
         }
-        std::fs::create_dir_all(path).map_err(|error| refuse(error.to_string()))?;
-        if let Some(name) = names.iter().find(|name| path.join(name).is_dir()) {
-            return Err(refuse(format!("{name} in it is a folder")));
+        match names.iter().find(|name| path.join(name).is_dir()) {
+            Some(name) => Err(refuse(format!("{name} in it is a folder"))),
+            None => Ok(()),
         }
-        drop(UnfinishedFolder::within(path)?);
-        Ok(Self {
-            path: path.to_owned(),
-        })
     }
 
     /// Its path.
@@ -142,13 +160,20 @@ impl OutputFolder {
         let recorded = written.1.transpose()?.is_some();
         write_text(&unfinished.path().join(SUMMARY), output.summary)?;
         write_text(&unfinished.path().join(REPORT), output.report)?;
-        let mut names = vec![SAMPLES, SUMMARY, REPORT];
+        write_text(&unfinished.path().join(CELL), &output.sketches.cell)?;
+        let mut names = vec![SAMPLES, SUMMARY, REPORT, CELL];
+        if let Some(edge) = &output.sketches.edge {
+            write_text(&unfinished.path().join(EDGE), edge)?;
+            names.push(EDGE);
+        }
         if recorded {
             names.insert(0, RECORDING);
         }
-        if let Some(figures) = output.figures {
-            write_text(&unfinished.path().join(FIGURES), figures)?;
-            names.push(FIGURES);
+        for (name, text) in [(FIGURES, output.figures), (VARIED, output.varied)] {
+            if let Some(text) = text {
+                write_text(&unfinished.path().join(name), text)?;
+                names.push(name);
+            }
         }
         unfinished.finish(&names)?;
         for other in RUN_NAMES.iter().filter(|name| !names.contains(name)) {
@@ -242,16 +267,44 @@ pub(super) struct RunOutput<'a> {
     pub summary: &'a str,
     /// figures.svg.
     pub figures: Option<&'a str>,
+    /// varied.toml.
+    pub varied: Option<&'a str>,
+    /// cell.svg and edge.svg.
+    pub sketches: &'a Sketches,
     /// report.html.
     pub report: &'a str,
+}
+
+/// Pictures of a run.
+pub(super) struct Sketches {
+    /// The cell, or the bench.
+    pub cell: String,
+    /// The edge in the colours of its force error; none on a bench.
+    pub edge: Option<String>,
+}
+
+impl Sketches {
+    /// The scene in the middle of following, or at the end of a run that does not follow an edge.
+    pub(super) fn of(scene: &Scene, recording: &Recording) -> Self {
+        let follow = recording.phase(FOLLOW_PHASE);
+        let end = recording.time().last().copied().unwrap_or_default();
+        let moment = follow.map_or(end, |follow| 0.5 * (follow.start + follow.end.min(end)));
+        Self {
+            cell: drawing::cell(scene, moment),
+            edge: drawing::edge(scene),
+        }
+    }
 }
 
 /// What summary.json holds, and `--json` prints.
 #[derive(serde::Serialize)]
 pub(super) struct SummaryDocument<'a> {
     schema: u32,
-    scenario: String,
+    scenario: &'a str,
     title: &'a str,
+    /// Keys that have other values than in the scenario's file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<serde_json::Value>,
     /// What stopped the run early; null if it ran to its end.
     stopped: Option<String>,
     summary: &'a Summary,
@@ -268,12 +321,14 @@ impl<'a> SummaryDocument<'a> {
         cell: &'a Cell,
         finished: &'a Finished,
         expectations: &'a [Verdict],
+        source: &'a Source,
         origin: &'a Provenance,
     ) -> Self {
         Self {
             schema: 1,
-            scenario: cell.scenario.path.display().to_string(),
+            scenario: &source.name,
             title: &cell.scenario.title,
+            set: source.set(),
             stopped: finished.stop.as_ref().map(ToString::to_string),
             summary: &finished.summary,
             expectations,

@@ -11,6 +11,7 @@ use clap::Args;
 
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, is_same, prepare_file};
+use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
 use crate::import::findings::same_data;
@@ -67,6 +68,8 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
         arguments.logs.chunks(each).collect()
     };
     let mut jobs: Vec<Job> = Vec::new();
+    let reading =
+        Interruptible::new(|_| "nothing was written yet; the same command begins anew".to_owned());
     let sizes: Vec<u64> = groups.iter().map(|logs| bytes(logs)).collect();
     let bar = progress::bytes(sizes.iter().sum(), arguments.quiet || arguments.json);
     for (logs, size) in groups.iter().zip(&sizes) {
@@ -77,11 +80,16 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
         jobs.push(Job { imported, out });
     }
     bar.finish_and_clear();
+    drop(reading);
     check_destinations(&jobs)?;
     for path in jobs.iter().filter_map(|job| job.out.as_ref()) {
         prepare_file(path, "--out", Standing::of(arguments.force))?;
     }
     let copies = copies(&jobs);
+    let interruptible = arguments.out.as_ref().map(|out| {
+        let (out, count) = (out.display().to_string(), jobs.len());
+        Interruptible::new(move |done| format!("{done} of {count} recordings are written and kept in {out}; the same command with --force writes all of them"))
+    });
     for job in &jobs {
         let Some(path) = &job.out else { continue };
         write_parquet(
@@ -89,6 +97,7 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
             &job.imported.recording,
             &provenance(&job.imported, &map),
         )?;
+        interruptible.iter().for_each(Interruptible::one_more);
     }
     if arguments.json {
         say(&json::report(&map, &jobs, &copies)?)?;

@@ -13,7 +13,9 @@ use super::progress;
 use super::recordings::{check_finite, read_rig, shown_columns};
 use crate::diagnosis::clean::clean;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
+use crate::diagnosis::words::of_column;
 use crate::plant::simulate;
+use crate::quantity::significant;
 use crate::recording::csv::write_csv;
 use crate::scenario::rig_file::load_rig;
 
@@ -65,11 +67,15 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     let mass = rig.plant.device.moving_mass;
     let cleaning = clean(time, &mut taken.readings, &rig.noise, mass);
     let notes = cleaning.account(&rig.noise);
-    let off: Vec<(&str, f64)> = (0..COLUMNS.len())
+    let off: Vec<Error> = (0..COLUMNS.len())
         .filter_map(|channel| {
             let [measured, predicted] = [&taken.readings[channel], &predicted[channel]];
-            let rms = whitened(measured, predicted, rig.noise[channel])?;
-            Some((COLUMNS[channel], rms))
+            let noise = rig.noise[channel];
+            Some(Error {
+                column: COLUMNS[channel],
+                rms: whitened(measured, predicted, noise)?,
+                noise,
+            })
         })
         .collect();
     say(&if arguments.json {
@@ -80,22 +86,28 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     Ok(ExitCode::Done)
 }
 
+/// Error of the prediction of a column.
+struct Error {
+    column: &'static str,
+    /// Root mean square over the noise [1].
+    rms: f64,
+    /// Standard deviation of the sensor's noise, in the column's unit.
+    noise: f64,
+}
+
 /// What is printed of columns with their errors in standard deviations of the noise.
-fn text(
-    arguments: &PredictArguments,
-    samples: usize,
-    notes: &[String],
-    off: &[(&str, f64)],
-) -> String {
+fn text(arguments: &PredictArguments, samples: usize, notes: &[String], off: &[Error]) -> String {
     let mut text = String::new();
     // Writing into a text cannot fail.
     for sentence in notes {
         let _ = writeln!(text, "note: {sentence}");
     }
-    for (column, rms) in off {
+    for Error { column, rms, noise } in off {
+        let (_, unit, factor) = of_column(column);
         let _ = writeln!(
             text,
-            "{column:<24} measured less predicted: RMS {rms:.3} standard deviations of the sensor's noise"
+            "{column:<24} measured less predicted: RMS {rms:.3} standard deviations of the sensor's noise ({} {unit})",
+            significant(factor * rms * noise, 3)
         );
     }
     let out = arguments.out.display();
@@ -104,13 +116,8 @@ fn text(
 }
 
 /// The same for a program.
-fn json(
-    arguments: &PredictArguments,
-    samples: usize,
-    notes: &[String],
-    off: &[(&str, f64)],
-) -> String {
-    let off: BTreeMap<&str, f64> = off.iter().copied().collect();
+fn json(arguments: &PredictArguments, samples: usize, notes: &[String], off: &[Error]) -> String {
+    let off: BTreeMap<&str, f64> = off.iter().map(|e| (e.column, e.rms)).collect();
     let document = serde_json::json!({
         "rig": arguments.rig.display().to_string(),
         "inputs": arguments.inputs.display().to_string(),

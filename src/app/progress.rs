@@ -39,6 +39,18 @@ pub(super) fn cases(count: usize, hidden: bool) -> ProgressBar {
     bar
 }
 
+/// A bar of so many runs, each of so many parts; its message is how many are done.
+pub(super) fn runs(count: usize, parts: usize, hidden: bool) -> ProgressBar {
+    let total = (count * parts) as u64;
+    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
+    let template = format!("{{msg}} of {count} runs {{wide_bar}} {{eta}} left");
+    let style = ProgressStyle::with_template(&template);
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.set_message("0");
+    show_later(&bar, hidden);
+    bar
+}
+
 /// A line for what has stages but no known length.
 pub(super) fn spinner(first: &str, hidden: bool) -> ProgressBar {
     let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());

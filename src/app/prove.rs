@@ -7,17 +7,22 @@ use clap::Args;
 
 use super::error::{AppError, ExitCode};
 use super::files::{OutputFolder, Standing, prepare_file};
+use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
-use crate::laboratory::{shipped, write_case};
+use crate::laboratory::{Recipe, shipped, write_case};
 use crate::proof::{Claims, Diagnose, SweepPlan, folders, page, prove, sweep};
-use crate::recording::atomic::write_text;
+use crate::quantity::counted;
+use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
+
+/// The cases that come with the project, from its folder.
+const CASES: &str = "assets/proof/cases";
 
 #[derive(Debug, Args)]
 pub(super) struct ProveArguments {
-    /// Folder of cases, each a folder with rig.toml and recordings.
-    #[arg(long, default_value = "assets/proof/cases")]
-    cases: PathBuf,
+    /// Folder of cases, each a folder with rig.toml and recordings [default: assets/proof/cases where that is, as in the project's folder; elsewhere the laboratory makes the same cases, into `laboratory` in the folder for the answers].
+    #[arg(long)]
+    cases: Option<PathBuf>,
     /// Folder of what is sealed, opened only once all is diagnosed [default: the folder `sealed` beside that of the cases].
     #[arg(long)]
     sealed: Option<PathBuf>,
@@ -120,26 +125,32 @@ fn jobs(asked: Option<u16>) -> usize {
 
 /// Proves and prints the score.
 pub(super) fn run_prove(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
-    let beside = || {
-        arguments
-            .cases
-            .parent()
-            .unwrap_or(Path::new(""))
-            .join("sealed")
-    };
-    let sealed = arguments.sealed.clone().unwrap_or_else(beside);
     let jobs = jobs(arguments.jobs);
     let out = &arguments.out;
-    prepare_proof(arguments)?;
+    let cases = prepare_proof(arguments)?;
+    let beside = || cases.parent().unwrap_or(Path::new("")).join("sealed");
+    let sealed = arguments.sealed.clone().unwrap_or_else(beside);
     let bar = progress::bar("proving", arguments.json);
+    let interruptible = Interruptible::new({
+        let out = out.display().to_string();
+        move |done| {
+            format!(
+                "{} kept in {out}, without a score; the same command with --force begins anew, --only NAME.. does some of the cases",
+                counted(done, "answer")
+            )
+        }
+    });
     let summary = prove(
-        &arguments.cases,
+        &cases,
         &sealed,
         &arguments.only,
         out,
         jobs,
         &*diagnose(),
-        &|done, total| progress::tell(&bar, done, total),
+        &|done, total| {
+            interruptible.at(done);
+            progress::tell(&bar, done, total);
+        },
     );
     bar.finish_and_clear();
     let summary = summary?;
@@ -188,7 +199,17 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
     )?;
     let silent = arguments.quiet || arguments.json;
     let bar = progress::bar("sweeping", silent);
+    let interruptible = Interruptible::new({
+        let out = arguments.out.display().to_string();
+        move |done| {
+            format!(
+                "{} kept in {out}; the same command with --resume goes on",
+                counted(done, "outcome")
+            )
+        }
+    });
     let tell = |done: usize, total: usize, line: &str| {
+        interruptible.at(done);
         progress::tell(&bar, done, total);
         if silent {
         } else if bar.is_hidden() {
@@ -205,8 +226,8 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
         say(&(serde_json::to_string_pretty(&outcomes)? + "\n"))?;
     } else if !arguments.quiet {
         say(&format!(
-            "{} outcomes, tables in {}\n",
-            outcomes.len(),
+            "{}, tables in {}\n",
+            counted(outcomes.len(), "outcome"),
             file.display()
         ))?;
     }
@@ -225,23 +246,14 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
             name: stands.file_name().unwrap_or_default().display().to_string(),
         });
     }
-    let recipes = shipped();
-    let bar = progress::bar("making", arguments.quiet || arguments.json);
-    let mut names = Vec::new();
-    for (index, recipe) in recipes.iter().enumerate() {
-        let case = recipe.make().map_err(crate::proof::ProofError::from)?;
-        write_case(&case, &cases.join(&recipe.name), Some(&sealed))?;
-        progress::tell(&bar, index + 1, recipes.len());
-        names.push(&recipe.name);
-    }
-    bar.finish_and_clear();
+    let names = make_cases(out, &[], arguments.quiet || arguments.json)?;
     if arguments.json {
         let document = serde_json::json!({ "cases": names, "folder": cases.display().to_string(), "sealed": sealed.display().to_string() });
         say(&format!("{document:#}\n"))?;
     } else if !arguments.quiet {
         say(&format!(
-            "{} cases written to {}, their truth to {}\n",
-            names.len(),
+            "{} written to {}, their truth to {}\n",
+            counted(names.len(), "case"),
             cases.display(),
             sealed.display()
         ))?;
@@ -249,10 +261,64 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
     Ok(ExitCode::Done)
 }
 
-/// Refuses to prove into a folder that holds an answer to one of the cases, or cannot be written.
-fn prepare_proof(arguments: &ProveArguments) -> Result<(), AppError> {
-    let folders = folders(&arguments.cases, &arguments.only)?;
-    for (name, _) in folders.iter().filter(|_| !arguments.force) {
+/// Makes the project's cases, all or those named, into `cases` and `sealed` of a folder: all of them appear, or none. Returns their names.
+fn make_cases(out: &Path, only: &[String], quiet: bool) -> Result<Vec<String>, AppError> {
+    let _interruptible = Interruptible::of_one("laboratory", out);
+    let cannot = |error: std::io::Error| AppError::OutputFolder {
+        folder: out.display().to_string(),
+        reason: error.to_string(),
+    };
+    make_folder(out).map_err(cannot)?;
+    let unfinished = UnfinishedFolder::within(out)?;
+    let [cases, sealed] = ["cases", "sealed"].map(|name| unfinished.path().join(name));
+    let wanted = |recipe: &Recipe| only.is_empty() || only.contains(&recipe.name);
+    let recipes: Vec<Recipe> = shipped().into_iter().filter(wanted).collect();
+    let bar = progress::bar("making", quiet);
+    for (index, recipe) in recipes.iter().enumerate() {
+        let case = recipe.make().map_err(crate::proof::ProofError::from)?;
+        write_case(&case, &cases.join(&recipe.name), Some(&sealed))?;
+        progress::tell(&bar, index + 1, recipes.len());
+    }
+    bar.finish_and_clear();
+    let mut files = Vec::new();
+    note_files(unfinished.path(), Path::new(""), &mut files).map_err(cannot)?;
+    for file in &files {
+        make_folder(out.join(file).parent().unwrap_or(out)).map_err(cannot)?;
+    }
+    let names: Vec<&str> = files.iter().map(String::as_str).collect();
+    unfinished.finish(&names)?;
+    Ok(recipes.into_iter().map(|recipe| recipe.name).collect())
+}
+
+/// Files below a folder, by their paths from it.
+fn note_files(folder: &Path, from: &Path, found: &mut Vec<String>) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder.join(from))? {
+        let path = from.join(entry?.file_name());
+        if folder.join(&path).is_dir() {
+            note_files(folder, &path, found)?;
+        } else {
+            found.push(path.display().to_string());
+        }
+    }
+    found.sort();
+    Ok(())
+}
+
+/// The cases to prove with. Refuses to prove into a folder that holds an answer to one of them, or cannot be written.
+fn prepare_proof(arguments: &ProveArguments) -> Result<PathBuf, AppError> {
+    let usual = || PathBuf::from(CASES);
+    let there = arguments
+        .cases
+        .clone()
+        .or_else(|| usual().is_dir().then(usual));
+    let names: Vec<String> = match &there {
+        Some(cases) => {
+            let found = folders(cases, &arguments.only)?;
+            found.into_iter().map(|(name, _)| name).collect()
+        }
+        None => shipped_names(&arguments.only)?,
+    };
+    for name in names.iter().filter(|_| !arguments.force) {
         let answer = Path::new(name).join("diagnosis.json");
         if arguments.out.join(&answer).exists() {
             return Err(AppError::FolderStands {
@@ -262,5 +328,29 @@ fn prepare_proof(arguments: &ProveArguments) -> Result<(), AppError> {
         }
     }
     OutputFolder::prepare(&arguments.out, &[], Standing::Replace)?;
-    Ok(())
+    if let Some(cases) = there {
+        return Ok(cases);
+    }
+    let made = arguments.out.join("laboratory");
+    if !arguments.json {
+        eprintln!(
+            "note: there is no {CASES} here, so the laboratory makes the same cases, into {}",
+            made.display()
+        );
+    }
+    make_cases(&made, &arguments.only, arguments.json)?;
+    Ok(made.join("cases"))
+}
+
+/// Names of the project's cases, all or those that are asked for.
+fn shipped_names(only: &[String]) -> Result<Vec<String>, AppError> {
+    let names: Vec<String> = shipped().into_iter().map(|recipe| recipe.name).collect();
+    match only.iter().find(|name| !names.contains(name)) {
+        Some(name) => Err(AppError::NoShippedCase {
+            name: name.clone(),
+            known: names.join(", "),
+        }),
+        None if only.is_empty() => Ok(names),
+        None => Ok(only.to_vec()),
+    }
 }

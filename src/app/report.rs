@@ -14,7 +14,9 @@ use clap::Args;
 
 use super::diagnose::{BALANCE, COMPARISON, DIAGNOSIS, read_comparison};
 use super::error::{AppError, ExitCode};
-use super::files::{DESIGN, FRONT, SAMPLES, SUMMARY, Standing, is_same, prepare_file};
+use super::files::{
+    CELL, DESIGN, EDGE, FRONT, SAMPLES, SUMMARY, Sketches, Standing, is_same, prepare_file,
+};
 use super::output::say;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
@@ -66,7 +68,7 @@ pub(super) struct ReportArguments {
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
     let inputs = [
-        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, DESIGN, FRONT,
+        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DESIGN, FRONT,
     ];
     if let Some(out) = &arguments.out
         && inputs.iter().any(|name| is_same(&folder.join(name), out))
@@ -121,11 +123,17 @@ pub(super) fn of_run(run: &RunResult<'_>) -> String {
     html(&run::page(run))
 }
 
-/// The page of a run that has just ended: summary.json and its signals.
-pub(super) fn page_of_run(document: &str, recording: &Recording) -> Result<String, AppError> {
+/// The page of a run that has just ended: summary.json, its signals and its pictures.
+pub(super) fn page_of_run(
+    document: &str,
+    recording: &Recording,
+    sketches: &Sketches,
+) -> Result<String, AppError> {
     Ok(of_run(&RunResult {
         document: serde_json::from_str(document)?,
         recording: Cow::Borrowed(recording),
+        cell: Some(Cow::Borrowed(&sketches.cell)),
+        edge: sketches.edge.as_deref().map(Cow::Borrowed),
     }))
 }
 
@@ -136,9 +144,12 @@ pub(super) fn of_design(document: &serde_json::Value, front: Option<&str>) -> St
 
 /// A run as its folder has it.
 pub(super) fn read_run(folder: &Path) -> Result<RunResult<'static>, AppError> {
+    let picture = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
     Ok(RunResult {
         document: read_json(&folder.join(SUMMARY))?,
         recording: Cow::Owned(read_parquet(&folder.join(SAMPLES))?.recording),
+        cell: picture(CELL).map(Cow::Owned),
+        edge: picture(EDGE).map(Cow::Owned),
     })
 }
 

@@ -1,6 +1,16 @@
-//! `idc run`: from a cell to its recording and numbers.
+//! `idc run`: from a scenario to its recording and numbers, once or with `--set` for each of several values.
+
+mod command;
+mod job;
+mod settings;
+mod source;
+mod table;
+mod variants;
 
 use std::time::Instant;
+
+pub(super) use command::{RunArguments, run};
+pub(super) use source::Source;
 
 use super::error::AppError;
 use super::picture::{motion_of, scene_of};

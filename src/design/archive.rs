@@ -35,14 +35,29 @@ impl Scored {
     }
 }
 
+/// A part of the search: its stretch of the budget, and the designs that were known when it began.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stage {
+    from: usize,
+    to: usize,
+    before: usize,
+}
+
+impl Stage {
+    /// Where in the budget the search is with so many designs known.
+    fn position(self, known: usize) -> usize {
+        (self.from + known.saturating_sub(self.before)).min(self.to)
+    }
+}
+
 /// Evaluates and remembers. Shared between threads: which of them comes first changes nothing, for the same design gives the same outcome and the
 /// designs are kept in the order of their values.
 pub(super) struct Archive<'a> {
     study: &'a Study,
     evaluator: &'a dyn Evaluate,
     progress: &'a (dyn Fn(usize, usize) + Sync),
-    /// Designs that were evaluated before, for the progress.
-    before: usize,
+    /// What is told of the progress.
+    stage: Mutex<Stage>,
     known: Mutex<BTreeMap<Vec<u64>, Arc<Judged>>>,
 }
 
@@ -56,17 +71,26 @@ impl<'a> Archive<'a> {
             study,
             evaluator,
             progress,
-            before: 0,
+            stage: Mutex::default(),
             known: Mutex::default(),
         }
     }
 
     /// An empty one for designs that are not to be chosen.
     pub fn aside(&self) -> Self {
-        Self {
-            before: self.before + self.known().len(),
-            ..Self::new(self.study, self.evaluator, self.progress)
-        }
+        Self::new(self.study, self.evaluator, self.progress)
+    }
+
+    /// A part of the search begins, for which this stretch of the budget is meant. A part that needs less ends early: the time left is then less than was
+    /// told, and never more.
+    pub fn begin(&self, from: usize, to: usize) {
+        let before = self.known().len();
+        *self.stage() = Stage { from, to, before };
+        (self.progress)(from, self.study.evaluations);
+    }
+
+    fn stage(&self) -> std::sync::MutexGuard<'_, Stage> {
+        self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub fn study(&self) -> &'a Study {
@@ -85,9 +109,10 @@ impl<'a> Archive<'a> {
         let count = {
             let mut known = self.known();
             known.entry(key).or_insert_with(|| judged.clone());
-            self.before + known.len()
+            known.len()
         };
-        (self.progress)(count, self.study.evaluations);
+        let position = self.stage().position(count);
+        (self.progress)(position, self.study.evaluations);
         judged
     }
 

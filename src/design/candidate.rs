@@ -5,6 +5,8 @@ use std::fmt::Write;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use crate::scenario::KeyValue;
+
 /// Keys of a device or of its controller with the values that a candidate gives them, in each key's own unit.
 ///
 /// A key without a dot is one of `[device.override]`; `controller.name` is the key `name` of `[controller]`.
@@ -43,9 +45,9 @@ impl Design {
     }
 
     /// Its values by the dotted keys that a scenario file has for them.
-    pub fn scenario_values(&self) -> Vec<(String, f64)> {
+    pub fn scenario_values(&self) -> Vec<KeyValue> {
         self.iter()
-            .map(|(key, value)| (scenario_key(key), value))
+            .map(|(key, value)| KeyValue::number(scenario_key(key), value))
             .collect()
     }
 

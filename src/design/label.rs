@@ -1,5 +1,6 @@
 //! Names and units for people, from keys that end in their unit.
 
+use crate::quantity::significant;
 use crate::scenario::units::{Unit, stem};
 
 /// Suffixes of metrics that no file key has.
@@ -12,6 +13,13 @@ fn parts(key: &str) -> (&str, &'static str) {
         .unwrap_or_else(|| (stem(key), Unit::of_key(key).symbol))
 }
 
+/// A key in words and its unit, raised as pictures and pages have it: `supply orifice` and `mm²`.
+#[must_use]
+pub fn spoken(key: &str) -> (String, String) {
+    let (stem, unit) = parts(key);
+    (stem.replace(['_', '.'], " "), raised(unit))
+}
+
 /// Unit of a key; empty for a pure number.
 pub(super) fn symbol(key: &str) -> &'static str {
     parts(key).1
@@ -19,9 +27,7 @@ pub(super) fn symbol(key: &str) -> &'static str {
 
 /// `impact peak [N]` for `impact_peak_n`.
 pub(super) fn axis(key: &str) -> String {
-    let (stem, unit) = parts(key);
-    let name = stem.replace(['_', '.'], " ");
-    let unit = raised(unit);
+    let (name, unit) = spoken(key);
     if unit.is_empty() {
         name
     } else {
@@ -31,7 +37,8 @@ pub(super) fn axis(key: &str) -> String {
 
 /// Powers of a unit as raised digits, for pictures.
 pub(super) fn raised(text: &str) -> String {
-    text.replace("mm2", "mm\u{b2}").replace("cm3", "cm\u{b3}")
+    let text = text.replace("mm2", "mm\u{b2}").replace("cm3", "cm\u{b3}");
+    text.replace("um", "µm")
 }
 
 /// A value of a key with its unit, to five significant digits.
@@ -44,27 +51,14 @@ pub(super) fn with_unit(key: &str, value: f64) -> String {
 }
 
 /// A number as people read it: up to five significant digits, without trailing zeros.
-pub(super) fn number(value: f64) -> String {
+#[must_use]
+pub fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
     let size = rounded.abs();
     if size != 0.0 && !(1e-4..1e7).contains(&size) {
-        format!("{rounded:e}")
+        significant(rounded, 5)
     } else {
         rounded.to_string()
-    }
-}
-
-/// A change in percent with its sign.
-pub(super) fn percent(change: f64) -> String {
-    let text = if change.abs() < 9.95 {
-        format!("{change:+.1} %")
-    } else {
-        format!("{change:+.0} %")
-    };
-    if text == "-0.0 %" {
-        "+0.0 %".to_owned()
-    } else {
-        text
     }
 }
 
@@ -99,12 +93,9 @@ mod tests {
             (40.0, "40"),
             (2.34561789, "2.3456"),
             (1.5e5, "150000"),
-            (2.5e-7, "2.5e-7"),
+            (2.5e-7, "2.5·10⁻⁷"),
         ] {
             assert_eq!(number(value), text);
         }
-        assert_eq!(percent(-3.04), "-3.0 %");
-        assert_eq!(percent(12.3), "+12 %");
-        assert_eq!(percent(-0.01), "+0.0 %");
     }
 }

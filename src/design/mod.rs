@@ -36,6 +36,7 @@ mod variable;
 pub use candidate::{Design, Evaluate, EvaluateError, Outcome, ScenarioOutcome};
 pub use error::DesignError;
 pub use file::schema;
+pub use label::{number, spoken};
 pub use limits::{Limit, LimitQuantity, Side};
 pub use picture::front_svg;
 pub use result::{

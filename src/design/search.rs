@@ -64,7 +64,7 @@ pub fn run(
         None => WITHOUT_FRONT,
     };
     let budgets = shares.map(|share| (share * study.evaluations as f64) as usize);
-    hunt(&archive, &goal, [budgets[0], budgets[1]], study.seed)?;
+    hunt(&archive, &goal, [budgets[0], budgets[1]], (study.seed, 0))?;
     let best = best(&archive, &goal)?;
     if study.trade_off.is_some() {
         let other = Goal {
@@ -75,16 +75,14 @@ pub fn run(
             &archive,
             &other,
             [budgets[2], budgets[3]],
-            study.seed.wrapping_add(1),
+            (study.seed.wrapping_add(1), budgets[0] + budgets[1]),
         )?;
+        let before: usize = budgets[..4].iter().sum();
+        archive.begin(before, before + budgets[4]);
         levels(&archive, &goal, &other, best.1.trade_off, budgets[4])?;
     }
-    conclude::conclude(
-        &archive,
-        &goal,
-        &start,
-        study.evaluations - budgets.iter().sum::<usize>(),
-    )
+    let left = study.evaluations - budgets.iter().sum::<usize>();
+    conclude::conclude(&archive, &goal, &start, left)
 }
 
 /// Simulates the starting design alone, to find what is wrong with a study before anything else is done.
@@ -138,18 +136,20 @@ fn start(archive: &Archive<'_>) -> Result<Good, DesignError> {
     }
 }
 
-/// Evolution, then refinement of the best.
+/// Evolution, then refinement of the best. It has a seed, and begins somewhere in the budget.
 fn hunt(
     archive: &Archive<'_>,
     goal: &Goal,
     budgets: [usize; 2],
-    seed: u64,
+    (seed, from): (u64, usize),
 ) -> Result<(), DesignError> {
     let study = archive.study();
+    archive.begin(from, from + budgets[0]);
     // What is known already seeds the first generation by half at most.
     let known = distinct_best(study, goal, &archive.all(), 5);
     evolve(archive, goal, &known, budgets[0], seed)?;
     let starts = distinct_best(study, goal, &archive.all(), STARTS);
+    archive.begin(from + budgets[0], from + budgets[0] + budgets[1]);
     refine(archive, goal, &starts, RADII[0], budgets[1])?;
     Ok(())
 }

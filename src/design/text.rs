@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use super::label::{number, percent, symbol, with_unit};
+use super::label::{number, symbol, with_unit};
 use super::result::{ActiveBound, Candidate, Sensitivity, StudyResult};
 use super::study::Study;
 use super::variable::{Domain, Variable};
+use crate::quantity::change as percent;
 
 const WIDTH: usize = 80;
 /// Rows of the front that are printed; design.json has them all.
@@ -163,7 +164,7 @@ fn limits(out: &mut String, result: &StudyResult) {
 }
 
 fn direction(change: f64) -> String {
-    if percent(change) == percent(0.0) {
+    if change.abs() < 0.05 {
         return "no difference".to_owned();
     }
     let size = percent(change.abs()).replace('+', "");

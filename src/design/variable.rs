@@ -93,7 +93,8 @@ impl Domain {
     }
 
     /// Least and greatest value.
-    pub(super) fn ends(&self) -> [f64; 2] {
+    #[must_use]
+    pub fn ends(&self) -> [f64; 2] {
         match self {
             Self::Linear(min, max) | Self::Logarithmic(min, max) => [*min, *max],
             Self::Catalogue(entries) => [entries[0].value, entries[entries.len() - 1].value],

@@ -89,7 +89,12 @@ impl Diagnosis {
             let inputs = &measured.inputs;
             let left_out = self.left_out_of(index);
             let shown = (measured.name.as_str(), false, inputs.time.as_slice());
-            self.compared(shown, measured.readings.clone(), simulated(inputs), left_out)
+            self.compared(
+                shown,
+                measured.readings.clone(),
+                simulated(inputs),
+                left_out,
+            )
         });
         let unseen = case.unseen.iter().map(|unseen| {
             let inputs = &unseen.recorded.inputs;
@@ -155,8 +160,7 @@ impl Diagnosis {
                     believed: own(&believed, channel),
                     tolerated: own(&tolerated, channel),
                     improved: own(&improved, channel),
-                    left_out: (left_out.as_ref())
-                        .map_or_else(nothing, |all| own(all, channel)),
+                    left_out: (left_out.as_ref()).map_or_else(nothing, |all| own(all, channel)),
                 })
                 .collect(),
         }

@@ -4,9 +4,9 @@ use super::answer::{
     Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, UNLISTED, Verdict,
 };
 use super::details::{
-    ChannelMisfit, ChannelNoise, Considered, Details, IN_TURN, LinkReport, NextExperiment, PredictionError,
-    RegimeReport, RemainingError, RemainingReport, RuledOutReport, ToleratedNumber,
-    remaining_errors,
+    ChannelMisfit, ChannelNoise, Considered, Details, IN_TURN, LinkReport, NextExperiment,
+    PredictionError, RegimeReport, RemainingError, RemainingReport, RuledOutReport,
+    ToleratedNumber, remaining_errors,
 };
 use super::diagnose::{Diagnosis, ErrorSize, Unseen, names_of, spoken_name};
 use super::estimate::Number;

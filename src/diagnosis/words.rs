@@ -2,6 +2,7 @@
 
 use super::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Channel};
+use crate::quantity::significant;
 
 /// Letters in a line of an account.
 const WIDTH: usize = 100;
@@ -68,23 +69,6 @@ pub fn spoken(name: &str) -> (String, &'static str, f64) {
     (stem.replace('_', " "), unit, factor)
 }
 
-/// A number with so many significant digits, without an exponent as long as that can be read.
-#[must_use]
-pub fn figures(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
-        .parse()
-        .unwrap_or(value);
-    let order = rounded.abs().log10().floor();
-    if !(-4.0..7.0).contains(&order) {
-        return format!("{value:.*e}", digits.saturating_sub(1));
-    }
-    let decimals = (digits as f64 - 1.0 - order).max(0.0) as usize;
-    format!("{rounded:.decimals$}")
-}
-
 /// A value with its interval, to two digits of the interval's half-width, in its unit: `13.2 N (12.8 to 13.6)`.
 #[must_use]
 pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
@@ -96,7 +80,7 @@ pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
         } else {
             3.0
         };
-        figures(number, digits.clamp(2.0, 5.0) as usize)
+        significant(number, digits.clamp(2.0, 5.0) as usize)
     };
     let (value, low, high) = (digits(value), digits(low), digits(high));
     if unit.is_empty() {
@@ -110,7 +94,7 @@ pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
 #[must_use]
 pub fn in_unit(channel: Channel, size: f64) -> String {
     let (unit, factor) = CHANNEL_UNITS[channel as usize];
-    format!("{} {unit}", figures(size * factor, 2))
+    format!("{} {unit}", significant(size * factor, 2))
 }
 
 /// What departures are compared with: where no law explains all of them, that is more than noise.
@@ -153,7 +137,7 @@ pub fn odds(log10: f64) -> String {
     const LARGE: f64 = 6.0;
     match -log10 {
         power if power >= LARGE => format!("below 1 to 10^{LARGE:.0}"),
-        power => format!("1 to {}", figures(10f64.powf(power), 2)),
+        power => format!("1 to {}", significant(10f64.powf(power), 2)),
     }
 }
 
@@ -250,10 +234,6 @@ mod tests {
 
     #[test]
     fn numbers_have_as_many_digits_as_are_known() {
-        assert_eq!(figures(13.2143, 3), "13.2");
-        assert_eq!(figures(0.99996, 3), "1.00");
-        assert_eq!(figures(1234.5, 2), "1200");
-        assert_eq!(figures(1.5e-9, 2), "1.5e-9");
         assert_eq!(
             with_interval(13.2143, [12.81, 13.62], "N"),
             "13.21 N (12.81 to 13.62)"

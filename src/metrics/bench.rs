@@ -26,7 +26,9 @@ const REFERENCE_DENSITY: f64 = 1.185;
 pub struct BenchLimits {
     /// When each command was given [s], and whether it was a force.
     pub command_times: Vec<f64>,
-    /// While the surface moved [s].
+    /// When the surface began to move, or a hand to push [s].
+    pub disturbed_from: Option<f64>,
+    /// While the surface moved in its swing [s].
     pub moving: Option<(f64, f64)>,
     /// Ends of the stroke [m].
     pub stroke_limits: (f64, f64),
@@ -51,7 +53,7 @@ pub struct LevelSummary {
     pub force_standard_deviation_n: Option<f64>,
     /// As the load cell's software reads it, steady mean [N].
     pub measured_force_mean_n: Option<f64>,
-    /// Command until the force stays within 5 % of its change about its steady mean [s].
+    /// Command until the force stays within 5 % of its change about its steady mean [s]; with nothing else at work.
     pub force_settling_time_s: Option<f64>,
     /// Highest force above the steady mean, of the change [%].
     pub force_overshoot_percent: Option<f64>,
@@ -63,11 +65,13 @@ pub struct LevelSummary {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "BENCH_METRICS says what each is")]
 pub struct BenchSummary {
+    pub desired_force_n: Option<f64>,
     pub force_mean_n: Option<f64>,
     pub force_rms_error_n: Option<f64>,
     pub force_rms_error_percent: Option<f64>,
     pub force_largest_error_percent: Option<f64>,
     pub coefficient_of_variation_percent: Option<f64>,
+    pub force_peak_n: Option<f64>,
     pub regulator_delay_s: Option<f64>,
     pub force_settling_time_s: Option<f64>,
     pub force_overshoot_percent: Option<f64>,
@@ -93,22 +97,26 @@ pub struct BenchSummary {
 /// All of them, in the order of summary.json.
 #[rustfmt::skip]
 pub const BENCH_METRICS: &[Metric<BenchSummary>] = &[
+    entry("desired_force_n", "N", "desired force",
+        "mean, where forces are commanded", |s| s.desired_force_n),
     entry("force_mean_n", "N", "mean",
         "surface moving; else last level, steady", |s| s.force_mean_n),
-    entry("force_rms_error_n", "N", "error, rms",
+    entry("force_rms_error_n", "N", "error, RMS",
         "about the desired force, else the mean", |s| s.force_rms_error_n),
-    entry("force_rms_error_percent", "%", "error, rms",
+    entry("force_rms_error_percent", "%", "error, RMS",
         "of the desired force, else the mean", |s| s.force_rms_error_percent),
     entry("force_largest_error_percent", "%", "largest error",
         "of the desired force, else the mean", |s| s.force_largest_error_percent),
     entry("coefficient_of_variation_percent", "%", "coefficient of variation",
         "standard deviation / mean", |s| s.coefficient_of_variation_percent),
+    entry("force_peak_n", "N", "largest",
+        "of the whole run", |s| s.force_peak_n),
     entry("regulator_delay_s", "s", "regulator's delay",
         "first command to 63 % of its change", |s| s.regulator_delay_s),
     entry("force_settling_time_s", "s", "settling time",
-        "last command until within 5 %", |s| s.force_settling_time_s),
+        "last step with nothing else moving", |s| s.force_settling_time_s),
     entry("force_overshoot_percent", "%", "overshoot",
-        "last command, of the change", |s| s.force_overshoot_percent),
+        "the same command, of the change", |s| s.force_overshoot_percent),
     entry("force_slope_n_per_bar", "N/bar", "force over pressure",
         "straight line through the levels", |s| s.force_slope_n_per_bar),
     entry("force_linearity_percent", "%", "linearity error",
@@ -127,12 +135,12 @@ pub const BENCH_METRICS: &[Metric<BenchSummary>] = &[
         "mean of reading over truth, less 1", |s| s.measured_force_error_percent),
     entry("measured_force_noise_n", "N", "load cell's noise",
         "reading less truth, about its mean", |s| s.measured_force_noise_n),
-    entry("estimated_force_rms_error_percent", "%", "estimator's error, rms",
+    entry("estimated_force_rms_error_percent", "%", "estimator's error, RMS",
         "of the mean force, in contact", |s| s.estimated_force_rms_error_percent),
     entry("estimated_force_coverage_percent", "%", "estimator's coverage",
         "truth inside its 95 % band, in contact", |s| s.estimated_force_coverage_percent),
     entry("air_consumed_normal_litres", "l", "air consumed",
-        "drawn in, at 20 degrees C and 1 bar", |s| s.air_consumed_normal_litres),
+        "drawn in, at 20 °C and 1 bar", |s| s.air_consumed_normal_litres),
     entry("air_mass_balance_relative", "1", "air balance, largest gap",
         "of the air in the device", |s| s.air_mass_balance_relative),
     entry("duration_s", "s", "simulated time",
@@ -164,10 +172,12 @@ pub fn summarise_bench(
     if let Some(first) = summary.levels.first() {
         summary.regulator_delay_s = first.regulator_delay_s;
     }
-    if let Some(last) = summary.levels.last() {
+    let responded = |level: &&LevelSummary| level.force_settling_time_s.is_some();
+    if let Some(last) = summary.levels.iter().rev().find(responded) {
         summary.force_settling_time_s = last.force_settling_time_s;
         summary.force_overshoot_percent = last.force_overshoot_percent;
     }
+    summary.force_peak_n = run.force.and_then(extent).map(|(_, most)| most);
     line(&mut summary);
     contact(&mut summary, &run, limits);
     uniformity(&mut summary, &run, limits);
@@ -229,7 +239,11 @@ fn levels(run: &Run<'_>, limits: &BenchLimits) -> Vec<LevelSummary> {
         .collect()
 }
 
+/// A level ends where the surface begins to move or a hand to push; one commanded after that has no response of its own.
 fn level(run: &Run<'_>, limits: &BenchLimits, start: f64, end: f64) -> Option<LevelSummary> {
+    let disturbed = limits.disturbed_from.unwrap_or(f64::INFINITY);
+    let is_moved = disturbed <= start;
+    let end = if is_moved { end } else { end.min(disturbed) };
     let steady_from = end - (STEADY_SHARE * (end - start)).min(STEADY_LONGEST);
     // The sample at `end` already belongs to the next command.
     let samples = run.between(start, end - 1e-6);
@@ -239,7 +253,7 @@ fn level(run: &Run<'_>, limits: &BenchLimits, start: f64, end: f64) -> Option<Le
     let regulator = mean(run.regulator)?;
     let force = run.force.and_then(|force| moments(&force[steady.clone()]));
     let pressed = force.filter(|force| force.mean > TOUCH_FORCE);
-    let response = pressed.and_then(|steady| {
+    let response = pressed.filter(|_| !is_moved).and_then(|steady| {
         let force = run.force?;
         Some(response(
             &run.time[samples.clone()],
@@ -363,6 +377,7 @@ fn uniformity(summary: &mut BenchSummary, run: &Run<'_>, limits: &BenchLimits) {
         .desired
         .and_then(|desired| moments(&desired[range]))
         .map_or(spread.mean, |desired| desired.mean);
+    summary.desired_force_n = run.desired.map(|_| reference);
     let percent = |value: f64| 100.0 * value / reference;
     summary.force_mean_n = Some(spread.mean);
     summary.coefficient_of_variation_percent =

@@ -20,6 +20,15 @@ pub struct Metric<S = Summary> {
 }
 
 impl<S> Metric<S> {
+    /// Its unit; empty for a pure number.
+    #[must_use]
+    pub fn shown_unit(&self) -> &'static str {
+        match self.unit {
+            "1" => "",
+            unit => unit,
+        }
+    }
+
     /// Name for people where it stands alone, as in `force, mean`.
     #[must_use]
     pub fn full_label(&self) -> String {
@@ -61,6 +70,10 @@ pub const METRICS: &[Metric] = &[
         "about the mean", |s| s.force_standard_deviation_n),
     entry("coefficient_of_variation_percent", "%", "coefficient of variation",
         "standard deviation / mean", |s| s.coefficient_of_variation_percent),
+    entry("force_rms_error_n", "N", "error, RMS",
+        "of force - desired, while following", |s| s.force_rms_error_n),
+    entry("force_rms_error_percent", "%", "error, RMS",
+        "of the desired force", |s| s.force_rms_error_percent),
     entry("largest_deviation_n", "N", "largest deviation",
         "largest |force - desired|", |s| s.largest_deviation_n),
     entry("within_5_percent_share_percent", "%", "within 5 % of desired",
@@ -71,12 +84,20 @@ pub const METRICS: &[Metric] = &[
         "share of the length followed", |s| s.loss_of_contact_share_percent),
     entry("friction_force_mean_n", "N", "friction, mean",
         "across the contact normal", |s| s.friction_force_mean_n),
+    entry("force_peak_approach_n", "N", "largest, approach",
+        "of the whole phase", |s| s.force_peak_approach_n),
+    entry("force_peak_engage_n", "N", "largest, engage",
+        "of the whole phase", |s| s.force_peak_engage_n),
+    entry("force_peak_follow_n", "N", "largest, follow",
+        "of the whole phase", |s| s.force_peak_follow_n),
+    entry("force_peak_retract_n", "N", "largest, retract",
+        "of the whole phase", |s| s.force_peak_retract_n),
     entry("engagement_peak_n", "N", "peak",
         "first touch to start of follow", |s| s.engagement_peak_n),
     entry("engagement_overshoot_percent", "%", "overshoot",
         "peak above desired force", |s| s.engagement_overshoot_percent),
     entry("settling_time_s", "s", "settling time",
-        "touch until it stays in +-5 %", |s| s.settling_time_s),
+        "touch until it stays in ±5 %", |s| s.settling_time_s),
     entry("stroke_used_mm", "mm", "stroke used",
         "largest less smallest stroke", |s| s.stroke_used_mm),
     entry("stroke_min_mm", "mm", "smallest stroke",
@@ -85,9 +106,9 @@ pub const METRICS: &[Metric] = &[
         "over the following phase", |s| s.stroke_max_mm),
     entry("stroke_margin_mm", "mm", "stroke margin",
         "least distance to either end", |s| s.stroke_margin_mm),
-    entry("path_error_rms_um", "um", "lateral error, rms",
+    entry("path_error_rms_um", "µm", "lateral error, RMS",
         "tool tip beside planned path", |s| s.path_error_rms_um),
-    entry("path_error_max_um", "um", "lateral error, largest",
+    entry("path_error_max_um", "µm", "lateral error, largest",
         "tool tip beside planned path", |s| s.path_error_max_um),
     entry("path_length_mm", "mm", "length followed",
         "along the planned path", |s| s.path_length_mm),

@@ -1,9 +1,9 @@
 //! Uniformity of the contact force while the tool follows the edge.
 
-use super::statistics::{Travel, largest, moments};
+use super::statistics::{Travel, extent, largest, moments, root_mean_square};
 use super::window::Window;
-use super::{ForceTenth, MetricsError, NARROW_BAND, Summary, TOUCH_SHARE, WIDE_BAND};
-use crate::recording::{Unit, schema};
+use super::{FOLLOW_PHASE, ForceTenth, MetricsError, NARROW_BAND, Summary, TOUCH_SHARE, WIDE_BAND};
+use crate::recording::{Recording, Unit, schema};
 
 /// Is a force within a band about the desired one, given as a share of it?
 pub(super) fn within(force: f64, desired: f64, band: f64) -> bool {
@@ -27,7 +27,10 @@ pub(super) fn measure(
     summary.coefficient_of_variation_percent = force_moments
         .filter(|force| force.mean > 0.0)
         .map(|force| 100.0 * force.standard_deviation / force.mean);
-    summary.largest_deviation_n = largest(force.iter().map(|force| force - desired));
+    let errors: Vec<f64> = force.iter().map(|force| force - desired).collect();
+    summary.force_rms_error_n = root_mean_square(&errors);
+    summary.force_rms_error_percent = summary.force_rms_error_n.map(|n| 100.0 * n / desired);
+    summary.largest_deviation_n = largest(errors);
 
     let path = follow.finite(schema::PATH_LENGTH, Unit::Metre)?;
     if let Some(travel) = path.and_then(Travel::along) {
@@ -38,6 +41,22 @@ pub(super) fn measure(
         summary.loss_of_contact_share_percent = Some(lost);
         summary.force_by_tenth = tenths(&travel, force);
     }
+    Ok(())
+}
+
+/// Fills in the largest force of every phase.
+pub(super) fn peaks(summary: &mut Summary, recording: &Recording) -> Result<(), MetricsError> {
+    let peak = |phase| -> Result<Option<f64>, MetricsError> {
+        let Some(window) = Window::phase(recording, phase)? else {
+            return Ok(None);
+        };
+        let force = window.finite(schema::CONTACT_FORCE, Unit::Newton)?;
+        Ok(force.and_then(extent).map(|(_, most)| most))
+    };
+    summary.force_peak_approach_n = peak("approach")?;
+    summary.force_peak_engage_n = peak("engage")?;
+    summary.force_peak_follow_n = peak(FOLLOW_PHASE)?;
+    summary.force_peak_retract_n = peak("retract")?;
     Ok(())
 }
 
@@ -85,6 +104,9 @@ mod tests {
         let variation = 100.0 * amplitude / (SQRT_2 * mean);
         assert_near(summary.coefficient_of_variation_percent, variation, 1e-12);
         assert_near(summary.largest_deviation_n, 5.0, 1e-4);
+        // An offset of 1 N and a spread of 4 / sqrt 2 N add in squares: 3 N.
+        assert_near(summary.force_rms_error_n, 3.0, 1e-12);
+        assert_near(summary.force_rms_error_percent, 3.0, 1e-12);
         assert_near(summary.within_5_percent_share_percent, 100.0, 1e-12);
 
         // About the desired force, |a sin| <= 5 holds for 2 asin(5 / a) / pi of the length.
@@ -93,6 +115,23 @@ mod tests {
         let summary = measured(&builder);
         assert!((summary.within_5_percent_share_percent.unwrap() - share).abs() < 0.3);
         assert_near(summary.within_10_percent_share_percent, 100.0, 1e-12);
+    }
+
+    #[test]
+    fn every_phase_has_its_largest_force_and_the_touch_does_not_hide_that_of_lifting_off() {
+        let mut builder = Builder::nominal();
+        builder.follow_with(|share| if share == 0.5 { 130.0 } else { 100.0 });
+        builder.engage_with(1.5, |since| 100.0 + 20.0 * (-since).exp());
+        let last = builder.force.len() - 1;
+        builder.force[last - 100] = 700.0;
+        let summary = measured(&builder);
+        assert_eq!(summary.force_peak_approach_n, Some(0.0));
+        assert_eq!(summary.force_peak_engage_n, Some(120.0));
+        assert_eq!(summary.force_peak_follow_n, Some(130.0));
+        assert_eq!(summary.force_peak_retract_n, Some(700.0));
+        assert_eq!(summary.engagement_peak_n, Some(120.0));
+        builder.phases.retain(|phase| phase.name != "retract");
+        assert_eq!(measured(&builder).force_peak_retract_n, None);
     }
 
     #[test]

@@ -99,6 +99,7 @@ pub fn summarise(recording: &Recording, limits: &SummaryLimits) -> Result<Summar
         duration_s: run.duration(),
         ..Summary::default()
     };
+    force::peaks(&mut summary, recording)?;
     engagement::measure(&mut summary, recording, limits.desired_force)?;
     if let Some(follow) = follow {
         force::measure(&mut summary, &follow, limits.desired_force)?;

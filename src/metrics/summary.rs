@@ -17,6 +17,10 @@ pub struct Summary {
     pub force_standard_deviation_n: Option<f64>,
     /// Standard deviation over mean [%].
     pub coefficient_of_variation_percent: Option<f64>,
+    /// Root mean square of contact force less desired force while following [N].
+    pub force_rms_error_n: Option<f64>,
+    /// That, of the desired force [%].
+    pub force_rms_error_percent: Option<f64>,
     /// Largest distance of the contact force from the desired force while following [N].
     pub largest_deviation_n: Option<f64>,
     /// Share of the followed length on which the force is within 5 % of the desired one [%].
@@ -27,6 +31,14 @@ pub struct Summary {
     pub loss_of_contact_share_percent: Option<f64>,
     /// Mean friction force while following [N].
     pub friction_force_mean_n: Option<f64>,
+    /// Largest contact force in the phase `approach` [N].
+    pub force_peak_approach_n: Option<f64>,
+    /// Largest contact force in the phase `engage` [N].
+    pub force_peak_engage_n: Option<f64>,
+    /// Largest contact force in the phase `follow` [N].
+    pub force_peak_follow_n: Option<f64>,
+    /// Largest contact force in the phase `retract`, where the tool lifts off [N].
+    pub force_peak_retract_n: Option<f64>,
     /// Largest contact force from first touch to the start of following [N].
     pub engagement_peak_n: Option<f64>,
     /// How far that peak exceeds the desired force [%].
@@ -41,9 +53,9 @@ pub struct Summary {
     pub stroke_max_mm: Option<f64>,
     /// Least distance from either end of the stroke while following [mm].
     pub stroke_margin_mm: Option<f64>,
-    /// Root mean square of the lateral path error while following [um].
+    /// Root mean square of the lateral path error while following [µm].
     pub path_error_rms_um: Option<f64>,
-    /// Largest lateral path error while following [um].
+    /// Largest lateral path error while following [µm].
     pub path_error_max_um: Option<f64>,
     /// Length followed [mm].
     pub path_length_mm: Option<f64>,

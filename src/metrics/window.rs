@@ -22,17 +22,22 @@ impl<'a> Window<'a> {
 
     /// The samples of the following phase; `None` if there are none.
     pub(super) fn follow(recording: &'a Recording) -> Result<Option<Self>, MetricsError> {
-        let mut spans = recording
-            .phases()
-            .iter()
-            .filter(|phase| phase.name == FOLLOW_PHASE);
+        Self::phase(recording, FOLLOW_PHASE)
+    }
+
+    /// The samples of a phase; `None` if there are none.
+    pub(super) fn phase(
+        recording: &'a Recording,
+        name: &'static str,
+    ) -> Result<Option<Self>, MetricsError> {
+        let mut spans = recording.phases().iter().filter(|phase| phase.name == name);
         let Some(span) = spans.next() else {
             return Ok(None);
         };
         let others = spans.count();
         if others > 0 {
             return Err(MetricsError::RepeatedPhase {
-                name: FOLLOW_PHASE,
+                name,
                 count: 1 + others,
             });
         }

@@ -108,6 +108,11 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Lines(text) => pre { (text) },
             // Drawn by src/figure, whose texts are escaped.
             Block::Picture(svg) => div.picture { (PreEscaped(svg)) },
+            // Drawn by src/drawing, whose texts are its own.
+            Block::Sketches(all) => div.sketches { @for (words, svg) in all {
+                figure { (PreEscaped(svg)) figcaption { (words) } }
+            } },
+            Block::File(name, words) => p { a href=(name) { (name) } ": " (words) },
             Block::Folded(summary, blocks) => details {
                 summary { (summary) }
                 @for one in blocks { (block(one, budget)) }

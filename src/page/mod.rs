@@ -85,6 +85,10 @@ pub enum Block<'a> {
     Lines(String),
     /// A picture, an SVG document of our own.
     Picture(String),
+    /// Pictures of our own side by side as far as there is room: what each shows, and an SVG document in the page's colours.
+    Sketches(Vec<(String, String)>),
+    /// A file beside the page: its name, and what it holds.
+    File(String, String),
     /// What is folded away until it is asked for: a summary and blocks.
     Folded(String, Vec<Block<'a>>),
 }

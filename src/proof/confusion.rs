@@ -7,6 +7,7 @@ use super::binomial::upper_bound;
 use super::outcome::Outcome;
 use super::summary::percentile;
 use crate::laboratory::LOST;
+use crate::quantity::significant;
 
 /// A page in Markdown; outcomes in any order.
 pub fn page(outcomes: &[Outcome]) -> String {
@@ -144,7 +145,7 @@ fn short(value: f64) -> String {
         let digits = (2.0 - value.abs().max(1e-3).log10().floor()).clamp(0.0, 6.0) as usize;
         format!("{value:.digits$}")
     } else {
-        format!("{value:.2e}")
+        significant(value, 3)
     }
 }
 

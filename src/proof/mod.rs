@@ -16,6 +16,7 @@ pub use confusion::page;
 pub use error::ProofError;
 pub use outcome::{Made, Outcome};
 pub use prove::{Diagnose, folders, prove};
+pub use queue::all as in_order;
 pub use score::{CaseScore, judge, overlap, worst_channel};
 pub use summary::{Claims, Summary};
 pub use sweep::{SweepPlan, sweep};

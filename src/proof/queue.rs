@@ -5,11 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Does `count` pieces of work, `jobs` at a time; none where a piece is a fault of the program.
-pub(super) fn all<T: Send>(
-    count: usize,
-    jobs: usize,
-    work: impl Fn(usize) -> T + Sync,
-) -> Vec<Option<T>> {
+pub fn all<T: Send>(count: usize, jobs: usize, work: impl Fn(usize) -> T + Sync) -> Vec<Option<T>> {
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = jobs.clamp(1, count.max(1));
     let next = AtomicUsize::new(0);

@@ -8,7 +8,7 @@ use super::outcome::{Made, Outcome};
 use super::prove::{Diagnose, score};
 use super::queue;
 use crate::laboratory::{EFFECTS, Known, LabEffect, Recipe, UNLISTED_EFFECTS, sizes, write_case};
-use crate::recording::atomic::write_text;
+use crate::recording::atomic::{UnfinishedFolder, write_text};
 
 /// Seed of the first effect's first device; each effect has this many to itself.
 const SEEDS_PER_EFFECT: u64 = 1000;
@@ -205,11 +205,7 @@ fn attempt(
         dirt: None,
     };
     let case = recipe.make()?;
-    let cannot = |cause: std::io::Error| ProofError::read(out, cause);
-    let room = tempfile::Builder::new()
-        .prefix(".case-")
-        .tempdir_in(out)
-        .map_err(cannot)?;
+    let room = UnfinishedFolder::within(out)?;
     let place = |part: &str| -> PathBuf { room.path().join(part) };
     write_case(&case, &place("case"), None)?;
     let answer = diagnose(&place("case"), &place("answer"));

@@ -1,15 +1,20 @@
 //! Files that appear whole or not at all.
 //!
 //! The content goes to a temporary file in the target's directory, which is renamed onto the
-//! target once everything is on disk. A run that is killed or refused half-way leaves the old file
-//! or none.
+//! target once everything is on disk. A run that is refused half-way, or interrupted, leaves the old file
+//! or none, and nothing unfinished beside it.
 
+use std::collections::BTreeSet;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::RecordingError;
+
+/// What the names of temporary files and folders begin with.
+const UNFINISHED: &str = ".unfinished-";
 
 /// A file being written; it gets its name when the writing has succeeded.
 pub type UnfinishedFile = BufWriter<NamedTempFile>;
@@ -27,12 +32,20 @@ pub fn write_atomic<E: std::fmt::Display>(
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    let file = temporary_file_in(directory).map_err(|e| fail(&e))?;
+    let (file, begun) = {
+        let mut begun = begun();
+        let file = temporary_file_in(directory).map_err(|e| fail(&e))?;
+        let path = Begun::note(&mut begun, file.path());
+        (file, path)
+    };
     let mut writer = BufWriter::new(file);
     write(&mut writer).map_err(|e| fail(&e))?;
     let file = writer.into_inner().map_err(|e| fail(&e))?;
     file.as_file().sync_all().map_err(|e| fail(&e))?;
+    let unbroken = self::begun();
     file.persist(path).map_err(|e| fail(&e.error))?;
+    drop(unbroken);
+    drop(begun);
     Ok(())
 }
 
@@ -44,10 +57,74 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), RecordingError> {
     write_atomic(path, |file| file.write_all(text.as_bytes()))
 }
 
+/// What is being written now: temporary files and folders, and folders that were made and may be empty yet. While the lock is held nothing is begun and
+/// nothing put in its place, so that files that belong together are never parted.
+static BEGUN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn begun() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    // A path too many or too few is sound.
+    BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A path that is being written until this is dropped.
+struct Begun(PathBuf);
+
+impl Begun {
+    fn note(begun: &mut BTreeSet<PathBuf>, path: &Path) -> Self {
+        begun.insert(path.to_owned());
+        Self(path.to_owned())
+    }
+}
+
+impl Drop for Begun {
+    fn drop(&mut self) {
+        begun().remove(&self.0);
+    }
+}
+
+/// Makes a folder and those above it. Where the program is interrupted, those that were made and are still empty go again.
+///
+/// # Errors
+/// As `std::fs::create_dir_all`.
+pub fn make_folder(path: &Path) -> std::io::Result<()> {
+    let mut begun = begun();
+    let absent: Vec<PathBuf> = (path.ancestors())
+        .take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists())
+        .map(Path::to_owned)
+        .collect();
+    std::fs::create_dir_all(path)?;
+    begun.extend(absent);
+    Ok(())
+}
+
+/// Removes all that is being written, as the program is about to end: from here on nothing is begun, and nothing put in its place.
+pub fn abandon() {
+    const TRIES: usize = 20;
+    let begun = begun();
+    // What a folder holds comes after it in this order.
+    for path in begun.iter().rev() {
+        let name = path.file_name().unwrap_or_default();
+        let temporary = name.to_string_lossy().starts_with(UNFINISHED);
+        if !temporary {
+            // One that holds something stays.
+            drop(std::fs::remove_dir(path));
+        } else if path.is_dir() {
+            // A thread may just be opening a file in it.
+            let gone = |_: &usize| std::fs::remove_dir_all(path).is_ok();
+            (0..TRIES).find(gone);
+        } else {
+            drop(std::fs::remove_file(path));
+        }
+    }
+    // For good.
+    std::mem::forget(begun);
+}
+
 /// A folder within another in which files that belong together are written, to appear together.
 pub struct UnfinishedFolder {
     temporary: TempDir,
     target: PathBuf,
+    _begun: Begun,
 }
 
 impl UnfinishedFolder {
@@ -56,9 +133,12 @@ impl UnfinishedFolder {
     /// # Errors
     /// [`RecordingError::Write`] if `target` cannot be written.
     pub fn within(target: &Path) -> Result<Self, RecordingError> {
-        let temporary = Builder::new().prefix(".unfinished-").tempdir_in(target);
+        let mut begun = begun();
+        let temporary = Builder::new().prefix(UNFINISHED).tempdir_in(target);
+        let temporary = temporary.map_err(|e| RecordingError::write(target, e))?;
         Ok(Self {
-            temporary: temporary.map_err(|e| RecordingError::write(target, e))?,
+            _begun: Begun::note(&mut begun, temporary.path()),
+            temporary,
             target: target.to_owned(),
         })
     }
@@ -74,6 +154,7 @@ impl UnfinishedFolder {
     /// # Errors
     /// [`RecordingError::Write`] with the file that cannot be put there.
     pub fn finish(self, names: &[&str]) -> Result<(), RecordingError> {
+        let _unbroken = begun();
         for name in names {
             let target = self.target.join(name);
             std::fs::rename(self.path().join(name), &target)
@@ -85,7 +166,7 @@ impl UnfinishedFolder {
 
 fn temporary_file_in(directory: &Path) -> std::io::Result<NamedTempFile> {
     let mut builder = Builder::new();
-    builder.prefix(".unfinished-");
+    builder.prefix(UNFINISHED);
     // Temporary files are private by default; results are for everyone whom the umask allows.
     #[cfg(unix)]
     {

@@ -8,6 +8,7 @@ pub mod atomic;
 pub mod board;
 pub mod csv;
 mod error;
+pub mod error_scale;
 pub mod long_table;
 pub mod parquet;
 pub mod provenance;

@@ -72,18 +72,26 @@ impl Provenance {
     }
 }
 
+impl SourceFile {
+    /// A file of this name that holds these bytes.
+    #[must_use]
+    pub fn holding(name: &str, bytes: &[u8]) -> Self {
+        let mut sha256 = String::with_capacity(64);
+        for byte in Sha256::digest(bytes) {
+            // Writing into a text cannot fail.
+            let _ = write!(sha256, "{byte:02x}");
+        }
+        Self {
+            file: name.to_owned(),
+            bytes: bytes.len() as u64,
+            sha256,
+        }
+    }
+}
+
 fn source(name: &str, path: &Path) -> Result<SourceFile, RecordingError> {
     let bytes = std::fs::read(path).map_err(|e| RecordingError::read(path, e))?;
-    let mut sha256 = String::with_capacity(64);
-    for byte in Sha256::digest(&bytes) {
-        // Writing into a text cannot fail.
-        let _ = write!(sha256, "{byte:02x}");
-    }
-    Ok(SourceFile {
-        file: name.to_owned(),
-        bytes: bytes.len() as u64,
-        sha256,
-    })
+    Ok(SourceFile::holding(name, &bytes))
 }
 
 #[cfg(test)]

@@ -1,25 +1,43 @@
 //! The results of a bench run: a table of the levels commanded, and its numbers.
 
-use super::number::{optional, printable, significant};
-use super::rows::{DIGITS, comparison, tally};
+use super::printable;
+use super::rows::{comparison, far_from_desired, shown, tally};
 use super::text::Style;
 use crate::metrics::{BENCH_METRICS, BenchSummary, LevelSummary, Metric, Verdict};
+use crate::quantity::optional;
 
-/// Columns of the table of levels: heading, value.
-type Column = (&'static str, fn(&LevelSummary) -> Option<f64>);
+/// A column of the table of levels.
+pub struct LevelColumn {
+    /// Its heading.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// A level's value in that unit.
+    pub value: fn(&LevelSummary) -> Option<f64>,
+}
 
-const LEVELS: [Column; 8] = [
-    ("at s", |level| Some(level.start_s)),
-    ("set bar", |level| Some(level.set_pressure_bar_gauge)),
-    ("outlet bar", |level| {
-        Some(level.regulator_pressure_bar_gauge)
-    }),
-    ("delay s", |level| level.regulator_delay_s),
-    ("force N", |level| level.force_mean_n),
-    ("read N", |level| level.measured_force_mean_n),
-    ("settled s", |level| level.force_settling_time_s),
-    ("stroke mm", |level| level.stroke_mm),
+const fn column(
+    name: &'static str,
+    unit: &'static str,
+    value: fn(&LevelSummary) -> Option<f64>,
+) -> LevelColumn {
+    LevelColumn { name, unit, value }
+}
+
+/// What is told of each command, in a row.
+#[rustfmt::skip]
+pub const LEVELS: [LevelColumn; 8] = [
+    column("at", "s", |level| Some(level.start_s)),
+    column("set", "bar", |level| Some(level.set_pressure_bar_gauge)),
+    column("outlet", "bar", |level| Some(level.regulator_pressure_bar_gauge)),
+    column("delay", "s", |level| level.regulator_delay_s),
+    column("force", "N", |level| level.force_mean_n),
+    column("read", "N", |level| level.measured_force_mean_n),
+    column("settled", "s", |level| level.force_settling_time_s),
+    column("stroke", "mm", |level| level.stroke_mm),
 ];
+/// Letters of a column of the table of levels.
+const LEVEL_WIDTH: usize = 10;
 
 /// Metrics that have a value, the number of the timing only if it was timed.
 fn rows(summary: &BenchSummary) -> impl Iterator<Item = (&'static Metric<BenchSummary>, f64)> {
@@ -28,11 +46,13 @@ fn rows(summary: &BenchSummary) -> impl Iterator<Item = (&'static Metric<BenchSu
         .filter_map(|metric| (metric.value)(summary).map(|value| (metric, value)))
 }
 
-fn unit(metric: &Metric<BenchSummary>) -> &'static str {
-    match metric.unit {
-        "1" => "",
-        unit => unit,
-    }
+/// What is to be said of a force that is not the desired one.
+fn far_of(summary: &BenchSummary) -> Option<String> {
+    far_from_desired(
+        summary.desired_force_n?,
+        summary.force_mean_n?,
+        summary.force_rms_error_percent?,
+    )
 }
 
 /// The table for a terminal.
@@ -51,15 +71,16 @@ pub fn bench_text(
     };
     if !summary.levels.is_empty() {
         let cells = |texts: Vec<String>| -> String {
-            texts.iter().map(|text| format!("{text:>10}")).collect()
+            let cell = |text: &String| format!("{text:>LEVEL_WIDTH$}");
+            texts.iter().map(cell).collect()
         };
-        let headings = LEVELS.iter().map(|(name, _)| (*name).to_owned()).collect();
-        line(style.faint(&cells(headings)));
+        let names = LEVELS.iter().map(|column| column.name.to_owned());
+        line(style.faint(&cells(names.collect())));
+        let units = LEVELS.iter().map(|column| format!("[{}]", column.unit));
+        line(style.faint(&cells(units.collect())));
         for level in &summary.levels {
-            let values = LEVELS
-                .iter()
-                .map(|(_, value)| optional(value(level), DIGITS));
-            line(cells(values.collect()));
+            let value = |column: &LevelColumn| optional((column.value)(level), column.unit);
+            line(cells(LEVELS.iter().map(value).collect()));
         }
         line(rule.clone());
     }
@@ -67,8 +88,8 @@ pub fn bench_text(
         line(format!(
             "{:<28} {:>10} {:<6}  {}",
             metric.label,
-            significant(value, DIGITS),
-            unit(metric),
+            shown(Some(value), metric.shown_unit()),
+            metric.shown_unit(),
             style.faint(metric.meaning),
         ));
     }
@@ -82,6 +103,9 @@ pub fn bench_text(
         }
         let kept = verdicts.iter().all(|verdict| verdict.kept);
         line(style.verdict(kept, &tally(verdicts)));
+    }
+    if let Some(far) = far_of(summary) {
+        line(style.verdict(false, &far));
     }
     out
 }
@@ -98,17 +122,16 @@ pub fn bench_markdown(title: &str, summary: &BenchSummary, verdicts: &[Verdict])
     if !verdicts.is_empty() {
         out.push_str(&format!("## {}\n\n", tally(verdicts)));
     }
+    if let Some(far) = far_of(&untimed) {
+        out.push_str(&format!("**{far}**\n\n"));
+    }
     if !untimed.levels.is_empty() {
-        out.push_str(&row(LEVELS
-            .iter()
-            .map(|(name, _)| (*name).to_owned())
-            .collect()));
+        let heading = |column: &LevelColumn| format!("{}, {}", column.name, column.unit);
+        out.push_str(&row(LEVELS.iter().map(heading).collect()));
         out.push_str(&row(LEVELS.iter().map(|_| "---:".to_owned()).collect()));
         for level in &untimed.levels {
-            let values = LEVELS
-                .iter()
-                .map(|(_, value)| optional(value(level), DIGITS));
-            out.push_str(&row(values.collect()));
+            let value = |column: &LevelColumn| optional((column.value)(level), column.unit);
+            out.push_str(&row(LEVELS.iter().map(value).collect()));
         }
         out.push('\n');
     }
@@ -116,8 +139,8 @@ pub fn bench_markdown(title: &str, summary: &BenchSummary, verdicts: &[Verdict])
     for (metric, value) in rows(&untimed) {
         let cells = [
             metric.label,
-            &significant(value, DIGITS),
-            unit(metric),
+            &shown(Some(value), metric.shown_unit()),
+            metric.shown_unit(),
             metric.meaning,
         ];
         out.push_str(&row(cells.map(str::to_owned).to_vec()));
@@ -152,15 +175,16 @@ mod tests {
     #[test]
     fn it_fits_a_terminal_and_names_what_was_measured() {
         let out = bench_text("paper", &summary(), &[], Style::Plain);
-        assert!(
-            out.lines().all(|line| line.len() <= 88 && line.is_ascii()),
-            "{out}"
-        );
-        for part in ["set bar", "1.800", "290.0", "mean", "N"] {
+        assert!(out.lines().all(|line| line.chars().count() <= 88), "{out}");
+        for part in ["set", "[bar]", "1.800", "290.0", "mean", "N"] {
             assert!(out.contains(part), "{part}");
         }
         assert!(!out.contains("overshoot"), "undefined numbers are left out");
         let page = bench_markdown("paper", &summary(), &[]);
-        assert!(page.contains("| 0.5000 | 1.800 |"), "{page}");
+        assert!(
+            page.contains("| at, s | set, bar | outlet, bar |"),
+            "{page}"
+        );
+        assert!(page.contains("| 0.500 | 1.800 |"), "{page}");
     }
 }

@@ -2,8 +2,10 @@
 //!
 //! Timing is left out, so that the same scenario gives the same text.
 
-use super::rows::{Row, alike, comparison, rows, tally};
+use super::rows::{Row, comparison, rows, tally};
+use super::text::far_of;
 use crate::metrics::{ForceTenth, Summary, Verdict};
+use crate::quantity::column;
 
 /// The results of a run as Markdown, with the scenario's expectations first.
 #[must_use]
@@ -16,6 +18,9 @@ pub fn markdown(title: &str, summary: &Summary, verdicts: &[Verdict]) -> String 
     if !verdicts.is_empty() {
         out.push_str(&format!("\n## {}\n\n", tally(verdicts)));
         expectations(&mut out, verdicts);
+    }
+    if let Some(far) = far_of(&untimed) {
+        out.push_str(&format!("\n**{}**\n", escape(&far)));
     }
     let rows = rows(&untimed);
     for part in rows.chunk_by(|before, after| before.part == after.part) {
@@ -63,7 +68,7 @@ fn tenths(out: &mut String, tenths: &[ForceTenth]) {
         return;
     }
     let column = |value: fn(&ForceTenth) -> Option<f64>| {
-        alike(&tenths.iter().map(value).collect::<Vec<_>>())
+        column(&tenths.iter().map(value).collect::<Vec<_>>(), "N")
     };
     let means = column(|tenth| tenth.force_mean_n);
     let spreads = column(|tenth| tenth.force_standard_deviation_n);

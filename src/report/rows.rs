@@ -1,23 +1,31 @@
 //! The rows of the reports: which metrics, in which parts, with what beside them.
 
-use super::number::{UNDEFINED, optional, printable, significant};
-use crate::metrics::{Metric, Summary, Verdict, metric};
-
-/// Significant digits of a result; forces near the desired one differ in the fourth.
-pub(super) const DIGITS: usize = 4;
+use super::printable;
+use crate::metrics::{Metric, NARROW_BAND, Summary, Verdict, WIDE_BAND, metric};
+use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
 /// Parts of a report and the metrics in each, by key.
-const PARTS: [(&str, &[&str]); 5] = [
+const PARTS: [(&str, &[&str]); 6] = [
     (
         "Force",
         &[
             "force_mean_n",
             "force_standard_deviation_n",
             "coefficient_of_variation_percent",
+            "force_rms_error_n",
             "largest_deviation_n",
             "within_5_percent_share_percent",
             "within_10_percent_share_percent",
             "loss_of_contact_share_percent",
+        ],
+    ),
+    (
+        "Peaks",
+        &[
+            "force_peak_approach_n",
+            "force_peak_engage_n",
+            "force_peak_follow_n",
+            "force_peak_retract_n",
         ],
     ),
     ("Touch", &["engagement_peak_n", "settling_time_s"]),
@@ -53,22 +61,43 @@ pub(super) struct Row {
 impl Row {
     /// The value as it is printed.
     pub(super) fn text(&self) -> String {
-        match self.value {
-            // A share that falls short must not read as the whole.
-            Some(value) if self.metric.unit == "%" && (99.995..100.0).contains(&value) => {
-                "<100".to_owned()
-            }
-            value => optional(value, DIGITS),
-        }
+        shown(self.value, self.unit())
     }
 
     /// The unit as it is printed; nothing for a pure number.
     pub(super) fn unit(&self) -> &'static str {
-        match self.metric.unit {
-            "1" => "",
-            unit => unit,
-        }
+        self.metric.shown_unit()
     }
+}
+
+/// A metric's value in its unit as it is printed.
+#[must_use]
+pub fn shown(value: Option<f64>, unit: &str) -> String {
+    match value {
+        // A share that falls short must not read as the whole.
+        Some(value) if unit == "%" && (99.995..100.0).contains(&value) => "<100".to_owned(),
+        value => quantity::optional(value, unit),
+    }
+}
+
+/// What is to be said where a force is far from the desired one, however its bounds are; none within 5 % of it.
+#[must_use]
+pub fn far_from_desired(desired: f64, mean: f64, rms_error_percent: f64) -> Option<String> {
+    if rms_error_percent <= 100.0 * NARROW_BAND {
+        return None;
+    }
+    let off = 100.0 * (mean - desired) / desired;
+    Some(format!(
+        "{} the desired force: {} desired, {} on average ({}), RMS error {}",
+        match rms_error_percent <= 100.0 * WIDE_BAND {
+            true => "Off",
+            false => "Far from",
+        },
+        with_unit(desired, "N"),
+        with_unit(mean, "N"),
+        change(off),
+        with_unit(rms_error_percent, "%")
+    ))
 }
 
 /// The rows in order; without that of the timing if there is none.
@@ -93,50 +122,39 @@ pub(super) fn rows(summary: &Summary) -> Vec<Row> {
 
 /// What says more beside a value than its meaning.
 fn fact(name: &str, summary: &Summary) -> Option<String> {
-    let short = |value| significant(value, DIGITS);
+    let of = |value, unit| with_unit(value, unit);
     Some(match name {
-        "force_mean_n" => format!("desired {} N", short(summary.desired_force_n)),
+        "force_mean_n" => {
+            let desired = summary.desired_force_n;
+            let off = 100.0 * (summary.force_mean_n? - desired) / desired;
+            format!("desired {} ({})", of(desired, "N"), change(off))
+        }
+        "force_rms_error_n" => format!(
+            "{} of the desired force",
+            of(summary.force_rms_error_percent?, "%")
+        ),
         "engagement_peak_n" => match summary.engagement_overshoot_percent? {
             0.0 => "not above the desired force".to_owned(),
-            over => format!("{} % above desired", significant(over, 3)),
+            over => format!("{} above desired", of(over, "%")),
         },
         "stroke_used_mm" => {
             let (least, greatest) = (summary.stroke_min_mm?, summary.stroke_max_mm?);
-            format!("from {} to {} mm", short(least), short(greatest))
+            let least = quantity::number(least, "mm");
+            format!("from {least} to {}", of(greatest, "mm"))
         }
-        "path_length_mm" => format!("at {} mm/s on average", short(summary.feed_mean_mm_per_s?)),
+        "path_length_mm" => {
+            format!("at {} on average", of(summary.feed_mean_mm_per_s?, "mm/s"))
+        }
         "joint_torque_share_percent" => {
             format!(
                 "largest, at {}",
                 printable(summary.most_loaded_joint.as_ref()?)
             )
         }
-        "duration_s" => format!("following {} s of it", short(summary.follow_duration_s?)),
-        "real_time_factor" => format!(
-            "computed in {} s",
-            significant(summary.timing?.wall_time_s, 3)
-        ),
+        "duration_s" => format!("following {} of it", of(summary.follow_duration_s?, "s")),
+        "real_time_factor" => format!("computed in {}", of(summary.timing?.wall_time_s, "s")),
         _ => return None,
     })
-}
-
-/// Values as texts of one precision, five digits for the largest of them and at most three decimals.
-pub(super) fn alike(values: &[Option<f64>]) -> Vec<String> {
-    let largest = values
-        .iter()
-        .flatten()
-        .fold(0.0, |most: f64, value| most.max(value.abs()));
-    let decimals = match largest {
-        largest if largest < 100.0 => 3,
-        largest if largest < 1000.0 => 2,
-        largest if largest < 10_000.0 => 1,
-        _ => 0,
-    };
-    let text = |value: &Option<f64>| match value {
-        Some(value) => format!("{value:.decimals$}"),
-        None => UNDEFINED.to_owned(),
-    };
-    values.iter().map(text).collect()
 }
 
 /// Value and bound of a verdict, with enough digits to tell them apart.
@@ -145,16 +163,21 @@ pub(super) fn comparison(verdict: &Verdict) -> (String, String) {
         return ("undefined".to_owned(), bound(verdict));
     };
     let bounds = [verdict.min, verdict.max].into_iter().flatten();
-    let digits = (DIGITS..17)
-        .find(|&digits| {
-            let shown = significant(value, digits);
-            bounds.clone().all(|bound| {
-                let shown: f64 = shown.parse().unwrap_or(f64::NAN);
-                value.total_cmp(&bound) == shown.total_cmp(&bound)
-            })
-        })
-        .unwrap_or(17);
-    (significant(value, digits), bound(verdict))
+    // `<0.001` reads as nothing.
+    let tells = |shown: &String| {
+        let shown: f64 = shown.parse().unwrap_or(0.0);
+        let same = |bound: f64| value.total_cmp(&bound) == shown.total_cmp(&bound);
+        bounds.clone().all(same)
+    };
+    let unit = if verdict.unit == "1" {
+        ""
+    } else {
+        verdict.unit
+    };
+    let short = std::iter::once(quantity::number(value, unit));
+    let longer = (DIGITS..17).map(|digits| significant(value, digits));
+    let told = short.chain(longer).find(tells);
+    (told.unwrap_or_else(|| value.to_string()), bound(verdict))
 }
 
 fn bound(verdict: &Verdict) -> String {
@@ -166,10 +189,13 @@ fn bound(verdict: &Verdict) -> String {
     }
 }
 
-/// How many expectations were kept, in one line.
+/// How many bounds were kept, in one line.
 pub(super) fn tally(verdicts: &[Verdict]) -> String {
     let kept = verdicts.iter().filter(|verdict| verdict.kept).count();
-    format!("{kept} of {} expectations kept", verdicts.len())
+    match verdicts.len() {
+        1 => format!("{kept} of 1 bound kept"),
+        count => format!("{kept} of {count} bounds kept"),
+    }
 }
 
 #[cfg(test)]
@@ -213,12 +239,17 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_have_the_same_decimals() {
+    fn a_force_that_is_not_the_desired_one_is_said_so_whatever_the_bounds() {
+        assert_eq!(far_from_desired(100.0, 99.0, 4.9), None);
         assert_eq!(
-            alike(&[Some(320.0), Some(5.125), None]),
-            ["320.00", "5.12", "-"]
+            far_from_desired(100.0, 94.0, 6.0).as_deref(),
+            Some(
+                "Off the desired force: 100.0 N desired, 94.00 N on average (-6.0 %), RMS error 6.000 %"
+            )
         );
-        assert_eq!(alike(&[Some(0.25)]), ["0.250"]);
+        let far = far_from_desired(100.0, 249.9, 149.9).unwrap();
+        assert!(far.starts_with("Far from the desired force: 100.0 N desired, 249.9 N"));
+        assert!(far.contains("(+150 %)"), "{far}");
     }
 
     #[test]
@@ -232,7 +263,7 @@ mod tests {
             kept,
         };
         let shown = |value, kept| comparison(&verdict(Some(value), kept)).0;
-        assert_eq!(shown(0.5, true), "0.5000");
+        assert_eq!(shown(0.5, true), "0.500");
         assert_eq!(shown(1.0, true), "1.000");
         assert_eq!(shown(1.00000012, false), "1.0000001");
         assert_eq!(shown(0.99999, true), "0.99999");

@@ -2,16 +2,17 @@
 
 use std::fmt::Write;
 
-use super::number::{UNDEFINED, printable};
-use super::rows::{Row, alike, comparison, rows, tally};
+use super::printable;
+use super::rows::{Row, comparison, far_from_desired, rows, tally};
 use crate::metrics::{ForceTenth, Summary, Verdict};
+use crate::quantity::{UNKNOWN, column};
 
 const WIDTH: usize = 80;
 
 /// How the table is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
-    /// Plain ASCII, for files and pipes.
+    /// Without colours, for files and pipes.
     #[default]
     Plain,
     /// With ANSI colours, for a terminal.
@@ -53,14 +54,26 @@ pub fn text(title: &str, summary: &Summary, verdicts: &[Verdict], style: Style) 
     }
     tenths(&mut out, &summary.force_by_tenth, style);
     if rows.iter().any(|row| row.value.is_none()) {
-        let note = format!("{UNDEFINED} not determined by this run; see docs/METRICS.md");
+        let note = format!("{UNKNOWN} not determined by this run; see docs/METRICS.md");
         push(&mut out, &style.faint(&note));
     }
     if !verdicts.is_empty() {
         push(&mut out, &rule);
         expectations(&mut out, verdicts, style);
     }
+    if let Some(far) = far_of(summary) {
+        push(&mut out, &style.verdict(false, &far));
+    }
     out
+}
+
+/// What is to be said of a force that is not the desired one.
+pub(super) fn far_of(summary: &Summary) -> Option<String> {
+    far_from_desired(
+        summary.desired_force_n,
+        summary.force_mean_n?,
+        summary.force_rms_error_percent?,
+    )
 }
 
 fn push(out: &mut String, line: &str) {
@@ -87,7 +100,7 @@ fn tenths(out: &mut String, tenths: &[ForceTenth], style: Style) {
     let cells =
         |texts: Vec<String>| -> String { texts.iter().map(|text| format!("{text:>7}")).collect() };
     let column = |value: fn(&ForceTenth) -> Option<f64>| {
-        cells(alike(&tenths.iter().map(value).collect::<Vec<_>>()))
+        cells(column(&tenths.iter().map(value).collect::<Vec<_>>(), "N"))
     };
     let ends = cells(
         tenths
@@ -135,15 +148,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_fits_a_terminal_and_is_ascii() {
+    fn it_fits_a_terminal() {
         for summary in [nominal(), Summary::default()] {
             let out = text("plate edge", &summary, &judged(&summary), Style::Plain);
             for line in out.lines() {
-                assert!(line.len() <= WIDTH, "{} columns: {line}", line.len());
-                assert!(
-                    line.bytes().all(|byte| (b' '..=b'~').contains(&byte)),
-                    "{line}"
-                );
+                let columns = line.chars().count();
+                let far = line.contains("the desired force: ");
+                assert!(columns <= WIDTH || far, "{columns} columns: {line}");
+                let plain = |letter: char| (' '..='~').contains(&letter) || "µ±–".contains(letter);
+                assert!(line.chars().all(plain), "{line}");
                 assert_eq!(line, line.trim_end());
             }
         }
@@ -176,10 +189,10 @@ mod tests {
                 .unwrap_or_default()
         };
         for (label, parts) in [
-            ("Force   mean", ["320.1 N", "desired 320.0 N"]),
+            ("Force   mean", ["320.1 N", "desired 320.0 N (<0.1 %)"]),
             (
                 "coefficient of variation  ",
-                ["0.3124 %", "standard deviation / mean"],
+                ["0.312 %", "standard deviation / mean"],
             ),
             (
                 "joint torque / limit",
@@ -187,7 +200,7 @@ mod tests {
             ),
             ("real-time factor", ["25.00", "computed in 0.480 s"]),
             ("OUTSIDE", ["stroke_margin_mm", "at least 22"]),
-            ("1 of 2", ["expectations", "kept"]),
+            ("1 of 2", ["bounds", "kept"]),
         ] {
             for part in parts {
                 assert!(line(label).contains(part), "{part} in: {}", line(label));
@@ -197,13 +210,24 @@ mod tests {
     }
 
     #[test]
+    fn a_force_far_from_the_desired_one_is_said_below_bounds_that_are_kept() {
+        let mut summary = nominal();
+        assert!(!text("x", &summary, &[], Style::Plain).contains("the desired force:"));
+        summary.force_mean_n = Some(800.0);
+        summary.force_rms_error_percent = Some(150.0);
+        let out = text("x", &summary, &[], Style::Plain);
+        let last = out.lines().last().unwrap_or_default();
+        assert!(last.starts_with("Far from the desired force"), "{out}");
+    }
+
+    #[test]
     fn what_is_undefined_is_a_dash_and_explained() {
         let out = text("plate edge", &Summary::default(), &[], Style::Plain);
         let peak = out
             .lines()
             .find(|line| line.contains("peak"))
             .unwrap_or_default();
-        assert!(peak.contains(" - N"), "{peak}");
-        assert!(out.contains("- not determined by this run"));
+        assert!(peak.contains(" – N"), "{peak}");
+        assert!(out.contains("– not determined by this run"));
     }
 }

@@ -39,7 +39,7 @@ pub use error::ScenarioError;
 pub use load::{load, load_any, load_bench};
 pub use recorded_cell::{RecordedCell, load_recorded_cell};
 pub use sensing::largest_set_pressure;
-pub use variation::ScenarioTemplate;
+pub use variation::{KeyValue, ScenarioTemplate, listed};
 
 /// Where a dotted key stands in a scenario file; none if it does not stand there.
 pub fn place_of(file: &std::path::Path, key: &str) -> Option<error::Place> {

@@ -53,6 +53,42 @@ pub(crate) fn nearest(name: &str, known: &[&str]) -> String {
     }
 }
 
+/// Advice on an unknown dotted key where a whole key was given: the nearest of all, with its table.
+pub(crate) fn nearest_dotted(key: &str, sections: &Sections) -> String {
+    let (table, name) = split(key);
+    let all = || {
+        let keys = |(section, keys): &(&'static str, &'static [&'static str])| {
+            let dotted = |key: &&'static str| (section.replace('*', "NAME"), *key);
+            keys.iter().map(dotted).collect::<Vec<_>>()
+        };
+        sections.iter().flat_map(keys)
+    };
+    // The right name counts before the right table: people leave the table out.
+    let likeness = |(own, right): &(String, &str)| {
+        let unit = differs_in_unit(name, right);
+        let name = if unit {
+            1.0
+        } else {
+            strsim::jaro_winkler(name, right)
+        };
+        let table = strsim::jaro_winkler(&table, own);
+        (name, table)
+    };
+    let nearest = all().max_by(|one, other| {
+        let (one, other) = (likeness(one), likeness(other));
+        (one.0.total_cmp(&other.0)).then(one.1.total_cmp(&other.1))
+    });
+    match nearest {
+        Some(found) if likeness(&found).0 >= SIMILAR => {
+            format!(
+                "did you mean `{}`?",
+                super::document::join(&found.0, found.1)
+            )
+        }
+        _ => advice(key, sections),
+    }
+}
+
 /// Table, without list indices, and name of a dotted key.
 fn split(key: &str) -> (String, &str) {
     let (table, name) = key.rsplit_once('.').unwrap_or(("", key));
@@ -120,6 +156,25 @@ mod tests {
             ),
         ] {
             assert_eq!(advice(key, SECTIONS), expected, "{key}");
+        }
+    }
+
+    #[test]
+    fn a_whole_key_is_answered_by_a_whole_key() {
+        for (key, expected) in [
+            ("process.froce_n", "did you mean `process.force_n`?"),
+            ("force_n", "did you mean `process.force_n`?"),
+            ("proces.force", "did you mean `process.force_n`?"),
+            (
+                "contact.feed_mm_per_s",
+                "did you mean `process.feed_mm_per_s`?",
+            ),
+            (
+                "process.temperature",
+                "known here are feed_mm_per_s, corner_feed_mm_per_s, force_n",
+            ),
+        ] {
+            assert_eq!(nearest_dotted(key, SECTIONS), expected, "{key}");
         }
     }
 

@@ -1,17 +1,36 @@
-//! A scenario file with other numbers for some of its keys: what a design study simulates.
+//! A scenario file with other values for some of its keys: what a design study simulates, and what `idc run --set` does.
+
+mod edit;
 
 use std::path::{Path, PathBuf};
+
+use toml_edit::{DocumentMut, TomlError, Value};
 
 use super::AnyScenario;
 use super::document::read_text;
 use super::error::{Place, ScenarioError};
 use super::load::from_text;
+use super::sections::{bench_sections, scenario_sections};
+use super::suggestion::nearest_dotted;
+
+pub use edit::{KeyValue, listed};
+
+/// Keys that name files or folders, from the scenario's folder; `*` stands for any name.
+const PATHS: [&str; 5] = [
+    "arm.urdf",
+    "arm.packages.*",
+    "device.model",
+    "workpiece.mesh",
+    "workpiece.burr.path",
+];
 
 /// A scenario file, read once and checked as it stands.
 #[derive(Debug, Clone)]
 pub struct ScenarioTemplate {
     path: PathBuf,
     text: String,
+    title: String,
+    is_bench: bool,
 }
 
 impl ScenarioTemplate {
@@ -21,66 +40,124 @@ impl ScenarioTemplate {
     /// It is no scenario as it stands.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let text = read_text(path)?;
-        from_text(path, &text)?;
+        let (title, is_bench) = match from_text(path, &text)? {
+            AnyScenario::Cell(cell) => (cell.title, false),
+            AnyScenario::Bench(bench) => (bench.title, true),
+        };
         Ok(Self {
             path: path.to_owned(),
             text,
+            title,
+            is_bench,
         })
     }
 
-    /// The scenario with these values for these dotted keys, each in its key's unit, whatever the file says of them.
+    /// Its name for people.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The scenario with these values for these keys, whatever the file says of them.
     ///
     /// # Errors
     /// As of a file with these values; a key of the scenario is named without a line, as no file holds the value.
-    pub fn with(&self, values: &[(String, f64)]) -> Result<AnyScenario, ScenarioError> {
-        let bare = Place {
+    pub fn with(&self, edits: &[KeyValue]) -> Result<AnyScenario, ScenarioError> {
+        let text = self.text(edits)?;
+        from_text(&self.path, &text).map_err(|error| self.without_line(error))
+    }
+
+    /// The file's text with these values for these keys; what it says of other keys, and its comments, stay as they are.
+    ///
+    /// # Errors
+    /// A key leads through what is no table or list, or beyond a list's end.
+    pub fn text(&self, edits: &[KeyValue]) -> Result<String, ScenarioError> {
+        let mut document = self.document()?;
+        for edit in edits {
+            edit.apply(&mut document).map_err(|reason| {
+                let key = edit.key().to_owned();
+                ScenarioError::Misplaced {
+                    place: self.bare(),
+                    key,
+                    reason,
+                }
+            })?;
+        }
+        Ok(document.to_string())
+    }
+
+    /// As `text`, for a file that is to stand in another folder: its paths lead from there, or from the root, to what they lead to now.
+    ///
+    /// # Errors
+    /// As `text`.
+    pub fn text_in(&self, folder: &Path, edits: &[KeyValue]) -> Result<String, ScenarioError> {
+        let text = self.text(edits)?;
+        let mut document: DocumentMut = text.parse().map_err(|error| self.syntax(&error))?;
+        let from = self.path.parent().unwrap_or(Path::new(""));
+        for key in PATHS {
+            edit::change(document.as_item_mut(), key, &|value: &mut Value| {
+                if let Some(path) = value.as_str() {
+                    let path = led_to(&from.join(path), folder);
+                    edit::replace(value, Value::from(path));
+                }
+            });
+        }
+        Ok(document.to_string())
+    }
+
+    /// Advice on a key that a scenario of its kind does not have: the nearest one with its table.
+    #[must_use]
+    pub fn advice(&self, key: &str) -> String {
+        let sections = match self.is_bench {
+            true => bench_sections(),
+            false => scenario_sections(),
+        };
+        nearest_dotted(key, &sections)
+    }
+
+    fn document(&self) -> Result<DocumentMut, ScenarioError> {
+        self.text.parse().map_err(|error| self.syntax(&error))
+    }
+
+    fn syntax(&self, error: &TomlError) -> ScenarioError {
+        ScenarioError::Syntax {
+            place: self.bare(),
+            reason: error.message().to_owned(),
+        }
+    }
+
+    fn bare(&self) -> Place {
+        Place {
             file: self.path.clone(),
             position: None,
             excerpt: None,
-        };
-        let mut table: toml::Table =
-            self.text
-                .parse()
-                .map_err(|error: toml::de::Error| ScenarioError::Syntax {
-                    place: bare.clone(),
-                    reason: error.message().to_owned(),
-                })?;
-        for (key, value) in values {
-            set(&mut table, key, *value);
         }
-        from_text(&self.path, &table.to_string()).map_err(|error| match error.place() {
-            // Its line is one of the text above.
-            Some(place) if place.file == self.path => error.at(bare),
+    }
+
+    fn without_line(&self, error: ScenarioError) -> ScenarioError {
+        match error.place() {
+            // Its line is one of the text with the values in it.
+            Some(place) if place.file == self.path => error.at(self.bare()),
             _ => error,
-        })
+        }
     }
 }
 
-/// Puts a number at a dotted key. What is no table on the way gives place to one, to be refused for what is in it or missing.
-fn set(table: &mut toml::Table, key: &str, value: f64) {
-    match key.split_once('.') {
-        None => {
-            // A count is a count: 2.0 cylinders are refused.
-            let whole = value.fract() == 0.0 && value.abs() < 1e15;
-            let value = if whole {
-                toml::Value::Integer(value as i64)
-            } else {
-                toml::Value::Float(value)
-            };
-            table.insert(key.to_owned(), value);
-        }
-        Some((first, rest)) => {
-            let inner = table
-                .entry(first)
-                .or_insert_with(|| toml::Table::new().into());
-            if !inner.is_table() {
-                *inner = toml::Table::new().into();
-            }
-            if let toml::Value::Table(inner) = inner {
-                set(inner, rest, value);
-            }
-        }
+/// The path to a file or folder from another folder that is there: relative where they share more than the root.
+fn led_to(path: &Path, folder: &Path) -> String {
+    let (Ok(full), Ok(folder)) = (path.canonicalize(), folder.canonicalize()) else {
+        return path.display().to_string();
+    };
+    let shared = (full.components().zip(folder.components()))
+        .take_while(|(one, other)| one == other)
+        .count();
+    if shared < 2 {
+        return full.display().to_string();
     }
+    let up = folder.components().skip(shared).map(|_| "..".into());
+    let down = (full.components().skip(shared)).map(|part| part.as_os_str().to_owned());
+    let parts: PathBuf = up.chain(down).collect();
+    parts.display().to_string()
 }
 
 #[cfg(test)]
@@ -93,17 +170,20 @@ mod tests {
         folder.join(format!("{name}.toml"))
     }
 
+    fn edits(values: &[(&str, f64)]) -> Vec<KeyValue> {
+        let edit = |(key, value): &(&str, f64)| KeyValue::number(*key, *value);
+        values.iter().map(edit).collect()
+    }
+
     fn bench(template: &ScenarioTemplate, values: &[(&str, f64)]) -> BenchScenario {
-        let values: Vec<(String, f64)> =
-            values.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect();
-        match template.with(&values).unwrap() {
+        match template.with(&edits(values)).unwrap() {
             AnyScenario::Bench(bench) => *bench,
             AnyScenario::Cell(_) => panic!("a cell"),
         }
     }
 
     fn refused(template: &ScenarioTemplate, key: &str, value: f64) -> String {
-        let error = template.with(&[(key.to_owned(), value)]).unwrap_err();
+        let error = template.with(&edits(&[(key, value)])).unwrap_err();
         assert_eq!(error.key(), Some(key));
         error.to_string()
     }
@@ -155,5 +235,45 @@ mod tests {
         assert!(message.contains("a whole number"), "{message}");
         let message = refused(&template, "device.override.bohr_mm", 30.0);
         assert!(message.contains("did you mean `bore_mm`?"), "{message}");
+        let message = refused(&template, "bench.duration_s.long", 30.0);
+        assert!(
+            message.contains("`bench.duration_s` is no table"),
+            "{message}"
+        );
+    }
+
+    /// Every shipped scenario, put elsewhere, is the same scenario.
+    #[test]
+    fn a_file_that_stands_elsewhere_leads_to_the_same_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut tried = 0;
+        for entry in std::fs::read_dir(shipped("x").parent().unwrap()).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|extension| extension != "toml") {
+                continue;
+            }
+            let template = ScenarioTemplate::read(&path).unwrap();
+            let copy = folder.path().join("scenario.toml");
+            std::fs::write(&copy, template.text_in(folder.path(), &[]).unwrap()).unwrap();
+            let files = |path: &Path| match crate::scenario::load_any(path).unwrap() {
+                AnyScenario::Cell(cell) => {
+                    let full = |path: &PathBuf| path.canonicalize().unwrap();
+                    let burr = match &cell.workpiece.burr {
+                        crate::scenario::BurrScenario::Table { path } => Some(full(path)),
+                        _ => None,
+                    };
+                    let mut files: Vec<PathBuf> = burr.into_iter().collect();
+                    files.extend(
+                        [&cell.arm.urdf, &cell.device.model, &cell.workpiece.mesh].map(full),
+                    );
+                    files.extend(cell.arm.package_directories.values().map(full));
+                    files
+                }
+                AnyScenario::Bench(bench) => vec![bench.device.model.canonicalize().unwrap()],
+            };
+            assert_eq!(files(&path), files(&copy), "{}", path.display());
+            tried += 1;
+        }
+        assert!(tried > 10, "{tried}");
     }
 }

@@ -19,19 +19,75 @@ before(async () => {
     run: join(plate, "report.html"),
     bench: join(made("bench", "run", "scenarios/paper_stairstep_sensed.toml"), "report.html"),
     compare,
+    // As few designs as a study may have: what it finds is not looked at.
+    design: join(made("design", "design", "scenarios/studies/device_design.toml", "--evaluations", "350"), "report.html"),
   };
 });
 after(() => browser.close());
 
 const address = (name) => String(pathToFileURL(pages[name]));
 const first = "figure.chart .plot[data-drawn]";
-// The charts are above the fold of no page: go there, and they are drawn.
+// The charts are above the fold of no page: go there, and they are drawn. A study has none.
 const drawn = async (page) => {
+  if (await page.locator("figure.chart").count() === 0) return;
   await page.locator("figure.chart").first().scrollIntoViewIfNeeded();
   await page.waitForSelector(first);
 };
 
-for (const name of ["diagnosis", "run", "bench", "compare"]) {
+// What of a page's texts does not lie within the place that it has, its charts' included, which are painted.
+const clipped = (page) => page.evaluate(() => {
+  const found = [];
+  const within = (what, box, [left, top, right, bottom]) => {
+    if (box.left < left - 1 || box.right > right + 1 || box.top < top - 1 || box.bottom > bottom + 1) found.push(`${what}: ${[box.left, box.top, box.right, box.bottom].map(Math.round)} not in ${[left, top, right, bottom].map(Math.round)}`);
+  };
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const range = document.createRange();
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const parent = node.parentElement;
+    // What is scrolled within its place is not cut off.
+    if (!node.data.trim() || parent.closest("script, style, noscript, .scroll, pre, .picture, .u-off")) continue;
+    range.selectNodeContents(node);
+    const box = range.getBoundingClientRect();
+    if (box.width === 0) continue;
+    const svg = parent.closest("svg")?.getBoundingClientRect();
+    within(node.data.trim().slice(0, 40), box, svg ? [svg.left, svg.top, svg.right, svg.bottom] : [0, -Infinity, innerWidth, Infinity]);
+  }
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.font = "12px system-ui, sans-serif";
+  for (const { plot } of window.idcCharts.filter((chart) => chart.plot)) {
+    const ratio = devicePixelRatio;
+    const [left, top, width, height] = [plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height].map((v) => v / ratio);
+    const title = plot.axes[1].label;
+    // Names of phases have a band of their own above the signals.
+    for (const name of plot.names) within(`phase ${name.label} of ${title}`, name, [0, 0, plot.width, top]);
+    const [across, up] = plot.axes;
+    for (const value of up._values ?? []) {
+      if (value === null) continue;
+      const wide = pen.measureText(value).width;
+      // Between the axis's own name and its ticks.
+      within(`${value} of ${title}`, { left: left - 15 - wide, right: left, top: 0, bottom: 0 }, [up.labelSize - 4, 0, left, height]);
+    }
+    (across._values ?? []).forEach((value, which) => {
+      if (value === null) return;
+      const [middle, wide] = [left + plot.valToPos(across._splits[which], "x"), pen.measureText(value).width];
+      within(`${value} below ${title}`, { left: middle - 0.5 * wide, right: middle + 0.5 * wide, top: 0, bottom: 0 }, [0, 0, plot.width, height]);
+    });
+    const long = pen.measureText(title).width;
+    within(`name of ${title}`, { left: 0, right: long, top: 0, bottom: 0 }, [0, 0, height, height]);
+    const below = pen.measureText(across.label).width;
+    within(`name below ${title}`, { left: 0, right: below, top: 0, bottom: 0 }, [0, 0, width, height]);
+  }
+  return found;
+});
+// Charts that are out of sight wait.
+const allDrawn = async (page) => {
+  for (const chart of await page.locator("figure.chart").all()) {
+    await chart.scrollIntoViewIfNeeded();
+    await chart.locator("[data-drawn]").waitFor();
+  }
+};
+
+for (const name of ["diagnosis", "run", "bench", "compare", "design"]) {
   test(`${name}: opens, at most 3 MB, without a network or an error`, async () => {
     assert.ok(statSync(pages[name]).size <= 3_000_000, `${statSync(pages[name]).size} bytes`);
     const { page, faults, requests, seconds } = await open(browser, address(name));
@@ -50,6 +106,10 @@ for (const name of ["diagnosis", "run", "bench", "compare"]) {
         await drawn(page);
         const beyond = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
         assert.ok(beyond <= 0, `${beyond} px beyond ${width}`);
+        if (colorScheme === "light") {
+          await allDrawn(page);
+          assert.deepEqual(await clipped(page), [], `at ${width} px`);
+        }
         const theme = await page.evaluate(() => document.documentElement.dataset.theme);
         assert.equal(theme, colorScheme);
         assert.deepEqual(faults, []);
@@ -58,6 +118,66 @@ for (const name of ["diagnosis", "run", "bench", "compare"]) {
     }
   });
 }
+
+test("a study's page is one that is read", async () => {
+  const { page } = await open(browser, address("design"), { viewport: { width: 1024, height: 900 } });
+  const height = await page.evaluate(() => document.documentElement.scrollHeight);
+  assert.ok(height < 6000, `${height} px`);
+  const heads = await page.locator("h2").allTextContents();
+  for (const head of ["Chosen design", "Trade-off", "What binds", "Limits", "What it was measured by"]) assert.ok(heads.includes(head), `${head} of ${heads}`);
+  assert.ok(await page.locator(".picture svg").isVisible());
+  await page.context().close();
+});
+
+for (const [name, count] of [["run", 2], ["bench", 1]]) {
+  test(`${name}: the picture is there`, async () => {
+    const { page, faults } = await open(browser, address(name));
+    const pictures = await page.evaluate(async () => Promise.all([...document.querySelectorAll(".sketches svg image")].map(async (picture) => {
+      const image = new Image();
+      image.src = picture.getAttribute("href");
+      await image.decode();
+      const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height });
+      const context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
+      const { data } = context.getImageData(0, 0, image.width, image.height);
+      const colours = new Set();
+      let covered = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i + 3] > 128) { covered += 1; colours.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]); }
+      }
+      return [4 * covered / data.length, colours.size];
+    })));
+    assert.equal(pictures.length, count);
+    for (const [share, colours] of pictures) assert.ok(share > 0.02 && share < 0.9 && colours > 3, `${share} covered, ${colours} colours`);
+    if (name === "run") {
+      const words = await page.locator(".sketches text").allTextContents();
+      assert.ok(words.some((word) => /^\+[\d.]+ %$/.test(word)) && words.includes("force error") && words.includes("start"), words.join());
+      assert.equal(await page.evaluate(() => new Set([...document.querySelectorAll(".sketches figure:nth-child(2) line[stroke-width='5']")].map((line) => line.getAttribute("stroke"))).size > 1), true);
+    }
+    assert.deepEqual(faults, []);
+    await page.context().close();
+  });
+}
+
+test("phase names stand above the signals, zoomed too", async () => {
+  for (const width of [390, 1280]) {
+    const { page } = await open(browser, address("run"), { viewport: { width, height: 900 } });
+    await drawn(page);
+    const names = () => page.evaluate(() => { const { plot } = window.idcCharts[0]; return [plot.names, plot.bbox.top / devicePixelRatio]; });
+    const [all, top] = await names();
+    assert.deepEqual(all.map((name) => name.label), ["approach", "engage", "follow", "retract"]);
+    for (const name of all) assert.ok(name.top >= 0 && name.bottom <= top, `${name.label} to ${name.bottom}, signals from ${top}`);
+    for (const [which, name] of all.entries()) {
+      for (const other of all.slice(which + 1)) assert.ok(name.right <= other.left || name.bottom <= other.top || other.bottom <= name.top, `${name.label} on ${other.label}`);
+    }
+    // The phase that is looked at is named though its beginning is out of sight.
+    await page.evaluate(() => { const { plot } = window.idcCharts[0]; const [, , follow, retract] = window.idcCharts[0].told.markers; plot.setScale("x", { min: follow.at + 0.4 * (retract.at - follow.at), max: follow.at + 0.6 * (retract.at - follow.at) }); });
+    await page.waitForTimeout(100);
+    const [zoomed] = await names();
+    assert.deepEqual(zoomed.map((name) => name.label), ["follow"]);
+    await page.context().close();
+  }
+});
 
 // Ranges of the charts of the run that are drawn.
 const shown = (page) => page.evaluate(() => window.idcCharts.filter((chart) => chart.plot && chart.told.group === "run").map((chart) => [chart.plot.scales.x.min, chart.plot.scales.x.max]));

@@ -44,8 +44,8 @@ const colours = async (page, png, wanted) => page.evaluate(async ([png, wanted])
 
 const vermilion = [0xd5, 0x5e, 0x00];
 const green = [0x00, 0x9e, 0x73];
-const orange = [0xe6, 0x9f, 0x00];
-const sky = [0x56, 0xb4, 0xe9];
+const orange = [200, 132, 0];
+const sky = [50, 150, 215];
 
 for (const [name, words, file, wanted] of [
   ["run", ["run", "scenarios/plate_edge.toml"], "viewed/recording.rrd", [vermilion, green]],

@@ -39,7 +39,8 @@ HUBER = 4.0
 NOISE_ALONE = 1.15
 LEAST_ODDS = -2.0
 IN_TURN = "left out in turn"
-NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e-?\d+)?"
+RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+NUMBER = r"[-+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?"
 # Sections that the files of a diagnosis cannot recompute, and why.
 ELSEWHERE = {
     "The recordings": "what was set aside of the logs, which are not among a diagnosis' files",
@@ -47,7 +48,7 @@ ELSEWHERE = {
     "Where on the path": "the simulation without the effects is not in comparison.parquet",
 }
 # What was once said whatever the numbers were.
-FIXED = ["comes near", "No known effect explains", "within the sensors' noise", "Beside what was found, may", "What is left\n  Noise"]
+FIXED = ["tried comes near", "explanation comes near", "No known effect explains", "within the sensors' noise", "Beside what was found, may", "What is left\n  Noise"]
 
 
 def words_of(name):
@@ -62,15 +63,20 @@ def words_of(name):
 
 def last_digit(text):
     """The size of the last digit that is meant: zeros at the end of a whole number hold its place."""
-    front, _, power = text.partition("e")
+    front, _, power = text.partition("·10")
     whole, _, decimals = front.lstrip("+-").partition(".")
     digit = 10.0 ** -len(decimals) if decimals else 10.0 ** (len(whole) - len(whole.rstrip("0")))
-    return digit * 10.0 ** int(power or 0)
+    return digit * 10.0 ** int(power.translate(RAISED) or 0)
+
+
+def value_of(text):
+    front, _, power = text.partition("·10")
+    return float(front) * 10.0 ** int(power.translate(RAISED) or 0)
 
 
 def agrees(text, value):
     near = 0.5 * last_digit(text) * (1 + 1e-6) + 1e-4 * abs(value)
-    return value is not None and math.isfinite(value) and abs(float(text) - value) <= near
+    return value is not None and math.isfinite(value) and abs(value_of(text) - value) <= near
 
 
 def rms(values):
@@ -306,7 +312,9 @@ class Examination:
         text = self.take(where, text, rf"stand (?P<sigmas>{NUMBER}) standard deviations", lambda _: {"sigmas": next_one["sigmas"]})
         powers = [c["log10_odds"] for c in considered.values()] + [math.log10(a["odds"]) for a in of.json["alternatives"]]
         near = lambda value: min(powers, key=lambda p: abs(p - value), default=math.nan)
-        text = self.take(where, text, rf"1 to 10\^(?P<power>{NUMBER})", lambda m: {"power": -near(-float(m.group("power")))})
+        if "below 1 to 10^6" in text:
+            self.check.fact(f"{where}: odds below 1 to 10^6", max(powers) <= -6, True)
+            text = text.replace("below 1 to 10^6", " ")
         text = self.take(where, text, rf"1 to (?P<odds>{NUMBER})", lambda m: {"odds": 10 ** -near(-math.log10(float(m.group("odds"))))})
         # Counts of what was tried stand in no file; 95 % is the level of every interval.
         for known in (r"those of 95 %", r"95 % interval", r"chambers? [12]", r"of \d+ other explanations", r"none of the \d+ effects", r"of the \d+ experiments", r"joint \d", r"all \d+ recordings", r"in \d+ stretches that make [\d.]+ s", r"m/s2|mm2|cm3"):

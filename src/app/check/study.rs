@@ -7,6 +7,7 @@ use super::report::{Report, shown};
 use crate::design::{self, Domain};
 use crate::import::load_map;
 use crate::import::map::{Clock, Form};
+use crate::quantity::counted;
 use crate::scenario::{load_any, load_device};
 
 /// A design study.
@@ -46,8 +47,9 @@ pub(super) fn study(file: &Path) -> Result<Report, AppError> {
     report.fact(
         "extent",
         format!(
-            "at most {} designs, each in {scenarios} scenarios",
-            study.evaluations
+            "at most {} designs, each in {}",
+            study.evaluations,
+            counted(scenarios, "scenario")
         ),
     );
     report.number("evaluations", study.evaluations);

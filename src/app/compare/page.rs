@@ -42,20 +42,20 @@ fn over_one_another<'a>(compared: &'a Compared, names: &[String]) -> Vec<Block<'
     let mut blocks = Vec::new();
     for group in chart_groups() {
         for (quantity, words, ..) in group.lines.iter().filter(|line| SIGNALS.contains(&line.0)) {
-            let line = |(place, run): (usize, &RunResult<'_>)| {
+            let line = |(index, (place, run)): (usize, &(usize, RunResult<'_>))| {
                 let values = &run.recording.channel(quantity)?.values;
                 let values: Vec<f64> = values.iter().map(|v| v * group.factor).collect();
                 let time = run.recording.time().to_vec();
                 // Where runs agree, both are seen.
-                let stroke = match place % 2 {
+                let stroke = match index % 2 {
                     0 => Stroke::Plain,
                     _ => Stroke::Dashed,
                 };
-                let name = names[place].clone();
-                Some(Series::new(name, time, values, ROLES[place], stroke))
+                let name = names[*place].clone();
+                Some(Series::new(name, time, values, ROLES[index], stroke))
             };
             let series: Vec<Series<'_>> =
-                compared.runs.iter().enumerate().filter_map(line).collect();
+                compared.drawn.iter().enumerate().filter_map(line).collect();
             if !series.is_empty() {
                 blocks.push(Block::Chart(Chart {
                     panel: Panel {

@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::failure::Failure;
 use super::force_range::{force_range, intersection};
 use crate::app::bench::run_rig;
@@ -13,7 +15,7 @@ use crate::design::{
 };
 use crate::metrics::{BENCH_METRICS, METRICS, Metric};
 use crate::rig::Rig;
-use crate::scenario::{AnyScenario, BenchScenario, Scenario, ScenarioTemplate};
+use crate::scenario::{AnyScenario, BenchScenario, KeyValue, Scenario, ScenarioTemplate};
 
 /// Simulates designs in the scenarios of a study: benches on the rig, cells in the cell. Noise and search for a posture keep the scenarios' seeds.
 #[derive(Debug)]
@@ -78,8 +80,14 @@ impl Evaluate for ScenarioEvaluator {
             force_range: [f64::NEG_INFINITY, f64::INFINITY],
             scenarios: Vec::with_capacity(self.scenarios.len()),
         };
-        for (name, template) in &self.scenarios {
-            let run = run(template, &values).map_err(|failure| failure.in_scenario(name))?;
+        // Side by side: a search that goes step by step would leave the other processors idle.
+        let runs: Vec<Result<Run, EvaluateError>> = (self.scenarios.par_iter())
+            .map(|(name, template)| {
+                run(template, &values).map_err(|failure| failure.in_scenario(name))
+            })
+            .collect();
+        for ((name, _), run) in self.scenarios.iter().zip(runs) {
+            let run = run?;
             outcome.force_range = intersection(outcome.force_range, run.force_range);
             outcome.scenarios.push(ScenarioOutcome {
                 name: name.clone(),
@@ -90,7 +98,7 @@ impl Evaluate for ScenarioEvaluator {
     }
 }
 
-fn run(template: &ScenarioTemplate, values: &[(String, f64)]) -> Result<Run, Failure> {
+fn run(template: &ScenarioTemplate, values: &[KeyValue]) -> Result<Run, Failure> {
     match template.with(values)? {
         AnyScenario::Bench(scenario) => bench(*scenario),
         AnyScenario::Cell(scenario) => cell(*scenario),

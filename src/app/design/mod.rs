@@ -13,7 +13,7 @@ pub use evaluate::ScenarioEvaluator;
 use super::error::AppError;
 use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, Standing, files_of_cell, provenance};
 use super::report::{REPORT, of_design};
-use crate::design::{self, Study, StudyResult};
+use crate::design::{self, Domain, Study, StudyResult, Variable};
 use crate::recording::provenance::Provenance;
 use crate::scenario::{self, AnyScenario};
 
@@ -124,9 +124,32 @@ fn document(
     provenance: &Provenance,
 ) -> Result<String, AppError> {
     #[derive(Serialize)]
+    struct Varied<'a> {
+        key: &'a str,
+        min: f64,
+        max: f64,
+        /// The values that there are, of a catalogue.
+        choices: Option<Vec<f64>>,
+    }
+    fn varied(variable: &Variable) -> Varied<'_> {
+        let [min, max] = variable.domain.ends();
+        let choices = match &variable.domain {
+            Domain::Catalogue(entries) => Some(entries.iter().map(|entry| entry.value).collect()),
+            _ => None,
+        };
+        Varied {
+            key: &variable.key,
+            min,
+            max,
+            choices,
+        }
+    }
+    #[derive(Serialize)]
     struct Document<'a> {
         study: String,
         scenarios: Vec<String>,
+        /// What was varied, and within what.
+        variables: Vec<Varied<'a>>,
         #[serde(flatten)]
         result: &'a StudyResult,
         provenance: &'a Provenance,
@@ -138,6 +161,7 @@ fn document(
             .iter()
             .map(|path| path.display().to_string())
             .collect(),
+        variables: study.variables.iter().map(varied).collect(),
         result,
         provenance,
     })?)

@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use super::super::cli::DiagnoseArguments;
 use super::super::error::{AppError, ExitCode};
 use super::super::files::Standing;
+use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
 use super::cell;
@@ -44,11 +45,15 @@ pub(super) fn run(
     let waiting: Mutex<VecDeque<(usize, String)>> =
         Mutex::new(names.iter().cloned().enumerate().collect());
     let outcomes: Mutex<Vec<(usize, Outcome)>> = Mutex::default();
+    let interruptible = Interruptible::of_many(names.len(), "cases are diagnosed", out);
     let work = || {
         let next = || locked(&waiting).pop_front();
         while let Some((index, name)) = next() {
             let case = arguments.case.join(&name);
             let result = caught(|| one(&case, cell, &out.join(&name), standing));
+            if result.is_ok() {
+                interruptible.one_more();
+            }
             locked(&outcomes).push((index, Outcome { name, result }));
             bar.inc(1);
         }
@@ -136,7 +141,7 @@ fn cases(folder: &Path, of_cell: bool) -> Result<Vec<String>, AppError> {
 }
 
 /// A name as runs of digits, by their value, and of other letters.
-fn natural(name: &str) -> Vec<(u128, String)> {
+pub(in super::super) fn natural(name: &str) -> Vec<(u128, String)> {
     let mut parts: Vec<(u128, String)> = Vec::new();
     let mut rest = name;
     while !rest.is_empty() {

@@ -7,9 +7,10 @@ use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::servo::ServoLink;
-use crate::diagnosis::words::{figures, of_column};
+use crate::diagnosis::words::{of_column, with_interval};
 use crate::effects::vocabulary;
 use crate::plant::{Channel, simulate};
+use crate::quantity::{significant, with_unit};
 use crate::replay::LoadedCell;
 
 /// Adds joints, servos and places.
@@ -42,12 +43,14 @@ pub(super) fn add_cell(
         }
         None => arm.push("No encoder was recorded: nothing is said of the servos.".to_owned()),
         Some(servo) => {
-            let left: Vec<String> = servo.left.iter().map(|l| format!("{l:.3}")).collect();
+            let left: Vec<String> = servo.left.iter().map(|l| significant(*l, 3)).collect();
             arm.push(format!(
-                "From their commands to their encoders the joints answer at {:.3} Hz ({:.3} to {:.3}), {}; what is left of joints 1 to {} is {} times the encoders' noise.",
-                servo.bandwidth,
-                servo.bandwidth - 1.96 * servo.deviation,
-                servo.bandwidth + 1.96 * servo.deviation,
+                "From their commands to their encoders the joints answer at {}, {}; what is left of joints 1 to {} is {} times the encoders' noise.",
+                with_interval(
+                    servo.bandwidth,
+                    [-1.96, 1.96].map(|z| servo.bandwidth + z * servo.deviation),
+                    "Hz"
+                ),
                 if servo.differs() {
                     format!("not {} Hz as believed", cell.scenario.servo_bandwidth)
                 } else {
@@ -60,12 +63,14 @@ pub(super) fn add_cell(
     }
     for friction in frictions {
         arm.push(format!(
-            "By its drive's torque joint {} rubs with {:.2} N m ({:.2} to {:.2}), believed {:.2}{}.",
+            "By its drive's torque joint {} rubs with {}, believed {}{}.",
             friction.joint + 1,
-            friction.friction,
-            friction.friction - 1.96 * friction.deviation,
-            friction.friction + 1.96 * friction.deviation,
-            friction.believed,
+            with_interval(
+                friction.friction,
+                [-1.96, 1.96].map(|z| friction.friction + z * friction.deviation),
+                "N m"
+            ),
+            with_unit(friction.believed, "N m"),
             if friction.differs() {
                 ": another friction"
             } else {
@@ -75,7 +80,7 @@ pub(super) fn add_cell(
     }
     for error in of_arm {
         let (words, unit, factor) = of_column(&error.channel);
-        let size = |value: f64| format!("{} {unit}", figures(factor * value, 3));
+        let size = |value: f64| format!("{} {unit}", significant(factor * value, 3));
         arm.push(format!(
             "RMS error of the {words} in {}, which was kept back: {} as believed, {} improved.",
             error.recording,

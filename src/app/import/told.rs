@@ -130,7 +130,7 @@ fn shown(value: f64) -> String {
         }
         return text;
     }
-    format!("{value:.3e}")
+    crate::quantity::significant(value, 4)
 }
 
 /// What there is to say of a log's rows and clock.

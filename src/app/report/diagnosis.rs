@@ -9,11 +9,12 @@ use crate::diagnosis::comparison::{Compared, Comparison};
 use crate::diagnosis::details::remaining_errors;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::words::{
-    CHANNEL_WORDS, capital, figures, in_unit, of_column, percent, spoken, yardstick,
+    CHANNEL_WORDS, capital, in_unit, of_column, percent, spoken, yardstick,
 };
 use crate::effects::meaning;
-use crate::plant::CHANNELS;
 use crate::page::{Block, Cell, Fact, Page, Section, Strip, Table, Tone};
+use crate::plant::CHANNELS;
+use crate::quantity::significant;
 
 /// Recordings that are shown at once; the others are folded away.
 const SHOWN: usize = 2;
@@ -102,9 +103,12 @@ fn facts(answer: &Answer) -> Vec<Fact> {
                 "left: {} RMS in the {} ({} σ, robust)",
                 in_unit(CHANNELS[error.channel], error.rms),
                 CHANNEL_WORDS[error.channel],
-                figures(error.sigmas, 2)
+                significant(error.sigmas, 2)
             ),
-            _ => format!("no more than {} is left", yardstick(details.remaining.is_some())),
+            _ => format!(
+                "no more than {} is left",
+                yardstick(details.remaining.is_some())
+            ),
         };
         add("of the mismatch explained", percent(share), left);
     }
@@ -119,13 +123,13 @@ fn facts(answer: &Answer) -> Vec<Fact> {
             &format!("RMS error of {words}, not fitted to"),
             format!(
                 "{} → {} {unit}",
-                figures(factor * error.before, 3),
-                figures(factor * error.after, 3)
+                significant(factor * error.before, 3),
+                significant(factor * error.after, 3)
             ),
             format!(
                 "{}: {} {unit}",
                 yardstick(details.remaining.is_some()),
-                figures(factor * noise, 2)
+                significant(factor * noise, 2)
             ),
         );
     }
@@ -158,7 +162,7 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
     let widest = widest.clamp(1e-6, 1.0);
     let rows = known.iter().map(|(effect, (name, estimate))| {
         let (words, unit, factor) = spoken(name);
-        let number = |v: f64| Cell::from(figures(factor * v, 4));
+        let number = |v: f64| Cell::from(significant(factor * v, 4));
         let [low, high] = relative(estimate);
         // Which joint is known or not; it has no interval.
         let certain = estimate.low == estimate.high;
@@ -186,7 +190,7 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
     });
     let rows: Vec<Vec<Cell>> = rows.collect();
     if !rows.is_empty() {
-        let scale = format!("{} %", figures(100.0 * widest, 2));
+        let scale = format!("{} %", significant(100.0 * widest, 2));
         let columns = [
             "effect",
             "where",

@@ -6,10 +6,11 @@ use serde_json::Value;
 
 use super::provenance_of;
 use super::signals::{along_the_path, joints, signals};
-use crate::diagnosis::words::figures;
-use crate::metrics::{BENCH_METRICS, METRICS, Metric};
+use crate::metrics::{BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, WIDE_BAND};
 use crate::page::{Block, Cell, Fact, Page, Section, Table, Tone};
+use crate::quantity::{UNKNOWN, change, optional, with_unit};
 use crate::recording::Recording;
+use crate::report::{LEVELS, LevelColumn, far_from_desired, shown};
 
 /// A run as its folder has it.
 pub(in super::super) struct RunResult<'a> {
@@ -17,6 +18,10 @@ pub(in super::super) struct RunResult<'a> {
     pub document: Value,
     /// samples.parquet.
     pub recording: Cow<'a, Recording>,
+    /// cell.svg.
+    pub cell: Option<Cow<'a, str>>,
+    /// edge.svg.
+    pub edge: Option<Cow<'a, str>>,
 }
 
 /// A metric for people.
@@ -36,7 +41,7 @@ fn labelled<S>(metrics: &[Metric<S>]) -> Vec<Label> {
     let label = |metric: &Metric<S>| Label {
         key: metric.name,
         name: metric.full_label(),
-        unit: if metric.unit == "1" { "" } else { metric.unit },
+        unit: metric.shown_unit(),
         meaning: metric.meaning,
     };
     metrics.iter().map(label).collect()
@@ -78,21 +83,48 @@ pub(super) fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
     let (verdict, tone) = verdict(run);
     let notes = run.document["notes"].as_array().into_iter().flatten();
     let notes = notes.filter_map(Value::as_str);
+    let notes = notes.map(|note| format!("Note: {note}."));
+    let said = |far: &String| !verdict.contains(far.as_str());
+    let far = far(run).filter(said).map(|far| format!("{far}."));
     let sections = [
+        pictures(run),
         signals(run),
         along_the_path(run),
         joints(run),
+        levels(run),
         metrics(run),
         Some(from(run)),
     ];
     Page {
         title: run.title().to_owned(),
-        verdict,
         tone,
-        lead: notes.map(|note| format!("Note: {note}.")).collect(),
+        lead: far.into_iter().chain(notes).collect(),
+        verdict,
         facts: facts(run),
         sections: sections.into_iter().flatten().collect(),
         footer: "Made by idc, which simulates the device and its cell. recording.rrd, where it stands beside this page, shows the run in space: `idc view recording.rrd`.".to_owned(),
+    }
+}
+
+/// What is to be said of a force that is not the desired one.
+fn far(run: &RunResult<'_>) -> Option<String> {
+    far_from_desired(
+        run.metric("desired_force_n")?,
+        run.metric("force_mean_n")?,
+        run.metric("force_rms_error_percent")?,
+    )
+}
+
+/// How far the force is from the desired one.
+fn tone_of_force(run: &RunResult<'_>, near: Tone) -> Tone {
+    match run.metric("force_rms_error_percent") {
+        Some(off) if run.metric("desired_force_n").is_some() && off > 100.0 * WIDE_BAND => {
+            Tone::Bad
+        }
+        Some(off) if run.metric("desired_force_n").is_some() && off > 100.0 * NARROW_BAND => {
+            Tone::Open
+        }
+        _ => near,
     }
 }
 
@@ -112,22 +144,31 @@ fn verdict(run: &RunResult<'_>) -> (String, Tone) {
             Tone::Bad,
         );
     }
-    let force = match (
-        run.metric("force_mean_n"),
-        run.metric("force_standard_deviation_n"),
-    ) {
-        (Some(mean), Some(deviation)) => format!(
-            "{} N in contact, with a standard deviation of {} N",
-            figures(mean, 4),
-            figures(deviation, 2)
-        ),
-        (Some(mean), None) => format!("{} N in contact", figures(mean, 4)),
-        _ => "Done".to_owned(),
-    };
+    let force = far(run).unwrap_or_else(|| reached(run));
     match all.len() {
-        0 => (format!("{force}."), Tone::Plain),
-        1 => (format!("{force}; its bound is kept."), Tone::Good),
-        count => (format!("{force}; all {count} bounds are kept."), Tone::Good),
+        0 => (format!("{force}."), tone_of_force(run, Tone::Plain)),
+        1 => (
+            format!("{force}. Its bound is kept."),
+            tone_of_force(run, Tone::Good),
+        ),
+        count => (
+            format!("{force}. All {count} bounds are kept."),
+            tone_of_force(run, Tone::Good),
+        ),
+    }
+}
+
+/// The force beside what was desired.
+fn reached(run: &RunResult<'_>) -> String {
+    let newtons = |key: &str| run.metric(key).map(|value| with_unit(value, "N"));
+    let Some(mean) = newtons("force_mean_n") else {
+        return "Done".to_owned();
+    };
+    let spread = newtons("force_standard_deviation_n");
+    let spread = spread.map_or(String::new(), |d| format!(", standard deviation {d}"));
+    match newtons("desired_force_n") {
+        Some(desired) => format!("{mean} on average where {desired} is desired{spread}"),
+        None => format!("{mean} in contact{spread}"),
     }
 }
 
@@ -140,9 +181,7 @@ fn told(run: &RunResult<'_>, bound: &Value) -> Option<String> {
         "" => String::new(),
         unit => format!(" {unit}"),
     };
-    let is = value.map_or("not determined".to_owned(), |v| {
-        format!("{}{unit}", figures(v, 4))
-    });
+    let is = value.map_or("not determined".to_owned(), |v| with_unit(v, label.unit));
     Some(format!(
         "{} is {is}, expected {}{unit}",
         label.name,
@@ -158,29 +197,124 @@ fn ends(bound: &Value) -> String {
     ends.join(", ")
 }
 
-/// Metrics that stand at the top, where a run has them.
-const FACTS: [&str; 8] = [
+/// Metrics that stand at the top after the force, where a run has them.
+const FACTS: [&str; 7] = [
     "coefficient_of_variation_percent",
     "within_5_percent_share_percent",
-    "engagement_peak_n",
     "force_rms_error_percent",
     "regulator_delay_s",
     "force_settling_time_s",
-    "stroke_used_mm",
+    "force_peak_n",
     "stroke_margin_mm",
+];
+/// Phases of a job and the key of the largest force of each.
+const PEAKS: [(&str, &str); 4] = [
+    ("approach", "force_peak_approach_n"),
+    ("engage", "force_peak_engage_n"),
+    ("follow", "force_peak_follow_n"),
+    ("retract", "force_peak_retract_n"),
 ];
 
 fn facts(run: &RunResult<'_>) -> Vec<Fact> {
     let metrics = run.metrics();
-    let fact = |key: &&str| {
-        let (label, value) = metrics.iter().find(|(label, _)| label.key == *key)?;
+    let fact = |key: &str| {
+        let (label, value) = metrics.iter().find(|(label, _)| label.key == key)?;
         Some(Fact {
             name: label.name.clone(),
-            value: format!("{} {}", figures((*value)?, 3), label.unit),
+            value: format!("{} {}", shown(Some((*value)?), label.unit), label.unit),
             remark: label.meaning.to_owned(),
         })
     };
-    FACTS.iter().filter_map(fact).take(5).collect()
+    let others = FACTS.iter().filter_map(|key| fact(key)).take(4);
+    let first = desired(run).into_iter().chain(mean(run));
+    first.chain(others).chain(peak(run)).collect()
+}
+
+/// What was asked for: a force, or a pressure.
+fn desired(run: &RunResult<'_>) -> Option<Fact> {
+    if let Some(desired) = run.metric("desired_force_n") {
+        return Some(Fact {
+            name: "desired force".to_owned(),
+            value: with_unit(desired, "N"),
+            remark: "what the scenario asks for".to_owned(),
+        });
+    }
+    let last = run.document["summary"]["levels"].as_array()?.last()?;
+    let bar = |key: &str| last[key].as_f64().map(|value| with_unit(value, "bar"));
+    Some(Fact {
+        name: "set pressure, last".to_owned(),
+        value: bar("set_pressure_bar_gauge")?,
+        remark: format!("gauge; outlet {}", bar("regulator_pressure_bar_gauge")?),
+    })
+}
+
+fn mean(run: &RunResult<'_>) -> Option<Fact> {
+    let mean = run.metric("force_mean_n")?;
+    let off = |desired: f64| {
+        format!(
+            "{} against desired",
+            change(100.0 * (mean - desired) / desired)
+        )
+    };
+    Some(Fact {
+        name: "force reached, mean".to_owned(),
+        value: with_unit(mean, "N"),
+        remark: run.metric("desired_force_n").map_or(String::new(), off),
+    })
+}
+
+/// The largest force of all phases.
+fn peak(run: &RunResult<'_>) -> Option<Fact> {
+    let peaks = PEAKS.iter();
+    let peaks = peaks.filter_map(|(phase, key)| Some((phase, run.metric(key)?)));
+    let (phase, most) = peaks.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Fact {
+        name: "largest force".to_owned(),
+        value: with_unit(most, "N"),
+        remark: format!("of all phases, in {phase}"),
+    })
+}
+
+fn pictures<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+    let is_bench = run.document["kind"] == "bench";
+    let title = if is_bench {
+        "The bench"
+    } else {
+        "Cell and edge"
+    };
+    let cell = match is_bench {
+        true => "The device on its base and what it meets, with the contact force.",
+        false => "Arm, device and part in the middle of following, with the contact force.",
+    };
+    let edge = "The part and its edge, coloured by the mean force error of each of 400 pieces while following; pale where the part hides it.";
+    let pictures = [(cell, &run.cell), (edge, &run.edge)];
+    let pictures: Vec<(String, String)> = (pictures.into_iter())
+        .filter_map(|(words, svg)| Some((words.to_owned(), svg.as_ref()?.to_string())))
+        .collect();
+    (!pictures.is_empty()).then(|| Section::new(title, vec![Block::Sketches(pictures)]))
+}
+
+/// What came of each command of a bench.
+fn levels<'a>(run: &RunResult<'_>) -> Option<Section<'a>> {
+    let levels = run.document["summary"]["levels"].clone();
+    let levels: Vec<LevelSummary> = serde_json::from_value(levels).ok()?;
+    let names: Vec<String> = LEVELS
+        .iter()
+        .map(|column| format!("#{}, {}", column.name, column.unit))
+        .collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let row = |level: &LevelSummary| {
+        let cell = |column: &LevelColumn| Cell::from(optional((column.value)(level), column.unit));
+        LEVELS.iter().map(cell).collect()
+    };
+    let rows: Vec<Vec<Cell>> = levels.iter().map(row).collect();
+    let caption = "Steady values of each command, up to the next or to where something else begins to move; settled: until the force stays within 5 % of its change.";
+    (!rows.is_empty()).then(|| {
+        Section::new(
+            "Commands",
+            vec![Block::Table(Table::new(caption, &names, rows))],
+        )
+    })
 }
 
 fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
@@ -193,7 +327,7 @@ fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let row = |(label, value): (Label, Option<f64>)| {
         vec![
             Cell::from(label.name),
-            Cell::from(value.map_or("–".to_owned(), |v| figures(v, 5))),
+            Cell::from(shown(value, label.unit)),
             Cell::from(label.unit),
             match bounds(label.key) {
                 Some((text, kept)) => Cell::Judged(text, kept),
@@ -212,7 +346,8 @@ fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
         "what it is",
         "key in summary.json",
     ];
-    let table = Table::new("", &columns, rows);
+    let caption = format!("{UNKNOWN}: not determined by this run.");
+    let table = Table::new(&caption, &columns, rows);
     Some(Section::new("Numbers", vec![Block::Table(table)]))
 }
 

@@ -4,9 +4,9 @@ use serde_json::Value;
 
 use super::super::bench_figures::{FORCE, Line, PRESSURE, STROKE};
 use super::run::RunResult;
-use crate::diagnosis::words::figures;
 use crate::figure::{Horizontal, Marker, Panel, Role, Series, Stroke};
 use crate::page::{Block, Cell, Chart, Section, Table};
+use crate::quantity::column;
 use crate::recording::PhaseSpan;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
 
@@ -47,7 +47,7 @@ pub(in super::super) fn chart_groups() -> [Group; 5] {
         group("Contact force", "force [N]", 1.0, FORCE.as_slice()),
         group("Stroke", "stroke [mm]", 1e3, &STROKE),
         group("Pressure", "pressure [bar absolute]", 1e-5, &PRESSURE),
-        group("Path error", "error [um]", 1e6, &PATH),
+        group("Path error", "error [µm]", 1e6, &PATH),
         group("Seals", "force [N]", 1.0, &SEALS),
     ]
 }
@@ -136,22 +136,22 @@ pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> 
         ..Chart::default()
     })];
     let tenths = run.document["summary"]["force_by_tenth"].as_array();
-    let row = |tenth: &Value| {
-        let number = |key: &str, digits| {
-            Cell::from(
-                tenth[key]
-                    .as_f64()
-                    .map_or("–".to_owned(), |v| figures(v, digits)),
-            )
-        };
-        vec![
-            number("from_mm", 4),
-            number("to_mm", 4),
-            number("force_mean_n", 5),
-            number("force_standard_deviation_n", 2),
-        ]
+    let tenths: Vec<&Value> = tenths.into_iter().flatten().collect();
+    let of = |key: &str, unit| {
+        let values: Vec<Option<f64>> = tenths.iter().map(|tenth| tenth[key].as_f64()).collect();
+        column(&values, unit)
     };
-    let rows: Vec<Vec<Cell>> = tenths.into_iter().flatten().map(row).collect();
+    let columns = [
+        of("from_mm", "mm"),
+        of("to_mm", "mm"),
+        of("force_mean_n", "N"),
+        of("force_standard_deviation_n", "N"),
+    ];
+    let row = |index: usize| {
+        let cell = |column: &Vec<String>| Cell::from(column[index].clone());
+        columns.iter().map(cell).collect()
+    };
+    let rows: Vec<Vec<Cell>> = (0..tenths.len()).map(row).collect();
     if !rows.is_empty() {
         blocks.push(Block::Table(Table::new(
             "Contact force by tenths of the edge",

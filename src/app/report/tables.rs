@@ -6,8 +6,9 @@ use crate::diagnosis::details::{
     ChannelMisfit, Considered, PredictionError, RuledOutReport, ToleratedNumber,
 };
 use crate::diagnosis::estimate::Limit;
-use crate::diagnosis::words::{figures, odds, of_column, percent, spoken, yardstick};
+use crate::diagnosis::words::{odds, of_column, percent, spoken, yardstick};
 use crate::page::{Block, Cell, Section, Table};
+use crate::quantity::significant;
 
 pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     let details = &answer.details;
@@ -15,13 +16,19 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     let mut blocks = Vec::new();
     let row = |m: &ChannelMisfit| {
         let (words, unit, factor) = of_column(&m.channel);
-        let sigmas = |v: f64| Cell::from(figures(v, 3));
+        let sigmas = |v: f64| Cell::from(significant(v, 3));
         vec![
             Cell::from(m.recording.clone()),
             Cell::from(words),
             Cell::from(m.samples.to_string()),
-            Cell::from(format!("{} {unit}", figures(factor * m.believed_rms, 3))),
-            Cell::from(format!("{} {unit}", figures(factor * m.improved_rms, 3))),
+            Cell::from(format!(
+                "{} {unit}",
+                significant(factor * m.believed_rms, 3)
+            )),
+            Cell::from(format!(
+                "{} {unit}",
+                significant(factor * m.improved_rms, 3)
+            )),
             sigmas(m.believed_sigmas),
             sigmas(m.tolerated_sigmas),
             sigmas(m.improved_sigmas),
@@ -50,7 +57,7 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     }
     let row = |e: &PredictionError| {
         let (words, unit, factor) = of_column(&e.channel);
-        let number = |v: f64| Cell::from(format!("{} {unit}", figures(factor * v, 3)));
+        let number = |v: f64| Cell::from(format!("{} {unit}", significant(factor * v, 3)));
         vec![
             Cell::from(e.recording.clone()),
             Cell::from(words),
@@ -58,8 +65,9 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
             number(e.before),
             number(e.after),
             e.noise.map_or(Cell::from("–"), number),
-            e.after_sigmas
-                .map_or(Cell::from("–"), |sigmas| Cell::from(figures(sigmas, 3))),
+            e.after_sigmas.map_or(Cell::from("–"), |sigmas| {
+                Cell::from(significant(sigmas, 3))
+            }),
         ]
     };
     if !details.prediction.is_empty() {
@@ -92,10 +100,10 @@ pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
         let shift = 100.0 * (found.value / number.believed - 1.0);
         vec![
             Cell::from(words),
-            Cell::from(figures(factor * number.believed, 4)),
-            Cell::from(figures(factor * found.value, 4)),
-            Cell::from(figures(factor * found.low, 4)),
-            Cell::from(figures(factor * found.high, 4)),
+            Cell::from(significant(factor * number.believed, 4)),
+            Cell::from(significant(factor * found.value, 4)),
+            Cell::from(significant(factor * found.low, 4)),
+            Cell::from(significant(factor * found.high, 4)),
             Cell::from(unit),
             Cell::from(match shift.is_finite() {
                 true => format!("{shift:+.1} %"),
@@ -168,7 +176,7 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     let row = |variant: &RuledOutReport| {
         vec![
             Cell::from(names(&variant.effects)),
-            Cell::from(format!("{} {unit}", figures(factor * variant.rms, 3))),
+            Cell::from(format!("{} {unit}", significant(factor * variant.rms, 3))),
         ]
     };
     if !details.ruled_out.is_empty() {

@@ -29,6 +29,7 @@ pub(super) fn conclude(
     let (chosen, score) = best(archive, goal)?;
     // What these try is apart from the search: it may lie outside bounds and limits, and it is not there to be chosen.
     let aside = archive.aside();
+    aside.begin(study.evaluations - budget, study.evaluations);
     let steps = 2 * study.variables.len() + 1;
     let active_limits = active_limits(&aside, goal, &chosen, &score, budget.saturating_sub(steps))?;
     let sensitivities = sensitivities(&aside, &chosen, &score);

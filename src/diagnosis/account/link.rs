@@ -4,7 +4,8 @@ use super::super::diagnose::Diagnosis;
 use super::super::links::{Link, LinkResidual};
 use super::super::localise::{NOISE_ALONE, root_mean_square};
 use super::super::regime::Regime;
-use super::super::words::{figures, listed};
+use super::super::words::listed;
+use crate::quantity::significant;
 
 /// Share of a mismatch's variance from which a variable is worth a word [1].
 pub(super) const TELLING: f64 = 0.1;
@@ -22,7 +23,7 @@ impl Diagnosis {
 }
 
 fn link_words(link: &LinkResidual, regimes: &[Regime]) -> String {
-    let size = figures(link.size, 3);
+    let size = significant(link.size, 3);
     let explained = link.size <= NOISE_ALONE;
     if explained {
         return match link.link {
@@ -62,7 +63,7 @@ fn link_words(link: &LinkResidual, regimes: &[Regime]) -> String {
         Link::Piston | Link::Contact => ("N", 1.0),
     };
     let rms = root_mean_square(link.sigmas.iter().copied()).unwrap_or_default();
-    let amount = format!("{} {unit}", figures(rms * link.unit * factor, 2));
+    let amount = format!("{} {unit}", significant(rms * link.unit * factor, 2));
     match link.link {
         Link::Regulator => format!(
             "The regulator does not explain its own recording: {amount} RMS; robust, {size} times its sensor's noise{when}."

@@ -5,13 +5,14 @@ use super::super::diagnose::{Diagnosis, spoken_name};
 use super::super::estimate::Limit;
 use super::super::recorded::COLUMNS;
 use super::super::words::{
-    CHANNEL_UNITS, CHANNEL_WORDS, capital, figures, in_unit, listed, percent, spoken,
-    with_interval, yardstick,
+    CHANNEL_UNITS, CHANNEL_WORDS, capital, in_unit, listed, percent, spoken, with_interval,
+    yardstick,
 };
 use super::MOST_OTHERS;
 use super::link::TELLING;
 use crate::effects::meaning;
 use crate::plant::CHANNELS;
+use crate::quantity::significant;
 
 impl Diagnosis {
     pub(super) fn what_is_missing(&self) -> Vec<String> {
@@ -85,7 +86,7 @@ impl Diagnosis {
             .filter(|free| !kept(free.quantity.name))
             .map(|free| {
                 let (_, unit, factor) = spoken(free.quantity.name);
-                let value = figures(free.start * factor, 4);
+                let value = significant(free.start * factor, 4);
                 format!("{} = {value} {unit}", free.quantity.name)
                     .trim_end()
                     .to_owned()
@@ -102,7 +103,7 @@ impl Diagnosis {
         };
         let index = COLUMNS.iter().position(|c| *c == worst.channel);
         let (unit, factor) = CHANNEL_UNITS[index.unwrap_or(0)];
-        let said = |value: f64| format!("{} {unit}", figures(value * factor, 2));
+        let said = |value: f64| format!("{} {unit}", significant(value * factor, 2));
         let what = if worst.recording == IN_TURN {
             "the prediction error on each recording by a fit to the others".to_owned()
         } else {
@@ -135,7 +136,7 @@ impl Diagnosis {
     fn unexplained(&self) -> Option<String> {
         let remaining = self.remaining.as_ref()?;
         let (unit, factor) = CHANNEL_UNITS[remaining.channel as usize];
-        let said = |value: f64| format!("{} {unit}", figures(value * factor, 2));
+        let said = |value: f64| format!("{} {unit}", significant(value * factor, 2));
         let telling: Vec<String> = (self.regimes_of_what_is_left().iter())
             .filter(|regime| regime.share >= TELLING)
             .take(MOST_OTHERS)
@@ -157,7 +158,7 @@ impl Diagnosis {
             said(remaining.size),
             CHANNEL_WORDS[remaining.channel as usize],
             said(remaining.noise),
-            figures(remaining.time, 2),
+            significant(remaining.time, 2),
         ))
     }
 
@@ -173,7 +174,11 @@ impl Diagnosis {
             .map(|error| error.words(yardstick))
             .collect();
         let kept = errors.iter().any(|error| error.kept_back);
-        let besides = if kept { " and kept back from the fit" } else { "" };
+        let besides = if kept {
+            " and kept back from the fit"
+        } else {
+            ""
+        };
         let rest = if beyond.is_empty() {
             format!(
                 "No more than {yardstick} in the recordings fitted to{besides}: the largest error beside it is {}.",
@@ -200,7 +205,7 @@ impl Diagnosis {
             return String::new();
         };
         let (unit, factor) = CHANNEL_UNITS[channel as usize];
-        let said = |rms: f64| format!("{} {unit}", figures(rms * factor, 3));
+        let said = |rms: f64| format!("{} {unit}", significant(rms * factor, 3));
         let variants: Vec<String> = (self.ruled_out.iter())
             .map(|variant| {
                 let names: Vec<String> = variant.effects.iter().map(|n| spoken_name(n)).collect();
@@ -236,7 +241,7 @@ impl Diagnosis {
                 } else {
                     format!(" ({:+.1} %)", 100.0 * (n.value / believed.start - 1.0))
                 };
-                let value = figures(n.value * factor, 4);
+                let value = significant(n.value * factor, 4);
                 let limit = n.at_limit.map_or_else(String::new, |limit| {
                     format!(" at the {} end of its tolerance", end(limit))
                 });
@@ -250,8 +255,12 @@ impl Diagnosis {
         let limits = limits.filter(|n| n.at_limit.is_some()).count();
         let doubt = match limits {
             0 => "",
-            1 => " One stands at the end of its tolerance: either that is too narrow, or the number stands in for something that the model lacks.",
-            _ => " Some stand at the ends of their tolerances: either those are too narrow, or the numbers stand in for something that the model lacks.",
+            1 => {
+                " One stands at the end of its tolerance: either that is too narrow, or the number stands in for something that the model lacks."
+            }
+            _ => {
+                " Some stand at the ends of their tolerances: either those are too narrow, or the numbers stand in for something that the model lacks."
+            }
         };
         format!("Within their tolerances: {}.{doubt}", numbers.join("; "))
     }
@@ -270,7 +279,7 @@ impl RemainingError {
             in_unit(channel, self.rms),
             CHANNEL_WORDS[self.channel],
             self.recording,
-            figures(self.sigmas, 2)
+            significant(self.sigmas, 2)
         )
     }
 }

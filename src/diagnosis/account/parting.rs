@@ -2,9 +2,10 @@
 
 use super::super::diagnose::Diagnosis;
 use super::super::localise::{Misfit, NOISE_ALONE, misfits, root_mean_square};
-use super::super::words::{CHANNEL_WORDS, figures, in_unit, listed};
+use super::super::words::{CHANNEL_WORDS, in_unit, listed};
 use super::MOST_OTHERS;
 use crate::plant::Channel;
+use crate::quantity::significant;
 
 impl Diagnosis {
     /// Channels in the order of their misfit, the largest first.
@@ -51,7 +52,7 @@ impl Diagnosis {
                 "{verdict} {recordings}{but}: the worst channel, the {} of {}, departs by {} times {} (robust RMS).",
                 CHANNEL_WORDS[worst.channel as usize],
                 self.name(worst.recording),
-                figures(worst.sigmas, 3),
+                significant(worst.sigmas, 3),
                 self.yardstick()
             )];
         }
@@ -110,10 +111,7 @@ impl Diagnosis {
             CHANNEL_WORDS[worst.channel as usize],
             self.baseline_rms(worst, [from, to]),
             self.yardstick(),
-            in_unit(
-                worst.channel,
-                self.evidence.noise[worst.channel as usize]
-            ),
+            in_unit(worst.channel, self.evidence.noise[worst.channel as usize]),
         )
     }
 }

@@ -3,7 +3,8 @@
 use super::super::details::Considered;
 use super::super::diagnose::{Diagnosis, LEAST_ODDS, Ranked, names_of};
 use super::super::unlisted::words::{port, variable};
-use super::super::words::{figures, listed, odds};
+use super::super::words::{listed, odds};
+use crate::quantity::significant;
 
 /// Chi-square by which an experiment must tell two explanations apart to be named: a chance of one in a million [1].
 const TELLS: f64 = 28.0;
@@ -83,7 +84,7 @@ impl Diagnosis {
             format!(
                 "{}. After a new fit the two would stand {} standard deviations apart.",
                 best.experiment.instruction,
-                figures(best.square.sqrt(), 2)
+                significant(best.square.sqrt(), 2)
             )
         });
         match (near, settles) {
@@ -95,7 +96,10 @@ impl Diagnosis {
             ),
             (false, settles) => {
                 let surer = settles.map_or(String::new(), |s| format!(" To be surer still: {s}"));
-                format!("Nothing need be: {}{surer}", nearest(&considered, self.looked_at))
+                format!(
+                    "Nothing need be: {}{surer}",
+                    nearest(&considered, self.looked_at)
+                )
             }
         }
     }
@@ -105,7 +109,9 @@ impl Diagnosis {
 fn nearest(considered: &[Considered], looked_at: usize) -> String {
     let by_odds = |a: &&Considered, b: &&Considered| a.log10_odds.total_cmp(&b.log10_odds);
     let Some(nearest) = considered.iter().max_by(by_odds) else {
-        return format!("none of the {looked_at} effects that were looked at gains what its numbers cost.");
+        return format!(
+            "none of the {looked_at} effects that were looked at gains what its numbers cost."
+        );
     };
     let how = match nearest.in_full {
         true => "fitted in full",

@@ -7,9 +7,10 @@ use super::super::unlisted::known::known;
 use super::super::unlisted::report::NearEffects;
 use super::super::unlisted::words::{port, variable};
 use super::super::unlisted::{Form, Shape};
-use super::super::words::{figures, listed, percent, with_interval};
+use super::super::words::{listed, percent, with_interval};
 use super::missing::probability;
 use crate::plant::Variable;
+use crate::quantity::significant;
 
 /// Letters of a bar from one side to the other.
 const BAR: usize = 32;
@@ -47,7 +48,7 @@ impl Diagnosis {
         } else {
             ""
         };
-        let size = figures(shape.peak_to_peak * at.factor, 3);
+        let size = significant(shape.peak_to_peak * at.factor, 3);
         let mut text = format!(
             "Physics that no known effect explains ({subsystem}): {} {} that {depends}{turns}, {size} {} from peak to peak",
             article(at.words),
@@ -62,10 +63,10 @@ impl Diagnosis {
                     [period - half, period + half].map(|t| 1e3 * t),
                     "ms"
                 ),
-                figures(1.0 / period, 4),
+                significant(1.0 / period, 4),
             ),
             (Form::Localised, None) => {
-                let [from, to] = shape.acts.map(|end| figures(end * over.factor, 3));
+                let [from, to] = shape.acts.map(|end| significant(end * over.factor, 3));
                 format!(", between {from} and {to} {} alone", over.unit)
             }
             (Form::Odd, None) => ", opposite in sign for opposite signs of it".to_owned(),

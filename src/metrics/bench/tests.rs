@@ -65,6 +65,7 @@ fn stairs(overshoot: f64) -> (Recording, BenchLimits) {
     ];
     let limits = BenchLimits {
         command_times: vec![0.5, 1.25],
+        disturbed_from: None,
         moving: None,
         stroke_limits: (0.0, 0.05),
         atmosphere: 1e5,
@@ -117,6 +118,35 @@ fn a_peak_is_an_overshoot_and_delays_settling() {
     near(summary.force_settling_time_s, 0.16, 2e-3);
 }
 
+/// The motion of a surface once passed for a step's overshoot, and it never settled.
+#[test]
+fn a_surface_that_moves_is_no_response_to_a_command() {
+    let (recording, mut limits) = stairs(50.0);
+    let whole = summarise_bench(&recording, &limits).unwrap();
+    // Before the peak at 1.40 s the second step has made 94 % of its way: what it settles to is the mean of the last fifth before.
+    limits.disturbed_from = Some(1.39);
+    let rested = summarise_bench(&recording, &limits).unwrap();
+    assert!(rested.force_overshoot_percent.unwrap() < 5.0);
+    assert!(whole.force_overshoot_percent.unwrap() > 15.0);
+    assert_eq!(rested.levels[0], whole.levels[0]);
+    // Moved from before the second command on: the first one's response is the last.
+    limits.disturbed_from = Some(1.2);
+    let moved = summarise_bench(&recording, &limits).unwrap();
+    assert_eq!(moved.levels[1].force_settling_time_s, None);
+    assert_eq!(moved.levels[1].force_overshoot_percent, None);
+    assert_eq!(
+        moved.force_settling_time_s,
+        moved.levels[0].force_settling_time_s
+    );
+    near(moved.levels[1].force_mean_n, 300.0, 0.01);
+    // Moved throughout: there is none.
+    limits.disturbed_from = Some(0.0);
+    let never = summarise_bench(&recording, &limits).unwrap();
+    assert_eq!(never.force_settling_time_s, None);
+    assert_eq!(never.force_overshoot_percent, None);
+    assert_eq!(never.force_peak_n, whole.force_peak_n);
+}
+
 #[test]
 fn the_moving_section_counts_where_the_surface_moves() {
     let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
@@ -138,12 +168,14 @@ fn the_moving_section_counts_where_the_surface_moves() {
     let recording = Recording::new(time, channels, vec![]).unwrap();
     let limits = BenchLimits {
         command_times: vec![0.0],
+        disturbed_from: Some(0.4),
         moving: Some((0.5, 1.0)),
         stroke_limits: (0.0, 0.05),
         atmosphere: 1e5,
     };
     let summary = summarise_bench(&recording, &limits).unwrap();
     near(summary.force_mean_n, 202.0, 0.1);
+    near(summary.desired_force_n, 200.0, 1e-12);
     near(summary.force_rms_error_n, 8f64.sqrt(), 0.05);
     near(summary.force_largest_error_percent, 2.0, 1e-9);
     near(

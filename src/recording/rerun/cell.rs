@@ -9,10 +9,11 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
 use super::RerunOptions;
-use super::colours::{SKY_BLUE, force_error_colour, rerun_colour};
+use super::colours::{SKY_BLUE, rerun_colour};
 use super::rrd::{RrdError, RrdWriter};
 use super::shading::shade;
 use super::timelines::Axes;
+use crate::recording::error_scale::ErrorScale;
 use crate::recording::scene::{EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
 
 /// Entity of which everything in space is a child.
@@ -126,8 +127,9 @@ pub(super) fn write_edge_path(rrd: &mut RrdWriter, path: &EdgePath) -> Result<()
         return Ok(());
     }
     let errors = path.relative_force_error.iter();
+    let scale = ErrorScale::of(path);
     let lines = LineStrips3D::new(strips)
-        .with_colors(errors.map(|error| rerun_colour(force_error_colour(*error))))
+        .with_colors(errors.map(|error| rerun_colour(scale.colour(*error))))
         .with_radii([Radius::new_ui_points(EDGE_PATH_RADIUS)]);
     rrd.add_static(EDGE_PATH, &lines)
 }

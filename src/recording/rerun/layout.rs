@@ -7,8 +7,7 @@ use ::rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis, TimePanelBlueprint,
 };
 use ::rerun::external::re_sdk_types::blueprint::components::{
-    BackgroundKind, Corner2D, LinkAxis, LoopMode, PanelState, PlayState, PlaybackSpeed,
-    TimelineName,
+    BackgroundKind, Corner2D, LinkAxis, LoopMode, PanelState, PlayState, TimelineName,
 };
 use ::rerun::{AsComponents, components::Range1D, datatypes};
 use glam::DVec3;
@@ -19,12 +18,12 @@ use super::colours::rerun_colour;
 use super::plots::Plot;
 use super::timelines::SIM_TIME;
 use super::view_box::ViewBox;
-use super::{Opening, PHASES, RerunOptions, SUMMARY};
+use super::{PHASES, RerunOptions, SUMMARY};
+use crate::recording::error_scale::ErrorScale;
 use crate::recording::schema::PlotGroup;
 
-/// Heading of the edge's view: how to read the colours of the path.
-const EDGE_VIEW: &str = "Force error: blue -10 %, orange +10 %";
-
+/// Before any recording begins [s].
+const BEFORE: f64 = -1.0;
 /// Distance of the eye from the cell, in radii of the cell.
 const CELL_EYE_RADII: f64 = 1.8;
 /// Distance of the eye from the edge: with room for the tool above it.
@@ -37,6 +36,8 @@ pub(super) struct LayoutInput<'a> {
     pub(super) cell: Option<ViewBox>,
     /// What the edge path fills.
     pub(super) edge: Option<ViewBox>,
+    /// How the edge path is coloured; none while its force errors are not known.
+    pub(super) scale: Option<ErrorScale>,
     /// From the middle of what is shown towards the eye.
     pub(super) eye_direction: DVec3,
     pub(super) has_phases: bool,
@@ -85,21 +86,24 @@ pub(super) fn screen(input: &LayoutInput) -> Panel {
     }
 }
 
-/// The time panel: collapsed, on simulated time, and playing or not.
-pub(super) fn time_panel(opening: Opening) -> TimePanelBlueprint {
+/// The time panel: collapsed, on simulated time, at a moment [s] or at the start.
+///
+/// A blueprint of Rerun 0.36 has no place for the time cursor. But a viewer that plays a loop goes to its start as soon as it is past its end, and this
+/// loop ends before the recording begins: it stands at the moment from its first picture on, until it is paused, moved, or told not to loop.
+pub(super) fn time_panel(moment: Option<f64>) -> TimePanelBlueprint {
     let panel = TimePanelBlueprint::new()
         .with_state(PanelState::Collapsed)
         .with_timeline(TimelineName(SIM_TIME.into()));
-    match opening {
-        Opening::Paused => panel.with_play_state(PlayState::Paused),
-        Opening::Playing { span, speed } => {
-            let [min, max] = span.map(|seconds| datatypes::TimeInt((seconds * 1e9).round() as i64));
-            panel
-                .with_play_state(PlayState::Playing)
-                .with_playback_speed(PlaybackSpeed(speed.into()))
-                .with_loop_mode(LoopMode::Selection)
-                .with_time_selection(datatypes::AbsoluteTimeRange { min, max })
-        }
+    let time = |seconds: f64| datatypes::TimeInt((seconds * 1e9).round() as i64);
+    match moment {
+        None => panel.with_play_state(PlayState::Paused),
+        Some(moment) => panel
+            .with_play_state(PlayState::Playing)
+            .with_loop_mode(LoopMode::Selection)
+            .with_time_selection(datatypes::AbsoluteTimeRange {
+                min: time(moment),
+                max: time(BEFORE),
+            }),
     }
 }
 
@@ -139,6 +143,14 @@ fn plot_view(plot: &Plot) -> Panel {
     })
 }
 
+/// Heading of the edge's view: how to read the colours of the path.
+pub(super) fn edge_heading(scale: Option<ErrorScale>) -> String {
+    match scale.map(ErrorScale::percent) {
+        Some(end) => format!("Force error: blue −{end} %, white 0, orange +{end} %"),
+        None => "Edge".to_owned(),
+    }
+}
+
 /// The whole cell and, if there is one, the edge from nearby.
 fn spatial_views(input: &LayoutInput) -> (Panel, Option<Panel>) {
     let eye_on = |framed: &ViewBox, radii| {
@@ -148,7 +160,7 @@ fn spatial_views(input: &LayoutInput) -> (Panel, Option<Panel>) {
     let eye_on_cell = input.cell.map(|cell| eye_on(&cell, CELL_EYE_RADII));
     let edge = input.edge.map(|edge| {
         let eye_on_edge = eye_on(&edge, EDGE_EYE_RADII);
-        spatial_view(EDGE_VIEW, Some(eye_on_edge), 0.05)
+        spatial_view(&edge_heading(input.scale), Some(eye_on_edge), 0.05)
     });
     (spatial_view("Cell", eye_on_cell, 0.25), edge)
 }

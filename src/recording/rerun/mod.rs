@@ -35,11 +35,14 @@ use glam::DVec3;
 use self::layout::LayoutInput;
 use self::plots::Plot;
 use self::rrd::{RrdError, RrdWriter};
+use super::error_scale::ErrorScale;
 use super::scene::Scene;
 use super::{Recording, RecordingError};
 
 /// Entity of the phases' lane.
 const PHASES: &str = "/phases";
+/// Phase that is judged.
+const FOLLOW_PHASE: &str = "follow";
 /// Entity of the summary.
 const SUMMARY: &str = "/summary";
 
@@ -59,16 +62,24 @@ pub struct RerunOptions {
 /// What the viewer does when it opens a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Opening {
-    /// It waits at the start.
-    Paused,
-    /// It plays up to the end of a span of simulated time, then that span in a loop. A short span
-    /// at high speed holds the viewer at a moment, as for a picture.
-    Playing {
-        /// Start and end of the span [s].
-        span: [f64; 2],
-        /// Simulated seconds a second.
-        speed: f64,
-    },
+    /// It stands in the middle of following; at the start of a recording that has no such phase.
+    Following,
+    /// It stands at a moment [s].
+    At(f64),
+}
+
+impl Opening {
+    /// The moment at which a recording opens [s]; none for its start.
+    fn moment(self, recording: &Recording) -> Option<f64> {
+        match self {
+            Self::At(moment) => Some(moment),
+            Self::Following => {
+                let follow = recording.phase(FOLLOW_PHASE)?;
+                let end = recording.time().last()?.min(follow.end);
+                Some(0.5 * (follow.start + end))
+            }
+        }
+    }
 }
 
 impl Default for RerunOptions {
@@ -76,7 +87,7 @@ impl Default for RerunOptions {
         Self {
             summary_markdown: String::new(),
             arrow_metres_per_newton: 1e-3,
-            opening: Opening::Paused,
+            opening: Opening::Following,
             eye_direction: DVec3::new(0.75, -1.0, 0.55),
         }
     }
@@ -106,15 +117,22 @@ fn write_layout(
     recording: &Recording,
     options: &RerunOptions,
 ) -> Result<(), RrdError> {
+    let errors = &scene.edge_path.relative_force_error;
+    let known = errors.iter().any(|error| error.is_finite());
     let screen = layout::screen(&LayoutInput {
         plots,
+        scale: known.then(|| ErrorScale::of(&scene.edge_path)),
         cell: view_box::cell_box(scene),
         edge: view_box::ViewBox::around(scene.edge_path.points_in_world.iter().copied()),
         eye_direction: options.eye_direction,
         has_phases: !recording.phases().is_empty(),
         has_summary: !options.summary_markdown.is_empty(),
     });
-    blueprint::write_blueprint(rrd, &screen, &layout::time_panel(options.opening))
+    blueprint::write_blueprint(
+        rrd,
+        &screen,
+        &layout::time_panel(options.opening.moment(recording)),
+    )
 }
 
 /// Letters and digits of a title, other stretches as a dash each.

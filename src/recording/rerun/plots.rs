@@ -1,6 +1,7 @@
 //! Turns channels into plots: named, coloured series in the units an engineer reads, with their
 //! bands and limits.
 
+use super::FOLLOW_PHASE;
 use super::colours::{
     BLUE, GREEN, GREY, ORANGE, PALE_GREY, PALETTE, PURPLE, SKY_BLUE, VERMILLION, YELLOW,
 };
@@ -277,16 +278,43 @@ fn add_force_band(plot: &mut Plot, recording: &Recording) {
         plot.series
             .push(guide(name, (label.to_owned(), colour, 0.8), values));
     }
+    let force = recording.channel(schema::CONTACT_FORCE);
+    plot.range = match recording.phase(FOLLOW_PHASE) {
+        Some(follow) => {
+            let span = recording.samples_in(follow);
+            range_of_following(
+                &desired.values[span.clone()],
+                force.map(|f| &f.values[span]),
+            )
+        }
+        None => range_of_all(&desired.values, force.map(|f| &f.values[..])),
+    };
+}
+
+/// The axis reaches at most so many times the desired force.
+const HIGHEST: f64 = 3.0;
+
+/// From the lowest force while following to the highest, with the bands of 10 %; the table tells the peaks of the other phases.
+fn range_of_following(desired: &[f64], force: Option<&[f64]>) -> Option<[f64; 2]> {
+    let most = desired.iter().copied().fold(0.0, f64::max);
+    let bands = desired.iter().flat_map(|d| [0.9 * d, 1.1 * d]);
+    let force = force.into_iter().flatten().copied();
+    let all = bands.chain(force).filter(|value| value.is_finite());
+    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    let high = high.min(HIGHEST * most);
+    let room = 0.1 * (high - low);
+    (most > 0.0 && room > 0.0).then_some([low - room, high + room])
+}
+
+/// From nothing to the peak, but not so far that the bands cannot be read.
+fn range_of_all(desired: &[f64], force: Option<&[f64]>) -> Option<[f64; 2]> {
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
-    let desired_peak = largest(&desired.values);
-    let force_peak = recording
-        .channel(schema::CONTACT_FORCE)
-        .map_or(0.0, |channel| largest(&channel.values));
-    if desired_peak > 0.0 {
-        // An engagement peak may be many times the desired force; the table tells its height.
-        let top = force_peak.clamp(1.2 * desired_peak, 2.0 * desired_peak);
-        plot.range = Some([-0.05 * desired_peak, 1.05 * top]);
-    }
+    let most = largest(desired);
+    // An impact's peak may be many times the desired force; the table tells its height.
+    let top = force.map_or(0.0, largest).clamp(1.2 * most, 2.0 * most);
+    (most > 0.0).then_some([-0.05 * most, 1.05 * top])
 }
 
 /// A horizontal line over the whole recording.
@@ -333,7 +361,7 @@ pub(super) fn phase_colour(name: &str, index: usize) -> Colour {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::Channel;
+    use crate::recording::{Channel, PhaseSpan};
 
     fn recording(channels: Vec<Channel>) -> Recording {
         let time = (0..6_i32).map(f64::from).collect();
@@ -372,6 +400,29 @@ mod tests {
         assert_eq!(find(&plots[0], "contact_force").label, "contact force [N]");
         // The peak of 900 N is cut so that the band stays readable.
         assert_eq!(plots[0].range, Some([-5.0, 210.0]));
+    }
+
+    #[test]
+    fn the_axis_of_the_force_is_scaled_to_following() {
+        let time = (0..6_i32).map(f64::from).collect();
+        let follow = PhaseSpan {
+            name: FOLLOW_PHASE.into(),
+            start: 2.0,
+            end: 4.0,
+        };
+        let force = vec![0.0, 700.0, 101.0, 118.0, 0.0, 0.0];
+        let channels = vec![
+            Channel::new(schema::CONTACT_FORCE, Unit::Newton, force),
+            Channel::new(schema::DESIRED_FORCE, Unit::Newton, vec![100.0; 6]),
+        ];
+        let recording = Recording::new(time, channels, vec![follow]).unwrap();
+        let plots = plots(&recording, &SceneLimits::default()).unwrap();
+        // 90 to 118 N with a tenth of that on either side: the touch of 700 N is beyond it.
+        let [low, high] = plots[0].range.unwrap();
+        assert!(
+            (low - 87.2).abs() < 1e-9 && (high - 120.8).abs() < 1e-9,
+            "{low} {high}"
+        );
     }
 
     #[test]

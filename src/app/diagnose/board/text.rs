@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::words::{capital, figures, of_column, percent, spoken, yardstick};
+use crate::diagnosis::words::{capital, of_column, percent, spoken, yardstick};
+use crate::quantity::significant;
 
 /// Verdict, numbers, prediction, and the account.
 pub(super) fn markdown(answer: &Answer, left_out: usize, thinned: bool) -> String {
@@ -48,7 +49,7 @@ fn effects(answer: &Answer) -> String {
         let _ = writeln!(rows, "| **{name}** | probability | {probability} |");
         for (name, estimate) in &effect.parameters {
             let (words, unit, factor) = spoken(name);
-            let number = |value: f64| figures(factor * value, 4);
+            let number = |value: f64| significant(factor * value, 4);
             let [low, value, high] = [estimate.low, estimate.value, estimate.high];
             // Which of several it is, such as a joint, has no interval.
             let (value, interval) = if low == high {
@@ -71,7 +72,7 @@ fn predictions(answer: &Answer) -> String {
     let mut rows = String::new();
     for error in &answer.details.prediction {
         let (words, unit, factor) = of_column(&error.channel);
-        let number = |value: f64| figures(factor * value, 2);
+        let number = |value: f64| significant(factor * value, 2);
         let _ = writeln!(
             rows,
             "| {} | {words} [{unit}] | {} | {} | {} |",

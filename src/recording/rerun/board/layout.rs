@@ -13,12 +13,13 @@ use ::rerun::external::re_sdk_types::datatypes::{Range2D, TimeRange as Range, Ti
 use super::cloud::{self, FIELD, ROOM};
 use super::sheet::{self, TIME};
 use crate::recording::board::{Board, Cloud, Sheet, SheetPlot};
+use crate::recording::error_scale::ErrorScale;
 use crate::recording::rerun::RerunOptions;
 use crate::recording::rerun::SUMMARY;
 use crate::recording::rerun::blueprint::{Panel, View, ViewKind};
 use crate::recording::rerun::cell::CELL;
 use crate::recording::rerun::colours::rerun_colour;
-use crate::recording::rerun::layout::{cell_view, plain_view};
+use crate::recording::rerun::layout::{cell_view, edge_heading, plain_view};
 use crate::recording::rerun::view_box::cell_box;
 
 /// Share of the longest recording that each must last for all to have one time axis.
@@ -29,18 +30,28 @@ const LEGEND: [f64; 2] = [0.35, 0.45];
 /// The panels of the screen.
 pub(super) fn screen(board: &Board, options: &RerunOptions) -> Panel {
     let verdict = plain_view(ViewKind::TextDocument, "Verdict", SUMMARY);
-    let mut pictures = Vec::new();
-    if let Some(scene) = &board.scene {
-        let name = format!("Cell: {}", scene.title);
-        pictures.push(cell_view(&name, CELL, cell_box(scene), options));
-    }
     let clouds = board.clouds.iter().enumerate();
-    pictures.extend(clouds.map(|(index, cloud)| cloud_view(index, cloud)));
-    let left = match pictures.len() {
-        0 => verdict,
-        1 => Panel::column(vec![(1.0, verdict), (1.0, pictures.remove(0))]),
-        _ => Panel::column(vec![(1.0, verdict), (1.0, Panel::tabs(pictures))]),
-    };
+    let mut clouds: Vec<Panel> = clouds
+        .map(|(index, cloud)| cloud_view(index, cloud))
+        .collect();
+    let mut left = vec![(1.0, verdict)];
+    // What says most stays in front, with a cell below it.
+    match clouds.len() {
+        0 => {}
+        1 => left.push((1.0, clouds.remove(0))),
+        _ => left.push((1.0, Panel::tabs(clouds))),
+    }
+    if let Some(scene) = &board.scene {
+        let known = scene.edge_path.relative_force_error.iter();
+        let scale = known.clone().any(|e| e.is_finite());
+        let scale = scale.then(|| ErrorScale::of(&scene.edge_path));
+        let name = match scale {
+            Some(_) => format!("{}. {}", scene.title, edge_heading(scale)),
+            None => format!("Cell: {}", scene.title),
+        };
+        left.push((1.0, cell_view(&name, CELL, cell_box(scene), options)));
+    }
+    let left = Panel::column(left);
     let linked = are_alike(&board.sheets);
     let sheets = board.sheets.iter().enumerate();
     let mut sheets: Vec<Panel> = sheets

@@ -1,0 +1,162 @@
+//! What `idc run` is asked, and one run.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::super::cli::{output_folder, show};
+use super::super::error::{AppError, ExitCode};
+use super::super::files::{OutputFolder, RUN_NAMES, Standing, VARIED, is_same};
+use super::super::interrupt::Interruptible;
+use super::super::progress;
+use super::super::viewer::{Viewing, Watch};
+use super::job::{Job, Manner};
+use super::settings::{Setting, Variant, blamed, product, with_flags};
+use super::source::Source;
+use super::variants;
+use crate::recording::rerun::Opening;
+use crate::report::Style;
+use crate::scenario::{AnyScenario, ScenarioTemplate, load_any};
+
+#[derive(Debug, Args)]
+pub(in super::super) struct RunArguments {
+    /// Scenario file.
+    pub(super) scenario: PathBuf,
+    /// Another value for a key of the scenario by its dotted path, as in process.force_n=150; of several values, divided by commas, each is run, and of several --set each combination.
+    #[arg(long = "set", value_name = "KEY=VALUE[,VALUE..]", value_parser = Setting::parse)]
+    pub(super) settings: Vec<Setting>,
+    /// With --set, leave runs as they are that stand complete, as of one that was interrupted.
+    #[arg(long, requires = "settings", conflicts_with = "force")]
+    pub(super) resume: bool,
+    /// Folder for recording.rrd, samples.parquet and summary.json; of several runs, for a folder each and compare.html [default: runs/<scenario name>].
+    #[arg(long, help_heading = "Output")]
+    pub(super) out: Option<PathBuf>,
+    /// Watch the run while it goes on: `native` or `web` viewer, `web:PORT`, or the address at which one listens [default: native where it is installed, otherwise web].
+    #[arg(long, value_name = "WHERE", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    pub(super) view: Option<String>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    pub(super) force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    pub(super) quiet: bool,
+    /// Print what summary.json holds instead of the table; of several runs a list of it.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    pub(super) json: bool,
+    /// Leave out recording.rrd, as for many runs of which only the numbers are wanted.
+    #[arg(long, help_heading = "Output")]
+    pub(super) no_recording: bool,
+    /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
+    #[arg(long, hide = true)]
+    hold_at_s: Option<f64>,
+}
+
+impl RunArguments {
+    /// Where results go.
+    pub(super) fn folder(&self) -> PathBuf {
+        output_folder(self.out.as_ref(), &self.scenario)
+    }
+
+    pub(super) fn manner(&self) -> Manner {
+        Manner {
+            recorded: !self.no_recording,
+            opening: self.hold_at_s.map_or(Opening::Following, Opening::At),
+            style: match anstream::AutoStream::choice(&std::io::stdout()) {
+                anstream::ColorChoice::Never => Style::Plain,
+                _ => Style::Coloured,
+            },
+        }
+    }
+
+    pub(super) fn standing(&self) -> Standing {
+        match self.resume {
+            true => Standing::Keep,
+            false => Standing::of(self.force),
+        }
+    }
+}
+
+/// Runs a scenario, or each of its variants.
+pub(in super::super) fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
+    let variants = product(&arguments.settings)?;
+    let Some(template) = (!arguments.settings.is_empty())
+        .then(|| ScenarioTemplate::read(&arguments.scenario))
+        .transpose()?
+    else {
+        return one(arguments, load_any(&arguments.scenario)?, None);
+    };
+    if let Some(input) = (variants.iter())
+        .map(|variant| arguments.folder().join(&variant.name).join(VARIED))
+        .find(|copy| is_same(copy, &arguments.scenario))
+    {
+        let file = input.display().to_string();
+        return Err(AppError::Overwrites { file });
+    }
+    let [alone] = variants.as_slice() else {
+        if arguments.view.is_some() {
+            let runs = variants.len();
+            return Err(AppError::ViewOfSeveral { runs });
+        }
+        return variants::run(arguments, &template, &variants);
+    };
+    let scenario =
+        (template.with(&alone.edits)).map_err(|error| blamed(error, &alone.edits, &template))?;
+    one(arguments, scenario, Some((&template, alone)))
+}
+
+fn one(
+    arguments: &RunArguments,
+    scenario: AnyScenario,
+    varied: Option<(&ScenarioTemplate, &Variant)>,
+) -> Result<ExitCode, AppError> {
+    if matches!(scenario, AnyScenario::Bench(_)) && arguments.hold_at_s.is_some() {
+        return Err(AppError::NoBench {
+            option: "hold-at-s",
+        });
+    }
+    let viewing = arguments.view.as_deref().map(Viewing::parse).transpose()?;
+    let job = Job::new(scenario).map_err(|error| match varied {
+        Some((_, variant)) => with_flags(error, &variant.edits),
+        None => error,
+    })?;
+    let path = arguments.folder();
+    let folder = OutputFolder::prepare(&path, &RUN_NAMES, Standing::of(arguments.force))?;
+    let source = match varied {
+        Some((template, variant)) => Source::varied(template, &variant.edits, None, folder.path())?,
+        None => Source::file(&arguments.scenario),
+    };
+    let quiet = arguments.quiet || arguments.json;
+    if !quiet {
+        for note in job.notes() {
+            eprintln!("note: {note}");
+        }
+    }
+    let watch = viewing.map(Watch::begin).transpose()?;
+    let address = watch.as_ref().and_then(Watch::address);
+    if let (Some(address), false) = (address, arguments.quiet) {
+        eprintln!("watch the run at {address}");
+    }
+    let interruptible = Interruptible::of_one("run", &path);
+    let bar = progress::bar("simulating", quiet);
+    let told = &mut |done, total| progress::tell(&bar, done, total);
+    let ended = job.perform(&source, &folder, arguments.manner(), watch.as_ref(), told);
+    bar.finish_and_clear();
+    let ended = ended?;
+    // From here on all is in its place.
+    drop(interruptible);
+    show(
+        [arguments.quiet, arguments.json],
+        &ended.document,
+        &ended.table,
+        &folder,
+        &ended.names,
+    )?;
+    for line in &ended.told {
+        eprintln!("{line}");
+    }
+    if let Some(watch) = watch {
+        let (scene, summary) = ended.shown;
+        watch.close(scene, summary, quiet);
+    }
+    Ok(ended.code)
+}

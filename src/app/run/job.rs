@@ -1,0 +1,280 @@
+//! A run of a cell or a bench, from the checked scenario to its files.
+
+use std::path::{Path, PathBuf};
+
+use super::super::error::{AppError, ExitCode};
+use super::super::files::{
+    EDGE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches, SummaryDocument,
+    files_of_cell,
+};
+use super::super::growing::GrowingFile;
+use super::super::picture::scene_of;
+use super::super::report::page_of_run;
+use super::super::viewer::Watch;
+use super::super::{bench, bench_figures, bench_picture};
+use super::source::Source;
+use super::{Listener, run_heard};
+use crate::cell::Cell;
+use crate::metrics::{self, MetricsError, Verdict};
+use crate::recording::provenance::Provenance;
+use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
+use crate::recording::scene::Scene;
+use crate::report::{Style, bench_markdown, bench_text, markdown, text};
+use crate::rig::Rig;
+use crate::scenario::{AnyScenario, BenchScenario, Scenario};
+
+/// A scenario that can be run.
+pub(super) enum Job {
+    /// Of a cell.
+    Cell(Box<Cell>),
+    /// Of a bench.
+    Bench(Box<Rig>),
+}
+
+/// How it is run.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Manner {
+    /// Is recording.rrd written?
+    pub recorded: bool,
+    /// How recording.rrd opens.
+    pub opening: Opening,
+    /// How tables are printed.
+    pub style: Style,
+}
+
+/// A run that has ended, its files written.
+pub(super) struct Ended {
+    /// What summary.json holds.
+    pub document: String,
+    /// Its numbers for people.
+    pub table: String,
+    /// Names of the files.
+    pub names: Vec<&'static str>,
+    /// What is to be said on standard error: what stopped it, or which results lie outside their bounds.
+    pub told: Vec<String>,
+    /// What became of it.
+    pub code: ExitCode,
+    /// What only the whole run tells a viewer: the scene, and the numbers.
+    pub shown: (Scene, String),
+}
+
+impl Job {
+    /// Checks a scenario to its end: bounds, path, supply, stability.
+    pub(super) fn new(scenario: AnyScenario) -> Result<Self, AppError> {
+        let metrics_error = |path: &Path| {
+            let file = path.display().to_string();
+            move |source| AppError::Metrics { file, source }
+        };
+        Ok(match scenario {
+            AnyScenario::Cell(cell) => {
+                let known = metrics::validate(metrics::METRICS, &cell.expect);
+                known.map_err(metrics_error(&cell.path))?;
+                Self::Cell(Box::new(Cell::new(*cell)?))
+            }
+            AnyScenario::Bench(bench) => {
+                let known = metrics::validate(metrics::BENCH_METRICS, &bench.expect);
+                known.map_err(metrics_error(&bench.path))?;
+                Self::Bench(Box::new(Rig::new(*bench)?))
+            }
+        })
+    }
+
+    /// What is to be noted before it begins.
+    pub(super) fn notes(&self) -> &[String] {
+        match self {
+            Self::Cell(cell) => &cell.notes,
+            Self::Bench(_) => &[],
+        }
+    }
+
+    /// Does a run of it write the file of this name, of those that a run may write?
+    pub(super) fn writes(&self, name: &str, recorded: bool) -> bool {
+        match name {
+            RECORDING => recorded,
+            FIGURES => matches!(self, Self::Bench(_)),
+            // Of a run that followed one.
+            EDGE => false,
+            _ => true,
+        }
+    }
+
+    /// Where its results come from, and what they are made of, wherever its files stand.
+    pub(super) fn provenance(&self, source: &Source) -> Result<(Provenance, String), AppError> {
+        let (files, seed): (Vec<&PathBuf>, u64) = match self {
+            Self::Cell(cell) => {
+                let Scenario {
+                    path,
+                    arm,
+                    device,
+                    workpiece,
+                    simulation,
+                    ..
+                } = &cell.scenario;
+                (files_of_cell(path, arm, device, workpiece), simulation.seed)
+            }
+            Self::Bench(rig) => {
+                let BenchScenario {
+                    path, device, seed, ..
+                } = &rig.scenario;
+                (vec![path, &device.model], *seed)
+            }
+        };
+        source.provenance(&files, seed)
+    }
+
+    /// Runs it and writes its files. `told` is told steps done and in all.
+    pub(super) fn perform(
+        &self,
+        source: &Source,
+        folder: &OutputFolder,
+        manner: Manner,
+        watch: Option<&Watch>,
+        told: &mut dyn FnMut(usize, usize),
+    ) -> Result<Ended, AppError> {
+        match self {
+            Self::Cell(cell) => perform_cell(self, cell, source, folder, (manner, watch), told),
+            Self::Bench(rig) => perform_bench(self, rig, source, folder, (manner, watch), told),
+        }
+    }
+}
+
+fn perform_cell(
+    job: &Job,
+    cell: &Cell,
+    source: &Source,
+    folder: &OutputFolder,
+    (manner, watch): (Manner, Option<&Watch>),
+    told: &mut dyn FnMut(usize, usize),
+) -> Result<Ended, AppError> {
+    let (origin, content) = job.provenance(source)?;
+    let target = folder.path().join(RECORDING);
+    let options = RerunOptions {
+        opening: manner.opening,
+        ..RerunOptions::default()
+    };
+    std::thread::scope(|scope| {
+        let growing =
+            (manner.recorded).then(|| GrowingFile::begin(scope, cell, &target, &content, options));
+        let watching = watch.map(|watch| Listener::watching(cell, watch));
+        let growing_too = growing.iter().map(|growing| growing.listener());
+        let listeners = watching.into_iter().chain(growing_too).collect();
+        let finished = run_heard(cell, told, listeners)?;
+        let expect = &cell.scenario.expect;
+        let verdicts = metrics::check(metrics::METRICS, &finished.summary, expect)
+            .map_err(|source| unmeasured(&cell.scenario.path, source))?;
+        let title = &cell.scenario.title;
+        let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
+        let scene = scene_of(cell, &finished.recording, &finished.frames)?;
+        let summary = markdown(title, &finished.summary, &verdicts);
+        let (report, encoded) = rayon::join(
+            || {
+                let sketches = Sketches::of(&scene, &finished.recording);
+                let page = page_of_run(&document, &finished.recording, &sketches);
+                page.map(|page| (page, sketches))
+            },
+            || growing.map(|growing| growing.end(&finished.recording, &scene, &summary)),
+        );
+        let ((report, sketches), encoded) = (report?, encoded.transpose()?);
+        let names = folder.write(RunOutput {
+            title,
+            recording: &finished.recording,
+            picture: encoded
+                .map(|encoded| -> Picture<'_> { Box::new(move |path| encoded.write(path)) }),
+            summary: &document,
+            figures: None,
+            varied: source.copy(),
+            sketches: &sketches,
+            report: &report,
+        })?;
+        let (code, told) = judged(finished.stop.as_ref(), &verdicts);
+        Ok(Ended {
+            table: text(title, &finished.summary, &verdicts, manner.style),
+            document,
+            names,
+            told,
+            code,
+            shown: (scene, summary),
+        })
+    })
+}
+
+fn perform_bench(
+    job: &Job,
+    rig: &Rig,
+    source: &Source,
+    folder: &OutputFolder,
+    (manner, watch): (Manner, Option<&Watch>),
+    told: &mut dyn FnMut(usize, usize),
+) -> Result<Ended, AppError> {
+    let (origin, _) = job.provenance(source)?;
+    let finished = bench::run_watched(rig, told, watch)?;
+    let scenario = &rig.scenario;
+    let verdicts = metrics::check(metrics::BENCH_METRICS, &finished.summary, &scenario.expect)
+        .map_err(|source| unmeasured(&scenario.path, source))?;
+    let document = bench::document(scenario, &finished, &verdicts, source, &origin)?;
+    let scene = bench_picture::scene_of(scenario, &finished.recording)?;
+    let sketches = Sketches::of(&scene, &finished.recording);
+    let report = page_of_run(&document, &finished.recording, &sketches)?;
+    let options = RerunOptions {
+        summary_markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
+        opening: manner.opening,
+        ..RerunOptions::default()
+    };
+    let picture = |path: &Path| write_rrd(path, &finished.recording, &scene, &options);
+    let names = folder.write(RunOutput {
+        title: &scenario.title,
+        recording: &finished.recording,
+        picture: manner.recorded.then_some(Box::new(picture)),
+        summary: &document,
+        figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
+        varied: source.copy(),
+        sketches: &sketches,
+        report: &report,
+    })?;
+    let (code, told) = judged(finished.stop.as_ref(), &verdicts);
+    Ok(Ended {
+        table: bench_text(&scenario.title, &finished.summary, &verdicts, manner.style),
+        document,
+        names,
+        told,
+        code,
+        shown: (scene, options.summary_markdown),
+    })
+}
+
+fn unmeasured(path: &Path, source: MetricsError) -> AppError {
+    AppError::Metrics {
+        file: path.display().to_string(),
+        source,
+    }
+}
+
+/// Why a run stopped early, if it did, or else which results lie outside their bounds.
+fn judged(stop: Option<&impl std::fmt::Display>, verdicts: &[Verdict]) -> (ExitCode, Vec<String>) {
+    if let Some(stop) = stop {
+        return (ExitCode::Stopped, vec![format!("stopped: {stop}")]);
+    }
+    let outside = verdicts.iter().filter(|verdict| !verdict.kept);
+    let told: Vec<String> = outside
+        .map(|verdict| sentence(verdict.metric, verdict.value, [verdict.min, verdict.max]))
+        .collect();
+    match told.is_empty() {
+        true => (ExitCode::Done, told),
+        false => (ExitCode::OutsideBounds, told),
+    }
+}
+
+/// A result that lies outside its bounds, from least to largest.
+pub(super) fn sentence(metric: &str, value: Option<f64>, [min, max]: [Option<f64>; 2]) -> String {
+    let bound = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {bound}"));
+    let bounds = [bound("at least", min), bound("at most", max)];
+    let bounds = bounds
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(" and ");
+    let value = value.map_or("not determined by this run".to_owned(), |value| {
+        format!("{value:.6}")
+    });
+    format!("outside its bounds: {metric} is {value}, expected {bounds}")
+}

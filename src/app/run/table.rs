@@ -1,0 +1,187 @@
+//! The runs of `--set` side by side, in a terminal: what varies against the numbers that matter most.
+
+use serde_json::Value;
+
+use super::super::error::ExitCode;
+use super::settings::short;
+use super::variants::Done;
+use crate::metrics::{BENCH_METRICS, METRICS};
+use crate::quantity::column;
+
+/// Columns of a terminal.
+const WIDTH: usize = 80;
+/// Letters of a heading's line at least, of a value that varies at most.
+const NARROW: usize = 9;
+const LONGEST: usize = 24;
+/// Numbers of a cell and of a bench, what matters most first; those that no run determines, and those for which there is no room, are left out.
+const OF_CELL: [&str; 7] = [
+    "force_mean_n",
+    "coefficient_of_variation_percent",
+    "largest_deviation_n",
+    "engagement_peak_n",
+    "stroke_margin_mm",
+    "settling_time_s",
+    "path_error_rms_um",
+];
+const OF_BENCH: [&str; 7] = [
+    "force_mean_n",
+    "coefficient_of_variation_percent",
+    "force_rms_error_percent",
+    "force_settling_time_s",
+    "impact_peak_n",
+    "stroke_margin_mm",
+    "regulator_delay_s",
+];
+
+/// A column: lines of its heading, and its cells.
+struct Column {
+    heading: Vec<String>,
+    cells: Vec<String>,
+}
+
+impl Column {
+    /// One with this heading, broken into lines.
+    fn new(heading: &str, cells: Vec<String>) -> Self {
+        let mut lines: Vec<String> = vec![String::new()];
+        for word in heading.split(' ') {
+            match lines.last_mut() {
+                Some(line) if line.is_empty() => *line = word.to_owned(),
+                Some(line) if line.chars().count() + 1 + word.chars().count() <= NARROW => {
+                    *line += &format!(" {word}");
+                }
+                _ => lines.push(word.to_owned()),
+            }
+        }
+        Self {
+            heading: lines,
+            cells,
+        }
+    }
+
+    fn width(&self) -> usize {
+        let texts = self.heading.iter().chain(&self.cells);
+        texts.map(|text| text.chars().count()).max().unwrap_or(0)
+    }
+}
+
+/// The table.
+pub(super) fn table(runs: &[Done]) -> String {
+    let mut columns = varied(runs);
+    let last = Column::new(
+        "bounds",
+        runs.iter().map(|run| word(run).to_owned()).collect(),
+    );
+    let taken = |columns: &[Column]| {
+        columns
+            .iter()
+            .map(|column| column.width() + 2)
+            .sum::<usize>()
+    };
+    for column in metrics(runs) {
+        if taken(&columns) + column.width() + 2 + last.width() <= WIDTH {
+            columns.push(column);
+        }
+    }
+    columns.push(last);
+    let lines = columns.iter().map(|column| column.heading.len()).max();
+    let lines = lines.unwrap_or(0);
+    let mut text = String::new();
+    let mut row = |cell: &dyn Fn(&Column) -> String| {
+        let cells = columns.iter().map(|column| {
+            let width = column.width();
+            format!("{:>width$}", cell(column))
+        });
+        text += cells.collect::<Vec<_>>().join("  ").trim_end();
+        text.push('\n');
+    };
+    for line in 0..lines {
+        // Headings stand on their values.
+        row(&|column| {
+            let above = lines - column.heading.len();
+            let own = line.checked_sub(above);
+            own.map_or_else(String::new, |own| column.heading[own].clone())
+        });
+    }
+    for run in 0..runs.len() {
+        row(&|column| column.cells[run].clone());
+    }
+    text
+}
+
+/// A column for each key that varies.
+fn varied(runs: &[Done]) -> Vec<Column> {
+    let Some(first) = runs.first() else {
+        return Vec::new();
+    };
+    let varies = |place: &usize| {
+        let value = |run: &Done| run.variant.edits[*place].shown();
+        runs.iter().any(|run| value(run) != value(first))
+    };
+    let places: Vec<usize> = (0..first.variant.edits.len()).filter(varies).collect();
+    let key = |place: usize| first.variant.edits[place].key();
+    let keys: Vec<&str> = places.iter().map(|place| key(*place)).collect();
+    let column = |place: &usize| {
+        let cell = |run: &Done| {
+            let value = run.variant.edits[*place].shown();
+            // The end of a path is what tells it from others.
+            let beyond = value.chars().count().saturating_sub(LONGEST);
+            match beyond {
+                0 => value,
+                _ => format!("..{}", value.chars().skip(beyond + 2).collect::<String>()),
+            }
+        };
+        let cells = runs.iter().map(cell).collect();
+        Column::new(&short(key(*place), &keys).replace('_', " "), cells)
+    };
+    places.iter().map(column).collect()
+}
+
+/// A column for each number that a run determines.
+fn metrics(runs: &[Done]) -> Vec<Column> {
+    let bench = runs.iter().any(|run| run.document["kind"] == "bench");
+    let names = if bench { OF_BENCH } else { OF_CELL };
+    let heading = |name: &str| {
+        let of_bench = BENCH_METRICS.iter().find(|metric| metric.name == name);
+        let of_bench = of_bench.map(|metric| (metric.full_label(), metric.unit));
+        let of_cell = METRICS.iter().find(|metric| metric.name == name);
+        let of_cell = of_cell.map(|metric| (metric.full_label(), metric.unit));
+        let (label, unit) = if bench { of_bench } else { of_cell }?;
+        // A heading of two lines, as the others.
+        let label = label.replace("coefficient of variation", "variation");
+        Some((format!("{label} [{unit}]"), unit))
+    };
+    let of = |name: &str| {
+        let value = |run: &Done| run.document["summary"][name].as_f64();
+        let values: Vec<Option<f64>> = runs.iter().map(value).collect();
+        values.iter().any(Option::is_some).then_some(())?;
+        let (heading, unit) = heading(name)?;
+        Some(Column::new(&heading, column(&values, unit)))
+    };
+    names.into_iter().filter_map(of).collect()
+}
+
+fn word(run: &Done) -> &'static str {
+    let bounded = run.document["expectations"].as_array();
+    match run.code() {
+        ExitCode::Stopped => "STOPPED",
+        ExitCode::OutsideBounds => "OUTSIDE",
+        _ if bounded.is_none_or(Vec::is_empty) => "none",
+        _ => "kept",
+    }
+}
+
+/// What stopped a run, or which of its results lie outside their bounds, as one run says it.
+pub(super) fn outside(document: &Value) -> Vec<String> {
+    if let Some(stop) = document["stopped"].as_str() {
+        return vec![format!("stopped: {stop}")];
+    }
+    let verdicts = document["expectations"].as_array().into_iter().flatten();
+    verdicts
+        .filter(|verdict| verdict["kept"] == false)
+        .map(|verdict| {
+            let number = |key: &str| verdict[key].as_f64();
+            let metric = verdict["metric"].as_str().unwrap_or_default();
+            super::job::sentence(metric, number("value"), [number("min"), number("max")])
+        })
+        .collect()
+}

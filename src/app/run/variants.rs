@@ -1,0 +1,196 @@
+//! `idc run --set`: several variants of a scenario, a folder each, and a page that compares them.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use serde_json::Value;
+
+use super::super::compare::write_page;
+use super::super::error::{AppError, ExitCode};
+use super::super::files::{OutputFolder, RUN_NAMES, SUMMARY, Standing, prepare_file};
+use super::super::interrupt::Interruptible;
+use super::super::output::say;
+use super::super::progress;
+use super::super::report::read_json;
+use super::command::RunArguments;
+use super::job::Job;
+use super::settings::{Variant, blamed, with_flags};
+use super::source::Source;
+use super::table::table;
+use crate::proof::in_order;
+use crate::scenario::ScenarioTemplate;
+
+/// The page beside the folders.
+const PAGE: &str = "compare.html";
+/// What the progress counts of each run.
+const PARTS: usize = 1000;
+
+/// A variant that has been run.
+pub(super) struct Done {
+    /// Its folder.
+    folder: PathBuf,
+    /// What it has in place of the scenario's values, and what it is called.
+    pub variant: Variant,
+    /// What summary.json holds.
+    pub document: Value,
+}
+
+impl Done {
+    /// What became of it.
+    pub(super) fn code(&self) -> ExitCode {
+        let verdicts = self.document["expectations"].as_array();
+        let outside = |verdict: &Value| verdict["kept"] == false;
+        if !self.document["stopped"].is_null() {
+            ExitCode::Stopped
+        } else if verdicts.is_some_and(|verdicts| verdicts.iter().any(outside)) {
+            ExitCode::OutsideBounds
+        } else {
+            ExitCode::Done
+        }
+    }
+}
+
+/// Runs all of them; nothing is run before all have been checked.
+pub(super) fn run(
+    arguments: &RunArguments,
+    template: &ScenarioTemplate,
+    variants: &[Variant],
+) -> Result<ExitCode, AppError> {
+    let out = arguments.folder();
+    let page = out.join(PAGE);
+    let standing = arguments.standing();
+    let jobs = rayon::current_num_threads();
+    let checked = in_order(variants.len(), jobs, |index| {
+        job(template, &variants[index]).map(drop)
+    });
+    // One that panics is met, and told, as it is run.
+    checked
+        .into_iter()
+        .flatten()
+        .collect::<Result<Vec<()>, _>>()?;
+    for variant in variants {
+        OutputFolder::check(&out.join(&variant.name), &RUN_NAMES, standing)?;
+    }
+    prepare_file(&page, "--out", standing)?;
+    let folders = (variants.iter())
+        .map(|variant| OutputFolder::prepare(&out.join(&variant.name), &RUN_NAMES, standing))
+        .collect::<Result<Vec<_>, _>>()?;
+    let quiet = arguments.quiet || arguments.json;
+    let bar = progress::runs(variants.len(), PARTS, quiet);
+    let count = variants.len();
+    let interruptible = Interruptible::of_many(count, "runs are done", &out);
+    let failed = AtomicUsize::new(0);
+    let ended = in_order(count, jobs, |index| {
+        // What a full disk does to one it does to all.
+        if failed.load(Ordering::Relaxed) > 0 {
+            return Ok(None);
+        }
+        let mut before = 0;
+        let told = &mut |done: usize, total: usize| {
+            let parts = PARTS * done / total.max(1);
+            bar.inc(parts.saturating_sub(before) as u64);
+            before = before.max(parts);
+        };
+        let done = one(arguments, template, &variants[index], &folders[index], told);
+        match &done {
+            Ok(_) => interruptible.one_more(),
+            Err(_) => drop(failed.fetch_add(1, Ordering::Relaxed)),
+        }
+        bar.inc(PARTS.saturating_sub(before) as u64);
+        bar.set_message(interruptible.done().to_string());
+        done.map(Some)
+    });
+    bar.finish_and_clear();
+    let mut runs = Vec::new();
+    for (index, ended) in ended.into_iter().enumerate() {
+        let fault = || AppError::Fault {
+            part: variants[index].name.clone(),
+        };
+        runs.extend(ended.ok_or_else(fault)??);
+    }
+    let paths: Vec<PathBuf> = runs.iter().map(|run| run.folder.clone()).collect();
+    write_page(&paths, &page)?;
+    drop(interruptible);
+    told(arguments, &out, &runs)
+}
+
+fn job(template: &ScenarioTemplate, variant: &Variant) -> Result<Job, AppError> {
+    let scenario =
+        (template.with(&variant.edits)).map_err(|error| blamed(error, &variant.edits, template))?;
+    Job::new(scenario).map_err(|error| with_flags(error, &variant.edits))
+}
+
+fn one(
+    arguments: &RunArguments,
+    template: &ScenarioTemplate,
+    variant: &Variant,
+    folder: &OutputFolder,
+    told: &mut dyn FnMut(usize, usize),
+) -> Result<Done, AppError> {
+    let title = variant.title(template.title());
+    let source = Source::varied(template, &variant.edits, title.clone(), folder.path())?;
+    let titled: Vec<_> = variant.edits.iter().cloned().chain(title).collect();
+    let job = Job::new(template.with(&titled)?)?;
+    let standing = match arguments.standing() {
+        Standing::Keep => standing(folder.path(), &job, &source, !arguments.no_recording)?,
+        _ => None,
+    };
+    let document = match standing {
+        Some(document) => document,
+        None => {
+            let ended = job.perform(&source, folder, arguments.manner(), None, told)?;
+            serde_json::from_str(&ended.document)?
+        }
+    };
+    Ok(Done {
+        folder: folder.path().to_owned(),
+        variant: variant.clone(),
+        document,
+    })
+}
+
+/// The numbers of a run that stands complete in its folder and comes from the same files and values.
+fn standing(
+    folder: &Path,
+    job: &Job,
+    source: &Source,
+    recorded: bool,
+) -> Result<Option<Value>, AppError> {
+    let needed = RUN_NAMES.iter().filter(|name| job.writes(name, recorded));
+    if !needed.into_iter().all(|name| folder.join(name).is_file()) {
+        return Ok(None);
+    }
+    let Ok(document) = read_json::<Value>(&folder.join(SUMMARY)) else {
+        return Ok(None);
+    };
+    let (origin, _) = job.provenance(source)?;
+    let same = document["provenance"] == serde_json::to_value(origin)?;
+    Ok(same.then_some(document))
+}
+
+/// Prints what came of them.
+fn told(arguments: &RunArguments, out: &Path, runs: &[Done]) -> Result<ExitCode, AppError> {
+    if arguments.json {
+        let with_folder = |run: &Done| {
+            let mut document = run.document.clone();
+            document["folder"] = run.folder.display().to_string().into();
+            document
+        };
+        let all: Vec<Value> = runs.iter().map(with_folder).collect();
+        say(&format!("{}\n", serde_json::to_string_pretty(&all)?))?;
+    } else if !arguments.quiet {
+        say(&table(runs))?;
+        let count = runs.len();
+        let folder = out.display();
+        say(&format!("written to {folder}: {count} folders, {PAGE}\n"))?;
+    }
+    let codes = runs.iter().map(|run| {
+        let code = run.code();
+        for line in super::table::outside(&run.document) {
+            eprintln!("{}: {line}", run.variant.name);
+        }
+        code
+    });
+    let worst = codes.max_by_key(|code| *code as u8);
+    Ok(worst.unwrap_or(ExitCode::Done))
+}

@@ -1,0 +1,448 @@
+"""Runs every scenario and recomputes from its samples what summary.json, the printed table, report.html and the viewer's text say of it."""
+
+import base64
+import hashlib
+import json
+import re
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pandas as pd
+
+import common
+from common import Checked, Page
+from definitions import BenchRun, CellRun
+
+# What is not recomputed, and why.
+NOT_RECOMPUTED = {
+    "timing (wall_time_s, real_time_factor)": "differs from run to run",
+    "length of the scale in a picture": "follows from the drawing's projection, tested in src/drawing",
+    "samples that a chart keeps": "a choice of the drawing; that they are the recording's is checked",
+    "seed": "is not a result",
+}
+TIMING = {"wall_time_s", "real_time_factor"}
+
+CELL_LABELS = {
+    "desired_force_n": ("desired force", "N"), "force_mean_n": ("mean", "N"), "force_standard_deviation_n": ("standard deviation", "N"),
+    "coefficient_of_variation_percent": ("coefficient of variation", "%"), "force_rms_error_n": ("error, RMS", "N"),
+    "force_rms_error_percent": ("error, RMS", "%"), "largest_deviation_n": ("largest deviation", "N"),
+    "within_5_percent_share_percent": ("within 5 % of desired", "%"), "within_10_percent_share_percent": ("within 10 % of desired", "%"),
+    "loss_of_contact_share_percent": ("contact lost", "%"), "friction_force_mean_n": ("friction, mean", "N"),
+    "force_peak_approach_n": ("largest, approach", "N"), "force_peak_engage_n": ("largest, engage", "N"),
+    "force_peak_follow_n": ("largest, follow", "N"), "force_peak_retract_n": ("largest, retract", "N"),
+    "engagement_peak_n": ("peak", "N"), "engagement_overshoot_percent": ("overshoot", "%"), "settling_time_s": ("settling time", "s"),
+    "stroke_used_mm": ("stroke used", "mm"), "stroke_min_mm": ("smallest stroke", "mm"), "stroke_max_mm": ("largest stroke", "mm"),
+    "stroke_margin_mm": ("stroke margin", "mm"), "path_error_rms_um": ("lateral error, RMS", "µm"), "path_error_max_um": ("lateral error, largest", "µm"),
+    "path_length_mm": ("length followed", "mm"), "feed_mean_mm_per_s": ("feed, mean", "mm/s"), "follow_duration_s": ("time of following", "s"),
+    "joint_torque_share_percent": ("joint torque / limit", "%"), "air_mass_balance_relative": ("air balance, largest gap", ""), "duration_s": ("simulated time", "s"),
+    "wall_time_s": ("wall time", "s"), "real_time_factor": ("real-time factor", ""),
+}
+BENCH_LABELS = {
+    "desired_force_n": ("desired force", "N"), "force_mean_n": ("mean", "N"), "force_rms_error_n": ("error, RMS", "N"), "force_rms_error_percent": ("error, RMS", "%"),
+    "force_largest_error_percent": ("largest error", "%"), "coefficient_of_variation_percent": ("coefficient of variation", "%"), "force_peak_n": ("largest", "N"),
+    "regulator_delay_s": ("regulator's delay", "s"), "force_settling_time_s": ("settling time", "s"), "force_overshoot_percent": ("overshoot", "%"),
+    "force_slope_n_per_bar": ("force over pressure", "N/bar"), "force_linearity_percent": ("linearity error", "%"), "first_contact_s": ("first contact", "s"),
+    "impact_peak_n": ("impact peak", "N"), "stroke_min_mm": ("smallest stroke", "mm"), "stroke_max_mm": ("largest stroke", "mm"), "stroke_margin_mm": ("stroke margin", "mm"),
+    "measured_force_error_percent": ("load cell's error", "%"), "measured_force_noise_n": ("load cell's noise", "N"),
+    "estimated_force_rms_error_percent": ("estimator's error, RMS", "%"), "estimated_force_coverage_percent": ("estimator's coverage", "%"),
+    "air_consumed_normal_litres": ("air consumed", "l"), "air_mass_balance_relative": ("air balance, largest gap", ""), "duration_s": ("simulated time", "s"),
+    "wall_time_s": ("wall time", "s"), "real_time_factor": ("real-time factor", ""),
+}
+LEVELS = [("at", "s", "start_s"), ("set", "bar", "set_pressure_bar_gauge"), ("outlet", "bar", "regulator_pressure_bar_gauge"), ("delay", "s", "regulator_delay_s"),
+          ("force", "N", "force_mean_n"), ("read", "N", "measured_force_mean_n"), ("settled", "s", "force_settling_time_s"), ("stroke", "mm", "stroke_mm")]
+# Numbers within fixed words, which define rather than tell.
+FIXED = ["touch until it stays in ±5 %", "first command to 63 % of its change", "last command until within 5 %", "first 50 ms of contact",
+         "mean of reading over truth, less 1", "truth inside its 95 % band, in contact", "drawn in, at 20 °C and 1 bar"]
+FAR = [f"{word} the desired force: {{desired_force_n}} N desired, {{force_mean_n}} N on average ({{off_percent}} %), RMS error {{force_rms_error_percent}} %" for word in ("Off", "Far from")]
+NOTES = {
+    "force_mean_n": ["desired {desired_force_n} N ({off_percent} %)"],
+    "force_rms_error_n": ["{force_rms_error_percent} % of the desired force"],
+    "engagement_peak_n": ["{engagement_overshoot_percent} % above desired", "not above the desired force"],
+    "stroke_used_mm": ["from {stroke_min_mm} to {stroke_max_mm} mm"],
+    "path_length_mm": ["at {feed_mean_mm_per_s} mm/s on average"],
+    "duration_s": ["following {follow_duration_s} s of it"],
+}
+
+
+def full_label(key, label):
+    """As a label stands alone: `force, mean`."""
+    subject = next((subject for subject in ("force", "engagement") if key.startswith(subject) and subject not in label), None)
+    return f"{subject}, {label}" if subject else label
+
+
+class Job:
+    """A scenario, what was written of it, and what it should say."""
+
+    def __init__(self, scenario):
+        self.checked = Checked(scenario.stem)
+        self.folder = common.RESULTS / scenario.stem
+        self.printed = common.run("run", scenario.relative_to(common.PROJECT), "--out", self.folder, "--force", codes=(0, 1))
+        samples = pd.read_parquet(self.folder / "samples.parquet")
+        self.document = json.loads((self.folder / "summary.json").read_text())
+        self.is_bench = self.document.get("kind") == "bench"
+        self.run = (BenchRun if self.is_bench else CellRun)(scenario, samples)
+        self.numbers = self.run.numbers()
+        self.labels = BENCH_LABELS if self.is_bench else CELL_LABELS
+        n = self.numbers
+        n["off_percent"] = None
+        if n.get("desired_force_n") and n.get("force_mean_n") is not None:
+            n["off_percent"] = 100 * (n["force_mean_n"] - n["desired_force_n"]) / n["desired_force_n"]
+        self.units = {key: unit for key, (_, unit) in self.labels.items()}
+
+    def check(self):
+        self.summary()
+        self.table()
+        self.viewer()
+        self.page()
+        return self.checked
+
+    # summary.json
+
+    def summary(self):
+        def compare(where, found, value):
+            if isinstance(found, dict):
+                for key in found:
+                    compare(f"{where}.{key}", found[key], (value or {}).get(key))
+            elif isinstance(found, list):
+                self.checked.fact(f"{where}, entries", len(found), len(value or []))
+                for index, entry in enumerate(found[: len(value or [])]):
+                    compare(f"{where}[{index}]", entry, value[index])
+            elif isinstance(found, str):
+                self.checked.fact(where, found, value)
+            elif where.endswith("air_mass_balance_relative") and found is not None:
+                # A difference of rounding errors: of its size, not to its digits.
+                self.checked.fact(where, abs(found) < 1e-9 and abs(value) < 1e-9 and (found == value or abs(found - value) < 1e-12), True)
+            else:
+                self.checked.exact(where, found, value, relative=1e-7)
+
+        told = {key: value for key, value in self.document["summary"].items() if key != "timing"}
+        for key, value in told.items():
+            if key not in self.numbers and value is not None:
+                self.checked.uncovered("summary.json", key)
+            else:
+                compare(f"summary.json: {key}", value, self.numbers.get(key))
+        missing = [key for key, value in self.numbers.items() if key not in told and key != "off_percent" and value is not None]
+        self.checked.fact("summary.json: keys that are missing", missing, [])
+        self.checked.fact("summary.json: samples", self.document["samples"], len(self.run.samples))
+        bounds = self.run.scenario.get("expect", {})
+        self.checked.fact("summary.json: bounds", [e["metric"] for e in self.document["expectations"]], list(bounds))
+        for e in self.document["expectations"]:
+            value, bound = self.numbers[e["metric"]], bounds[e["metric"]]
+            self.checked.exact(f"bound {e['metric']}", e["value"], value, relative=1e-7)
+            kept = value is not None and bound.get("min", -np.inf) <= value <= bound.get("max", np.inf)
+            self.checked.fact(f"bound {e['metric']}: kept", e["kept"], bool(kept))
+            self.checked.fact(f"bound {e['metric']}: ends", (e["min"], e["max"]), (bound.get("min"), bound.get("max")))
+
+    # The table in the terminal
+
+    def table(self):
+        lines = [line for line in self.printed.splitlines()[1:] if not re.fullmatch(r"-+", line) and not line.startswith("written to ")]
+        by_label = {}
+        for key, (label, unit) in self.labels.items():
+            by_label.setdefault((label, unit), key)
+        seen = {"levels": 0}
+        for line in lines:
+            where = f"table: `{line.strip()}`"
+            if self.ending(where, line):
+                continue
+            if self.is_bench:
+                self.bench_line(where, line, by_label, seen)
+            else:
+                self.cell_line(where, line, by_label)
+
+    def ending(self, where, line):
+        """Bounds, how many are kept, and what is said of the force."""
+        found = re.fullmatch(r"(ok|OUTSIDE)\s+(\w+)\s+(\S+)\s+(.*)", line)
+        if found:
+            self.bound(where, *found.groups())
+            return True
+        found = re.fullmatch(r"(\d+) of (\d+) bounds? kept", line)
+        if found:
+            self.tally(where, found)
+            return True
+        if "the desired force:" in line:
+            self.far(where, line)
+            return True
+        return line.startswith("– not determined by this run")
+
+    def bound(self, where, word, metric, printed, ends):
+        bound = self.run.scenario["expect"][metric]
+        self.checked.number(where, printed, self.numbers[metric])
+        low, high = bound.get("min"), bound.get("max")
+        expected = [float(end) for end in (low, high) if end is not None]
+        self.checked.fact(f"{where}: ends", [float(end) for end in re.findall(r"-?[\d.]+(?:e-?\d+)?", ends)], expected)
+        value = self.numbers[metric]
+        kept = value is not None and (low is None or value >= low) and (high is None or value <= high)
+        self.checked.fact(f"{where}: kept", word.strip("*") == "ok", kept)
+
+    def tally(self, where, found):
+        kept = sum(e["kept"] for e in self.document["expectations"])
+        self.checked.fact(where, found.groups(), (str(kept), str(len(self.document["expectations"]))))
+
+    def far(self, where, text):
+        """A force far from the desired one is said so, and only then."""
+        off = self.numbers.get("force_rms_error_percent") if self.numbers.get("desired_force_n") else None
+        self.checked.fact(f"{where}: said", off is not None and off > 5.0, True)
+        self.checked.fact(f"{where}: word", text.startswith("Far from"), off is not None and off > 10.0)
+        self.checked.sentence(where, text, FAR, self.numbers)
+
+    def value(self, where, key, printed):
+        if key not in TIMING:
+            self.checked.number(where, printed, self.numbers.get(key))
+
+    def cell_line(self, where, line, by_label):
+        tenths = {"To mm": "to_mm", "Mean N": "force_mean_n", "SD N": "force_standard_deviation_n"}
+        head = line[:7].strip()
+        if head in tenths:
+            for number, (printed, tenth) in enumerate(zip(line[7:].split(), self.numbers["force_by_tenth"], strict=True)):
+                self.checked.number(f"{where}, tenth {number + 1}", printed, tenth[tenths[head]])
+            return
+        label, printed, unit, note = line[8:32].strip(), line[33:42].strip(), line[43:47].strip(), line[49:].strip()
+        key = by_label.get((label, unit))
+        if key is None:
+            self.checked.uncovered(where, line)
+            return
+        self.value(where, key, printed)
+        self.note(where, key, note)
+
+    def note(self, where, key, note):
+        if key in TIMING or note in FIXED:
+            return
+        if key == "joint_torque_share_percent":
+            self.checked.fact(where, note, f"largest, at {self.numbers['most_loaded_joint']}")
+            return
+        self.checked.sentence(f"{where}: note", note, NOTES.get(key, []), self.numbers)
+
+    def bench_line(self, where, line, by_label, seen):
+        if not line.strip() or line.split()[0] in ("at", "[s]"):
+            # Heads of the columns stand apart: `set bar` and `outlet bar` once ran together.
+            self.checked.fact(where, len(line.split()), len(LEVELS))
+            return
+        if seen["levels"] < len(self.numbers["levels"]):
+            level = self.numbers["levels"][seen["levels"]]
+            seen["levels"] += 1
+            for printed, (name, _, key) in zip(line.split(), LEVELS, strict=True):
+                self.checked.number(f"{where}: {name}", printed, level[key])
+            return
+        label, printed, unit, note = line[:28].strip(), line[29:39].strip(), line[40:46].strip(), line[48:].strip()
+        key = by_label.get((label, unit))
+        if key is None:
+            self.checked.uncovered(where, line)
+            return
+        self.value(where, key, printed)
+        self.note(where, key, note)
+
+    # The viewer's text
+
+    def viewer(self):
+        tables, others = common.markdown_tables(common.viewer_text(self.folder / "recording.rrd"))
+        for line in others:
+            where = f"viewer: `{line}`"
+            line = line.strip("#* ")
+            found = re.fullmatch(r"(\d+) of (\d+) bounds? kept", line)
+            if found:
+                self.tally(where, found)
+            elif "the desired force:" in line:
+                self.far(where, line)
+            elif line not in (self.document["title"], "Force along the path"):
+                self.checked.uncovered("viewer", line)
+        for head, *rows in tables:
+            self.viewer_table(head, rows)
+
+    def viewer_table(self, head, rows):
+        by_label = {(label, unit): key for key, (label, unit) in self.labels.items()}
+        for number, row in enumerate(rows):
+            where = f"viewer: {' | '.join(row)}"
+            if head[:2] == ["", "expected"]:
+                self.bound(where, row[0].strip("*"), row[1], row[2], row[3])
+            elif head[0] == "from mm":
+                tenth = self.numbers["force_by_tenth"][number]
+                for printed, key in zip(row, ["from_mm", "to_mm", "force_mean_n", "force_standard_deviation_n"], strict=True):
+                    self.checked.number(where, printed, tenth[key])
+            elif head[0] == "at, s":
+                for printed, (name, _, key) in zip(row, LEVELS, strict=True):
+                    self.checked.number(f"{where}: {name}", printed, self.numbers["levels"][number][key])
+            else:
+                key = by_label.get((row[0], row[2]))
+                if key is None:
+                    self.checked.uncovered("viewer", " | ".join(row))
+                    continue
+                self.value(where, key, row[1])
+                self.note(where, key, row[3])
+
+    # report.html
+
+    def page(self):
+        page = Page((self.folder / "report.html").read_text())
+        for table in page.tables:
+            self.page_table(table)
+        self.facts(page)
+        for tag, kind, text in page.texts:
+            if text.strip() and tag not in ("dt", "dd", "small"):
+                self.page_text(tag, kind, " ".join(text.split()))
+        for chart in page.charts:
+            self.chart(json.loads(chart))
+
+    def page_text(self, tag, kind, text):
+        where = f"page: {tag} {kind}"
+        if text == self.document["title"] or kind == "hint":
+            return
+        if kind == "verdict":
+            self.verdict(where, text)
+        elif kind == "lead" and "the desired force:" in text:
+            self.far(where, text.rstrip("."))
+        elif kind == "lead":
+            self.checked.fact(where, text.removeprefix("Note: ").removesuffix("."), next((n for n in self.document["notes"] if n in text), None))
+        elif tag == "text":
+            self.picture(where, text)
+        elif text.startswith("Scenario "):
+            self.checked.fact(where, text, f"Scenario {self.document['scenario']}, {len(self.run.samples)} samples.")
+        elif text.startswith("Made by idc"):
+            pass
+        elif tag == "figcaption" and "400 pieces" in text:
+            pass
+        elif kind == "" and (found := re.search(r"\((\d+) of (\d+) samples: the extremes of each stretch\)", text)):
+            whole = (len(self.run.samples), len(self.run.phase("follow")) if not self.is_bench else 0)
+            self.checked.fact(where, int(found[2]) in whole, True)
+        elif re.search(r"\d", text):
+            self.checked.uncovered(where, text)
+
+    def verdict(self, where, text):
+        bounds = len(self.document["expectations"])
+        text = text.removesuffix(".")
+        kept = {0: "", 1: ". Its bound is kept"}.get(bounds, f". All {bounds} bounds are kept")
+        if text.startswith("Stopped early"):
+            self.checked.fact(where, text, f"Stopped early: {self.document['stopped']}")
+        elif text.startswith("Outside its bounds: "):
+            broken = [e for e in self.document["expectations"] if not e["kept"]]
+            parts = text.removeprefix("Outside its bounds: ").split("; ")
+            for part, bound in zip(parts, broken, strict=True):
+                unit = self.units[bound["metric"]]
+                self.checked.number(where, re.search(rf" is ({common.PRINTED})", part)[1], self.numbers[bound["metric"]])
+                ends = [float(end) for end in re.findall(r"(?:least|most) (-?[\d.]+)", part)]
+                self.checked.fact(where, (ends, unit in part), ([e for e in (bound["min"], bound["max"]) if e is not None], True))
+        elif "the desired force:" in text:
+            self.checked.fact(where, text.endswith(kept), True)
+            self.far(where, text.removesuffix(kept) if kept else text)
+        else:
+            said = ["{force_mean_n} N on average where {desired_force_n} N is desired, standard deviation {force_standard_deviation_n} N",
+                    "{force_mean_n} N on average where {desired_force_n} N is desired", "{force_mean_n} N in contact", "Done"]
+            self.checked.fact(where, text.endswith(kept), True)
+            self.checked.sentence(where, text.removesuffix(kept) if kept else text, said, self.numbers)
+            off = self.numbers.get("force_rms_error_percent") if self.numbers.get("desired_force_n") else None
+            self.checked.fact(f"{where}: a force that is off is said so", off is not None and off > 5.0, False)
+
+    def facts(self, page):
+        names = {full_label(key, label): (key, unit) for key, (label, unit) in self.labels.items()}
+        n, texts = self.numbers, page.texts
+        for index, (tag, _, name) in enumerate(texts):
+            if tag != "dt":
+                continue
+            value = texts[index + 1][2]
+            remark = texts[index + 2][2] if index + 2 < len(texts) and texts[index + 2][0] == "small" else ""
+            where = f"page: {name}"
+            if name == "set pressure, last":
+                last = {"set": n["levels"][-1]["set_pressure_bar_gauge"], "outlet": n["levels"][-1]["regulator_pressure_bar_gauge"]}
+                self.checked.sentence(where, value, ["{set} bar"], last)
+                self.checked.sentence(where, remark, ["gauge; outlet {outlet} bar"], last)
+            elif name == "force reached, mean":
+                self.checked.sentence(where, value, ["{force_mean_n} N"], n)
+                self.checked.sentence(where, remark, ["{off_percent} % against desired"], n)
+            elif name == "largest force":
+                phases = {phase: n[f"force_peak_{phase}_n"] for phase in self.run.PEAKS if n[f"force_peak_{phase}_n"] is not None}
+                most = max(phases, key=phases.get)
+                self.checked.sentence(where, value, ["{most} N"], {"most": phases[most]})
+                self.checked.fact(where, remark, f"of all phases, in {most}")
+            elif name in names:
+                # Two numbers may share a name; the unit tells them apart.
+                unit = value.partition(" ")[2]
+                key = next(k for k, (label, own) in self.labels.items() if full_label(k, label) == name and own == unit)
+                self.checked.sentence(where, value, [f"{{{key}}} {unit}".strip()], n)
+                if remark not in FIXED:
+                    self.checked.sentence(where, remark, [], n)
+            else:
+                self.checked.uncovered("page", f"{name}: {value}")
+
+    def page_table(self, table):
+        head, *rows = table["rows"]
+        if head[:2] == ["number", "value"]:
+            for name, printed, unit, bound, meaning, key in rows:
+                where = f"page: {key}"
+                self.checked.fact(where, (name, unit), (full_label(key, self.labels[key][0]), self.labels[key][1]))
+                self.value(where, key, printed)
+                own = self.run.scenario.get("expect", {}).get(key, {})
+                ends = [float(own[end]) for end in ("min", "max") if end in own]
+                self.checked.fact(f"{where}: bounds", [float(end) for end in re.findall(r"(?:least|most) (-?[\d.]+)", bound)], ends)
+                if meaning not in FIXED:
+                    self.checked.sentence(where, meaning, [], self.numbers)
+        elif head[0] == "at, s":
+            for number, row in enumerate(rows):
+                for printed, (name, _, key) in zip(row, LEVELS, strict=True):
+                    self.checked.number(f"page: level {number + 1}, {name}", printed, self.numbers["levels"][number][key])
+        elif head[0] == "from, mm":
+            for number, row in enumerate(rows):
+                for printed, key in zip(row, ["from_mm", "to_mm", "force_mean_n", "force_standard_deviation_n"], strict=True):
+                    self.checked.number(f"page: tenth {number + 1}, {key}", printed, self.numbers["force_by_tenth"][number][key])
+        elif head[0] == "file":
+            for name, size, digest in rows:
+                data = (common.PROJECT / name).read_bytes()
+                self.checked.fact(f"page: {name}", (size, digest), (str(len(data)), hashlib.sha256(data).hexdigest()))
+        else:
+            self.checked.uncovered("page", f"table {head}")
+
+    def picture(self, where, text):
+        if found := re.fullmatch(rf"at ({common.PRINTED}) s", text):
+            self.checked.number(where, found[1], self.run.moment())
+        elif found := re.fullmatch(rf"({common.PRINTED}) N", text):
+            self.checked.number(where, found[1], self.force_shown())
+        elif found := re.fullmatch(r"[−+]([\d.]+) %", text):
+            self.checked.exact(where, float(found[1]), self.run.colour_scale(), relative=1e-6)
+        elif not re.fullmatch(r"[\d.]+ mm", text):
+            self.checked.sentence(where, text, [], self.numbers)
+
+    def force_shown(self):
+        """The force on the part, with its friction, at the frame nearest to the moment; frames come every 20 ms."""
+        times = self.run.time
+        frames = np.unique(np.searchsorted(times, np.arange(0, times[-1] + 0.02, 0.02) - 1e-9))
+        frames = frames[frames < len(times)]
+        nearest = frames[np.argmin(np.abs(times[frames] - self.run.moment()))]
+        force, friction = self.run.column("contact_force_n"), self.run.column("friction_force_n")
+        across = 0.0 if friction is None or self.is_bench else friction[nearest]
+        return float(np.hypot(force[nearest], across))
+
+    def chart(self, told):
+        """All that a chart draws is in the samples."""
+        factor = {"force [N]": 1.0, "stroke [mm]": 1e3, "pressure [bar absolute]": 1e-5, "error [µm]": 1e6, "torque [N m]": 1.0}.get(told["y"])
+        if factor is None:
+            self.checked.uncovered("chart", told["y"])
+            return
+        numbers = lambda text: np.frombuffer(base64.b64decode(text), "<f4")
+        for series in told["series"]:
+            drawn = numbers(series["values"])
+            drawn = drawn[np.isfinite(drawn)]
+            known = self.run.samples.select_dtypes("number").to_numpy() * factor
+            fits = np.isin(drawn, known.astype("f4"))
+            self.checked.fact(f"chart {told['y']}: {series['label']}: values that no sample has", int((~fits).sum()), 0)
+
+
+def main():
+    scenarios = sorted((common.PROJECT / "scenarios").glob("*.toml"))
+    wanted = sys.argv[1:]
+    scenarios = [scenario for scenario in scenarios if not wanted or scenario.stem in wanted]
+    wrong, compared = [], 0
+    with ThreadPoolExecutor(2) as pool:
+        for checked in pool.map(lambda scenario: Job(scenario).check(), scenarios):
+            print(f"{checked.name}: {checked.compared} numbers, {len(checked.wrong)} wrong")
+            wrong += checked.wrong
+            compared += checked.compared
+    for what, why in NOT_RECOMPUTED.items():
+        print(f"not recomputed: {what}: {why}")
+    for line in wrong:
+        print(line, file=sys.stderr)
+    print(f"{compared} numbers of {len(scenarios)} scenarios, {len(wrong)} wrong")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
