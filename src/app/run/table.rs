@@ -154,8 +154,6 @@ fn metrics(runs: &[Done]) -> Vec<Column> {
         let value = |run: &Done| run.document["summary"][name].as_f64();
         let values: Vec<Option<f64>> = runs.iter().map(value).collect();
         values.iter().any(Option::is_some).then_some(())?;
-        let cell =
-            |value: &Option<f64>| value.map_or("-".to_owned(), |value| significant(value, 4));
         let (heading, unit) = heading(name)?;
         Some(Column::new(&heading, column(&values, unit)))
     };
