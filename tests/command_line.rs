@@ -105,6 +105,28 @@ fn what_cannot_be_listed_is_refused() {
 }
 
 #[test]
+fn a_proof_needs_nothing_of_the_project() {
+    let bench = Bench::new("plate_edge");
+    let outcome = bench.idc(&["prove", "--only", "case-01", "--out", "proof"], &[]);
+    assert_eq!(outcome.code, 0, "{}{}", outcome.out, outcome.err);
+    outcome.only_line("note: there is no assets/proof/cases here");
+    // The same case as the project's.
+    for file in ["rig.toml", "ride.csv"] {
+        let made = std::fs::read(bench.path("proof/laboratory/cases/case-01").join(file));
+        let ours = std::fs::read(project("assets/proof/cases/case-01").join(file));
+        assert!(made.unwrap() == ours.unwrap(), "{file}");
+    }
+    let outcome = bench.idc(&["prove", "--only", "case-77", "--out", "other"], &[]);
+    assert_eq!(outcome.code, 2);
+    assert!(
+        outcome
+            .only_line("error: --only case-77")
+            .contains("case-01")
+    );
+    assert!(!bench.path("other").exists());
+}
+
+#[test]
 fn a_reader_that_has_gone_is_no_error() {
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);

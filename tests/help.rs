@@ -123,6 +123,76 @@ fn every_help_fits_into_80_columns_and_ends_with_examples() {
     }
 }
 
+/// The lines of a usage, as one.
+fn usage(text: &str) -> String {
+    let after = text.split_once("Usage: ").map_or("", |(_, after)| after);
+    let lines = after.lines().take_while(|line| !line.trim().is_empty());
+    lines.map(str::trim).collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn no_usage_has_a_part_twice() {
+    for command in commands() {
+        let mut wrong = Command::new(env!("CARGO_BIN_EXE_idc"));
+        // Of what is missing, or of what is not known, whichever it tells.
+        let output = wrong
+            .args(&command)
+            .arg("--no-such-option")
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{command:?}");
+        let refused = String::from_utf8(output.stderr).unwrap();
+        for text in [help(&command), refused] {
+            let usage = usage(&text);
+            assert!(usage.starts_with("idc"), "{command:?}: {text}");
+            let mut parts: Vec<&str> = usage
+                .split(' ')
+                .map(|p| p.trim_end_matches("..."))
+                .collect();
+            parts.sort_unstable();
+            let twice = parts.windows(2).find(|pair| pair[0] == pair[1]);
+            assert_eq!(twice, None, "{usage}");
+        }
+    }
+}
+
+/// A number in a text that no person would write so: with an exponent, or a zero with a minus.
+fn odd_number(text: &str) -> Option<&str> {
+    text.split(|c: char| c.is_whitespace() || "(),;[]{}|=:".contains(c))
+        .find(|word| {
+            let exponent = word
+                .split_once(['e', 'E'])
+                .is_some_and(|(mantissa, power)| {
+                    let power = power.trim_start_matches(['+', '-']);
+                    let digits =
+                        |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+                    mantissa.parse::<f64>().is_ok() && digits(power)
+                });
+            let zero = word.strip_prefix('-').is_some_and(|rest| {
+                rest.starts_with("0.0") && rest.chars().all(|c| c == '0' || c == '.')
+            });
+            exponent || zero
+        })
+}
+
+#[test]
+fn odd_numbers_are_seen() {
+    for text in ["by 1.299e0 N", "a change of -0.0 %", "(-0.00)", "3E-4"] {
+        assert!(odd_number(text).is_some(), "{text}");
+    }
+    for text in [
+        "case-03",
+        "1.3 N",
+        "-0.04",
+        "runs/e3",
+        "2.5·10⁻⁷",
+        "0.0",
+        "--set a=1",
+    ] {
+        assert_eq!(odd_number(text), None);
+    }
+}
+
 #[test]
 fn every_example_of_the_help_runs_as_printed() {
     let mut run = 0;
@@ -139,6 +209,14 @@ fn every_example_of_the_help_runs_as_printed() {
                 String::from_utf8_lossy(&output.stdout),
                 String::from_utf8_lossy(&output.stderr)
             );
+            // JSON is for programs.
+            if !line.contains("--json") && !line.contains("schema") {
+                for told in [&output.stdout, &output.stderr] {
+                    let told = String::from_utf8_lossy(told);
+                    assert_eq!(odd_number(&told), None, "{line}\n{told}");
+                    assert!(!told.contains(" 1 cases"), "{line}\n{told}");
+                }
+            }
             run += 1;
         }
     }

@@ -33,6 +33,7 @@ mod recorded_cell;
 mod report;
 mod rig_file;
 mod schemas;
+mod settings;
 mod standing;
 mod stiff_reference;
 mod stops;

@@ -97,6 +97,74 @@ fn forces(bytes: &[u8]) -> BTreeMap<i64, f64> {
     found
 }
 
+#[cfg(unix)]
+#[test]
+fn a_folder_is_opened_by_what_it_holds() {
+    let bench = recorded();
+    let script =
+        "for file in \"$@\"; do case $file in *.rrd) echo \"$file\";; esac; done > $FOLDER/shown";
+    let bin = fake_viewer(&bench.path(""), "0.36.3", script);
+    let shown = |folders: &[&str]| {
+        let (code, _, errors) = ran(idc(&bench.path(""))
+            .env("PATH", &bin)
+            .arg("view")
+            .args(folders));
+        let shown = std::fs::read_to_string(bench.path("bin/shown")).unwrap_or_default();
+        drop(std::fs::remove_file(bench.path("bin/shown")));
+        (
+            code,
+            shown.lines().map(str::to_owned).collect::<Vec<_>>(),
+            errors,
+        )
+    };
+    assert_eq!(shown(&["first"]).1, ["first/recording.rrd"]);
+    // Of a folder of folders all, by their numbers.
+    for name in ["x=10", "x=9"] {
+        let folder = bench.path("all").join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::copy(
+            bench.path("first/recording.rrd"),
+            folder.join("recording.rrd"),
+        )
+        .unwrap();
+    }
+    std::fs::copy(
+        bench.path("first/recording.rrd"),
+        bench.path("all/x=9/diagnosis.rrd"),
+    )
+    .unwrap();
+    assert_eq!(
+        shown(&["all"]).1,
+        [
+            "all/x=9/recording.rrd",
+            "all/x=9/diagnosis.rrd",
+            "all/x=10/recording.rrd"
+        ]
+    );
+    std::fs::create_dir(bench.path("empty")).unwrap();
+    let (code, none, errors) = shown(&["empty"]);
+    assert_eq!((code, none.len()), (2, 0));
+    assert!(
+        errors.contains("empty: there is nothing in it to look at"),
+        "{errors}"
+    );
+    for number in 0..12 {
+        let folder = bench.path("all").join(format!("y={number}"));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::copy(
+            bench.path("first/recording.rrd"),
+            folder.join("recording.rrd"),
+        )
+        .unwrap();
+    }
+    let (code, _, errors) = shown(&["all"]);
+    assert_eq!(code, 2);
+    assert!(
+        errors.contains("all holds 15 recordings, all/x=9/recording.rrd, "),
+        "{errors}"
+    );
+}
+
 #[test]
 fn what_is_no_whole_recording_of_our_version_is_refused() {
     let bench = recorded();

@@ -40,7 +40,7 @@ const MOST: usize = ROLES.len();
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {
     /// Folders with results, two to seven; the first is what the others are compared with.
-    #[arg(num_args = 2..=MOST, required = true)]
+    #[arg(num_args = 1..=MOST, required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
     /// File for a page: numbers side by side, signals of runs over one another.
     #[arg(long)]
@@ -77,6 +77,11 @@ struct Compared {
 
 /// Compares and prints.
 pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
+    if let [alone] = arguments.folders.as_slice() {
+        return Err(AppError::ComparedWithNothing {
+            folder: alone.display().to_string(),
+        });
+    }
     let compared = read(&arguments.folders)?;
     if let Some(out) = &arguments.out {
         let inputs = [DIAGNOSIS, SUMMARY, SAMPLES];

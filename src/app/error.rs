@@ -77,6 +77,14 @@ pub enum AppError {
         /// A folder with a run.
         run: String,
     },
+    /// One folder alone.
+    #[error(
+        "{folder} is the only folder given, expected two to seven, the first of which the others are compared with"
+    )]
+    ComparedWithNothing {
+        /// The folder.
+        folder: String,
+    },
     /// A folder that cannot be compared.
     #[error(
         "{folder}: there is nothing in it to compare, expected the folder of a run (summary.json) or of a diagnosis (diagnosis.json)"

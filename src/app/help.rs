@@ -34,8 +34,14 @@ Examples:
 
 /// `idc run`.
 pub(super) const RUN: &str = "\
+With --set, any key of the scenario has another value; of several values each is
+run, into a folder of its own, of several --set each combination, the last one
+changing first. List elements count from 0 (command[0].force_n); a text with a
+comma stands in quotes. Everything is checked before anything is run; each
+folder's varied.toml is the scenario that was run there.
+
 Exit codes: 0 done, 1 a result outside [expect], 2 bad input, 3 stopped by the
-physics (the recording up to there is kept).
+physics (the recording up to there is kept); of several runs that of the worst.
 
 Examples:
   # The nominal job; recording, samples and summary go to runs/first.
@@ -46,6 +52,10 @@ Examples:
   idc run scenarios/plate_edge.toml --out runs/guard --no-recording
   # Watched in a viewer while it goes on. (opens a window)
   idc run scenarios/plate_edge.toml --out runs/watched --view
+  # Three forces at two feeds: six folders and compare.html.
+  idc run scenarios/plate_edge.toml --out runs/forces \
+      --set process.force_n=140,150,160 --set process.feed_mm_per_s=40,60 \
+      --set expect.force_mean_n.min=100 --set expect.force_mean_n.max=200
   # The device alone, on a bench; its numbers as JSON.
   idc run scenarios/paper_step.toml --out runs/step --json";
 

@@ -23,6 +23,7 @@ pub(super) struct ImportArguments {
     /// Import map.
     map: PathBuf,
     /// Logs in place of those that the map names, in its order; several times as many make several recordings.
+    #[arg(value_name = "LOG")]
     logs: Vec<PathBuf>,
     /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
     #[arg(long, help_heading = "Output")]

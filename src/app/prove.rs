@@ -27,7 +27,7 @@ pub(super) struct ProveArguments {
     #[arg(long)]
     sealed: Option<PathBuf>,
     /// Names of the cases to take [default: all].
-    #[arg(long, num_args = 1..)]
+    #[arg(long, num_args = 1.., value_name = "NAME")]
     only: Vec<String>,
     /// Folder for the answers.
     #[arg(long, default_value = "runs/proof", help_heading = "Output")]
