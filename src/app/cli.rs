@@ -449,9 +449,7 @@ fn style() -> Style {
 }
 
 fn opening(arguments: &RunArguments) -> Opening {
-    arguments
-        .hold_at_s
-        .map_or(Opening::Following, Opening::At)
+    arguments.hold_at_s.map_or(Opening::Following, Opening::At)
 }
 
 /// Where results go: as asked, or to a folder in `runs` that is called as the input, a file without its extension.

@@ -128,7 +128,11 @@ fn write_layout(
         has_phases: !recording.phases().is_empty(),
         has_summary: !options.summary_markdown.is_empty(),
     });
-    blueprint::write_blueprint(rrd, &screen, &layout::time_panel(options.opening.moment(recording)))
+    blueprint::write_blueprint(
+        rrd,
+        &screen,
+        &layout::time_panel(options.opening.moment(recording)),
+    )
 }
 
 /// Letters and digits of a title, other stretches as a dash each.
