@@ -64,7 +64,7 @@ class Checked:
         if found is None or value is None:
             fits = found is None and value is None
         else:
-            fits = abs(found - value) <= relative * max(abs(value), 1e-300) or found == value
+            fits = abs(found - value) <= max(relative * abs(value), 1e-12)
         if not fits:
             self.wrong.append(f"{self.name}: {where}: {found!r} in the file, {value!r} recomputed")
 
