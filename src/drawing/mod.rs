@@ -202,7 +202,7 @@ fn force(svg: &mut Svg, scene: &Scene, frame: usize, camera: &Camera) {
 fn scale_bar(svg: &mut Svg, camera: &Camera, bottom: f64) {
     let longest = 0.3 * SIZE[0] as f64 / camera.scale;
     let steps = (-4..2).flat_map(|power| [1.0, 2.0, 5.0].map(|step| step * 10f64.powi(power)));
-    let length = steps.filter(|length| *length <= longest).last();
+    let length = steps.rev().find(|length| *length <= longest);
     let Some(length) = length else {
         return;
     };

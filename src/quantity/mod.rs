@@ -91,7 +91,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 #[must_use]
 pub fn change(percent: f64) -> String {
     match percent {
-        p if p == 0.0 => "0 %".to_owned(),
+        0.0 => "0 %".to_owned(),
         p if p.abs() < 0.05 => "<0.1 %".to_owned(),
         p if p.abs() < 9.95 => format!("{p:+.1} %"),
         p => format!("{p:+.0} %"),
