@@ -29,8 +29,9 @@ use super::result::StudyResult;
 use super::study::{Study, TradeOff};
 use super::variable::Domain;
 
-/// Shares of the budget: evolution and refinement of the objective, of the second one, all levels, what binds.
-const WITH_FRONT: [f64; 5] = [0.25, 0.14, 0.08, 0.06, 0.4];
+/// Shares of the budget: evolution and refinement of the objective, of the second one, all levels, what binds. The second one's end of the front is as hard to
+/// find as the objective's own: with half of these shares for it, of 2000 designs, a seventh of the front was missed.
+const WITH_FRONT: [f64; 5] = [0.2, 0.11, 0.14, 0.09, 0.39];
 const WITHOUT_FRONT: [f64; 5] = [0.6, 0.3, 0.0, 0.0, 0.0];
 /// Designs from which the refinement starts.
 const STARTS: usize = 3;
