@@ -141,7 +141,9 @@ fn note(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
 }
 
 /// The files of a run.
-pub const FILES: [&str; 4] = [
+pub const FILES: [&str; 6] = [
+    "cell.svg",
+    "edge.svg",
     "recording.rrd",
     "report.html",
     "samples.parquet",

@@ -145,9 +145,9 @@ fn a_comparison_has_changes_against_the_first_and_refuses_what_cannot_be_compare
     // The paper's force is in proportion to the gauge pressure.
     assert!((other / one - 1.5).abs() < 1e-3, "{one} {other}");
     let outcome = bench.idc(&["compare", "one", "other", "--out", "both.html"], &[]);
-    assert!(outcome.out.contains("(+50.0 %)"), "{}", outcome.out);
+    assert!(outcome.out.contains("(+50 %)"), "{}", outcome.out);
     let page = fs::read_to_string(bench.path("both.html")).unwrap();
-    assert!(page.contains("one / other") && page.contains("+50.0 %"));
+    assert!(page.contains("one / other") && page.contains("+50 %"));
     let outcome = bench.idc(&["compare", "one", "found"], &[]);
     assert_eq!(outcome.code, 2);
     outcome.only_line("error: found holds a diagnosis and one a run, expected all of one kind");

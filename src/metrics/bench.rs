@@ -17,7 +17,7 @@ const SETTLED: f64 = 0.05;
 /// Contact is a force above this [N].
 const TOUCH_FORCE: f64 = 1.0;
 /// Change of the level that a first-order lag has made after one time constant [1].
-const LAG_SHARE: f64 = 0.632_120_558_828_557_7;
+const LAG_SHARE: f64 = 0.632;
 /// Density of air at reference conditions, ISO 8778 [kg/m3].
 const REFERENCE_DENSITY: f64 = 1.185;
 
@@ -101,9 +101,9 @@ pub const BENCH_METRICS: &[Metric<BenchSummary>] = &[
         "mean, where forces are commanded", |s| s.desired_force_n),
     entry("force_mean_n", "N", "mean",
         "surface moving; else last level, steady", |s| s.force_mean_n),
-    entry("force_rms_error_n", "N", "error, RMS",
+    entry("force_rms_error_n", "N", "RMS error",
         "about the desired force, else the mean", |s| s.force_rms_error_n),
-    entry("force_rms_error_percent", "%", "error, RMS",
+    entry("force_rms_error_percent", "%", "RMS error",
         "of the desired force, else the mean", |s| s.force_rms_error_percent),
     entry("force_largest_error_percent", "%", "largest error",
         "of the desired force, else the mean", |s| s.force_largest_error_percent),
@@ -135,7 +135,7 @@ pub const BENCH_METRICS: &[Metric<BenchSummary>] = &[
         "mean of reading over truth, less 1", |s| s.measured_force_error_percent),
     entry("measured_force_noise_n", "N", "load cell's noise",
         "reading less truth, about its mean", |s| s.measured_force_noise_n),
-    entry("estimated_force_rms_error_percent", "%", "estimator's error, RMS",
+    entry("estimated_force_rms_error_percent", "%", "estimator's RMS error",
         "of the mean force, in contact", |s| s.estimated_force_rms_error_percent),
     entry("estimated_force_coverage_percent", "%", "estimator's coverage",
         "truth inside its 95 % band, in contact", |s| s.estimated_force_coverage_percent),

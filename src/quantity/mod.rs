@@ -90,7 +90,7 @@ pub fn change(percent: f64) -> String {
     match percent {
         p if p == 0.0 => "0 %".to_owned(),
         p if p.abs() < 0.05 => "<0.1 %".to_owned(),
-        p if p.abs() < 99.95 => format!("{p:+.1} %"),
+        p if p.abs() < 9.95 => format!("{p:+.1} %"),
         p => format!("{p:+.0} %"),
     }
 }
@@ -208,6 +208,7 @@ mod tests {
             (0.0, "0 %"),
             (-0.01, "<0.1 %"),
             (-3.04, "-3.0 %"),
+            (12.3, "+12 %"),
             (149.9, "+150 %"),
         ] {
             assert_eq!(change(percent), text);

@@ -155,7 +155,9 @@ mod tests {
                 let columns = line.chars().count();
                 let far = line.contains("the desired force: ");
                 assert!(columns <= WIDTH || far, "{columns} columns: {line}");
-                let plain = |letter: char| (' '..='~').contains(&letter) || "µ±–".contains(letter);
+                let plain = |letter: char| {
+                    (' '..='~').contains(&letter) || "µ±–·⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(letter)
+                };
                 assert!(line.chars().all(plain), "{line}");
                 assert_eq!(line, line.trim_end());
             }

@@ -64,7 +64,7 @@ class Checked:
         if found is None or value is None:
             fits = found is None and value is None
         else:
-            fits = abs(found - value) <= relative * max(abs(value), 1e-300) or found == value
+            fits = abs(found - value) <= max(relative * abs(value), 1e-12)
         if not fits:
             self.wrong.append(f"{self.name}: {where}: {found!r} in the file, {value!r} recomputed")
 
@@ -152,7 +152,7 @@ def viewer_text(recording):
     """The Markdown that the viewer shows of a recording: its static text `/summary`."""
     from rerun.experimental import RrdReader
 
-    for chunk in RrdReader(recording).stream().collect():
+    for chunk in RrdReader(recording).stream():
         if str(chunk.entity_path) == "/summary":
             batch = chunk.to_record_batch()
             for name in batch.schema.names:

@@ -150,7 +150,7 @@ class CellRun(Run):
             link = joint.find("parent").get("link")
         shares = []
         for number, joint in enumerate(chain, start=1):
-            torque = self.column(f"joint_{number}_torque_nm")
+            torque = self.column(f"joint_{number}_torque_n_m")
             limit = joint.find("limit")
             effort = float(limit.get("effort")) if limit is not None else math.inf
             known = torque is not None and math.isfinite(effort)
@@ -230,7 +230,7 @@ class BenchRun(Run):
         regulator, force = self.column("regulator_pressure_pa"), self.force
         outlet = regulator[steady].mean()
         change = outlet - regulator[rows[0]]
-        there = np.flatnonzero((regulator[rows] - regulator[rows[0]]) / change >= 1 - math.exp(-1)) if change else []
+        there = np.flatnonzero((regulator[rows] - regulator[rows[0]]) / change >= 0.632) if change else []
         level = dict(
             start_s=start,
             set_pressure_bar_gauge=(self.column("set_pressure_pa")[rows[-1]] - ATMOSPHERE) / 1e5,

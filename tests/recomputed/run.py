@@ -25,8 +25,8 @@ TIMING = {"wall_time_s", "real_time_factor"}
 
 CELL_LABELS = {
     "desired_force_n": ("desired force", "N"), "force_mean_n": ("mean", "N"), "force_standard_deviation_n": ("standard deviation", "N"),
-    "coefficient_of_variation_percent": ("coefficient of variation", "%"), "force_rms_error_n": ("error, RMS", "N"),
-    "force_rms_error_percent": ("error, RMS", "%"), "largest_deviation_n": ("largest deviation", "N"),
+    "coefficient_of_variation_percent": ("coefficient of variation", "%"), "force_rms_error_n": ("RMS error", "N"),
+    "force_rms_error_percent": ("RMS error", "%"), "largest_deviation_n": ("largest deviation", "N"),
     "within_5_percent_share_percent": ("within 5 % of desired", "%"), "within_10_percent_share_percent": ("within 10 % of desired", "%"),
     "loss_of_contact_share_percent": ("contact lost", "%"), "friction_force_mean_n": ("friction, mean", "N"),
     "force_peak_approach_n": ("largest, approach", "N"), "force_peak_engage_n": ("largest, engage", "N"),
@@ -39,13 +39,13 @@ CELL_LABELS = {
     "wall_time_s": ("wall time", "s"), "real_time_factor": ("real-time factor", ""),
 }
 BENCH_LABELS = {
-    "desired_force_n": ("desired force", "N"), "force_mean_n": ("mean", "N"), "force_rms_error_n": ("error, RMS", "N"), "force_rms_error_percent": ("error, RMS", "%"),
+    "desired_force_n": ("desired force", "N"), "force_mean_n": ("mean", "N"), "force_rms_error_n": ("RMS error", "N"), "force_rms_error_percent": ("RMS error", "%"),
     "force_largest_error_percent": ("largest error", "%"), "coefficient_of_variation_percent": ("coefficient of variation", "%"), "force_peak_n": ("largest", "N"),
     "regulator_delay_s": ("regulator's delay", "s"), "force_settling_time_s": ("settling time", "s"), "force_overshoot_percent": ("overshoot", "%"),
     "force_slope_n_per_bar": ("force over pressure", "N/bar"), "force_linearity_percent": ("linearity error", "%"), "first_contact_s": ("first contact", "s"),
     "impact_peak_n": ("impact peak", "N"), "stroke_min_mm": ("smallest stroke", "mm"), "stroke_max_mm": ("largest stroke", "mm"), "stroke_margin_mm": ("stroke margin", "mm"),
     "measured_force_error_percent": ("load cell's error", "%"), "measured_force_noise_n": ("load cell's noise", "N"),
-    "estimated_force_rms_error_percent": ("estimator's error, RMS", "%"), "estimated_force_coverage_percent": ("estimator's coverage", "%"),
+    "estimated_force_rms_error_percent": ("estimator's RMS error", "%"), "estimated_force_coverage_percent": ("estimator's coverage", "%"),
     "air_consumed_normal_litres": ("air consumed", "l"), "air_mass_balance_relative": ("air balance, largest gap", ""), "duration_s": ("simulated time", "s"),
     "wall_time_s": ("wall time", "s"), "real_time_factor": ("real-time factor", ""),
 }
@@ -126,7 +126,7 @@ class Job:
         self.checked.fact("summary.json: keys that are missing", missing, [])
         self.checked.fact("summary.json: samples", self.document["samples"], len(self.run.samples))
         bounds = self.run.scenario.get("expect", {})
-        self.checked.fact("summary.json: bounds", [e["metric"] for e in self.document["expectations"]], list(bounds))
+        self.checked.fact("summary.json: bounds", sorted(e["metric"] for e in self.document["expectations"]), sorted(bounds))
         for e in self.document["expectations"]:
             value, bound = self.numbers[e["metric"]], bounds[e["metric"]]
             self.checked.exact(f"bound {e['metric']}", e["value"], value, relative=1e-7)
@@ -288,7 +288,7 @@ class Job:
         where = f"page: {tag} {kind}"
         if text == self.document["title"] or kind == "hint":
             return
-        if kind == "verdict":
+        if kind.startswith("verdict"):
             self.verdict(where, text)
         elif kind == "lead" and "the desired force:" in text:
             self.far(where, text.rstrip("."))
@@ -300,7 +300,7 @@ class Job:
             self.checked.fact(where, text, f"Scenario {self.document['scenario']}, {len(self.run.samples)} samples.")
         elif text.startswith("Made by idc"):
             pass
-        elif tag == "figcaption" and "400 pieces" in text:
+        elif tag == "figcaption" and ("400 pieces" in text or "with its friction" in text):
             pass
         elif kind == "" and (found := re.search(r"\((\d+) of (\d+) samples: the extremes of each stretch\)", text)):
             whole = (len(self.run.samples), len(self.run.phase("follow")) if not self.is_bench else 0)
@@ -348,7 +348,7 @@ class Job:
                 self.checked.sentence(where, remark, ["gauge; outlet {outlet} bar"], last)
             elif name == "force reached, mean":
                 self.checked.sentence(where, value, ["{force_mean_n} N"], n)
-                self.checked.sentence(where, remark, ["{off_percent} % against desired"], n)
+                self.checked.sentence(where, remark, ["{off_percent} % from desired"], n)
             elif name == "largest force":
                 phases = {phase: n[f"force_peak_{phase}_n"] for phase in self.run.PEAKS if n[f"force_peak_{phase}_n"] is not None}
                 most = max(phases, key=phases.get)
@@ -426,17 +426,23 @@ class Job:
             self.checked.fact(f"chart {told['y']}: {series['label']}: values that no sample has", int((~fits).sum()), 0)
 
 
+# Scenarios that show what is refused: they leave nothing to recompute.
+REFUSED = {"weak_supply": "its force is beyond the supply"}
+
+
 def main():
     scenarios = sorted((common.PROJECT / "scenarios").glob("*.toml"))
     wanted = sys.argv[1:]
-    scenarios = [scenario for scenario in scenarios if not wanted or scenario.stem in wanted]
+    scenarios = [scenario for scenario in scenarios if scenario.stem not in REFUSED and (not wanted or scenario.stem in wanted)]
+    for name in REFUSED:
+        common.run("run", f"scenarios/{name}.toml", "--out", common.RESULTS / name, "--force", codes=(2,))
     wrong, compared = [], 0
     with ThreadPoolExecutor(2) as pool:
         for checked in pool.map(lambda scenario: Job(scenario).check(), scenarios):
             print(f"{checked.name}: {checked.compared} numbers, {len(checked.wrong)} wrong")
             wrong += checked.wrong
             compared += checked.compared
-    for what, why in NOT_RECOMPUTED.items():
+    for what, why in (NOT_RECOMPUTED | REFUSED).items():
         print(f"not recomputed: {what}: {why}")
     for line in wrong:
         print(line, file=sys.stderr)

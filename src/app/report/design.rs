@@ -65,10 +65,11 @@ fn changed(value: &Value) -> String {
 /// A limit without its key: `impact peak at most 400 N`.
 fn limit_words(limit: &str) -> String {
     let (key, rest) = limit.split_once(' ').unwrap_or((limit, ""));
-    match key {
-        "force_n" => format!("force at rest {rest}"),
-        _ => format!("{} {rest}", named(key).0),
-    }
+    let name = match key {
+        "force_n" => "force at rest".to_owned(),
+        _ => named(key).0,
+    };
+    format!("{name} {rest}").trim_end().to_owned()
 }
 
 /// What the study did for what it minimised.

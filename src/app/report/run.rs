@@ -252,7 +252,7 @@ fn mean(run: &RunResult<'_>) -> Option<Fact> {
     let mean = run.metric("force_mean_n")?;
     let off = |desired: f64| {
         format!(
-            "{} against desired",
+            "{} from desired",
             change(100.0 * (mean - desired) / desired)
         )
     };
@@ -284,7 +284,9 @@ fn pictures<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     };
     let cell = match is_bench {
         true => "The device on its base and what it meets, with the contact force.",
-        false => "Arm, device and part in the middle of following, with the contact force.",
+        false => {
+            "Arm, device and part in the middle of following; the arrow is the contact force with its friction."
+        }
     };
     let edge = "The part and its edge, coloured by the mean force error of each of 400 pieces while following; pale where the part hides it.";
     let pictures = [(cell, &run.cell), (edge, &run.edge)];
