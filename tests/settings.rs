@@ -151,7 +151,7 @@ fn the_worst_run_is_the_exit_code_and_the_table_says_which_it_is() {
     ];
     let outcome = bench.idc(&arguments, &[]);
     assert_eq!(outcome.code, 1);
-    let line = outcome.only_line("force_n=200: outside its bounds: force_mean_n is 2");
+    let line = outcome.only_line("force_n=200: outside its bounds: force_mean_n is 199.9");
     assert!(
         line.ends_with("expected at least 50 and at most 150"),
         "{line}"

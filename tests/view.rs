@@ -109,8 +109,8 @@ fn a_folder_is_opened_by_what_it_holds() {
             .env("PATH", &bin)
             .arg("view")
             .args(folders));
-        let shown = std::fs::read_to_string(bench.path("bin/shown")).unwrap_or_default();
-        drop(std::fs::remove_file(bench.path("bin/shown")));
+        let shown = std::fs::read_to_string(bench.path("shown")).unwrap_or_default();
+        drop(std::fs::remove_file(bench.path("shown")));
         (
             code,
             shown.lines().map(str::to_owned).collect::<Vec<_>>(),

@@ -52,10 +52,9 @@ Examples:
   idc run scenarios/plate_edge.toml --out runs/guard --no-recording
   # Watched in a viewer while it goes on. (opens a window)
   idc run scenarios/plate_edge.toml --out runs/watched --view
-  # Three forces at two feeds: six folders and compare.html.
-  idc run scenarios/plate_edge.toml --out runs/forces \
-      --set process.force_n=140,150,160 --set process.feed_mm_per_s=40,60 \
-      --set expect.force_mean_n.min=100 --set expect.force_mean_n.max=200
+  # Three feeds side by side: a folder each, and compare.html.
+  idc run scenarios/plate_edge.toml --out runs/feeds \\
+      --set process.feed_mm_per_s=10,20,40
   # The device alone, on a bench; its numbers as JSON.
   idc run scenarios/paper_step.toml --out runs/step --json";
 

@@ -182,7 +182,7 @@ impl Search<'_> {
         }
         self.eliminate(&mut full, say);
         self.add_plainer(&mut full, &all, say);
-        self.add_close(&mut full, &all, say);
+        self.add_close(&mut full, &all, &scale, say);
         self.add_small(&mut full, &scale, say);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.prefer_plain(&mut full, &scale);

@@ -5,9 +5,11 @@
 //! or none, and nothing unfinished beside it.
 
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
@@ -99,25 +101,34 @@ pub fn make_folder(path: &Path) -> std::io::Result<()> {
 
 /// Removes all that is being written, as the program is about to end: from here on nothing is begun, and nothing put in its place.
 pub fn abandon() {
-    const TRIES: usize = 20;
+    /// Other threads go on until the end, and may just be opening or removing a file.
+    const TRIES: usize = 50;
+    const BETWEEN: Duration = Duration::from_millis(4);
     let begun = begun();
-    // What a folder holds comes after it in this order.
-    for path in begun.iter().rev() {
-        let name = path.file_name().unwrap_or_default();
-        let temporary = name.to_string_lossy().starts_with(UNFINISHED);
-        if !temporary {
-            // One that holds something stays.
-            drop(std::fs::remove_dir(path));
-        } else if path.is_dir() {
-            // A thread may just be opening a file in it.
-            let gone = |_: &usize| std::fs::remove_dir_all(path).is_ok();
-            (0..TRIES).find(gone);
-        } else {
-            drop(std::fs::remove_file(path));
+    for _ in 0..TRIES {
+        // What a folder holds comes after it in this order, and goes first.
+        let gone = begun.iter().rev().map(|path| abandoned(path));
+        if gone.collect::<Vec<_>>().into_iter().all(|gone| gone) {
+            break;
         }
+        std::thread::sleep(BETWEEN);
     }
     // For good.
     std::mem::forget(begun);
+}
+
+/// Removes a temporary file or folder, or a folder that is empty; is it gone, or to stay as it holds something whole?
+fn abandoned(path: &Path) -> bool {
+    let is_temporary = |name: &OsStr| name.to_string_lossy().starts_with(UNFINISHED);
+    if path.file_name().is_some_and(is_temporary) {
+        drop(std::fs::remove_dir_all(path).or_else(|_| std::fs::remove_file(path)));
+        return !path.exists();
+    }
+    drop(std::fs::remove_dir(path));
+    let entries = std::fs::read_dir(path).map(|entries| entries.flatten().collect::<Vec<_>>());
+    entries.map_or(true, |found| {
+        !found.is_empty() && !found.iter().any(|entry| is_temporary(&entry.file_name()))
+    })
 }
 
 /// A folder within another in which files that belong together are written, to appear together.

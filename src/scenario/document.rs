@@ -245,7 +245,8 @@ fn expected_of_missing(key: &str, field: &str, sections: &Sections) -> String {
 /// What serde expected, in words for people.
 fn expected_value(expected: &str, key: &str) -> String {
     let number = |kind: &str| {
-        let unit = Unit::of_key(key.split('[').next().unwrap_or(key));
+        let name = key.rsplit('.').next().unwrap_or(key);
+        let unit = Unit::of_key(name.split('[').next().unwrap_or(name));
         if unit.is_one() {
             kind.to_owned()
         } else {

@@ -75,6 +75,8 @@ def value_of(text):
 
 
 def agrees(text, value):
+    if text.startswith("<"):
+        return abs(value) < float(text[1:])
     near = 0.5 * last_digit(text) * (1 + 1e-6) + 1e-4 * abs(value)
     return value is not None and math.isfinite(value) and abs(value_of(text) - value) <= near
 
@@ -213,7 +215,7 @@ class Examination:
             text = self.take(where, text, pattern, lambda _: {k: factor * estimate[k] for k in ("value", "low", "high")})
         for tolerated in of.json["tolerated"]:
             words_, unit, factor = words_of(tolerated["key"])
-            pattern = rf"{re.escape(words_)} (?P<value>{NUMBER}){unit and ' ' + re.escape(unit)}(?: \((?P<change>{NUMBER}) %\))?"
+            pattern = rf"{re.escape(words_)} (?P<value>{NUMBER}){unit and ' ' + re.escape(unit)}(?: \((?P<change><?{NUMBER}) %\))?"
             found = tolerated["found"]["value"]
             change = 100 * (found / tolerated["believed"] - 1) if tolerated["believed"] else math.nan
             text = self.take(

@@ -1,11 +1,13 @@
 //! The page of a comparison.
 
 use super::super::report::{ROLES, RunResult, chart_groups};
-use super::{Compared, Row, short};
+use super::{Compared, MOST, Row, short};
 use crate::figure::{Horizontal, Panel, Series, Stroke};
 use crate::page::{Block, Cell, Chart, Fact, Page, Section, Table, Tone};
 use crate::recording::schema;
 
+/// Names that a heading has room for.
+const NAMED: usize = 3;
 /// Signals that are drawn over one another.
 const SIGNALS: [&str; 6] = [
     schema::CONTACT_FORCE,
@@ -24,14 +26,26 @@ pub(super) fn page(compared: &Compared) -> Page<'_> {
         value: String::new(),
         remark: verdict.clone(),
     });
-    let signals = Section::new("Over one another", over_one_another(compared, &names));
+    let mut drawn = over_one_another(compared, &names);
+    let (few, many) = (compared.drawn.len(), names.len());
+    if !drawn.is_empty() && few < many {
+        let words = format!("Signals of {few} of the {many} runs, from the first to the last.");
+        drawn.insert(0, Block::Paragraph(words));
+    }
+    let signals = Section::new("Over one another", drawn);
     let numbers = Section::new("Numbers", vec![Block::Table(table(compared, &names))]);
     let sections = [signals, numbers].into_iter();
     Page {
         title: "Comparison".to_owned(),
-        verdict: names.join(" / "),
+        verdict: match names.len() {
+            ..=NAMED => names.join(" / "),
+            count => format!("{count} side by side"),
+        },
         tone: Tone::Plain,
-        facts: facts.collect(),
+        // Of more, the table below has the names.
+        facts: facts
+            .take(if names.len() <= MOST { MOST } else { 0 })
+            .collect(),
         sections: sections.filter(|s| !s.blocks.is_empty()).collect(),
         footer: "Made by idc compare.".to_owned(),
         ..Page::default()

@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::super::report::{lacking, most_of, variable};
+use super::super::report::{lacking as lacking_of, most_of, variable};
 use crate::diagnosis::answer::{Answer, Mismatch};
 use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel, Comparison};
 use crate::diagnosis::recorded::COLUMNS;
@@ -87,10 +87,11 @@ fn sheet(answer: &Answer, recording: &Compared, of_flange: bool) -> Sheet {
         .flat_map(|c| [&c.measured[..], &c.believed, &c.improved])
         .collect();
     let kept = kept(recording.time.len(), &all, &[], MOST_SAMPLES);
-    let rows = recording.channels.iter();
+    let mut rows: Vec<&ComparedChannel> = recording.channels.iter().collect();
+    rows.sort_by(|a, b| lacking(answer, recording, b).total_cmp(&lacking(answer, recording, a)));
     let title = match (recording.unseen, of_flange) {
         (true, false) => format!("{} (not fitted to)", recording.name),
-        (true, true) => format!("{} (foretold)", recording.name),
+        (true, true) => format!("{} (predicted)", recording.name),
         _ => recording.name.clone(),
     };
     // Sheets share a timeline, so that each begins at nought; the words of the account are in the recording's own time.
@@ -103,9 +104,22 @@ fn sheet(answer: &Answer, recording: &Compared, of_flange: bool) -> Sheet {
         time: kept.iter().map(|i| recording.time[*i] - start).collect(),
         lanes: lanes(answer, recording, start),
         rows: rows
+            .into_iter()
             .map(|channel| row(answer, channel, &kept, of_flange))
             .collect(),
     }
+}
+
+/// Robust error of the believed model in a channel of a recording, over its noise [1]: what differs most is drawn first.
+fn lacking(answer: &Answer, recording: &Compared, channel: &ComparedChannel) -> f64 {
+    let column = COLUMNS[channel.channel as usize];
+    let fitted = answer.details.misfit.iter();
+    let fitted = fitted.filter(|m| m.recording == recording.name && m.channel == column);
+    let kept = answer.details.prediction.iter();
+    let kept = kept.filter(|e| e.recording == recording.name && e.channel == column);
+    let sizes = fitted.map(|m| m.tolerated_sigmas);
+    let sizes = sizes.chain(kept.filter_map(|e| e.before_sigmas));
+    sizes.fold(0.0, f64::max)
 }
 
 /// A channel beside the models, and what they leave of it with the band of its noise.
@@ -178,11 +192,11 @@ fn usual_range(lines: &[BoardLine], guides: &[(String, f64)]) -> Option<[f64; 2]
     (most > 0.0).then_some([-most, most])
 }
 
-/// When the channels part from the believed model, a lane for each.
+/// When the channels differ from the believed model, a lane for each.
 fn lanes(answer: &Answer, recording: &Compared, start: f64) -> Vec<Lane> {
     let state = match &answer.effects[..] {
         [only] => only.name.replace('_', " "),
-        _ => "parts from the model".to_owned(),
+        _ => "differs from the model".to_owned(),
     };
     let lane = |channel: &ComparedChannel| {
         let index = channel.channel as usize;
@@ -254,7 +268,7 @@ fn of_balance(balance: &Balance) -> Cloud {
         }
     };
     Cloud {
-        title: capital(lacking(balance)),
+        title: capital(lacking_of(balance)),
         horizontal: format!("{words} [{of}]"),
         vertical: format!("what it lacks [{unit}]"),
         groups: vec![

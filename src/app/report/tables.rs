@@ -8,7 +8,7 @@ use crate::diagnosis::details::{
 use crate::diagnosis::estimate::Limit;
 use crate::diagnosis::words::{odds, of_column, percent, spoken, yardstick};
 use crate::page::{Block, Cell, Section, Table};
-use crate::quantity::significant;
+use crate::quantity::{change, significant};
 
 pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     let details = &answer.details;
@@ -106,7 +106,7 @@ pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
             Cell::from(significant(factor * found.high, 4)),
             Cell::from(unit),
             Cell::from(match shift.is_finite() {
-                true => format!("{shift:+.1} %"),
+                true => change(shift),
                 false => String::new(),
             }),
             match found.at_limit {

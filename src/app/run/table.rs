@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::super::error::ExitCode;
 use super::settings::short;
 use super::variants::Done;
+use crate::design::spoken;
 use crate::metrics::{BENCH_METRICS, METRICS};
 use crate::quantity::column;
 
@@ -131,7 +132,11 @@ fn varied(runs: &[Done]) -> Vec<Column> {
             }
         };
         let cells = runs.iter().map(cell).collect();
-        Column::new(&short(key(*place), &keys).replace('_', " "), cells)
+        let (name, unit) = spoken(short(key(*place), &keys));
+        match unit.as_str() {
+            "" => Column::new(&name, cells),
+            unit => Column::new(&format!("{name} [{unit}]"), cells),
+        }
     };
     places.iter().map(column).collect()
 }

@@ -12,7 +12,7 @@ use super::MOST_OTHERS;
 use super::link::TELLING;
 use crate::effects::meaning;
 use crate::plant::CHANNELS;
-use crate::quantity::significant;
+use crate::quantity::{change, significant};
 
 impl Diagnosis {
     pub(super) fn what_is_missing(&self) -> Vec<String> {
@@ -236,16 +236,16 @@ impl Diagnosis {
                 let believed = self.tolerated.iter().find(|f| f.quantity.name == n.name)?;
                 let (words, unit, factor) = spoken(n.name);
                 let table = n.name.split_once('.').map_or("", |(table, _)| table);
-                let change = if believed.start == 0.0 {
+                let moved = if believed.start == 0.0 {
                     String::new()
                 } else {
-                    format!(" ({:+.1} %)", 100.0 * (n.value / believed.start - 1.0))
+                    format!(" ({})", change(100.0 * (n.value / believed.start - 1.0)))
                 };
                 let value = significant(n.value * factor, 4);
                 let limit = n.at_limit.map_or_else(String::new, |limit| {
                     format!(" at the {} end of its tolerance", end(limit))
                 });
-                Some(format!("{table} {words} {value} {unit}").trim().to_owned() + &change + &limit)
+                Some(format!("{table} {words} {value} {unit}").trim().to_owned() + &moved + &limit)
             })
             .collect();
         if numbers.is_empty() {

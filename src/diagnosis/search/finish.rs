@@ -42,14 +42,18 @@ impl Search<'_> {
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
     }
 
-    /// Fits in full the explanations that a rough fit cannot rule out beside the best one: nothing is said of a close rival by a rough fit.
+    /// Fits in full the explanations that a rough fit cannot rule out beside the best one: nothing is said of a close rival by a rough fit. Where the best
+    /// explains too little, a term without a name is to stand in its place, and these are no rivals.
     pub(super) fn add_close(
         &self,
         full: &mut Vec<Hypothesis>,
         rough: &[Hypothesis],
+        scale: &Scale,
         say: &mut dyn FnMut(&str),
     ) {
-        let Some(best) = full.first() else { return };
+        let Some(best) = full.first().filter(|best| scale.is_explained(best)) else {
+            return;
+        };
         let limit = self.rough_reference(best, rough) - 2.0 * LEAST_ODDS.ln();
         let is_fitted = |h: &Hypothesis| full.iter().any(|known| known.names() == h.names());
         let mut close: Vec<&Hypothesis> = rough
