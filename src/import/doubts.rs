@@ -117,7 +117,7 @@ fn by_name(channel: &ChannelMap) -> Option<String> {
 }
 
 /// The unit that a column's name ends with: in brackets, or behind an underscore where it cannot be a word or an index.
-fn unit_of_name(name: &str) -> Option<&'static LogUnit> {
+pub(super) fn unit_of_name(name: &str) -> Option<&'static LogUnit> {
     let name = name.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((_, inside)) = name.strip_suffix(close).and_then(|n| n.rsplit_once(open)) {
