@@ -174,9 +174,13 @@ pub fn draft(title: &str, paths: &[PathBuf]) -> Result<Draft, ImportError> {
             Some((kind, alike)) => {
                 alike.push(path.clone());
                 for (own, more) in kind.columns.iter_mut().zip(&looked.columns) {
-                    // Ranges are those of all; the first log's rows stand first.
-                    if let Cells::Numbers(numbers) | Cells::States(numbers) = &mut own.cells {
-                        numbers.extend_from_slice(more.numbers());
+                    // Ranges are those of all; the first log's rows stand first. A column may be empty in one of them.
+                    match &mut own.cells {
+                        Cells::Numbers(numbers) | Cells::States(numbers) => {
+                            numbers.extend_from_slice(more.numbers());
+                        }
+                        Cells::Other => own.cells = more.cells.clone(),
+                        Cells::Stamps { .. } => {}
                     }
                 }
             }

@@ -16,6 +16,7 @@ pub mod samples;
 pub mod scene;
 pub mod schema;
 pub mod table;
+pub mod thousandfold;
 pub mod unit;
 
 pub use error::RecordingError;

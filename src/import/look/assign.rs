@@ -75,26 +75,33 @@ pub(super) fn assign(columns: &[Seen], taken: &[usize]) -> Vec<Pick> {
 fn pick(place: usize, column: &Seen) -> Option<Pick> {
     let said = names::said(&column.name);
     let unit = column.unit.as_ref().map(|said| said.unit.si);
-    let is_states = matches!(column.cells, Cells::States(_)) || is_two_states(column.numbers());
+    let may_be_states = matches!(column.cells, Cells::States(_)) || is_of_states(column.numbers());
+    // A flag that never changes is one by its name alone.
+    let is_states = may_be_states && is_two_states(column.numbers());
     let fits = |thing: Thing| {
         thing != Thing::Time
             && unit.is_none_or(|unit| names::units_of(thing).contains(&unit))
-            && (thing == Thing::Valve) == is_states
+            && (if thing == Thing::Valve { may_be_states } else { !is_states })
     };
     let by_name = said.thing.filter(|(thing, _)| fits(*thing));
-    let (thing, mut worth, mut because) = match (by_name, unit) {
+    let set = said.roles.iter().find(|(role, _)| *role == Role::Set);
+    let quoted = |word: &str| match set {
+        Some((_, set)) => format!("`{word}` and `{set}`"),
+        None => format!("`{word}`"),
+    };
+    let (thing, mut worth, because) = match (by_name, unit) {
         (Some((thing, word)), _) if !said.by_letter => {
-            (thing, WORD, Because::certain(format!("the name says `{word}`")))
+            (thing, WORD, Because::certain(format!("the name says {}", quoted(word))))
         }
         (Some((thing, letter)), Some(_)) => (
             thing,
             WORD - 1,
-            Because::certain(format!("the name is `{letter}`, and the unit fits")),
+            Because::certain(format!("the unit fits, and the name says {}", quoted(letter))),
         ),
         (Some((thing, letter)), None) => (
             thing,
             WEAK,
-            Because::likely(format!("the name is `{letter}`")),
+            Because::likely(format!("the name says {}", quoted(letter))),
         ),
         (None, _) if matches!(said.thing, Some((Thing::Other, _))) => return None,
         (None, _) if is_states => (
@@ -110,9 +117,6 @@ fn pick(place: usize, column: &Seen) -> Option<Pick> {
         (None, None) => return None,
     };
     let quantity = quantity(thing, &said)?;
-    if let Some((_, word)) = said.roles.iter().find(|(role, _)| *role == Role::Set) {
-        because.why += &format!(" and `{word}`");
-    }
     worth += i32::from(said.has(Role::Actual)) + i32::from(unit.is_some());
     if said.across && matches!(thing, Thing::Force | Thing::Acceleration) {
         worth -= WORD;
@@ -174,8 +178,13 @@ fn is_held(values: &[f64]) -> bool {
 /// Are the numbers 0 and 1, and both of them?
 fn is_two_states(values: &[f64]) -> bool {
     let has = |wanted: f64| values.contains(&wanted);
+    has(0.0) && has(1.0) && is_of_states(values)
+}
+
+/// Are the numbers 0 or 1 throughout?
+fn is_of_states(values: &[f64]) -> bool {
     let fits = |value: &f64| value.is_nan() || *value == 0.0 || *value == 1.0;
-    has(0.0) && has(1.0) && values.iter().all(fits)
+    values.iter().all(fits)
 }
 
 /// A column for people.

@@ -237,16 +237,12 @@ fn units_line(header: &[Vec<String>], count: usize, names: Option<usize>) -> Opt
 
 /// Units of a row of them; none where it is not one. The first cell may be a label.
 fn units_of_row(row: &[String]) -> Option<Vec<Option<SaidUnit>>> {
-    let said: Vec<Option<SaidUnit>> = row
-        .iter()
-        .map(|cell| {
-            let bare = !cell.chars().any(char::is_whitespace);
-            bare.then(|| units::of_cell(cell)).flatten()
-        })
-        .collect();
+    let said: Vec<Option<SaidUnit>> = row.iter().map(|cell| units::of_cell(cell)).collect();
+    // The label may stand before each unit.
+    let label = row.first().filter(|label| units::of_cell(label).is_none());
     let blank = |cell: &&String| {
         let plain = cell.trim_matches(|c| "[](){}".contains(c)).to_lowercase();
-        ["", "-", "1", "bool", "boolean", "n/a"].contains(&plain.as_str())
+        Some(*cell) == label || ["", "-", "1", "bool", "boolean", "n/a"].contains(&plain.as_str())
     };
     let filled = row.iter().skip(1).filter(|cell| !blank(cell)).count();
     let known = said.iter().skip(1).flatten().count();

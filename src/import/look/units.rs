@@ -1,6 +1,6 @@
 //! Units of columns: as a name or a row of units says them, or as their range looks.
 
-use super::{Because, SaidUnit};
+use super::{Because, SaidUnit, names};
 use crate::import::doubts::unit_of_name;
 use crate::import::map::Pressure;
 use crate::import::units::{self, LogUnit};
@@ -42,7 +42,7 @@ pub(super) fn of_name(name: &str) -> Option<SaidUnit> {
             .find_map(|mark| of_text(name.rsplit_once(mark)?.1))
     };
     let found = bracketed.or_else(|| {
-        let unit = unit_of_name(name);
+        let unit = unit_of_name(name).or_else(|| of_small_letters(name));
         unit.map(|unit| (unit, None)).or_else(behind)
     });
     let (unit, pressure) = found?;
@@ -52,6 +52,14 @@ pub(super) fn of_name(name: &str) -> Option<SaidUnit> {
         pressure: said.filter(|_| unit.si == Unit::Pascal),
         because: Because::certain(format!("its name says {}", unit.name)),
     })
+}
+
+/// The unit that a name ends with in small letters, `force_n`, where it is one of the quantity that the name says.
+fn of_small_letters(name: &str) -> Option<&'static LogUnit> {
+    let (_, last) = name.rsplit_once('_')?;
+    let (thing, _) = names::said(name).thing?;
+    let mut fitting = units::UNITS.iter().filter(|unit| names::units_of(thing).contains(&unit.si));
+    fitting.find(|unit| unit.name.eq_ignore_ascii_case(last))
 }
 
 /// The unit of a cell in a row of units.
@@ -179,6 +187,8 @@ mod tests {
             ("Druck in bara", "bar", Some(Absolute)),
             ("pressure_kPa", "kPa", None),
             ("Weg / mm", "mm", None),
+            ("set_pressure_pa", "Pa", None),
+            ("force_n", "N", None),
             ("Beschleunigung [m/s²]", "m/s2", None),
             ("Zeit  1 - default sample rate [s]", "s", None),
             ("Oberfläche [µm]", "um", None),

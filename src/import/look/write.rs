@@ -149,6 +149,10 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
     let said = column.unit.as_ref().filter(|said| said.unit.si == pick.kind);
     let (unit, because) = match said {
         Some(said) => (said.unit, said.because.clone()),
+        None if pick.kind == Unit::One => match crate::import::units::named("1") {
+            Some(unit) => (unit, Because::certain("on and off have no unit")),
+            None => return,
+        },
         None => match units::by_size(pick.kind, [low, high]) {
             Some(found) => found,
             None => {
