@@ -57,21 +57,34 @@ fn a_device_without_an_accelerometer_is_diagnosed_by_its_other_sensors() {
             for name in ["stairs", "ride", "cycle"] {
                 let file = place(&format!("case/{name}.csv"));
                 let text = std::fs::read_to_string(&file).unwrap();
-                let short: Vec<&str> = text.lines().map(|l| l.rsplit_once(',').unwrap().0).collect();
+                let short: Vec<&str> = text
+                    .lines()
+                    .map(|l| l.rsplit_once(',').unwrap().0)
+                    .collect();
                 std::fs::write(&file, short.join("\n") + "\n").unwrap();
             }
         }
-        for arguments in [vec!["check"], vec!["diagnose", "--quiet", "--out", "answer"]] {
+        for arguments in [
+            vec!["check"],
+            vec!["diagnose", "--quiet", "--out", "answer"],
+        ] {
             let done = Command::new(env!("CARGO_BIN_EXE_idc"))
                 .args(arguments)
                 .arg("case")
                 .current_dir(room.path())
                 .output()
                 .unwrap();
-            assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+            assert!(
+                done.status.success(),
+                "{}",
+                String::from_utf8_lossy(&done.stderr)
+            );
         }
         let text = std::fs::read_to_string(place("answer/diagnosis.json")).unwrap();
-        assert!(!text.contains("\"acceleration_m_per_s2\""), "a channel that is not there");
+        assert!(
+            !text.contains("\"acceleration_m_per_s2\""),
+            "a channel that is not there"
+        );
         let answer = answer(&place("answer"));
         assert_eq!(named(&answer), ["coulomb_viscous_friction"]);
         let concealed = &case.sealed.effects[0].parameters["coulomb_force_n"];
@@ -79,8 +92,15 @@ fn a_device_without_an_accelerometer_is_diagnosed_by_its_other_sensors() {
             panic!("{concealed:?}");
         };
         let found = &answer.effects[0].parameters;
-        let (_, force) = found.iter().find(|(key, _)| key == "coulomb_force_n").unwrap();
-        assert!((force.value / truth - 1.0).abs() < 0.1, "{} for {truth}", force.value);
+        let (_, force) = found
+            .iter()
+            .find(|(key, _)| key == "coulomb_force_n")
+            .unwrap();
+        assert!(
+            (force.value / truth - 1.0).abs() < 0.1,
+            "{} for {truth}",
+            force.value
+        );
         let prediction = std::fs::read_to_string(place("answer/prediction.csv")).unwrap();
         let header = prediction.lines().next().unwrap();
         assert_eq!(header, "time_s,regulator_pressure_pa,stroke_m,force_n");

@@ -137,6 +137,7 @@ impl Diagnosis {
             time: time.to_vec(),
             channels: channels
                 .filter(|(channel, _)| output.is_none_or(|output| output == *channel))
+                .filter(|(channel, _)| self.evidence.noise[*channel as usize].is_finite())
                 .filter(|(_, ((m, _), _))| empty || m.iter().any(|value| value.is_finite()))
                 .map(
                     |(channel, ((measured, believed), improved))| ComparedChannel {

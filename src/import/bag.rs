@@ -35,7 +35,9 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError>
                 file: path.to_owned(),
                 found: cause.clone(),
                 rest,
-                advice: format!("`{repaired}` repairs it, or `accept_truncated = true` in the map's [[file]] uses them"),
+                advice: format!(
+                    "`{repaired}` repairs it, or `accept_truncated = true` in the map's [[file]] uses them"
+                ),
             });
         }
         remarks.push(Remark::Truncated(format!(

@@ -95,7 +95,10 @@ fn tell(path: &Path, bytes: &[u8]) -> Result<(&'static Encoding, Told), ImportEr
     if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
         return Err(ImportError::Encoding {
             file: path.to_owned(),
-            seen: format!("line {} holds a zero byte, as no text does", line(bytes, at)),
+            seen: format!(
+                "line {} holds a zero byte, as no text does",
+                line(bytes, at)
+            ),
         });
     }
     match std::str::from_utf8(bytes) {
@@ -152,8 +155,13 @@ fn odd_character(bytes: &[u8]) -> Option<(usize, String)> {
         let in_word = (at > 0 && is_letter(at - 1)) || is_letter(end);
         let mut letters = 0;
         for (index, character) in run.chars().enumerate() {
-            letters = if LETTERS.contains(character) { letters + 1 } else { 0 };
-            let is_fine = SIGNS.contains(character) || (letters > 0 && in_word && letters <= TOGETHER);
+            letters = if LETTERS.contains(character) {
+                letters + 1
+            } else {
+                0
+            };
+            let is_fine =
+                SIGNS.contains(character) || (letters > 0 && in_word && letters <= TOGETHER);
             if !is_fine {
                 let seen = if character.is_control() {
                     "no character".to_owned()
@@ -228,6 +236,11 @@ mod tests {
         let (text, _) = decode(Path::new("a"), cyrillic, Some("windows-1251")).unwrap();
         assert_eq!(text, "Давл");
         let wrong = decode(Path::new("a"), b"a\n\xff\xfe\xfd", Some("utf-8")).unwrap_err();
-        assert!(wrong.to_string().contains("line 2 holds bytes that are no utf-8"), "{wrong}");
+        assert!(
+            wrong
+                .to_string()
+                .contains("line 2 holds bytes that are no utf-8"),
+            "{wrong}"
+        );
     }
 }

@@ -11,6 +11,7 @@ use super::units::LogUnit;
 
 mod assign;
 mod forms;
+mod marks;
 mod names;
 mod text;
 mod time;

@@ -182,7 +182,12 @@ fn text_form(section: &Section<'_>, keys: &FileKeys) -> Result<TextForm, Scenari
         return Err(section.refuse("decimal_mark", format!("{decimal_mark:?}"), expected));
     }
     let thousands_mark = match &keys.thousands_mark {
-        Some(mark) => Some(single(section, "thousands_mark", mark, "such as \".\" or \"'\"")?),
+        Some(mark) => Some(single(
+            section,
+            "thousands_mark",
+            mark,
+            "such as \".\" or \"'\"",
+        )?),
         None => None,
     };
     if thousands_mark == Some(decimal_mark) {
@@ -320,7 +325,11 @@ fn time_map(
 fn check_together(document: &Document<'_>, map: &ImportMap) -> Result<(), ScenarioError> {
     let mut seen: Vec<&str> = Vec::new();
     for (index, constant) in map.constants.iter().enumerate() {
-        let in_log = |file: &FileMap| file.channels.iter().any(|c| c.quantity == constant.quantity);
+        let in_log = |file: &FileMap| {
+            file.channels
+                .iter()
+                .any(|c| c.quantity == constant.quantity)
+        };
         if seen.contains(&constant.quantity.as_str()) || map.files.iter().any(in_log) {
             let section = Section::new(document, format!("constant[{index}]"));
             let expected = "every quantity once".to_owned();

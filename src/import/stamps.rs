@@ -105,7 +105,8 @@ pub(super) fn nanoseconds(
             continue;
         };
         let date = groups.date(order, year);
-        let since = date.and_then(|date| date.and_hms_opt(0, 0, 0)?.and_utc().timestamp_nanos_opt());
+        let since =
+            date.and_then(|date| date.and_hms_opt(0, 0, 0)?.and_utc().timestamp_nanos_opt());
         let since = since.ok_or_else(|| Unread {
             index,
             expected: "a date that there is".to_owned(),
@@ -123,7 +124,10 @@ pub(super) fn is_stamp(text: &str) -> bool {
 /// Does a stamp have a date, and a time?
 pub(super) fn parts(text: &str) -> Option<[bool; 2]> {
     let stamp = parse(text)?;
-    Some([stamp.date.is_some(), text.contains(':') || stamp.date.is_none() || text.contains('T')])
+    Some([
+        stamp.date.is_some(),
+        text.contains(':') || stamp.date.is_none() || text.contains('T'),
+    ])
 }
 
 /// What would be a stamp, with what this looks like.
@@ -310,7 +314,8 @@ fn date(text: &str) -> Option<Groups> {
     }
     groups.pointed = text.contains('.') && !text.contains(['/', '-']);
     // A number with a point is no date: `12.5`.
-    let is_pair = groups.count == 2 && (text.ends_with('.') || text.contains(['/', '-']) || groups.named_month.is_some());
+    let is_pair = groups.count == 2
+        && (text.ends_with('.') || text.contains(['/', '-']) || groups.named_month.is_some());
     let is_signed = text.starts_with(['-', '+']);
     ((groups.count == 3 || is_pair) && !is_signed).then_some(groups)
 }
@@ -320,7 +325,11 @@ fn clock(text: &str) -> Option<i64> {
     let end = text.find(|c: char| !c.is_ascii_digit() && !".:,".contains(c));
     let (numbers, mut rest) = text.split_at(end.unwrap_or(text.len()));
     let mut parts = numbers.trim_end_matches(',').split([':', '.', ',']);
-    let two = |part: Option<&str>| part.filter(|p| (1..=2).contains(&p.len()))?.parse::<i64>().ok();
+    let two = |part: Option<&str>| {
+        part.filter(|p| (1..=2).contains(&p.len()))?
+            .parse::<i64>()
+            .ok()
+    };
     let (mut hours, minutes) = (two(parts.next())?, two(parts.next())?);
     let seconds = match parts.next() {
         None => 0,
@@ -405,69 +414,4 @@ fn duration(text: &str) -> Option<i64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// 5 March 2024, 14:02:03.123 in UTC [ns], as `date -u -d '2024-03-05 14:02:03' +%s` says.
-    const KNOWN: i64 = 1_709_647_323_123_000_000;
-
-    fn of(texts: &[&str], order: Option<DateOrder>) -> Result<Vec<i64>, String> {
-        let texts: Vec<String> = texts.iter().map(|text| (*text).to_owned()).collect();
-        nanoseconds(&texts, order, None).map_err(|unread| format!("{}: {}", unread.index, unread.expected))
-    }
-
-    #[test]
-    fn one_moment_in_many_forms() {
-        for text in [
-            "2024-03-05T14:02:03.123Z",
-            "2024-03-05 14:02:03.123",
-            "2024-03-05T15:02:03,123+01:00",
-            "2024-03-05 08:32:03.123 -0530",
-            "20240305T140203.123",
-            "05.03.2024 14:02:03,123",
-            "5.3.2024 14:02:03.123",
-            "05.03.24 14:02:03.123000",
-            "Di 05.03.2024 14:02:03,123",
-            "2024/03/05 14:02:03:123",
-            "5 Mar 2024 14:02:03.123",
-            "05-Mrz-2024 14:02:03.123",
-            "March 5, 2024 2:02:03.123 PM",
-        ] {
-            assert_eq!(of(&[text], None), Ok(vec![KNOWN]), "{text}");
-        }
-        let slashed = of(&["03/05/2024 2:02:03.123 PM"], Some(DateOrder::MonthDayYear));
-        assert_eq!(slashed, Ok(vec![KNOWN]));
-    }
-
-    #[test]
-    fn the_order_of_day_and_month_is_told_by_all_dates_together() {
-        let british = of(&["05/03/2024 14:02:03.123", "13/03/2024 00:00:00"], None);
-        assert_eq!(british.unwrap()[0], KNOWN);
-        let american = of(&["03/05/2024 14:02:03.123", "03/13/2024 00:00:00"], None);
-        assert_eq!(american.unwrap()[0], KNOWN);
-        let neither = of(&["03/05/2024 14:02:03"], None).unwrap_err();
-        assert!(neither.contains("date_order") && neither.contains("day 3 of month 5"), "{neither}");
-        let both = of(&["13/05/2024 14:02", "05/13/2024 14:02"], None).unwrap_err();
-        assert!(both.starts_with("1: a date in the order of the others"), "{both}");
-    }
-
-    #[test]
-    fn dates_without_years_are_refused_unless_the_year_is_known() {
-        let said = of(&["05.03. 14:02:03"], None).unwrap_err();
-        assert!(said.contains("`year = 2024`"), "{said}");
-        let stamps = ["05.03. 14:02:03,123".to_owned()];
-        assert_eq!(nanoseconds(&stamps, None, Some(2024)), Ok(vec![KNOWN]));
-        for text in ["12.5", "-1.5", "1,250", "x", "30.02.2024 25:61:00", "05:03:2024:1:2"] {
-            assert!(of(&[text], None).is_err(), "{text}");
-        }
-        assert!(of(&["30.02.2024 12:00"], None).unwrap_err().contains("that there is"));
-    }
-
-    #[test]
-    fn times_of_the_day_go_on_at_midnight_and_durations_are_read() {
-        let times = of(&["23:59:59.5", "00:00:00.5", "00:00:01"], None).unwrap();
-        assert_eq!([times[1] - times[0], times[2] - times[1]], [NANOSECONDS, NANOSECONDS / 2]);
-        let all = of(&["T#1h2m3s4ms", "TIME#1.5s", "t#250us", "LTIME#1s_20ns"], None).unwrap();
-        assert_eq!(all, [3_723_004_000_000, 1_500_000_000, 250_000, 1_000_000_020]);
-    }
-}
+mod tests;

@@ -52,7 +52,11 @@ pub(super) fn content(path: &Path, encoding: Option<&str>) -> Result<(String, To
     let (text, told) = decode(path, &bytes, encoding)?;
     // Of a line that ends with both, the reader counts the end to the next one.
     let text = text.replace("\r\n", "\n");
-    let text = if text.contains('\n') { text } else { text.replace('\r', "\n") };
+    let text = if text.contains('\n') {
+        text
+    } else {
+        text.replace('\r', "\n")
+    };
     Ok((text, told))
 }
 
@@ -60,7 +64,9 @@ pub(super) fn content(path: &Path, encoding: Option<&str>) -> Result<(String, To
 pub(super) fn fields(line: &str, separator: &Separator) -> Vec<String> {
     let records = records(line, 0, separator).unwrap_or_default();
     let first = records.into_iter().next();
-    first.map_or_else(Vec::new, |(_, record)| record.iter().map(str::to_owned).collect())
+    first.map_or_else(Vec::new, |(_, record)| {
+        record.iter().map(str::to_owned).collect()
+    })
 }
 
 /// Reads the rows of a text.
@@ -99,7 +105,11 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
     };
     for (index, (line, row)) in sheet.rows.iter().enumerate() {
         let is_last = index + 1 == sheet.rows.len();
-        let fields = if is_last { sheet.last_fields } else { row.len() };
+        let fields = if is_last {
+            sheet.last_fields
+        } else {
+            row.len()
+        };
         if is_last && !sheet.is_whole && fields < count {
             let torn = torn(path, *line, fields, count, found.lines.len());
             if !map.accepts_truncated {
@@ -288,16 +298,24 @@ impl Reading<'_> {
             thousands: map.thousands_mark.or(own.thousands),
             // A time whose marks all are of thousands has no decimals.
             decimal: match map.thousands_mark {
-                Some(mark) if mark == own.decimal => if mark == '.' { ',' } else { '.' },
+                Some(mark) if mark == own.decimal => {
+                    if mark == '.' {
+                        ','
+                    } else {
+                        '.'
+                    }
+                }
                 _ => own.decimal,
             },
         };
         let time = marks.number(field).filter(|time| time.is_finite());
         time.ok_or_else(|| {
             let expected = if stamps::is_stamp(field) {
-                "a number; stamps say their unit themselves: leave out `unit` in [file.time]".to_owned()
+                "a number; stamps say their unit themselves: leave out `unit` in [file.time]"
+                    .to_owned()
             } else {
-                self.expected(field, *line, place, marks).replacen("a number", "a time", 1)
+                self.expected(field, *line, place, marks)
+                    .replacen("a number", "a time", 1)
             };
             self.refuse(row, &map.column, field, expected)
         })

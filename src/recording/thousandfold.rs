@@ -22,10 +22,16 @@ pub struct Fallen {
 /// Looks for falls to a thousandth; none where a jump is another one, or the course goes beyond their level.
 #[must_use]
 pub fn thousandfold(values: &[f64]) -> Option<Fallen> {
-    let most = values.iter().filter(|v| v.is_finite()).fold(0.0, |most: f64, v| most.max(v.abs()));
+    let most = values
+        .iter()
+        .filter(|v| v.is_finite())
+        .fold(0.0, |most: f64, v| most.max(v.abs()));
     let mut found = Fallen { count: 0, first: 0 };
     for (index, pair) in values.windows(2).enumerate() {
-        let (high, low) = (pair[0].abs().max(pair[1].abs()), pair[0].abs().min(pair[1].abs()));
+        let (high, low) = (
+            pair[0].abs().max(pair[1].abs()),
+            pair[0].abs().min(pair[1].abs()),
+        );
         let at_level = high > (1.0 - SPREAD) * most;
         if !at_level || low == 0.0 || low.is_nan() || high / low < JUMP {
             continue;
@@ -47,8 +53,16 @@ mod tests {
 
     #[test]
     fn a_course_beyond_a_thousand_is_seen_when_its_marks_were_misread() {
-        let course: Vec<f64> = (0..400).map(|i| 900.0 + 200.0 * (0.05 * f64::from(i)).sin()).collect();
-        let misread = |v: &f64| if *v >= 1000.0 { (v.round()) / 1000.0 } else { *v };
+        let course: Vec<f64> = (0..400)
+            .map(|i| 900.0 + 200.0 * (0.05 * f64::from(i)).sin())
+            .collect();
+        let misread = |v: &f64| {
+            if *v >= 1000.0 {
+                (v.round()) / 1000.0
+            } else {
+                *v
+            }
+        };
         let wild: Vec<f64> = course.iter().map(misread).collect();
         let found = thousandfold(&wild).unwrap();
         assert!(found.count > 4 && wild[found.first] < 1.1, "{found:?}");
@@ -60,7 +74,9 @@ mod tests {
 
     #[test]
     fn noise_about_nothing_steps_and_single_wild_values_are_none() {
-        let noise: Vec<f64> = (0..1000).map(|i| (f64::from(i) * 1.7).sin() * 1e-3).collect();
+        let noise: Vec<f64> = (0..1000)
+            .map(|i| (f64::from(i) * 1.7).sin() * 1e-3)
+            .collect();
         assert_eq!(thousandfold(&noise), None);
         let steps: Vec<f64> = (0..100).map(|i| f64::from(i / 10 % 2)).collect();
         assert_eq!(thousandfold(&steps), None);

@@ -30,7 +30,11 @@ fn stamp(row: usize) -> u64 {
     START * 1_000_000_000 + whole(row).0 * 1_000_000
 }
 
-fn message(row: usize, frame: &str, write: impl FnOnce(&mut CdrWriter<'_, LittleEndian>)) -> Vec<u8> {
+fn message(
+    row: usize,
+    frame: &str,
+    write: impl FnOnce(&mut CdrWriter<'_, LittleEndian>),
+) -> Vec<u8> {
     let mut body = Vec::new();
     let mut cdr = CdrWriter::new(&mut body);
     cdr.write_i32((stamp(row) / 1_000_000_000) as i32);
@@ -45,19 +49,27 @@ fn messages(row: usize) -> Vec<(usize, Vec<u8>)> {
     let own = truth(row);
     let joints = |names: &[(&str, f64)]| {
         message(row, "", |cdr| {
-            cdr.write_sequence_length(names.len() as u32);
+            cdr.write_sequence_length(names.len());
             names.iter().for_each(|(name, _)| cdr.write_string(name));
-            cdr.write_sequence_length(names.len() as u32);
-            names.iter().for_each(|(_, position)| cdr.write_f64(*position));
+            cdr.write_sequence_length(names.len());
+            names
+                .iter()
+                .for_each(|(_, position)| cdr.write_f64(*position));
             cdr.write_sequence_length(0);
             cdr.write_sequence_length(0);
         })
     };
-    let mut arm = vec![("slide_joint", own.stroke), ("elbow", -1.5), ("wrist", 0.25)];
+    let mut arm = vec![
+        ("slide_joint", own.stroke),
+        ("elbow", -1.5),
+        ("wrist", 0.25),
+    ];
     arm.rotate_left(row % 3);
     let wrench = |frame: &str, force: f64| {
         message(row, frame, |cdr| {
-            [0.1, 0.2, force, 0.0, 0.0, 0.0].into_iter().for_each(|v| cdr.write_f64(v));
+            [0.1, 0.2, force, 0.0, 0.0, 0.0]
+                .into_iter()
+                .for_each(|v| cdr.write_f64(v));
         })
     };
     vec![
@@ -89,18 +101,24 @@ fn bag(folder: &Folder, name: &str, rows: std::ops::Range<usize>, with_definitio
     if with_definitions {
         connection.execute_batch(DEFINITIONS).unwrap();
         let insert = "INSERT INTO message_definitions(topic_type, encoding, encoded_message_definition, type_description_hash) VALUES (?, 'ros2msg', ?, '')";
-        connection.execute(insert, params![TOPICS[3].1, VALVE]).unwrap();
+        connection
+            .execute(insert, params![TOPICS[3].1, VALVE])
+            .unwrap();
     }
     let write = connection.transaction().unwrap();
     for (index, (topic, kind)) in TOPICS.iter().enumerate() {
         let insert = "INSERT INTO topics VALUES (?, ?, ?, 'cdr', '', '')";
-        write.execute(insert, params![index as i64 + 1, topic, kind]).unwrap();
+        write
+            .execute(insert, params![index as i64 + 1, topic, kind])
+            .unwrap();
     }
     for row in rows {
         for (topic, data) in messages(row) {
             let insert = "INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)";
             let logged = stamp(row) as i64 + 200_000;
-            write.execute(insert, params![topic as i64, logged, data]).unwrap();
+            write
+                .execute(insert, params![topic as i64, logged, data])
+                .unwrap();
         }
     }
     write.commit().unwrap();
@@ -113,8 +131,18 @@ fn picked(quantity: &str, column: &str, unit: &str, key: &str) -> String {
 
 fn map() -> String {
     "form = \"bag\"\ntime = { column = \"header.stamp\" }\n".to_owned()
-        + &picked("stroke", "\"/joint_states.position\"", "m", "joint = \"slide_joint\"")
-        + &picked("force", "\"/wrench.wrench.force.z\"", "N", "frame = \"tool0\"")
+        + &picked(
+            "stroke",
+            "\"/joint_states.position\"",
+            "m",
+            "joint = \"slide_joint\"",
+        )
+        + &picked(
+            "force",
+            "\"/wrench.wrench.force.z\"",
+            "N",
+            "frame = \"tool0\"",
+        )
         + "[[file.channel]]\nquantity = \"pressure_gauge\"\ncolumn = \"/regulator.fluid_pressure\"\nunit = \"Pa\"\npressure = \"absolute\"\n"
 }
 
@@ -128,7 +156,10 @@ fn a_bag_in_sqlite_is_read_by_joint_frame_and_topic() {
         folder.map("map.toml", &map());
         let (stored, _) = folder.imported("map.toml", &["ride.db3"]);
         assert_planted(&stored.recording, &[STROKE, FORCE, PRESSURE]);
-        assert_eq!(stored.metadata["time_origin_unix_s"], (START + 1).to_string());
+        assert_eq!(
+            stored.metadata["time_origin_unix_s"],
+            (START + 1).to_string()
+        );
         // Nothing is left beside it.
         assert_eq!(folder.names("."), ["map.toml", "out.parquet", "ride.db3"]);
     }
@@ -142,7 +173,10 @@ fn the_folder_of_a_bag_is_read_in_the_order_of_its_files() {
         let rows = ROWS * part / 11..ROWS * (part + 1) / 11;
         bag(&folder, &format!("ride/ride_{part}.db3"), rows, true);
     }
-    folder.write("ride/metadata.yaml", "rosbag2_bagfile_information:\n  version: 9\n");
+    folder.write(
+        "ride/metadata.yaml",
+        "rosbag2_bagfile_information:\n  version: 9\n",
+    );
     folder.map("map.toml", &map());
     let (stored, _) = folder.imported("map.toml", &["ride"]);
     assert_planted(&stored.recording, &[STROKE, FORCE, PRESSURE]);
@@ -153,7 +187,12 @@ fn a_map_is_drafted_from_a_bag() {
     let folder = Folder::new();
     bag(&folder, "ride.db3", 0..ROWS, true);
     let outcome = folder.run(&["new", "import", "map.toml", "--from", "ride.db3"]);
-    assert_eq!((outcome.code, outcome.err.as_str()), (0, ""), "{}", outcome.out);
+    assert_eq!(
+        (outcome.code, outcome.err.as_str()),
+        (0, ""),
+        "{}",
+        outcome.out
+    );
     let map = std::fs::read_to_string(folder.path("map.toml")).unwrap();
     for words in [
         "column = \"/joint_states.position\"",
@@ -168,7 +207,12 @@ fn a_map_is_drafted_from_a_bag() {
     // The frames are two: the force is that of both until one is named.
     let (stored, _) = folder.imported("map.toml", &["ride.db3"]);
     let stroke = stored.recording.values("measured_stroke").unwrap();
-    assert!(stroke.iter().enumerate().all(|(row, v)| (v - truth(row).stroke).abs() < 1e-12));
+    assert!(
+        stroke
+            .iter()
+            .enumerate()
+            .all(|(row, v)| (v - truth(row).stroke).abs() < 1e-12)
+    );
     let valve = stored.recording.values("valve_extends").unwrap();
     assert!((0..ROWS).all(|row| valve[row] == f64::from(u8::from(row / 50 % 2 == 1))));
 }
@@ -177,8 +221,16 @@ fn a_map_is_drafted_from_a_bag() {
 fn a_joint_is_found_by_its_name_in_an_mcap_too() {
     let folder = Folder::new();
     super::files::mcap(&folder.path("log.mcap"), None);
-    let joint = picked("elbow_angle", "\"/joint_states.position\"", "rad", "joint = \"elbow\"");
-    folder.map("map.toml", &("form = \"mcap\"\ntime = { column = \"header.stamp\" }\n".to_owned() + &joint));
+    let joint = picked(
+        "elbow_angle",
+        "\"/joint_states.position\"",
+        "rad",
+        "joint = \"elbow\"",
+    );
+    folder.map(
+        "map.toml",
+        &("form = \"mcap\"\ntime = { column = \"header.stamp\" }\n".to_owned() + &joint),
+    );
     let (stored, _) = folder.imported("map.toml", &["log.mcap"]);
     let angle = stored.recording.values("elbow_angle").unwrap();
     for (index, angle) in angle.iter().enumerate() {
@@ -197,29 +249,60 @@ fn what_a_bag_does_not_have_is_refused_with_what_it_has() {
     };
     refused(
         &channel("force", "\"/loadcell.data\"", "N"),
-        &["no column `/loadcell.data`", "the topics", "`/joint_states`", "`/regulator`", "`/valve`", "`/wrench`"],
+        &[
+            "no column `/loadcell.data`",
+            "the topics",
+            "`/joint_states`",
+            "`/regulator`",
+            "`/valve`",
+            "`/wrench`",
+        ],
     );
     refused(
-        &picked("stroke", "\"/joint_states.position\"", "m", "joint = \"slider\""),
+        &picked(
+            "stroke",
+            "\"/joint_states.position\"",
+            "m",
+            "joint = \"slider\"",
+        ),
         &["of no joint `slider`", "`slide_joint`", "`gripper`"],
     );
     refused(
-        &picked("force", "\"/wrench.wrench.force.z\"", "N", "frame = \"flange\""),
+        &picked(
+            "force",
+            "\"/wrench.wrench.force.z\"",
+            "N",
+            "frame = \"flange\"",
+        ),
         &["of no frame `flange`", "`tool0`", "`base`"],
     );
     refused(
-        &picked("stroke", "\"/wrench.wrench.force.z\"", "m", "joint = \"slider\""),
+        &picked(
+            "stroke",
+            "\"/wrench.wrench.force.z\"",
+            "m",
+            "joint = \"slider\"",
+        ),
         &["whose messages name no joints"],
     );
     refused(
         &channel("valve_extends", "\"/valve.extends\"", "1"),
-        &["lab_msgs/msg/Valve", "definition does not stand in the bag", "ros2 bag convert"],
+        &[
+            "lab_msgs/msg/Valve",
+            "definition does not stand in the bag",
+            "ros2 bag convert",
+        ],
     );
     // Cut off in the middle.
     let bytes = std::fs::read(folder.path("ride.db3")).unwrap();
     folder.write("ride.db3", &bytes[..bytes.len() / 2]);
     refused(
-        &picked("stroke", "\"/joint_states.position\"", "m", "joint = \"slide_joint\""),
+        &picked(
+            "stroke",
+            "\"/joint_states.position\"",
+            "m",
+            "joint = \"slide_joint\"",
+        ),
         &["cut off or damaged", "accept_truncated"],
     );
 }

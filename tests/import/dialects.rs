@@ -83,7 +83,9 @@ impl Table {
                 _ if row[c].is_nan() => String::new(),
                 _ => format!("{:.*}", self.decimals[c], row[c]).replace('.', &decimal.to_string()),
             };
-            let fields: Vec<String> = std::iter::once(time(*millis)).chain((0..7).map(field)).collect();
+            let fields: Vec<String> = std::iter::once(time(*millis))
+                .chain((0..7).map(field))
+                .collect();
             text += &fields.join(separator);
             text += "\r\n";
         }
@@ -137,7 +139,15 @@ fn siemens(table: &Table) -> Vec<u8> {
 
 /// Beckhoff's Scope: tabs, a header of many lines, for each channel a column of times of its own.
 fn twincat(table: &Table) -> Vec<u8> {
-    let names = ["fDruckSoll", "bVentil", "fOberflaeche", "fDruckIst", "fWeg", "fKraft", "fBeschleunigung"];
+    let names = [
+        "fDruckSoll",
+        "bVentil",
+        "fOberflaeche",
+        "fDruckIst",
+        "fWeg",
+        "fKraft",
+        "fBeschleunigung",
+    ];
     let units = ["bar", "bool", "mm", "bar", "mm", "N", "m/s2"];
     let mut text = "Name\tScopeProject\r\nFile\tC:\\Messung\\ride.svdx\r\nStarttime of export\t133541065231230000\t05.03.2024 14:02:03.123\r\n\r\n".to_owned();
     let mut line = |label: &str, cell: &dyn Fn(usize) -> String| {
@@ -146,7 +156,9 @@ fn twincat(table: &Table) -> Vec<u8> {
     };
     line("Name", &|c| names[c].to_owned());
     line("SymbolComment", &|_| String::new());
-    line("Data-Type", &|c| if c == 1 { "BIT" } else { "LREAL" }.to_owned());
+    line("Data-Type", &|c| {
+        if c == 1 { "BIT" } else { "LREAL" }.to_owned()
+    });
     line("SampleTime[ms]", &|_| "4".to_owned());
     line("SymbolName", &|c| format!("MAIN.{}", names[c]));
     line("Unit", &|c| units[c].to_owned());
@@ -180,15 +192,22 @@ fn labview(table: &Table) -> Vec<u8> {
 fn catman(table: &Table) -> Vec<u8> {
     let head = "Job: Prüfung 17\r\nBeginn: 05.03.2024 14:02:03\r\nKanäle: 8\r\n\r\n\
         Zeit  1 - Standardmessrate [s]\tDruck Sollwert [bar]\tMagnetventil [-]\tWerkstück Oberfläche [mm]\tDruck Regler [bar]\tKolbenweg [mm]\tLastzelle [kN]\tBeschleunigung [m/s²]\r\n";
-    let lines = table.lines("\t", ',', ["0", "1"], |ms| format!("{:.3}", ms as f64 * 1e-3).replace('.', ","));
-    WINDOWS_1252.encode(&(head.to_owned() + &lines)).0.into_owned()
+    let lines = table.lines("\t", ',', ["0", "1"], |ms| {
+        format!("{:.3}", ms as f64 * 1e-3).replace('.', ",")
+    });
+    WINDOWS_1252
+        .encode(&(head.to_owned() + &lines))
+        .0
+        .into_owned()
 }
 
 /// An export with commas and points, absolute pressures in kPa, a line of units.
 fn english(table: &Table) -> Vec<u8> {
     let head = "Data export,,,,,,,\r\nSample rate,250,Hz,,,,,\r\n\r\nTime,Set pressure,Valve,Wall position,Outlet pressure,Stroke,Contact force,Acceleration\r\n\
         (s),(kPa abs),(-),(mm),(kPa abs),(mm),(N),(m/s2)\r\n";
-    let lines = table.lines(",", '.', ["off", "on"], |ms| format!("{:.4}", ms as f64 * 1e-3));
+    let lines = table.lines(",", '.', ["off", "on"], |ms| {
+        format!("{:.4}", ms as f64 * 1e-3)
+    });
     (head.to_owned() + &lines).into_bytes()
 }
 
@@ -251,7 +270,15 @@ fn dialects() -> [Dialect; 10] {
             ..plain("pandas", "frame.csv", pandas)
         },
         Dialect {
-            units: [PSI, SI, INCH, PSI, INCH, (4.448_221_615_260_5, 0.0), (9.806_65, 0.0)],
+            units: [
+                PSI,
+                SI,
+                INCH,
+                PSI,
+                INCH,
+                (4.448_221_615_260_5, 0.0),
+                (9.806_65, 0.0),
+            ],
             decimals: [4, 0, 6, 4, 6, 4, 5],
             edit: Some((
                 "date_column = \"Date\"",
@@ -265,30 +292,56 @@ fn dialects() -> [Dialect; 10] {
 /// Drafts a map for logs and returns it.
 fn drafted(folder: &Folder, logs: &[&str]) -> (String, Outcome) {
     let outcome = folder.run(&[&["new", "import", "map.toml", "--force", "--from"], logs].concat());
-    assert_eq!((outcome.code, outcome.err.as_str()), (0, ""), "{}", outcome.out);
-    (std::fs::read_to_string(folder.path("map.toml")).unwrap(), outcome)
+    assert_eq!(
+        (outcome.code, outcome.err.as_str()),
+        (0, ""),
+        "{}",
+        outcome.out
+    );
+    (
+        std::fs::read_to_string(folder.path("map.toml")).unwrap(),
+        outcome,
+    )
 }
 
 /// Imports a log by the drafted map and compares it with the truth, to the last digit that the logger wrote.
 fn compare(folder: &Folder, dialect: &Dialect, truth: &Recording, map: &str) {
     let outcome = folder.idc(&["map.toml", dialect.file, "--out", "out.parquet", "--force"]);
     let name = dialect.name;
-    assert_eq!((outcome.code, outcome.err.as_str()), (0, ""), "{name}\n{map}");
-    assert!(!outcome.out.contains("doubtful"), "{name}\n{}\n{map}", outcome.out);
+    assert_eq!(
+        (outcome.code, outcome.err.as_str()),
+        (0, ""),
+        "{name}\n{map}"
+    );
+    assert!(
+        !outcome.out.contains("doubtful"),
+        "{name}\n{}\n{map}",
+        outcome.out
+    );
     let read = read_parquet(&folder.path("out.parquet")).unwrap().recording;
     assert_eq!(read.sample_count(), truth.sample_count(), "{name}");
     let since = |recording: &Recording, i: usize| recording.time()[i] - recording.time()[0];
     for i in 0..truth.sample_count() {
-        assert!((since(&read, i) - since(truth, i)).abs() < 1e-7, "{name}, time of row {i}");
+        assert!(
+            (since(&read, i) - since(truth, i)).abs() < 1e-7,
+            "{name}, time of row {i}"
+        );
     }
     for (c, channel) in CHANNELS.into_iter().enumerate() {
         let values = read.values(channel);
         let values = values.unwrap_or_else(|error| panic!("{name}: {error}\n{map}"));
         let digit = 0.5 * dialect.units[c].0 * 0.1f64.powi(dialect.decimals[c] as i32);
-        for (i, (own, right)) in values.iter().zip(truth.values(channel).unwrap()).enumerate() {
+        for (i, (own, right)) in values
+            .iter()
+            .zip(truth.values(channel).unwrap())
+            .enumerate()
+        {
             let same = own.is_nan() && right.is_nan();
             let near = (own - right).abs() <= 1.01 * digit + 1e-9 * right.abs();
-            assert!(same || near, "{name}: {channel}, row {i}: {own} for {right}\n{map}");
+            assert!(
+                same || near,
+                "{name}: {channel}, row {i}: {own} for {right}\n{map}"
+            );
         }
     }
 }
@@ -313,7 +366,11 @@ fn ten_loggers_are_read_by_maps_drafted_from_their_logs() {
             // Without the edit the log is refused, with what to write.
             let refused = folder.idc(&["map.toml", dialect.file]);
             assert_eq!(refused.code, 2, "{}", refused.out);
-            assert!(refused.only_line("error: ").contains("date_order"), "{}", refused.err);
+            assert!(
+                refused.only_line("error: ").contains("date_order"),
+                "{}",
+                refused.err
+            );
             map = map.replacen(from, to, 1);
             folder.write("map.toml", &map);
             edits += 1;
@@ -329,7 +386,14 @@ fn logs_of_one_kind_share_a_map_and_what_is_not_known_is_asked_for() {
     let folder = Folder::new();
     // No names, no units: times rise, one column is of two states, the others may be anything.
     for name in ["a.csv", "b.csv"] {
-        let row = |i: usize| format!("{},{},{:.3}\n", 4 * i, i / 30 % 2, 0.3 + 0.2 * (0.1 * i as f64).sin());
+        let row = |i: usize| {
+            format!(
+                "{},{},{:.3}\n",
+                4 * i,
+                i / 30 % 2,
+                0.3 + 0.2 * (0.1 * i as f64).sin()
+            )
+        };
         folder.write(name, (0..200).map(row).collect::<String>());
     }
     let (map, said) = drafted(&folder, &["a.csv", "b.csv"]);
@@ -351,17 +415,31 @@ fn logs_of_one_kind_share_a_map_and_what_is_not_known_is_asked_for() {
     let text: String = (0..200).map(row).collect();
     folder.write("c.csv", format!("time [ms],pressure\n{text}"));
     let (map, said) = drafted(&folder, &["c.csv"]);
-    assert!(map.contains("# unit = \"\"") && map.contains("asked: nothing says it"), "{map}");
-    assert!(said.out.contains("asked: unit of `pressure`"), "{}", said.out);
+    assert!(
+        map.contains("# unit = \"\"") && map.contains("asked: nothing says it"),
+        "{map}"
+    );
+    assert!(
+        said.out.contains("asked: unit of `pressure`"),
+        "{}",
+        said.out
+    );
     let refused = folder.idc(&["map.toml", "c.csv"]);
     assert_eq!(refused.code, 2);
-    assert!(refused.only_line("error: ").contains("unit"), "{}", refused.err);
+    assert!(
+        refused.only_line("error: ").contains("unit"),
+        "{}",
+        refused.err
+    );
 }
 
 #[test]
 fn constants_stand_for_what_a_log_does_not_have() {
     let folder = Folder::new();
-    folder.write("log.csv", (0..100).map(|i| format!("{i},{i}\n")).collect::<String>());
+    folder.write(
+        "log.csv",
+        (0..100).map(|i| format!("{i},{i}\n")).collect::<String>(),
+    );
     folder.map(
         "map.toml",
         "form = \"text\"\ntime = { column = 1, unit = \"ms\" }\n[[file.channel]]\nquantity = \"measured_force\"\ncolumn = 2\nunit = \"N\"\n\
@@ -382,7 +460,10 @@ fn encodings_may_be_named() {
     for (name, bytes) in [
         ("utf-8", UTF_8.encode(text).0.into_owned()),
         ("windows-1252", WINDOWS_1252.encode(text).0.into_owned()),
-        (UTF_16LE.name(), text.encode_utf16().flat_map(u16::to_le_bytes).collect()),
+        (
+            UTF_16LE.name(),
+            text.encode_utf16().flat_map(u16::to_le_bytes).collect(),
+        ),
     ] {
         let folder = Folder::new();
         folder.write("log.csv", bytes);
@@ -391,6 +472,10 @@ fn encodings_may_be_named() {
             &format!("form = \"text\"\nencoding = \"{name}\"\nseparator = \";\"\nnames_line = 1\ntime = {{ column = \"t\", unit = \"s\" }}\n[[file.channel]]\nquantity = \"size\"\ncolumn = \"Größe\"\nunit = \"1\"\n"),
         );
         let (stored, _) = folder.imported("map.toml", &["log.csv"]);
-        assert_eq!(stored.recording.values("size").unwrap(), [1.0, 2.0, 3.0], "{name}");
+        assert_eq!(
+            stored.recording.values("size").unwrap(),
+            [1.0, 2.0, 3.0],
+            "{name}"
+        );
     }
 }

@@ -151,7 +151,12 @@ fn texts_that_are_not_what_the_map_says() {
     refused(
         &folder,
         &["log.csv"],
-        &["log.csv:4: column `F` is `2.5`", "`0,5` of line 2", "mixes both marks", "write line 4 as `2,5`"],
+        &[
+            "log.csv:4: column `F` is `2.5`",
+            "`0,5` of line 2",
+            "mixes both marks",
+            "write line 4 as `2,5`",
+        ],
     );
     let stamped = map.replace(", unit = \"ms\"", "");
     folder.write("map.toml", &stamped);
@@ -159,9 +164,15 @@ fn texts_that_are_not_what_the_map_says() {
     refused(
         &folder,
         &["log.csv"],
-        &["log.csv:2: column `t` is `05.03. 14:02:03`", "`year = 2024` in [file.time]"],
+        &[
+            "log.csv:2: column `t` is `05.03. 14:02:03`",
+            "`year = 2024` in [file.time]",
+        ],
     );
-    folder.write("log.csv", "t;F\n03/05/2024 14:02:03;1\n03/05/2024 14:02:04;2\n");
+    folder.write(
+        "log.csv",
+        "t;F\n03/05/2024 14:02:03;1\n03/05/2024 14:02:04;2\n",
+    );
     refused(
         &folder,
         &["log.csv"],
@@ -173,7 +184,10 @@ fn texts_that_are_not_what_the_map_says() {
     refused(
         &folder,
         &["log.csv"],
-        &["log.csv:4: column `t` is `1.000`", "`thousands_mark = \".\"` makes 1000 of it"],
+        &[
+            "log.csv:4: column `t` is `1.000`",
+            "`thousands_mark = \".\"` makes 1000 of it",
+        ],
     );
     folder.write("map.toml", &map);
     folder.write("log.csv", "t;F\n998;1\n999;2\n1.000;3\n");

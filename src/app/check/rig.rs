@@ -85,11 +85,17 @@ fn describe(report: &mut Report, rig: &RigFile) {
     if plant.chain == Chain::Whole {
         report.fact("rate", format!("{} Hz", shown(rig.rate)));
         report.number("rate_hz", rig.rate);
-        let absent = COLUMNS.iter().zip(rig.sensors()).filter(|(_, there)| !there);
+        let absent = COLUMNS
+            .iter()
+            .zip(rig.sensors())
+            .filter(|(_, there)| !there);
         let absent: Vec<&str> = absent.map(|(column, _)| *column).collect();
         if !absent.is_empty() {
             let absent = absent.join(", ");
-            report.fact("no sensor of", format!("{absent} ([sensors] does not name it)"));
+            report.fact(
+                "no sensor of",
+                format!("{absent} ([sensors] does not name it)"),
+            );
         }
     }
 }

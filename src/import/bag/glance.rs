@@ -105,7 +105,11 @@ fn fields(topic: &Topic, joints: &[String]) -> Vec<(FieldSeen, Field, Picked)> {
         is_bool: definition.is_bool(path),
         values: Vec::new(),
     };
-    let lists = if joints.is_empty() { Vec::new() } else { definition.lists() };
+    let lists = if joints.is_empty() {
+        Vec::new()
+    } else {
+        definition.lists()
+    };
     let mut found = Vec::new();
     for list in &lists {
         let Some((field, _)) = definition.field(&format!("{list}[0]")) else {
@@ -119,8 +123,14 @@ fn fields(topic: &Topic, joints: &[String]) -> Vec<(FieldSeen, Field, Picked)> {
             found.push((seen(list, Some(joint)), field.clone(), picked));
         }
     }
-    let in_list = |path: &String| lists.iter().any(|list| path.starts_with(&format!("{list}[")));
-    let noise = |path: &String| path.starts_with("header.") || path.contains("covariance") || path.contains("layout.");
+    let in_list = |path: &String| {
+        lists
+            .iter()
+            .any(|list| path.starts_with(&format!("{list}[")))
+    };
+    let noise = |path: &String| {
+        path.starts_with("header.") || path.contains("covariance") || path.contains("layout.")
+    };
     for path in definition.numbers() {
         if in_list(&path) || noise(&path) {
             continue;

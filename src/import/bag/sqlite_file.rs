@@ -10,7 +10,8 @@ use super::store::{Message, There};
 /// A message's columns.
 const MESSAGES: &str = "SELECT topic_id, timestamp, data FROM messages ORDER BY id";
 const TOPICS: &str = "SELECT id, name, type, serialization_format FROM topics";
-const DEFINITIONS: &str = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions";
+const DEFINITIONS: &str =
+    "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions";
 
 /// Shows every message, and answers with why the file breaks off, if it does.
 pub(super) fn visit<E>(

@@ -63,7 +63,9 @@ pub(super) fn topics(
                     file: path.to_owned(),
                     column: channel.column.clone(),
                     found,
-                    expected: "messages of ROS 2: encoding `cdr`, their definition of encoding `ros2msg`".to_owned(),
+                    expected:
+                        "messages of ROS 2: encoding `cdr`, their definition of encoding `ros2msg`"
+                            .to_owned(),
                 })?;
                 let time = time_field(path, map, &owner.topic, &definition)?;
                 topics.push(Topic {
@@ -145,12 +147,20 @@ fn field_of(
     };
     if channel.frame.is_some() && !definition.has_frames() {
         let expected = "messages with a header, for `frame` to name one of its frames".to_owned();
-        return Err(refuse(format!("of {topic}, whose messages have no frames"), expected));
+        return Err(refuse(
+            format!("of {topic}, whose messages have no frames"),
+            expected,
+        ));
     }
     if channel.joint.is_some() {
         if !definition.has_joints() {
-            let expected = "messages with a list `name` or `joint_names`, for `joint` to name one of it".to_owned();
-            return Err(refuse(format!("of {topic}, whose messages name no joints"), expected));
+            let expected =
+                "messages with a list `name` or `joint_names`, for `joint` to name one of it"
+                    .to_owned();
+            return Err(refuse(
+                format!("of {topic}, whose messages name no joints"),
+                expected,
+            ));
         }
         // The element is found in each message, by the joint's place in it.
         let list = definition.field(&format!("{field_path}[0]"));
@@ -159,7 +169,10 @@ fn field_of(
             let found = format!("no list with a number for each joint in {topic}");
             let lists = definition.lists();
             let lists: Vec<String> = lists.iter().map(|list| format!("{topic}.{list}")).collect();
-            refuse(found, format!("one of {}, without an index", lists.join(", ")))
+            refuse(
+                found,
+                format!("one of {}, without an index", lists.join(", ")),
+            )
         })?;
         return Ok(element);
     }
@@ -168,7 +181,10 @@ fn field_of(
         return Ok(field);
     }
     let numbers = numbers_of(topic, definition, field_path);
-    Err(refuse(kind.words().to_owned(), format!("a number: {numbers}")))
+    Err(refuse(
+        kind.words().to_owned(),
+        format!("a number: {numbers}"),
+    ))
 }
 
 /// A field by its path, with the names there are where it is not.

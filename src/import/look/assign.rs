@@ -81,7 +81,11 @@ fn pick(place: usize, column: &Seen) -> Option<Pick> {
     let fits = |thing: Thing| {
         thing != Thing::Time
             && unit.is_none_or(|unit| names::units_of(thing).contains(&unit))
-            && (if thing == Thing::Valve { may_be_states } else { !is_states })
+            && (if thing == Thing::Valve {
+                may_be_states
+            } else {
+                !is_states
+            })
     };
     let by_name = said.thing.filter(|(thing, _)| fits(*thing));
     let set = said.roles.iter().find(|(role, _)| *role == Role::Set);
@@ -90,13 +94,18 @@ fn pick(place: usize, column: &Seen) -> Option<Pick> {
         None => format!("`{word}`"),
     };
     let (thing, mut worth, because) = match (by_name, unit) {
-        (Some((thing, word)), _) if !said.by_letter => {
-            (thing, WORD, Because::certain(format!("the name says {}", quoted(word))))
-        }
+        (Some((thing, word)), _) if !said.by_letter => (
+            thing,
+            WORD,
+            Because::certain(format!("the name says {}", quoted(word))),
+        ),
         (Some((thing, letter)), Some(_)) => (
             thing,
             WORD - 1,
-            Because::certain(format!("the unit fits, and the name says {}", quoted(letter))),
+            Because::certain(format!(
+                "the unit fits, and the name says {}",
+                quoted(letter)
+            )),
         ),
         (Some((thing, letter)), None) => (
             thing,
@@ -104,14 +113,17 @@ fn pick(place: usize, column: &Seen) -> Option<Pick> {
             Because::likely(format!("the name says {}", quoted(letter))),
         ),
         (None, _) if matches!(said.thing, Some((Thing::Other, _))) => return None,
-        (None, _) if is_states => (
-            Thing::Valve,
-            WEAK,
-            Because::likely("it is of two states"),
-        ),
+        (None, _) if is_states => (Thing::Valve, WEAK, Because::likely("it is of two states")),
         (None, Some(unit)) => {
-            let things = [Thing::Pressure, Thing::Force, Thing::Stroke, Thing::Acceleration];
-            let thing = things.into_iter().find(|t| names::units_of(*t).contains(&unit))?;
+            let things = [
+                Thing::Pressure,
+                Thing::Force,
+                Thing::Stroke,
+                Thing::Acceleration,
+            ];
+            let thing = things
+                .into_iter()
+                .find(|t| names::units_of(*t).contains(&unit))?;
             (thing, WEAK, Because::likely("its unit is that of one"))
         }
         (None, None) => return None,
@@ -153,7 +165,10 @@ fn quantity(thing: Thing, said: &Said) -> Option<&'static str> {
 
 /// Of two pressures without a word on which is commanded, it is the one that is held.
 fn split_pressures(columns: &[Seen], all: &mut [Pick]) {
-    if all.iter().any(|pick| pick.quantity == schema::SET_PRESSURE_GAUGE) {
+    if all
+        .iter()
+        .any(|pick| pick.quantity == schema::SET_PRESSURE_GAUGE)
+    {
         return;
     }
     let measured = schema::MEASURED_REGULATOR_PRESSURE_GAUGE;
@@ -161,12 +176,18 @@ fn split_pressures(columns: &[Seen], all: &mut [Pick]) {
     let pressures: Vec<usize> = (0..all.len())
         .filter(|index| all[*index].quantity == measured)
         .collect();
-    let of_held: Vec<usize> = pressures.iter().copied().filter(|i| held(&all[*i])).collect();
+    let of_held: Vec<usize> = pressures
+        .iter()
+        .copied()
+        .filter(|i| held(&all[*i]))
+        .collect();
     if let [only] = of_held[..]
         && pressures.len() > 1
     {
         all[only].quantity = schema::SET_PRESSURE_GAUGE;
-        all[only].because = Because::likely("of the pressures it is the one that is held and stepped, as a command is");
+        all[only].because = Because::likely(
+            "of the pressures it is the one that is held and stepped, as a command is",
+        );
     }
 }
 

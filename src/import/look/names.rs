@@ -202,7 +202,11 @@ mod tests {
             ("Temperatur [°C]", Thing::Other, None),
         ] {
             let said = said(name);
-            assert_eq!(said.thing.map(|(thing, _)| thing), Some(thing), "{name}: {said:?}");
+            assert_eq!(
+                said.thing.map(|(thing, _)| thing),
+                Some(thing),
+                "{name}: {said:?}"
+            );
             if let Some(role) = role {
                 assert!(said.has(role), "{name}: {said:?}");
             }

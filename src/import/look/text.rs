@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use super::marks::marks;
 use super::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen, names, units};
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Separator};
@@ -52,7 +53,8 @@ pub(super) fn look(path: &Path) -> Result<Looked, ImportError> {
     let header: Vec<Vec<String>> = sheet.header.iter().map(|l| fields(l, &separator)).collect();
     let names_line = names_line(&header, kinds.len());
     let units_line = units_line(&header, kinds.len(), names_line);
-    let (marks, marks_because) = marks(path, &sheet, &kinds)?;
+    let of_numbers: Vec<bool> = kinds.iter().map(|kind| *kind == Kind::Number).collect();
+    let (marks, marks_because) = marks(path, &sheet, &of_numbers)?;
     let mut head = vec![
         Line {
             key: "encoding",
@@ -130,7 +132,10 @@ fn kind(field: &str) -> Kind {
 
 /// The separator under which most is understood, with that share and the kinds of the columns.
 fn separator(text: &str) -> Option<(Separator, &'static str, f64, Vec<Kind>)> {
-    let filled: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
+    let filled: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.trim().is_empty())
+        .collect();
     // The header, if there is one, stands before.
     let body = &filled[filled.len() / 2..];
     let step = body.len().div_ceil(TRIED).max(1);
@@ -152,7 +157,9 @@ fn separator(text: &str) -> Option<(Separator, &'static str, f64, Vec<Kind>)> {
         let understood = understood.filter(|field| kind(field) != Kind::Text).count();
         let share = understood as f64 / (usual * tried.len()) as f64;
         let has_numbers = kinds.iter().any(|kind| *kind == Kind::Number);
-        let is_better = best.as_ref().is_none_or(|(_, _, most, _)| share > *most + 1e-9);
+        let is_better = best
+            .as_ref()
+            .is_none_or(|(_, _, most, _)| share > *most + 1e-9);
         if has_numbers && share >= UNDERSTOOD && is_better {
             best = Some((separator, name, share, kinds));
         }
@@ -209,9 +216,13 @@ fn first_row(lines: &[&str], separator: &Separator, kinds: &[Kind]) -> Option<us
 /// The line of the header, from 0, that names the columns best.
 fn names_line(header: &[Vec<String>], count: usize) -> Option<usize> {
     let worth = |row: &Vec<String>| {
-        let texts = row.iter().filter(|field| kind(field) == Kind::Text || kind(field) == Kind::State);
+        let texts = row
+            .iter()
+            .filter(|field| kind(field) == Kind::Text || kind(field) == Kind::State);
         let distinct: BTreeSet<&String> = texts.collect();
-        let known = row.iter().filter(|field| names::said(field).thing.is_some());
+        let known = row
+            .iter()
+            .filter(|field| names::said(field).thing.is_some());
         (distinct.len(), 2 * known.count() + distinct.len())
     };
     let mut best = None;
@@ -247,115 +258,6 @@ fn units_of_row(row: &[String]) -> Option<Vec<Option<SaidUnit>>> {
     let filled = row.iter().skip(1).filter(|cell| !blank(cell)).count();
     let known = said.iter().skip(1).flatten().count();
     (known > 0 && known == filled).then_some(said)
-}
-
-/// Decimal and thousands marks of all columns together, and how sure they are.
-fn marks(path: &Path, sheet: &Sheet, kinds: &[Kind]) -> Result<(Marks, Because), ImportError> {
-    let mut all: Vec<[Option<(u64, &str)>; 2]> = vec![[None; 2]; kinds.len()];
-    let (mut grouped, mut open, mut plain) = (None, None, false);
-    for (line, row) in &sheet.rows {
-        for (place, field) in row.iter().enumerate().take(kinds.len()) {
-            if kinds[place] != Kind::Number {
-                continue;
-            }
-            let decimal = match numbers::seen(field) {
-                numbers::Seen::Decimal(mark) => Some(mark),
-                numbers::Seen::Grouped(mark, decimal) => {
-                    grouped = Some(mark);
-                    decimal
-                }
-                numbers::Seen::Open(mark) => {
-                    open = Some(mark);
-                    None
-                }
-                numbers::Seen::Plain => {
-                    plain = true;
-                    None
-                }
-                numbers::Seen::Other => None,
-            };
-            if let Some(mark) = decimal {
-                let slot = &mut all[place][usize::from(mark == ',')];
-                *slot = slot.or(Some((*line, field)));
-            }
-        }
-    }
-    check_alike(path, sheet, &all)?;
-    let decimals: [Option<(u64, &str)>; 2] =
-        [0, 1].map(|mark| all.iter().find_map(|column| column[mark]));
-    let known = |mark: char| match mark {
-        '.' => decimals[0],
-        ',' => decimals[1],
-        _ => None,
-    };
-    let other = |mark: char| if mark == '.' { ',' } else { '.' };
-    let only = decimals.iter().position(Option::is_some).map(|at| ['.', ','][at]);
-    let marks = |decimal: char, thousands: Option<char>| Marks { decimal, thousands };
-    let seen = |mark: char| {
-        let (line, field) = known(mark).unwrap_or((0, ""));
-        Because::certain(format!("`{field}` in line {line}"))
-    };
-    Ok(match (only, grouped, open) {
-        (Some(decimal), grouped, _) if grouped.is_some() => (marks(decimal, grouped), seen(decimal)),
-        (Some(decimal), _, Some(mark)) if mark != decimal => (marks(decimal, Some(mark)), seen(decimal)),
-        (Some(decimal), ..) => (marks(decimal, None), seen(decimal)),
-        (None, Some(mark), _) => (
-            marks(if ".,".contains(mark) { other(mark) } else { '.' }, Some(mark)),
-            Because::likely("no number has decimals"),
-        ),
-        (None, None, Some(mark)) if plain => (
-            marks(other(mark), Some(mark)),
-            Because::likely(format!("`{mark}` stands before three digits and in large numbers alone")),
-        ),
-        (None, None, Some(mark)) => (
-            marks(mark, None),
-            Because::likely(format!("every number has `{mark}` before three digits")),
-        ),
-        (None, None, None) => (marks('.', None), Because::likely("no number has decimals")),
-    })
-}
-
-/// Refuses decimal marks of both kinds, in one column or in two.
-fn check_alike(
-    path: &Path,
-    sheet: &Sheet,
-    all: &[[Option<(u64, &str)>; 2]],
-) -> Result<(), ImportError> {
-    let refuse = |place: usize, line: u64, found: &str, expected: String| ImportError::Number {
-        file: path.to_owned(),
-        line,
-        column: Column::Number(place + 1),
-        found: found.to_owned(),
-        expected,
-    };
-    let marks = |decimal| Marks {
-        decimal,
-        thousands: None,
-    };
-    for (place, column) in all.iter().enumerate() {
-        if let [Some(point), Some(comma)] = column {
-            // The mark that comes first counts.
-            let (decimal, (line, field)) = if point < comma { ('.', *comma) } else { (',', *point) };
-            let rows = sheet.rows.iter();
-            let fields = rows.filter_map(|(line, row)| Some((*line, row.get(place)?)));
-            let expected = numbers::expected(field, line, marks(decimal), fields);
-            return Err(refuse(place, line, field, expected));
-        }
-    }
-    let first = |mark: usize| {
-        let mut columns = all.iter().enumerate();
-        columns.find_map(|(place, column)| Some((place, column[mark]?)))
-    };
-    match (first(0), first(1)) {
-        (Some((point, (_, its))), Some((place, (line, field)))) => {
-            let expected = format!(
-                "the decimal mark of column {}, `{its}`: `decimal_mark` can name one for the log; write one of the columns with the other's mark",
-                point + 1
-            );
-            Err(refuse(place, line, field, expected))
-        }
-        _ => Ok(()),
-    }
 }
 
 fn columns(

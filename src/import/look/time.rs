@@ -55,7 +55,10 @@ pub(super) fn choose(looked: &Looked, logs: usize) -> Option<TimeChoice> {
         let (column, why) = if stamped {
             ("header.stamp", "every message has a stamp")
         } else {
-            ("log_time", "not every message has a stamp; this is when it was logged")
+            (
+                "log_time",
+                "not every message has a stamp; this is when it was logged",
+            )
         };
         return Some(TimeChoice {
             keys: vec![("column", format!("{column:?}"))],
@@ -97,7 +100,12 @@ fn worth(place: usize, column: &Seen, logs: usize) -> Option<i32> {
             let worth = 3 * i32::from(named) + 2 * i32::from(in_time) + first;
             (rising && worth > 0 && !another && !is_other).then_some(worth + 1)
         }
-        Cells::Stamps { has, distinct, rows, .. } => {
+        Cells::Stamps {
+            has,
+            distinct,
+            rows,
+            ..
+        } => {
             let coarse = (*distinct as f64) < DISTINCT * *rows as f64;
             // A date by itself is the day of the times in another column.
             (has[1]).then_some(3 * i32::from(named) + 2 + first - 4 * i32::from(coarse))
@@ -119,7 +127,13 @@ fn rises(values: &[f64], logs: usize) -> Option<(bool, f64)> {
 }
 
 fn of_stamps(looked: &Looked, place: usize, choice: &mut TimeChoice) {
-    let Cells::Stamps { has, because, problem, .. } = &looked.columns[place].cells else {
+    let Cells::Stamps {
+        has,
+        because,
+        problem,
+        ..
+    } = &looked.columns[place].cells
+    else {
         return;
     };
     choice.because = because.clone();
@@ -128,7 +142,13 @@ fn of_stamps(looked: &Looked, place: usize, choice: &mut TimeChoice) {
         return;
     }
     let date = looked.columns.iter().position(|column| {
-        matches!(&column.cells, Cells::Stamps { has: [true, false], .. })
+        matches!(
+            &column.cells,
+            Cells::Stamps {
+                has: [true, false],
+                ..
+            }
+        )
     });
     let Some(date) = date else {
         choice.because.why += ", without a date: seconds since midnight";
@@ -137,7 +157,10 @@ fn of_stamps(looked: &Looked, place: usize, choice: &mut TimeChoice) {
     let column = &looked.columns[date];
     choice.keys.push(("date_column", written(&column.column)));
     choice.places.push(date);
-    if let Cells::Stamps { problem, because, .. } = &column.cells {
+    if let Cells::Stamps {
+        problem, because, ..
+    } = &column.cells
+    {
         choice.because.why += &format!(", dates apart: {}", because.why);
         choice.open.clone_from(problem);
     }
@@ -152,7 +175,8 @@ fn of_numbers(column: &Seen, logs: usize, choice: &mut TimeChoice) {
         choice.because.why += &format!(", which makes {} samples a second", shown(rate));
         return;
     }
-    let fits = |name: &&str| units::named(name).filter(|unit| USUAL.contains(&(1.0 / unit.to_si(step))));
+    let fits =
+        |name: &&str| units::named(name).filter(|unit| USUAL.contains(&(1.0 / unit.to_si(step))));
     let found: Vec<&LogUnit> = TRIED.iter().filter_map(fits).collect();
     let whole = (step - step.round()).abs() < 1e-9 * step;
     let best = match &found[..] {
@@ -165,7 +189,11 @@ fn of_numbers(column: &Seen, logs: usize, choice: &mut TimeChoice) {
         Some(unit) => {
             let rate = 1.0 / unit.to_si(step);
             choice.keys.push(("unit", format!("{:?}", unit.name)));
-            let others: Vec<&str> = found.iter().filter(|u| **u != unit).map(|u| u.name).collect();
+            let others: Vec<&str> = found
+                .iter()
+                .filter(|u| **u != unit)
+                .map(|u| u.name)
+                .collect();
             let also = if others.is_empty() {
                 String::new()
             } else {

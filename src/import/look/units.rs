@@ -25,17 +25,19 @@ const BY_SIZE: [(Unit, &[(f64, f64, &str)]); 5] = [
 
 /// The unit that a name says, with against what, where it says that.
 pub(super) fn of_name(name: &str) -> Option<SaidUnit> {
-    let bracketed = [('[', ']'), ('(', ')'), ('{', '}')].into_iter().find_map(|(open, close)| {
-        let (_, rest) = name.rsplit_once(open)?;
-        let (inside, after) = rest.split_once(close)?;
-        // `bar(g)` is a unit with a bracket of its own.
-        let own = name.trim_end();
-        let short = inside.len() <= 3 && pressure_of(inside).is_some() && after.is_empty();
-        if short && let Some(before) = own.rsplit([' ', '_', '[']).next() {
-            return of_text(before.trim_end_matches(']'));
-        }
-        of_text(inside)
-    });
+    let bracketed = [('[', ']'), ('(', ')'), ('{', '}')]
+        .into_iter()
+        .find_map(|(open, close)| {
+            let (_, rest) = name.rsplit_once(open)?;
+            let (inside, after) = rest.split_once(close)?;
+            // `bar(g)` is a unit with a bracket of its own.
+            let own = name.trim_end();
+            let short = inside.len() <= 3 && pressure_of(inside).is_some() && after.is_empty();
+            if short && let Some(before) = own.rsplit([' ', '_', '[']).next() {
+                return of_text(before.trim_end_matches(']'));
+            }
+            of_text(inside)
+        });
     let behind = || {
         [" in ", "/", ",", ";", ":"]
             .iter()
@@ -58,7 +60,9 @@ pub(super) fn of_name(name: &str) -> Option<SaidUnit> {
 fn of_small_letters(name: &str) -> Option<&'static LogUnit> {
     let (_, last) = name.rsplit_once('_')?;
     let (thing, _) = names::said(name).thing?;
-    let mut fitting = units::UNITS.iter().filter(|unit| names::units_of(thing).contains(&unit.si));
+    let mut fitting = units::UNITS
+        .iter()
+        .filter(|unit| names::units_of(thing).contains(&unit.si));
     fitting.find(|unit| unit.name.eq_ignore_ascii_case(last))
 }
 
@@ -116,7 +120,9 @@ fn pressure_of_name(name: &str) -> Option<Pressure> {
 pub(super) fn by_size(kind: Unit, [low, high]: [f64; 2]) -> Option<(&'static LogUnit, Because)> {
     let (_, ranges) = BY_SIZE.iter().find(|(of, _)| *of == kind)?;
     let peak = low.abs().max(high.abs());
-    let (.., name) = ranges.iter().find(|(least, most, _)| (*least..=*most).contains(&peak))?;
+    let (.., name) = ranges
+        .iter()
+        .find(|(least, most, _)| (*least..=*most).contains(&peak))?;
     let range = format!("{} to {}", shown(low), shown(high));
     Some((
         units::named(name)?,
@@ -212,7 +218,10 @@ mod tests {
         assert_eq!(of(Unit::Metre, 0.0, 0.048), Some("m"));
         let (kind, why) = by_rest(&[1.01, 1.02, 3.0, 4.0], units::named("bar").unwrap()).unwrap();
         assert_eq!(kind, Pressure::Absolute);
-        assert_eq!(why.to_string(), "likely: it rests at 1.01 bar, an atmosphere");
+        assert_eq!(
+            why.to_string(),
+            "likely: it rests at 1.01 bar, an atmosphere"
+        );
         assert_eq!(by_rest(&[2.5, 3.0], units::named("bar").unwrap()), None);
     }
 }

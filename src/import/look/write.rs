@@ -48,7 +48,11 @@ impl Page {
 
     fn put(&mut self, written: &str, comment: &str) {
         // Writing into a text cannot fail.
-        let _ = writeln!(self.text, "{written:<width$}# {comment}", width = COMMENT.max(written.chars().count() + 1));
+        let _ = writeln!(
+            self.text,
+            "{written:<width$}# {comment}",
+            width = COMMENT.max(written.chars().count() + 1)
+        );
     }
 
     fn plain(&mut self, line: &str) {
@@ -100,10 +104,16 @@ fn file(
         page.line(line.key, &line.value, &line.because);
     }
     let choice = time::choose(looked, paths.len());
-    let taken = choice.as_ref().map_or(Vec::new(), |choice| choice.places.clone());
+    let taken = choice
+        .as_ref()
+        .map_or(Vec::new(), |choice| choice.places.clone());
     match &choice {
         Some(choice) => {
-            let keys: Vec<String> = choice.keys.iter().map(|(k, v)| format!("{k} = {v}")).collect();
+            let keys: Vec<String> = choice
+                .keys
+                .iter()
+                .map(|(k, v)| format!("{k} = {v}"))
+                .collect();
             let line = format!("time = {{ {} }}", keys.join(", "));
             match &choice.open {
                 None => page.put(&line, &choice.because.to_string()),
@@ -121,16 +131,32 @@ fn file(
         None => {}
     }
     if index > 0 {
-        page.put("clock = \"shared\"", &format!(
-            "asked: is it the clock of {}? else \"unknown\" with `aligned_by`",
-            kinds[0].1.first().map_or_else(String::new, |path| name(path))
-        ));
+        page.put(
+            "clock = \"shared\"",
+            &format!(
+                "asked: is it the clock of {}? else \"unknown\" with `aligned_by`",
+                kinds[0]
+                    .1
+                    .first()
+                    .map_or_else(String::new, |path| name(path))
+            ),
+        );
     }
-    let given: Vec<String> = page.found.iter().map(|(quantity, _)| quantity.clone()).collect();
+    let given: Vec<String> = page
+        .found
+        .iter()
+        .map(|(quantity, _)| quantity.clone())
+        .collect();
     let mut picks = assign(&looked.columns, &taken);
     picks.retain(|pick| !given.iter().any(|quantity| quantity == pick.quantity));
     for pick in &picks {
-        channel(page, pick, &looked.columns[pick.place], &looked.columns, &picks);
+        channel(
+            page,
+            pick,
+            &looked.columns[pick.place],
+            &looked.columns,
+            &picks,
+        );
     }
     unused(page, looked, &taken, &picks);
 }
@@ -145,8 +171,12 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
     if let Some(joint) = &column.joint {
         page.plain(&format!("joint = {}", toml_text(joint)));
     }
-    page.found.push((pick.quantity.to_owned(), described(column)));
-    let said = column.unit.as_ref().filter(|said| said.unit.si == pick.kind);
+    page.found
+        .push((pick.quantity.to_owned(), described(column)));
+    let said = column
+        .unit
+        .as_ref()
+        .filter(|said| said.unit.si == pick.kind);
     let (unit, because) = match said {
         Some(said) => (said.unit, said.because.clone()),
         None if pick.kind == Unit::One => match crate::import::units::named("1") {
@@ -156,10 +186,20 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
         None => match units::by_size(pick.kind, [low, high]) {
             Some(found) => found,
             None => {
-                let what = format!("nothing says it, and {range} is usual in no unit alone; one of {}", units::choices(pick.kind));
-                page.ask("unit = \"\"", &what, &format!("unit of {}", described(column)));
+                let what = format!(
+                    "nothing says it, and {range} is usual in no unit alone; one of {}",
+                    units::choices(pick.kind)
+                );
+                page.ask(
+                    "unit = \"\"",
+                    &what,
+                    &format!("unit of {}", described(column)),
+                );
                 if pick.kind == Unit::Pascal {
-                    page.put("pressure = \"gauge\"", "likely: most sensors are; or \"absolute\"");
+                    page.put(
+                        "pressure = \"gauge\"",
+                        "likely: most sensors are; or \"absolute\"",
+                    );
                 }
                 return;
             }
@@ -175,11 +215,16 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
     });
     let of_other = || {
         // What two pressures of one log are against is the same.
-        let other = picks.iter().find(|other| other.kind == Unit::Pascal && other.place != pick.place)?;
+        let other = picks
+            .iter()
+            .find(|other| other.kind == Unit::Pascal && other.place != pick.place)?;
         let own = &columns[other.place];
         let unit = own.unit.as_ref()?.unit;
         let (pressure, _) = units::by_rest(own.numbers(), unit)?;
-        Some((pressure, Because::likely(format!("as {} is", described(own)))))
+        Some((
+            pressure,
+            Because::likely(format!("as {} is", described(own))),
+        ))
     };
     let found = by_name
         .or_else(|| units::by_rest(column.numbers(), unit))
@@ -227,13 +272,17 @@ fn unused(page: &mut Page, looked: &Looked, taken: &[usize], picks: &[Pick]) {
 /// What drives a whole device and no log holds.
 fn constants(page: &mut Page) {
     let found: Vec<&String> = page.found.iter().map(|(quantity, _)| quantity).collect();
-    let measured = QUANTITIES.iter().any(|(quantity, _)| found.iter().any(|f| *f == quantity));
+    let measured = QUANTITIES
+        .iter()
+        .any(|(quantity, _)| found.iter().any(|f| *f == quantity));
     let absent: Vec<_> = DRIVING
         .iter()
         .filter(|(quantity, ..)| !found.iter().any(|f| f == quantity))
         .collect();
     if !measured && page.open.is_empty() {
-        page.open.push("no column is known by its name or unit: each needs a [[file.channel]]".to_owned());
+        page.open.push(
+            "no column is known by its name or unit: each needs a [[file.channel]]".to_owned(),
+        );
     }
     for (quantity, what, keys) in absent {
         page.plain("");
@@ -246,5 +295,8 @@ fn constants(page: &mut Page) {
 
 fn name(path: &std::path::Path) -> String {
     let name = path.file_name().unwrap_or(path.as_os_str());
-    name.to_string_lossy().chars().filter(|c| !c.is_control()).collect()
+    name.to_string_lossy()
+        .chars()
+        .filter(|c| !c.is_control())
+        .collect()
 }
