@@ -97,6 +97,8 @@ struct Seen {
     name: String,
     /// Of a bag: the joint whose element it is.
     joint: Option<String>,
+    /// Of a bag: the frames that its messages are of.
+    frames: Vec<String>,
     unit: Option<SaidUnit>,
     cells: Cells,
 }

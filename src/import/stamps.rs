@@ -6,6 +6,9 @@
 
 use chrono::NaiveDate;
 
+use super::units;
+use crate::recording::Unit;
+
 const NANOSECONDS: i64 = 1_000_000_000;
 const DAY: i64 = 86_400 * NANOSECONDS;
 /// Days of a month of which none is a month.
@@ -135,7 +138,8 @@ fn unknown(text: &str) -> String {
     const FORMS: &str = "a stamp such as `2024-03-05T14:02:03.123Z`, `05.03.2024 14:02:03,123`, `14:02:03.123` or `T#1s250ms`";
     let is_number = text.replace(',', ".").trim().parse::<f64>().is_ok();
     if is_number {
-        return format!("{FORMS}; numbers need `unit` in [file.time]");
+        let units = units::of_kind(Unit::Second).join(", ");
+        return format!("{FORMS}; numbers need `unit` in [file.time], one of {units}");
     }
     FORMS.to_owned()
 }

@@ -204,8 +204,21 @@ fn a_map_is_drafted_from_a_bag() {
     ] {
         assert!(map.contains(words), "{map}\nlacks {words:?}");
     }
-    // The frames are two: the force is that of both until one is named.
+    // The frames are two, and only its owner knows which is meant.
+    let asked = "frames `tool0`, `base`";
+    assert!(
+        map.contains("# frame = \"tool0\"") && outcome.out.contains(asked),
+        "{map}"
+    );
+    folder.write("map.toml", map.replace("# frame", "frame"));
     let (stored, _) = folder.imported("map.toml", &["ride.db3"]);
+    let force = stored.recording.values("measured_force").unwrap();
+    assert!(
+        force
+            .iter()
+            .enumerate()
+            .all(|(row, v)| (v - truth(row).force).abs() < 1e-9)
+    );
     let stroke = stored.recording.values("measured_stroke").unwrap();
     assert!(
         stroke

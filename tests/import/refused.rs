@@ -123,12 +123,16 @@ fn texts_that_are_not_what_the_map_says() {
     spoil(
         5,
         "1006;12,5",
-        &["log.csv:5: column `F` is `12,5`", "`decimal_mark = \",\"`"],
+        &[
+            "log.csv:5: column `F` is `12,5`",
+            "mixes both marks",
+            "write line 5 as `12.5`",
+        ],
     );
     spoil(
         5,
         "1.006.000;12",
-        &["column `t` is `1.006.000`", "`thousands_mark`"],
+        &["column `t` is `1.006.000`", "`thousands_mark = \".\"`"],
     );
     // Bytes of code page 850 in a name, marks of both kinds, a date without a year.
     let folder = Folder::new();

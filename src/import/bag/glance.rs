@@ -28,6 +28,8 @@ pub(in crate::import) struct FieldSeen {
     pub joint: Option<String>,
     /// Is it true or false?
     pub is_bool: bool,
+    /// Frames that its messages are of.
+    pub frames: Vec<String>,
     /// Its values.
     pub values: Vec<f64>,
 }
@@ -83,6 +85,11 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
                 Err(_) => None,
             };
             seen.values.extend(number);
+            if let Some(frame) = read.frame().filter(|_| number.is_some())
+                && !seen.frames.contains(&frame)
+            {
+                seen.frames.push(frame);
+            }
         }
         Ok(())
     })?;
@@ -103,6 +110,7 @@ fn fields(topic: &Topic, joints: &[String]) -> Vec<(FieldSeen, Field, Picked)> {
         path: path.to_owned(),
         joint: joint.cloned(),
         is_bool: definition.is_bool(path),
+        frames: Vec::new(),
         values: Vec::new(),
     };
     let lists = if joints.is_empty() {

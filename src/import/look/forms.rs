@@ -45,6 +45,7 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
             column: Column::Name(name.clone()),
             name: name.clone(),
             joint: None,
+            frames: Vec::new(),
             unit: units::of_name(name),
             cells,
         });
@@ -65,6 +66,7 @@ pub(super) fn mat(path: &Path) -> Result<Looked, ImportError> {
         unit: units::of_name(&name),
         name,
         joint: None,
+        frames: Vec::new(),
         cells: Cells::Numbers(values),
     };
     Ok(Looked {
@@ -95,6 +97,7 @@ pub(super) fn bag(path: &Path) -> Result<Looked, ImportError> {
             column: Column::Name(field.column),
             name,
             joint,
+            frames: field.frames,
             cells,
         }
     };

@@ -288,6 +288,7 @@ fn columns(
             },
             name: name.cloned().unwrap_or_default(),
             joint: None,
+            frames: Vec::new(),
             unit: unit.or_else(|| units::of_cell(said?.get(place)?)),
             cells: match kind {
                 Kind::Number => Cells::Numbers(numbers()),

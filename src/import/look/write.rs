@@ -171,6 +171,17 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
     if let Some(joint) = &column.joint {
         page.plain(&format!("joint = {}", toml_text(joint)));
     }
+    if let [first, _, ..] = &column.frames[..] {
+        let frames: Vec<String> = column.frames.iter().map(|f| format!("`{f}`")).collect();
+        page.ask(
+            &format!("frame = {}", toml_text(first)),
+            &format!(
+                "messages of the frames {} are in it; which is meant?",
+                frames.join(", ")
+            ),
+            &described(column),
+        );
+    }
     page.found
         .push((pick.quantity.to_owned(), described(column)));
     let said = column
