@@ -1,5 +1,7 @@
 //! `idc import`: a planted course in every form of log comes back; what does not fit is refused by one line.
 
+mod bags;
+mod dialects;
 mod files;
 mod real;
 mod refused;
@@ -37,9 +39,14 @@ impl Folder {
         );
     }
 
+    /// Runs `idc import`.
     fn idc(&self, arguments: &[&str]) -> Outcome {
+        self.run(&[&["import"], arguments].concat())
+    }
+
+    /// Runs the program in the folder.
+    fn run(&self, arguments: &[&str]) -> Outcome {
         let output = Command::new(env!("CARGO_BIN_EXE_idc"))
-            .arg("import")
             .args(arguments)
             .current_dir(self.0.path())
             .output()

@@ -33,6 +33,82 @@ fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer,
     (answer(&place("answer")), case.sealed)
 }
 
+/// Rigs without an accelerometer: the rig file does not name it, the recordings lack its column or have one that counts nothing.
+#[test]
+fn a_device_without_an_accelerometer_is_diagnosed_by_its_other_sensors() {
+    let case = Recipe {
+        name: "no_accelerometer".to_owned(),
+        seed: 31,
+        effects: vec![("coulomb_viscous_friction", 1.0)],
+        duration: 5.0,
+        dirt: None,
+    }
+    .make()
+    .unwrap();
+    for keeps_column in [false, true] {
+        let room = tempfile::tempdir().unwrap();
+        let place = |part: &str| room.path().join(part);
+        write_case(&case, &place("case"), None).unwrap();
+        let rig = std::fs::read_to_string(place("case/rig.toml")).unwrap();
+        let told = |line: &&str| !line.starts_with("acceleration_m_per_s2");
+        let rig: Vec<&str> = rig.lines().filter(told).collect();
+        std::fs::write(place("case/rig.toml"), rig.join("\n") + "\n").unwrap();
+        if !keeps_column {
+            for name in ["stairs", "ride", "cycle"] {
+                let file = place(&format!("case/{name}.csv"));
+                let text = std::fs::read_to_string(&file).unwrap();
+                let short: Vec<&str> = text
+                    .lines()
+                    .map(|l| l.rsplit_once(',').unwrap().0)
+                    .collect();
+                std::fs::write(&file, short.join("\n") + "\n").unwrap();
+            }
+        }
+        for arguments in [
+            vec!["check"],
+            vec!["diagnose", "--quiet", "--out", "answer"],
+        ] {
+            let done = Command::new(env!("CARGO_BIN_EXE_idc"))
+                .args(arguments)
+                .arg("case")
+                .current_dir(room.path())
+                .output()
+                .unwrap();
+            assert!(
+                done.status.success(),
+                "{}",
+                String::from_utf8_lossy(&done.stderr)
+            );
+        }
+        let text = std::fs::read_to_string(place("answer/diagnosis.json")).unwrap();
+        assert!(
+            !text.contains("\"acceleration_m_per_s2\""),
+            "a channel that is not there"
+        );
+        let answer = answer(&place("answer"));
+        assert_eq!(named(&answer), ["coulomb_viscous_friction"]);
+        let concealed = &case.sealed.effects[0].parameters["coulomb_force_n"];
+        let Known::Number(truth) = concealed else {
+            panic!("{concealed:?}");
+        };
+        let found = &answer.effects[0].parameters;
+        let (_, force) = found
+            .iter()
+            .find(|(key, _)| key == "coulomb_force_n")
+            .unwrap();
+        assert!(
+            (force.value / truth - 1.0).abs() < 0.1,
+            "{} for {truth}",
+            force.value
+        );
+        let prediction = std::fs::read_to_string(place("answer/prediction.csv")).unwrap();
+        let header = prediction.lines().next().unwrap();
+        assert_eq!(header, "time_s,regulator_pressure_pa,stroke_m,force_n");
+        let improved = idc_cell::scenario::rig_file::load_rig(&place("answer/improved.toml"));
+        assert_eq!(improved.unwrap().sensors(), [true, true, true, false]);
+    }
+}
+
 fn answer(folder: &Path) -> Answer {
     let text = std::fs::read_to_string(folder.join("diagnosis.json")).unwrap();
     serde_json::from_str(&text).unwrap()

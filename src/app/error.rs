@@ -117,6 +117,12 @@ pub enum AppError {
     /// A log, or its map's columns.
     #[error(transparent)]
     Import(#[from] ImportError),
+    /// Only an import map is drafted from logs.
+    #[error("--from is of `idc new import`, and `idc new {kind}` was asked for")]
+    NotDrafted {
+        /// What was asked for.
+        kind: &'static str,
+    },
     /// Logs that do not come in the map's number.
     #[error("{given} logs were given, expected {each} or a multiple of it: {} has as many [[file]]", map.display())]
     Logs {

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
+use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
 
 /// For the help.
@@ -20,6 +21,9 @@ Examples:
   # A rig file and an import map, for logs of a device on a bench.
   idc new rig runs/mine/rig.toml
   idc new import runs/mine/map.toml
+  # An import map by looking at logs: what it tells of them and how sure it is
+  # stands in its comments, and what it asks for.
+  idc new import runs/mine/looked.toml --from assets/first/stairs.csv
   # Each can be checked.
   idc check runs/mine/rig.toml";
 
@@ -39,6 +43,9 @@ pub(super) struct NewArguments {
     kind: Kind,
     /// File to write [default: new_KIND.toml].
     file: Option<PathBuf>,
+    /// Logs for the map to be drafted by looking at them: text, .parquet, .mat, .mcap, .db3 or a bag's folder. A last one that ends in .toml is FILE.
+    #[arg(long, value_name = "LOG", num_args = 1.., help_heading = "Input")]
+    from: Vec<PathBuf>,
     /// The same as FILE.
     #[arg(
         long,
@@ -100,7 +107,15 @@ impl Kind {
 pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
     let kind = arguments.kind;
     let usual = || PathBuf::from(format!("new_{}.toml", kind.name()));
-    let given = arguments.file.clone().or_else(|| arguments.out.clone());
+    let mut logs = arguments.from.clone();
+    if !logs.is_empty() && !matches!(kind, Kind::Import) {
+        return Err(AppError::NotDrafted { kind: kind.name() });
+    }
+    let mut given = arguments.file.clone().or_else(|| arguments.out.clone());
+    let is_map = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "toml");
+    if given.is_none() && logs.len() > 1 && logs.last().as_ref().is_some_and(is_map) {
+        given = logs.pop();
+    }
     let file = given.unwrap_or_else(usual);
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     if let Some(letter) = stem.chars().find(|c| "\"\\".contains(*c) || c.is_control()) {
@@ -109,7 +124,14 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
             letter,
         });
     }
-    let files = files(kind, &file);
+    let drafted = match &logs[..] {
+        [] => None,
+        logs => Some(draft(&stem.replace('_', " "), logs)?),
+    };
+    let files = match &drafted {
+        None => files(kind, &file),
+        Some(draft) => vec![(file.clone(), draft.text.clone().into_bytes())],
+    };
     // All are looked at before the first is written. What stands there as it would be written can stay.
     let stays = |path: &Path, content: &[u8]| std::fs::read(path).is_ok_and(|old| old == content);
     let mut written = Vec::new();
@@ -124,14 +146,38 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
     }
     let paths = written.iter().map(|(path, _)| path.display().to_string());
     let paths: Vec<String> = paths.collect();
-    let next = kind.next(&file);
+    let next = match (&drafted, logs.first()) {
+        (Some(_), Some(log)) => format!("idc import {} {}", file.display(), log.display()),
+        _ => kind.next(&file),
+    };
     if arguments.json {
-        let document = serde_json::json!({ "kind": kind.name(), "written": paths, "next": next });
+        let mut document =
+            serde_json::json!({ "kind": kind.name(), "written": paths, "next": next });
+        if let Some(draft) = &drafted {
+            document["found"] = serde_json::json!(draft.found);
+            document["asked"] = serde_json::json!(draft.open);
+        }
         say(&format!("{document:#}\n"))?;
     } else if !arguments.quiet {
-        say(&format!("written: {}\nnext: {next}\n", paths.join(", ")))?;
+        let looked = drafted.as_ref().map_or(String::new(), told);
+        say(&format!(
+            "{looked}written: {}\nnext: {next}\n",
+            paths.join(", ")
+        ))?;
     }
     Ok(ExitCode::Done)
+}
+
+/// What was found in logs, and what is asked for, for people.
+fn told(draft: &Draft) -> String {
+    let wide = draft.found.iter().map(|(quantity, _)| quantity.len());
+    let wide = wide.max().unwrap_or(0);
+    let found = draft.found.iter();
+    let mut lines: Vec<String> = found
+        .map(|(quantity, column)| format!("{quantity:<wide$}  {column}"))
+        .collect();
+    lines.extend(draft.open.iter().map(|what| format!("asked: {what}")));
+    lines.iter().map(|line| format!("{line}\n")).collect()
 }
 
 /// The file and what it needs beside it, with their contents.

@@ -44,7 +44,7 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     let rig = load_rig(&arguments.rig)?;
     let file = arguments.inputs.display().to_string();
     let recording = read_rig(rig.plant.chain, &arguments.inputs)?;
-    let mut taken = recorded_of(rig.plant.chain, &file, &recording)?;
+    let mut taken = recorded_of(rig.plant.chain, &file, &recording)?.of_sensors(rig.sensors());
     for input in [&arguments.rig, &arguments.inputs] {
         if is_same(input, &arguments.out) {
             return Err(AppError::Overwrites {
@@ -59,7 +59,7 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     spinner.finish_and_clear();
     let rig_file = arguments.rig.display().to_string();
     check_finite(&rig_file, &file, time, &predicted)?;
-    let columns = shown_columns(rig.plant.chain, &predicted);
+    let columns = shown_columns(rig.plant.chain, rig.sensors(), &predicted);
     write_csv(&arguments.out, time, &columns)?;
     if arguments.quiet {
         return Ok(ExitCode::Done);

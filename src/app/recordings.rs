@@ -52,15 +52,16 @@ pub(super) fn check_finite(
     Ok(())
 }
 
-/// The columns of a prediction: all of a whole device's, that of the output of a part.
+/// The columns of a prediction: those of a whole device that it has sensors of, that of the output of a part.
 pub(super) fn shown_columns(
     chain: Chain,
+    sensors: [bool; CHANNELS.len()],
     predicted: &[Vec<f64>; CHANNELS.len()],
 ) -> Vec<(&'static str, &[f64])> {
     let output = chain.output().map(|channel| channel as usize);
     let columns = COLUMNS.into_iter().zip(predicted).enumerate();
     columns
-        .filter(|(place, _)| output.is_none_or(|output| output == *place))
+        .filter(|(place, _)| output.map_or(sensors[*place], |output| output == *place))
         .map(|(_, (column, values))| (column, values.as_slice()))
         .collect()
 }

@@ -122,7 +122,7 @@ pub fn prepare(case: &Case) -> Result<Prepared, RecordedError> {
             .check(&recording.file, &cleaning.noise, &case.noise)?;
         let name = &recording.name;
         if case.believed.chain == Chain::Whole {
-            notes.extend(missing(name, &readings));
+            notes.extend(missing(name, &readings, &case.noise));
         }
         if recording.recorded.filled > 0 {
             notes.push(format!(
@@ -152,11 +152,19 @@ pub fn prepare(case: &Case) -> Result<Prepared, RecordedError> {
     })
 }
 
-fn missing(name: &str, readings: &[Vec<f64>; CHANNELS.len()]) -> Vec<String> {
+/// Channels that a recording lacks, of those that the rig has sensors of.
+fn missing(
+    name: &str,
+    readings: &[Vec<f64>; CHANNELS.len()],
+    sheet: &[f64; CHANNELS.len()],
+) -> Vec<String> {
     let lacks = |values: &Vec<f64>| values.iter().all(|value| value.is_nan());
-    let absent = COLUMNS.into_iter().zip(readings).filter(|(_, v)| lacks(v));
+    let all = COLUMNS.into_iter().zip(readings).zip(sheet);
+    let absent = all.filter(|((_, values), noise)| noise.is_finite() && lacks(values));
     absent
-        .map(|(column, _)| format!("{name}: {column} was not measured; the diagnosis does without"))
+        .map(|((column, _), _)| {
+            format!("{name}: {column} was not measured; the diagnosis does without")
+        })
         .collect()
 }
 

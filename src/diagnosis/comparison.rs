@@ -151,6 +151,7 @@ impl Diagnosis {
             time: time.to_vec(),
             channels: channels
                 .filter(|channel| output.is_none_or(|output| output == *channel))
+                .filter(|channel| self.evidence.noise[*channel as usize].is_finite())
                 .filter(|channel| {
                     empty || measured[*channel as usize].iter().any(|v| v.is_finite())
                 })

@@ -284,7 +284,10 @@ impl Diagnosis {
             standard_deviation: self.evidence.noise[channel],
             shown: self.cleanings.iter().map(|c| c.noise[channel]).collect(),
         };
-        COLUMNS.into_iter().enumerate().map(of).collect()
+        // A rig without a sensor has no noise of it.
+        let there = |(channel, _): &(usize, &str)| self.evidence.noise[*channel].is_finite();
+        let all = COLUMNS.into_iter().enumerate();
+        all.filter(there).map(of).collect()
     }
 
     fn misfits(&self) -> Vec<ChannelMisfit> {

@@ -222,6 +222,17 @@ fn first_level(time: &[f64], readings: &[f64]) -> f64 {
 }
 
 impl Recorded {
+    /// Leaves out the readings of channels that the rig file has no sensor of: what they are worth is not known.
+    #[must_use]
+    pub fn of_sensors(mut self, sensors: [bool; CHANNELS.len()]) -> Self {
+        for (readings, is_there) in self.readings.iter_mut().zip(sensors) {
+            if !is_there {
+                readings.fill(f64::NAN);
+            }
+        }
+        self
+    }
+
     /// Checks that a rig can be diagnosed from it; `noise` is what the recording shows of each channel, `sheet` what the rig file says [SI].
     ///
     /// # Errors

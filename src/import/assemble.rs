@@ -113,6 +113,14 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
             ));
         }
     }
+    for constant in &map.constants {
+        let values = vec![constant.value; time.len()];
+        channels.push(Channel::new(
+            constant.quantity.clone(),
+            constant.unit,
+            values,
+        ));
+    }
     Ok(Imported {
         recording: Recording::new(time, channels, Vec::new())?,
         origin,

@@ -7,6 +7,7 @@ use super::log::Series;
 use super::map::{ChannelMap, Column, FileMap, Pressure};
 use super::units::{self, LogUnit, UNITS};
 use crate::recording::csv::median_step;
+use crate::recording::thousandfold::thousandfold;
 use crate::recording::{Recording, Unit};
 use nalgebra::{DMatrix, DVector};
 
@@ -48,6 +49,12 @@ pub fn of_channel(channel: &ChannelMap, found: &Finding, values: &[f64]) -> Vec<
         doubts.extend(by_counts(channel.unit, found.range, values));
     }
     doubts.extend(by_rest(channel, found.range, values));
+    if let Some(fallen) = thousandfold(values) {
+        doubts.push(format!(
+            "falls to a thousandth from one sample to the next {} times and never goes beyond: looks like a thousands mark read as a decimal mark; `thousands_mark` in [[file]] names it",
+            fallen.count
+        ));
+    }
     doubts
 }
 
@@ -117,7 +124,7 @@ fn by_name(channel: &ChannelMap) -> Option<String> {
 }
 
 /// The unit that a column's name ends with: in brackets, or behind an underscore where it cannot be a word or an index.
-fn unit_of_name(name: &str) -> Option<&'static LogUnit> {
+pub(super) fn unit_of_name(name: &str) -> Option<&'static LogUnit> {
     let name = name.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((_, inside)) = name.strip_suffix(close).and_then(|n| n.rsplit_once(open)) {

@@ -17,6 +17,15 @@ pub enum ImportError {
         /// Why.
         cause: String,
     },
+    /// A text whose encoding cannot be told, or is not the map's.
+    #[error("the encoding of {} cannot be told: {seen}; `encoding` in the map's [[file]] names it: \
+        encoding = \"windows-1252\", \"utf-8\", \"utf-16le\", \"windows-1251\", \"ibm866\" or another", file.display())]
+    Encoding {
+        /// The file.
+        file: PathBuf,
+        /// What was seen.
+        seen: String,
+    },
     /// The map names a column that is not there.
     #[error("{} has no {column}; there are {there}", file.display())]
     NoColumn {
@@ -110,7 +119,7 @@ pub enum ImportError {
         rows: usize,
     },
     /// A time that goes back.
-    #[error("{}:{line}: time {found} s after {before} s, expected it to increase", file.display())]
+    #[error("{}:{line}: time {found} s after {before} s, expected it to increase{advice}", file.display())]
     Time {
         /// The file.
         file: PathBuf,
@@ -120,6 +129,8 @@ pub enum ImportError {
         found: f64,
         /// The time before it [s].
         before: f64,
+        /// What it looks like, if that is known.
+        advice: &'static str,
     },
     /// Nothing is left.
     #[error("{}: of {rows} rows the map drops {dropped}, expected 2 at least to be left", file.display())]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::error::ImportError;
 use super::map::{Column, FileMap, Form};
-use super::{mat_log, mcap_log, parquet_log, text};
+use super::{bag, mat_log, parquet_log, text};
 
 /// Times from here on count from 1970, not from a start [s]: over three years.
 const EPOCH: f64 = 1e8;
@@ -86,7 +86,7 @@ pub fn read_log(path: &Path, map: &FileMap) -> Result<Log, ImportError> {
         Form::Text(form) => vec![text::read(path, form, map)?],
         Form::Parquet => vec![parquet_log::read(path, map)?],
         Form::Mat5 => vec![mat_log::read(path, map)?],
-        Form::Mcap => mcap_log::read(path, map)?,
+        Form::Bag => bag::read(path, map)?,
     };
     let mut log = Log {
         series: vec![Series::default(); map.channels.len()],
@@ -139,6 +139,18 @@ fn seconds(map: &FileMap, times: Times) -> (Vec<f64>, f64) {
     }
 }
 
+/// Ratio from which a time may have fallen by a thousand, less some steps.
+const THOUSANDFOLD: std::ops::RangeInclusive<f64> = 900.0..=1001.0;
+
+/// What a time that goes back to a thousandth looks like: `1.000` after `999`.
+fn fallen(time: f64, before: f64) -> &'static str {
+    if THOUSANDFOLD.contains(&(before / time)) {
+        "; it fell to a thousandth: is its mark one of thousands (`thousands_mark` in [file.time])?"
+    } else {
+        ""
+    }
+}
+
 /// Rows in SI, those left out that the map drops or that say nothing new.
 fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
     let Rows {
@@ -172,6 +184,7 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
                     line: lines[row],
                     found: time[row],
                     before: time[before],
+                    advice: fallen(time[row], time[before]),
                 });
             }
             if time[row] == time[before] {
@@ -221,7 +234,20 @@ pub(super) fn places(
     names: Option<&[String]>,
     count: usize,
 ) -> Result<(Option<usize>, Vec<usize>), ImportError> {
-    let place = |column: &Column| match column {
+    let place = |column: &Column| place(path, column, names, count);
+    let time = map.time.as_ref().map(|time| place(&time.column));
+    let channels = map.channels.iter().map(|channel| place(&channel.column));
+    Ok((time.transpose()?, channels.collect::<Result<_, _>>()?))
+}
+
+/// Where a column stands among named or numbered ones.
+pub(super) fn place(
+    path: &Path,
+    column: &Column,
+    names: Option<&[String]>,
+    count: usize,
+) -> Result<usize, ImportError> {
+    match column {
         Column::Number(number) if *number <= count => Ok(number - 1),
         Column::Number(_) => Err(ImportError::NoColumn {
             file: path.to_owned(),
@@ -239,10 +265,7 @@ pub(super) fn places(
                 },
             })
         }
-    };
-    let time = map.time.as_ref().map(|time| place(&time.column));
-    let channels = map.channels.iter().map(|channel| place(&channel.column));
-    Ok((time.transpose()?, channels.collect::<Result<_, _>>()?))
+    }
 }
 
 /// The names there are, the nearest first.

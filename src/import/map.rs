@@ -4,7 +4,9 @@
 
 use std::path::PathBuf;
 
+use super::stamps::DateOrder;
 use super::units::LogUnit;
+use crate::recording::Unit;
 
 /// What a quantity ends with whose pressure is above the atmosphere.
 pub const GAUGE: &str = "_gauge";
@@ -18,6 +20,19 @@ pub struct ImportMap {
     pub title: String,
     /// The logs that make one recording, the one whose clock counts first.
     pub files: Vec<FileMap>,
+    /// What no log holds and does not change.
+    pub constants: Vec<Constant>,
+}
+
+/// A quantity that no log holds, with the value that it has throughout.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    /// What it is.
+    pub quantity: String,
+    /// Its unit in SI.
+    pub unit: Unit,
+    /// Its value [SI]; NaN where there is none, as where no part stands.
+    pub value: f64,
 }
 
 /// One log.
@@ -33,7 +48,7 @@ pub struct FileMap {
     pub accepts_truncated: bool,
     /// Its clock.
     pub clock: Clock,
-    /// Its times; none for the times at which an MCAP's messages were logged.
+    /// Its times; none for the times at which a bag's messages were logged.
     pub time: Option<TimeMap>,
     /// Its channels.
     pub channels: Vec<ChannelMap>,
@@ -48,17 +63,21 @@ pub enum Form {
     Parquet,
     /// MATLAB's MAT, version 5.
     Mat5,
-    /// MCAP with ROS 2 messages.
-    Mcap,
+    /// A bag of ROS 2 messages: MCAP or SQLite, a file or the folder of one.
+    Bag,
 }
 
 /// How a text is written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextForm {
+    /// Its encoding, if the map says so.
+    pub encoding: Option<String>,
     /// What stands between fields.
     pub separator: Separator,
     /// What stands before the decimals.
     pub decimal_mark: char,
+    /// A mark that stands before every third digit of its numbers and means nothing.
+    pub thousands_mark: Option<char>,
     /// Lines before the first row.
     pub header_lines: usize,
     /// The one of them, from 1, that names the columns.
@@ -120,6 +139,12 @@ pub struct TimeMap {
     pub unit: Option<&'static LogUnit>,
     /// A mark that stands before every third digit and means nothing.
     pub thousands_mark: Option<char>,
+    /// Of stamps: where the date stands, if not beside the time.
+    pub date_column: Option<Column>,
+    /// Of stamps: the order of day, month and year, if the map says so.
+    pub date_order: Option<DateOrder>,
+    /// Of stamps without a year: the year.
+    pub year: Option<i32>,
 }
 
 /// A log's channel.
@@ -129,6 +154,10 @@ pub struct ChannelMap {
     pub quantity: String,
     /// Where.
     pub column: Column,
+    /// Of messages with lists: the joint whose element is meant, by its name in the message.
+    pub joint: Option<String>,
+    /// Of messages with frames: the one whose messages are meant.
+    pub frame: Option<String>,
     /// In what, after gain and offset.
     pub unit: &'static LogUnit,
     /// What a number is multiplied by, as of a sensor in volts.
@@ -175,6 +204,8 @@ impl ChannelMap {
         Self {
             quantity: quantity.to_owned(),
             column: Column::Number(2),
+            joint: None,
+            frame: None,
             unit,
             gain: 1.0,
             offset: 0.0,

@@ -2,19 +2,20 @@
 
 use std::path::Path;
 
-use super::kinds;
-use super::map::{
-    ChannelMap, Clock, FileMap, Form, GAUGE, ImportMap, Pressure, Separator, TextForm, TimeMap,
-};
-use super::units::{self, LogUnit};
+use super::encoding;
+use super::map::{Clock, FileMap, Form, ImportMap, Separator, TextForm, TimeMap};
+use super::stamps::DateOrder;
+use super::units;
 use crate::recording::Unit;
 use crate::scenario::ScenarioError;
 use crate::scenario::check::Section;
 use crate::scenario::document::{Document, read_text};
 
+mod channels;
 mod keys;
 
-use keys::{ChannelKeys, ClockKey, FileKeys, FormKey, MapFile, PressureKey, TimeKeys, sections};
+use channels::{channel_map, constant, unit};
+use keys::{ClockKey, DateOrderKey, FileKeys, FormKey, MapFile, TimeKeys, sections};
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
@@ -43,10 +44,15 @@ pub fn load_map(path: &Path) -> Result<ImportMap, ScenarioError> {
     if files.is_empty() {
         return Err(top.missing("file", "one [[file]] at least"));
     }
+    let constants = keys.constant.iter().enumerate();
+    let constants = constants
+        .map(|(index, keys)| constant(&document, format!("constant[{index}]"), keys, atmosphere))
+        .collect::<Result<_, _>>()?;
     let map = ImportMap {
         path: path.to_owned(),
         title: top.text("title", &keys.title)?,
         files,
+        constants,
     };
     check_together(&document, &map)?;
     Ok(map)
@@ -71,7 +77,7 @@ fn file_map(
         .as_ref()
         .map(|time| time_map(document, &table, keys.form, time))
         .transpose()?;
-    if time.is_none() && !matches!(keys.form, FormKey::Mcap) {
+    if time.is_none() && !matches!(keys.form, FormKey::Bag) {
         return Err(section.missing("time", "the column that holds the times, and its unit"));
     }
     if keys.channel.is_empty() {
@@ -80,6 +86,16 @@ fn file_map(
     if keys.accept_truncated.is_some() && matches!(keys.form, FormKey::Parquet) {
         let reason = "a Parquet file that is cut off cannot be read at all".to_owned();
         return Err(section.misplaced("accept_truncated", reason));
+    }
+    if !matches!(keys.form, FormKey::Bag) {
+        for (i, channel) in keys.channel.iter().enumerate() {
+            let section = Section::new(document, format!("{table}.channel[{i}]"));
+            for (key, given) in [("joint", &channel.joint), ("frame", &channel.frame)] {
+                if given.is_some() {
+                    return Err(section.misplaced(key, "only a bag's messages have it".to_owned()));
+                }
+            }
+        }
     }
     let channels = keys.channel.iter().enumerate();
     Ok(FileMap {
@@ -107,6 +123,8 @@ fn file_map(
 
 fn form(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
     let of_text = [
+        ("encoding", keys.encoding.is_some()),
+        ("thousands_mark", keys.thousands_mark.is_some()),
         ("separator", keys.separator.is_some()),
         ("field_widths", keys.field_widths.is_some()),
         ("decimal_mark", keys.decimal_mark.is_some()),
@@ -117,7 +135,7 @@ fn form(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
         FormKey::Text => return text_form(section, keys).map(Form::Text),
         FormKey::Parquet => Form::Parquet,
         FormKey::Mat5 => Form::Mat5,
-        FormKey::Mcap => Form::Mcap,
+        FormKey::Bag => Form::Bag,
     };
     match of_text.iter().find(|(_, given)| *given) {
         Some((key, _)) => Err(section.misplaced(key, "only a text has it".to_owned())),
@@ -163,9 +181,31 @@ fn text_form(section: &Section<'_>, keys: &FileKeys) -> Result<TextForm, Scenari
         let expected = "another character than between fields".to_owned();
         return Err(section.refuse("decimal_mark", format!("{decimal_mark:?}"), expected));
     }
+    let thousands_mark = match &keys.thousands_mark {
+        Some(mark) => Some(single(
+            section,
+            "thousands_mark",
+            mark,
+            "such as \".\" or \"'\"",
+        )?),
+        None => None,
+    };
+    if thousands_mark == Some(decimal_mark) {
+        let expected = "another character than `decimal_mark`".to_owned();
+        return Err(section.refuse("thousands_mark", format!("{decimal_mark:?}"), expected));
+    }
+    if let Some(name) = &keys.encoding
+        && !encoding::is_known(name)
+    {
+        let expected =
+            "an encoding, such as \"utf-8\", \"windows-1252\", \"utf-16le\" or \"utf-16be\"";
+        return Err(section.refuse("encoding", format!("{name:?}"), expected.to_owned()));
+    }
     Ok(TextForm {
+        encoding: keys.encoding.clone(),
         separator,
         decimal_mark,
+        thousands_mark,
         header_lines,
         names_line: keys.names_line,
     })
@@ -237,12 +277,31 @@ fn time_map(
     keys: &TimeKeys,
 ) -> Result<TimeMap, ScenarioError> {
     let section = Section::new(document, format!("{table}.time"));
-    if keys.unit.is_none() && matches!(form, FormKey::Text | FormKey::Mat5) {
+    if keys.unit.is_none() && matches!(form, FormKey::Mat5) {
         let expected = format!("one of {}", units::of_kind(Unit::Second).join(", "));
         return Err(section.missing("unit", &expected));
     }
-    if keys.thousands_mark.is_some() && !matches!(form, FormKey::Text) {
-        return Err(section.misplaced("thousands_mark", "only a text has it".to_owned()));
+    let of_stamps = [
+        ("date_column", keys.date_column.is_some()),
+        ("date_order", keys.date_order.is_some()),
+        ("year", keys.year.is_some()),
+    ];
+    for (key, given) in [("thousands_mark", keys.thousands_mark.is_some())]
+        .into_iter()
+        .chain(of_stamps)
+    {
+        if given && !matches!(form, FormKey::Text) {
+            return Err(section.misplaced(key, "only a text has it".to_owned()));
+        }
+    }
+    if let Some((key, _)) = of_stamps.into_iter().find(|(_, given)| *given)
+        && keys.unit.is_some()
+    {
+        let reason = "with a `unit` the times are numbers, and no stamps".to_owned();
+        return Err(section.misplaced(key, reason));
+    }
+    if let Some(year) = keys.year {
+        section.count("year", year, 1970..=2200)?;
     }
     let mark = |text: &String| single(&section, "thousands_mark", text, "such as \".\" or \"'\"");
     Ok(TimeMap {
@@ -252,96 +311,32 @@ fn time_map(
             None => None,
         },
         thousands_mark: keys.thousands_mark.as_ref().map(mark).transpose()?,
-    })
-}
-
-fn channel_map(
-    document: &Document<'_>,
-    table: String,
-    keys: &ChannelKeys,
-    atmosphere: f64,
-) -> Result<ChannelMap, ScenarioError> {
-    let section = Section::new(document, table);
-    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-    if keys.quantity.is_empty() || !keys.quantity.chars().all(plain) {
-        let expected = "a name of small letters, digits and underscores, without a unit".to_owned();
-        return Err(section.refuse("quantity", format!("{:?}", keys.quantity), expected));
-    }
-    let kinds = kinds::of_quantity(&keys.quantity);
-    let unit = unit(&section, &keys.unit, kinds.as_deref())?;
-    let gauge = keys.quantity.ends_with(GAUGE);
-    let above = match (unit.si, keys.pressure) {
-        (Unit::Pascal, None) => {
-            let expected = "\"gauge\" or \"absolute\": what the log holds";
-            return Err(section.missing("pressure", expected));
-        }
-        (Unit::Pascal, Some(PressureKey::Gauge)) if !gauge => atmosphere,
-        (Unit::Pascal, Some(PressureKey::Absolute)) if gauge => -atmosphere,
-        (Unit::Pascal, Some(_)) | (_, None) => 0.0,
-        (_, Some(_)) => {
-            let reason = format!("{} is no unit of a pressure", unit.name);
-            return Err(section.misplaced("pressure", reason));
-        }
-    };
-    Ok(ChannelMap {
-        quantity: keys.quantity.clone(),
-        column: keys.column.0.clone(),
-        unit,
-        gain: gain(&section, keys.gain)?,
-        offset: section.number_or("offset", keys.offset, 0.0, -1e12..=1e12)?,
-        reversed: keys.reversed.unwrap_or(false),
-        pressure: keys.pressure.map(|pressure| match pressure {
-            PressureKey::Gauge => Pressure::Gauge,
-            PressureKey::Absolute => Pressure::Absolute,
+        date_column: keys.date_column.as_ref().map(|column| column.0.clone()),
+        date_order: keys.date_order.map(|order| match order {
+            DateOrderKey::YearMonthDay => DateOrder::YearMonthDay,
+            DateOrderKey::DayMonthYear => DateOrder::DayMonthYear,
+            DateOrderKey::MonthDayYear => DateOrder::MonthDayYear,
         }),
-        above,
-    })
-}
-
-fn gain(section: &Section<'_>, given: Option<f64>) -> Result<f64, ScenarioError> {
-    match given {
-        Some(gain) if gain == 0.0 || !gain.is_finite() => Err(section.refuse(
-            "gain",
-            gain.to_string(),
-            "a number other than 0; `reversed = true` for the other sign".to_owned(),
-        )),
-        given => Ok(given.unwrap_or(1.0)),
-    }
-}
-
-/// A unit of one of these kinds, or of any.
-fn unit(
-    section: &Section<'_>,
-    name: &str,
-    kinds: Option<&[Unit]>,
-) -> Result<&'static LogUnit, ScenarioError> {
-    let known = units::named(name);
-    let fits = |unit: &&LogUnit| kinds.is_none_or(|kinds| kinds.contains(&unit.si));
-    known.filter(fits).ok_or_else(|| {
-        let of_kinds = |kinds: &[Unit]| {
-            kinds
-                .iter()
-                .flat_map(|kind| units::of_kind(*kind))
-                .collect()
-        };
-        let fitting: Vec<&str> = match kinds {
-            Some(kinds) => of_kinds(kinds),
-            None => units::UNITS.iter().map(|unit| unit.name).collect(),
-        };
-        let volts = match known {
-            Some(unit) if unit.si == Unit::Volt => {
-                "; of a sensor in volts the unit is what its `gain` makes of them"
-            }
-            _ => "",
-        };
-        let expected = format!("one of {}{volts}", fitting.join(", "));
-        section.refuse("unit", format!("{name:?}"), expected)
+        year: keys.year,
     })
 }
 
 /// Every quantity once, and clocks aligned by quantities that are there.
 fn check_together(document: &Document<'_>, map: &ImportMap) -> Result<(), ScenarioError> {
     let mut seen: Vec<&str> = Vec::new();
+    for (index, constant) in map.constants.iter().enumerate() {
+        let in_log = |file: &FileMap| {
+            file.channels
+                .iter()
+                .any(|c| c.quantity == constant.quantity)
+        };
+        if seen.contains(&constant.quantity.as_str()) || map.files.iter().any(in_log) {
+            let section = Section::new(document, format!("constant[{index}]"));
+            let expected = "every quantity once".to_owned();
+            return Err(section.refuse("quantity", format!("{:?}", constant.quantity), expected));
+        }
+        seen.push(&constant.quantity);
+    }
     for (index, file) in map.files.iter().enumerate() {
         let table = format!("file[{index}]");
         for (i, channel) in file.channels.iter().enumerate() {

@@ -119,6 +119,18 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
     })
 }
 
+/// The columns of a file by their names, as far as they can be read.
+pub(super) fn columns(path: &Path) -> Result<Vec<(String, Vec<f64>)>, ImportError> {
+    let fail = |cause: String| ImportError::Read {
+        file: path.to_owned(),
+        cause,
+    };
+    let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
+    let contents = contents(&bytes).map_err(fail)?;
+    let columns = contents.columns.into_iter();
+    Ok(columns.map(|column| (column.name, column.values)).collect())
+}
+
 /// Tells a file's elements apart and reads them one by one.
 fn contents(bytes: &[u8]) -> Result<Contents, String> {
     let is_hdf = bytes.starts_with(b"\x89HDF") || bytes.get(512..516) == Some(b"\x89HDF");

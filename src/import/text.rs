@@ -4,65 +4,113 @@ use std::path::Path;
 
 use csv::StringRecord;
 
+use super::encoding::{Told, decode};
 use super::error::ImportError;
-use super::log::{Remark, Rows, Times, places};
-use super::map::{Column, FileMap, Separator, TextForm};
+use super::log::{Remark, Rows, Times, place, places};
+use super::map::{ChannelMap, Column, FileMap, Separator, TextForm, TimeMap};
+use super::numbers::{self, Marks};
+use super::{stamps, words};
+use crate::recording::Unit;
 
-/// Words that stand for no value.
-const NOTHING: [&str; 6] = ["", "nan", "-nan", "na", "null", "-"];
+/// The lines of a text, those before its rows apart.
+pub(super) struct Sheet {
+    /// Lines before the rows.
+    pub header: Vec<String>,
+    /// Fields of each row, with its line from 1.
+    pub rows: Vec<(u64, StringRecord)>,
+    /// Does the last line end?
+    is_whole: bool,
+    /// Fields that the last row holds to their ends.
+    last_fields: usize,
+}
 
-/// Reads the rows of a text.
-pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, ImportError> {
+impl Sheet {
+    /// Takes a text apart, or says what the reader cannot.
+    pub fn of(text: &str, header_lines: usize, separator: &Separator) -> Result<Self, String> {
+        let (header, body) = split_after(text, header_lines);
+        let rows = records(body, header.len() as u64, separator).map_err(|e| e.to_string())?;
+        let last = rows.last().map_or(0, |(_, row)| row.len());
+        Ok(Self {
+            // A log that was cut off ends within a field, and what stands of it may be another number.
+            last_fields: match separator {
+                Separator::Widths(widths) => whole_fields(body, widths),
+                _ => last,
+            },
+            header: header.into_iter().map(str::to_owned).collect(),
+            rows,
+            is_whole: text.ends_with('\n'),
+        })
+    }
+}
+
+/// A text's content in its encoding, its lines ended alike.
+pub(super) fn content(path: &Path, encoding: Option<&str>) -> Result<(String, Told), ImportError> {
     let bytes = std::fs::read(path).map_err(|cause| ImportError::Read {
         file: path.to_owned(),
         cause: cause.to_string(),
     })?;
-    // A vendor's degree sign in another encoding is no reason to refuse the numbers.
-    let text = String::from_utf8_lossy(&bytes);
+    let (text, told) = decode(path, &bytes, encoding)?;
     // Of a line that ends with both, the reader counts the end to the next one.
-    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-    let whole = text.ends_with('\n');
-    let (header, body) = split_after(&text, form.header_lines);
-    let rows =
-        records(body, header.len() as u64, &form.separator).map_err(|cause| ImportError::Read {
-            file: path.to_owned(),
-            cause: cause.to_string(),
-        })?;
-    let Some((_, first)) = rows.first() else {
-        return Err(ImportError::Read {
-            file: path.to_owned(),
-            cause: format!("no rows after {} header lines", header.len()),
-        });
+    let text = text.replace("\r\n", "\n");
+    let text = if text.contains('\n') {
+        text
+    } else {
+        text.replace('\r', "\n")
     };
-    let names = match form.names_line.and_then(|line| header.get(line - 1)) {
-        Some(line) => records(line, 0, &form.separator).ok(),
-        None => None,
+    Ok((text, told))
+}
+
+/// The fields of one line.
+pub(super) fn fields(line: &str, separator: &Separator) -> Vec<String> {
+    let records = records(line, 0, separator).unwrap_or_default();
+    let first = records.into_iter().next();
+    first.map_or_else(Vec::new, |(_, record)| {
+        record.iter().map(str::to_owned).collect()
+    })
+}
+
+/// Reads the rows of a text.
+pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, ImportError> {
+    let fail = |cause: String| ImportError::Read {
+        file: path.to_owned(),
+        cause,
     };
-    let names: Option<Vec<String>> = names.and_then(|lines| {
-        let (_, names) = lines.into_iter().next()?;
-        Some(names.iter().map(str::to_owned).collect())
-    });
+    let (text, _) = content(path, form.encoding.as_deref())?;
+    let sheet = Sheet::of(&text, form.header_lines, &form.separator).map_err(fail)?;
+    let Some((_, first)) = sheet.rows.first() else {
+        return Err(fail(format!(
+            "no rows after {} header lines",
+            sheet.header.len()
+        )));
+    };
+    let names = form.names_line.and_then(|line| sheet.header.get(line - 1));
+    let names = names.map(|line| fields(line, &form.separator));
     let count = first.len();
     let (time_place, channel_places) = places(path, map, names.as_deref(), count)?;
-    let needed = channel_places
-        .iter()
-        .chain(&time_place)
-        .max()
-        .map_or(0, |most| most + 1);
+    let date_place = match map.time.as_ref().and_then(|time| time.date_column.as_ref()) {
+        Some(column) => Some(place(path, column, names.as_deref(), count)?),
+        None => None,
+    };
+    let all = channel_places.iter().chain(&time_place).chain(&date_place);
+    let needed = all.max().map_or(0, |most| most + 1);
     let mut found = Rows {
         channels: (0..map.channels.len()).collect(),
         columns: vec![Vec::new(); channel_places.len()],
         ..Rows::default()
     };
-    let mut times = Vec::new();
-    for (index, (line, row)) in rows.iter().enumerate() {
-        let is_last = index + 1 == rows.len();
-        // A log that was cut off ends within a field, and what stands of it may be another number.
-        let fields = match &form.separator {
-            Separator::Widths(widths) if is_last => whole_fields(body, widths),
-            _ => row.len(),
+    let reading = Reading {
+        path,
+        rows: &sheet.rows,
+        form,
+    };
+    for (index, (line, row)) in sheet.rows.iter().enumerate() {
+        let is_last = index + 1 == sheet.rows.len();
+        let fields = if is_last {
+            sheet.last_fields
+        } else {
+            row.len()
         };
-        if is_last && !whole && fields < count {
+        if is_last && !sheet.is_whole && fields < count {
             let torn = torn(path, *line, fields, count, found.lines.len());
             if !map.accepts_truncated {
                 return Err(torn);
@@ -79,32 +127,22 @@ pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, 
                 expected: needed,
             });
         }
-        let reading = Reading {
-            path,
-            line: *line,
-            decimal_mark: form.decimal_mark,
-        };
-        if let (Some(place), Some(time)) = (time_place, &map.time) {
-            times.push(reading.time(&row[place], &time.column, time.thousands_mark)?);
-        }
-        for (numbers, (place, channel)) in found
-            .columns
-            .iter_mut()
-            .zip(channel_places.iter().zip(&map.channels))
-        {
-            numbers.push(reading.number(&row[*place], &channel.column)?);
+        let columns = found.columns.iter_mut();
+        for (numbers, (place, channel)) in columns.zip(channel_places.iter().zip(&map.channels)) {
+            numbers.push(reading.number(index, *place, channel)?);
         }
         found.lines.push(*line);
         // A number that was cut off is shorter than the one before it.
-        let before = index
-            .checked_sub(1)
-            .and_then(|i| rows[i].1.iter().next_back());
+        let before = index.checked_sub(1);
+        let before = before.and_then(|i| sheet.rows[i].1.iter().next_back());
         let is_shorter = before.is_some_and(|text| row[row.len() - 1].len() < text.len());
-        if is_last && !whole && needed == row.len() && is_shorter {
+        if is_last && !sheet.is_whole && needed == row.len() && is_shorter {
             found.remarks.push(Remark::Unended(*line));
         }
     }
-    found.time = Times::Numbers(times);
+    if let (Some(place), Some(time)) = (time_place, &map.time) {
+        found.time = reading.times(found.lines.len(), [Some(place), date_place], time)?;
+    }
     Ok(found)
 }
 
@@ -191,69 +229,110 @@ fn cut<'a>(line: &'a str, widths: &[usize]) -> Vec<&'a str> {
     widths.iter().map(field).collect()
 }
 
-/// Where a field stands.
+/// The rows of a file, to be read as numbers.
 struct Reading<'a> {
     path: &'a Path,
-    line: u64,
-    decimal_mark: char,
+    rows: &'a [(u64, StringRecord)],
+    form: &'a TextForm,
 }
 
 impl Reading<'_> {
-    fn number(&self, field: &str, column: &Column) -> Result<f64, ImportError> {
-        if NOTHING.contains(&field.to_ascii_lowercase().as_str()) {
-            return Ok(f64::NAN);
+    fn marks(&self) -> Marks {
+        Marks {
+            decimal: self.form.decimal_mark,
+            thousands: self.form.thousands_mark,
         }
-        self.parse(field)
-            .ok_or_else(|| self.refuse(field, column, self.expected(field)))
     }
 
-    fn time(
+    fn number(&self, row: usize, place: usize, channel: &ChannelMap) -> Result<f64, ImportError> {
+        let (line, fields) = &self.rows[row];
+        let field = &fields[place];
+        // Only what has no unit can be of two states.
+        let of_states = channel.unit.si == Unit::One;
+        let number = if of_states {
+            self.marks().number_or_word(field)
+        } else {
+            self.marks().number(field)
+        };
+        number.ok_or_else(|| {
+            let expected = match self.expected(field, *line, place, self.marks()) {
+                plain if of_states && plain == "a number" => {
+                    format!("a number or a word such as {}", words::EXAMPLES)
+                }
+                other => other,
+            };
+            self.refuse(row, &channel.column, field, expected)
+        })
+    }
+
+    /// Times of the first rows, of a column of numbers or of stamps, whose dates may stand in another.
+    fn times(
         &self,
-        field: &str,
-        column: &Column,
-        thousands_mark: Option<char>,
-    ) -> Result<f64, ImportError> {
-        let plain: String = field
-            .chars()
-            .filter(|c| Some(*c) != thousands_mark)
-            .collect();
-        self.parse(&plain)
-            .filter(|time| time.is_finite())
-            .ok_or_else(|| {
-                let marks = field.matches(['.', ',', '\'']).count();
-                let expected = if marks > 1 && thousands_mark.is_none() {
-                    "a time; `thousands_mark` tells of marks before every third digit".to_owned()
-                } else {
-                    self.expected(field)
-                };
-                self.refuse(field, column, expected)
-            })
+        count: usize,
+        [place, date]: [Option<usize>; 2],
+        map: &TimeMap,
+    ) -> Result<Times, ImportError> {
+        let place = place.unwrap_or_default();
+        let rows = &self.rows[..count];
+        if map.unit.is_some() {
+            let times = (0..count).map(|row| self.time(row, place, map));
+            return Ok(Times::Numbers(times.collect::<Result<_, _>>()?));
+        }
+        let stamp = |(_, fields): &(u64, StringRecord)| match date {
+            Some(date) => format!("{} {}", &fields[date], &fields[place]),
+            None => fields[place].to_owned(),
+        };
+        let stamps: Vec<String> = rows.iter().map(stamp).collect();
+        let read = stamps::nanoseconds(&stamps, map.date_order, map.year);
+        read.map(Times::Nanoseconds).map_err(|unread| {
+            let found = &stamps[unread.index];
+            self.refuse(unread.index, &map.column, found, unread.expected)
+        })
     }
 
-    fn parse(&self, field: &str) -> Option<f64> {
-        if self.decimal_mark == '.' {
-            return field.parse().ok();
-        }
-        if field.contains('.') {
-            return None;
-        }
-        field.replace(self.decimal_mark, ".").parse().ok()
+    fn time(&self, row: usize, place: usize, map: &TimeMap) -> Result<f64, ImportError> {
+        let (line, fields) = &self.rows[row];
+        let field = &fields[place];
+        let own = self.marks();
+        let marks = Marks {
+            thousands: map.thousands_mark.or(own.thousands),
+            // A time whose marks all are of thousands has no decimals.
+            decimal: match map.thousands_mark {
+                Some(mark) if mark == own.decimal => {
+                    if mark == '.' {
+                        ','
+                    } else {
+                        '.'
+                    }
+                }
+                _ => own.decimal,
+            },
+        };
+        let time = marks.number(field).filter(|time| time.is_finite());
+        time.ok_or_else(|| {
+            let expected = if stamps::is_stamp(field) {
+                "a number; stamps say their unit themselves: leave out `unit` in [file.time]"
+                    .to_owned()
+            } else {
+                self.expected(field, *line, place, marks)
+                    .replacen("a number", "a time", 1)
+            };
+            self.refuse(row, &map.column, field, expected)
+        })
     }
 
-    fn expected(&self, field: &str) -> String {
-        let other = if self.decimal_mark == '.' { ',' } else { '.' };
-        if field.replace(other, ".").parse::<f64>().is_ok() {
-            return format!("a number; with `decimal_mark = \"{other}\"` it would be one");
-        }
-        "a number".to_owned()
+    fn expected(&self, field: &str, line: u64, place: usize, marks: Marks) -> String {
+        let column = self.rows.iter();
+        let column = column.filter_map(|(line, row)| Some((*line, row.get(place)?)));
+        numbers::expected(field, line, marks, column)
     }
 
-    fn refuse(&self, field: &str, column: &Column, expected: String) -> ImportError {
+    fn refuse(&self, row: usize, column: &Column, found: &str, expected: String) -> ImportError {
         ImportError::Number {
             file: self.path.to_owned(),
-            line: self.line,
+            line: self.rows[row].0,
             column: column.clone(),
-            found: field.to_owned(),
+            found: found.to_owned(),
             expected,
         }
     }

@@ -17,6 +17,7 @@ pub mod samples;
 pub mod scene;
 pub mod schema;
 pub mod table;
+pub mod thousandfold;
 pub mod unit;
 
 pub use error::RecordingError;

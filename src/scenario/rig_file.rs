@@ -47,7 +47,7 @@ pub struct RigFile {
     pub tolerances: Vec<Tolerance>,
     /// Samples per second [Hz].
     pub rate: f64,
-    /// Standard deviation of each sensor's noise, in the order of [`crate::plant::CHANNELS`].
+    /// Standard deviation of each sensor's noise, in the order of [`crate::plant::CHANNELS`]; infinite where the rig has no such sensor.
     pub noise: [f64; 4],
     /// Standard deviation of the pressure sensor's drift [Pa/s].
     pub pressure_drift: f64,
@@ -70,6 +70,14 @@ pub struct Tolerance {
     pub value: f64,
     /// Half the width of what is believed, relative to the value [1].
     pub tolerance: f64,
+}
+
+impl RigFile {
+    /// Which channels the rig has sensors of, in the order of [`crate::plant::CHANNELS`].
+    #[must_use]
+    pub fn sensors(&self) -> [bool; 4] {
+        self.noise.map(f64::is_finite)
+    }
 }
 
 /// Reads and checks a rig file.

@@ -6,7 +6,7 @@ use super::files::{self, truth, whole};
 use super::{Folder, channel, plain};
 
 /// Imports into `out.parquet` and expects to be told off in these words.
-fn refused(folder: &Folder, logs: &[&str], says: &[&str]) {
+pub fn refused(folder: &Folder, logs: &[&str], says: &[&str]) {
     let before = folder.names(".");
     let outcome = folder.idc(&[&["map.toml"], logs, &["--out", "out.parquet"]].concat());
     let line = outcome.only_line("error: ");
@@ -123,12 +123,82 @@ fn texts_that_are_not_what_the_map_says() {
     spoil(
         5,
         "1006;12,5",
-        &["log.csv:5: column `F` is `12,5`", "`decimal_mark = \",\"`"],
+        &[
+            "log.csv:5: column `F` is `12,5`",
+            "mixes both marks",
+            "write line 5 as `12.5`",
+        ],
     );
     spoil(
         5,
         "1.006.000;12",
-        &["column `t` is `1.006.000`", "`thousands_mark`"],
+        &["column `t` is `1.006.000`", "`thousands_mark = \".\"`"],
+    );
+    // Bytes of code page 850 in a name, marks of both kinds, a date without a year.
+    let folder = Folder::new();
+    plain(&folder, &["log.csv"]);
+    let text = std::fs::read(folder.path("log.csv")).unwrap();
+    folder.write("log.csv", [&b"Dr\x81cken;\x84\n"[..], &text].concat());
+    refused(
+        &folder,
+        &["log.csv"],
+        &[
+            "the encoding of log.csv cannot be told: line 1 holds the byte 0x81",
+            "encoding = \"windows-1252\"",
+        ],
+    );
+    let text = "t;F\n1;0,5\n2;1,25\n3;2.5\n4;3,5\n";
+    folder.write("log.csv", text);
+    let map = std::fs::read_to_string(folder.path("map.toml")).unwrap();
+    let with_comma = map.replace("names_line", "decimal_mark = \",\"\nnames_line");
+    folder.write("map.toml", &with_comma);
+    refused(
+        &folder,
+        &["log.csv"],
+        &[
+            "log.csv:4: column `F` is `2.5`",
+            "`0,5` of line 2",
+            "mixes both marks",
+            "write line 4 as `2,5`",
+        ],
+    );
+    let stamped = map.replace(", unit = \"ms\"", "");
+    folder.write("map.toml", &stamped);
+    folder.write("log.csv", "t;F\n05.03. 14:02:03;1\n05.03. 14:02:04;2\n");
+    refused(
+        &folder,
+        &["log.csv"],
+        &[
+            "log.csv:2: column `t` is `05.03. 14:02:03`",
+            "`year = 2024` in [file.time]",
+        ],
+    );
+    folder.write(
+        "log.csv",
+        "t;F\n03/05/2024 14:02:03;1\n03/05/2024 14:02:04;2\n",
+    );
+    refused(
+        &folder,
+        &["log.csv"],
+        &["`date_order = \"day-month-year\"`", "day 3 of month 5"],
+    );
+    // A thousand with its mark is no one.
+    folder.write("map.toml", &with_comma);
+    folder.write("log.csv", "t;F\n998;1,5\n999;2,5\n1.000;3,5\n");
+    refused(
+        &folder,
+        &["log.csv"],
+        &[
+            "log.csv:4: column `t` is `1.000`",
+            "`thousands_mark = \".\"` makes 1000 of it",
+        ],
+    );
+    folder.write("map.toml", &map);
+    folder.write("log.csv", "t;F\n998;1\n999;2\n1.000;3\n");
+    refused(
+        &folder,
+        &["log.csv"],
+        &["it fell to a thousandth", "thousands_mark"],
     );
     spoil(5, "1006", &["log.csv:5: 1 fields, expected at least 2"]);
     spoil(5, "900;12", &["log.csv:5: time 0.9 s after 1.004 s"]);

@@ -8,7 +8,12 @@ use super::super::recordings::read_rig;
 use super::report::{Report, shown};
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::plant::Chain;
+use crate::recording::csv::median_step;
+use crate::recording::thousandfold::thousandfold;
 use crate::scenario::rig_file::{RigFile, load_rig};
+
+/// Share by which a recording's rate may differ from the sheet's.
+const OTHER_RATE: f64 = 0.05;
 
 /// A rig file alone.
 pub(super) fn rig(file: &Path) -> Result<Report, AppError> {
@@ -80,6 +85,18 @@ fn describe(report: &mut Report, rig: &RigFile) {
     if plant.chain == Chain::Whole {
         report.fact("rate", format!("{} Hz", shown(rig.rate)));
         report.number("rate_hz", rig.rate);
+        let absent = COLUMNS
+            .iter()
+            .zip(rig.sensors())
+            .filter(|(_, there)| !there);
+        let absent: Vec<&str> = absent.map(|(column, _)| *column).collect();
+        if !absent.is_empty() {
+            let absent = absent.join(", ");
+            report.fact(
+                "no sensor of",
+                format!("{absent} ([sensors] does not name it)"),
+            );
+        }
     }
 }
 
@@ -98,7 +115,7 @@ fn recording(
     let mut measured = String::new();
     if rig.plant.chain != Chain::ContactFlange {
         let file = path.display().to_string();
-        let taken = recorded_of(rig.plant.chain, &file, &read)?;
+        let taken = recorded_of(rig.plant.chain, &file, &read)?.of_sensors(rig.sensors());
         let there = |channel: &usize| taken.readings[*channel].iter().any(|v| v.is_finite());
         let columns: Vec<&str> = (0..COLUMNS.len())
             .filter(there)
@@ -110,6 +127,30 @@ fn recording(
         };
     }
     let samples = read.sample_count();
+    let step = median_step(time);
+    if rig.plant.chain == Chain::Whole && step > 0.0 {
+        let rate = 1.0 / step;
+        if (rate / rig.rate - 1.0).abs() > OTHER_RATE {
+            report.note(format!(
+                "{name} has {} samples a second, rig.toml says {} (`rate_hz` in [sensors]): correct the one that is wrong; if it is the recording's, its times are in another unit than was said",
+                shown(rate),
+                shown(rig.rate)
+            ));
+        }
+    }
+    for channel in read.channels() {
+        if let Some(fallen) = thousandfold(&channel.values) {
+            let column = &channel.quantity;
+            report.note(format!(
+                "{name}: `{column}` falls to a thousandth from one sample to the next {} times, the first at {} s from {} to {}, and never goes beyond: \
+                 a thousands mark was read as a decimal mark; import the log again with `thousands_mark` in its map",
+                fallen.count,
+                shown(time[fallen.first]),
+                shown(channel.values[fallen.first - 1]),
+                shown(channel.values[fallen.first])
+            ));
+        }
+    }
     report.fact(
         "recording",
         format!(

@@ -72,7 +72,7 @@ pub(super) fn map(file: &Path) -> Result<Report, AppError> {
             Form::Text(_) => "a text",
             Form::Parquet => "Parquet",
             Form::Mat5 => "MATLAB",
-            Form::Mcap => "MCAP",
+            Form::Bag => "a bag",
         };
         let clock = match &log.clock {
             Clock::Shared { .. } => "",
@@ -93,6 +93,14 @@ pub(super) fn map(file: &Path) -> Result<Report, AppError> {
         if let Some(path) = &log.path {
             report.file("log", path);
         }
+    }
+    for constant in &map.constants {
+        let value = if constant.value.is_nan() {
+            "none".to_owned()
+        } else {
+            format!("{} {}", shown(constant.value), constant.unit.symbol())
+        };
+        report.fact("constant", format!("{}, {value}", constant.quantity));
     }
     report.number("logs", map.files.len());
     report.next(format!("idc import {} LOGS", file.display()));

@@ -259,7 +259,7 @@ fn prediction(case: &Case, plant: &PlantParameters) -> Result<Option<String>, Ap
     let inputs = &unseen.recorded.inputs;
     let predicted = simulate(plant, inputs).readings;
     check_finite(IMPROVED, &unseen.file, &inputs.time, &predicted)?;
-    let columns = shown_columns(plant.chain, &predicted);
+    let columns = shown_columns(plant.chain, case.noise.map(f64::is_finite), &predicted);
     Ok(Some(columns_text(&inputs.time, &columns)?))
 }
 
@@ -428,6 +428,7 @@ fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
         let path = folder.join(name);
         let file = path.display().to_string();
         let recorded = recorded_of(rig.plant.chain, &file, &read_rig(rig.plant.chain, &path)?)?;
+        let recorded = recorded.of_sensors(rig.sensors());
         Ok(NamedRecording {
             name: name.clone(),
             file,

@@ -18,6 +18,8 @@ pub(super) struct MapFile {
     pub title: String,
     pub atmosphere_pa: Option<f64>,
     pub file: Vec<FileKeys>,
+    #[serde(default)]
+    pub constant: Vec<ConstantKeys>,
 }
 
 /// `[[file]]`.
@@ -26,9 +28,11 @@ pub(super) struct MapFile {
 pub(super) struct FileKeys {
     pub path: Option<PathBuf>,
     pub form: FormKey,
+    pub encoding: Option<String>,
     pub separator: Option<String>,
     pub field_widths: Option<Vec<usize>>,
     pub decimal_mark: Option<String>,
+    pub thousands_mark: Option<String>,
     pub header_lines: Option<usize>,
     pub names_line: Option<usize>,
     pub drop_first_rows: Option<usize>,
@@ -49,7 +53,8 @@ pub(super) enum FormKey {
     Text,
     Parquet,
     Mat5,
-    Mcap,
+    #[serde(alias = "mcap")]
+    Bag,
 }
 
 /// `clock`.
@@ -67,6 +72,28 @@ pub(super) struct TimeKeys {
     pub column: ColumnKey,
     pub unit: Option<String>,
     pub thousands_mark: Option<String>,
+    pub date_column: Option<ColumnKey>,
+    pub date_order: Option<DateOrderKey>,
+    pub year: Option<i32>,
+}
+
+/// `date_order`.
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum DateOrderKey {
+    YearMonthDay,
+    DayMonthYear,
+    MonthDayYear,
+}
+
+/// `[[constant]]`.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ConstantKeys {
+    pub quantity: String,
+    pub value: f64,
+    pub unit: String,
+    pub pressure: Option<PressureKey>,
 }
 
 /// `[[file.channel]]`.
@@ -75,6 +102,8 @@ pub(super) struct TimeKeys {
 pub(super) struct ChannelKeys {
     pub quantity: String,
     pub column: ColumnKey,
+    pub joint: Option<String>,
+    pub frame: Option<String>,
     pub unit: String,
     pub gain: Option<f64>,
     pub offset: Option<f64>,
@@ -145,7 +174,7 @@ pub(super) fn schema() -> serde_json::Value {
     const PAGE: &str = include_str!("../../../assets/import/README.md");
     let rows = key_rows(PAGE);
     // The page has a table for each of these, in its order.
-    let tables = ["", "file", "file.time", "file.channel"];
+    let tables = ["", "file", "file.time", "file.channel", "constant"];
     describe(plain_schema::<MapFile>(), |table, key| {
         let place = tables.iter().position(|name| *name == table)?;
         let row = rows.get(place)?.iter().find(|row| row.names(key))?;
@@ -164,5 +193,6 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("file", keys::<FileKeys>()),
         ("file.time", keys::<TimeKeys>()),
         ("file.channel", keys::<ChannelKeys>()),
+        ("constant", keys::<ConstantKeys>()),
     ]
 }

@@ -216,6 +216,25 @@ fn the_lists_of_keys_agree() {
 }
 
 #[test]
+fn a_sensor_that_is_not_named_is_not_there_and_one_must_be() {
+    let without = |keys: &[&str]| {
+        let lines = RIG.lines();
+        let kept = lines.filter(|line| !keys.iter().any(|key| line.starts_with(key)));
+        kept.map(|line| format!("{line}\n")).collect::<String>()
+    };
+    let rig = from_text(Path::new("rig.toml"), &without(&["acceleration_m_per_s2"])).unwrap();
+    assert_eq!(rig.sensors(), [true, true, true, false]);
+    let keys = [
+        "acceleration_m_per_s2",
+        "regulator_pressure_pa",
+        "stroke_m = 2",
+        "force_n",
+    ];
+    let none = from_text(Path::new("rig.toml"), &without(&keys)).unwrap_err();
+    assert!(none.to_string().contains("one sensor at least"), "{none}");
+}
+
+#[test]
 fn values_in_common_units_are_recognised() {
     refused(
         "atmosphere_pa = 101325.0",

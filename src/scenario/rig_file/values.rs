@@ -230,24 +230,35 @@ pub(super) fn check_together(
     Ok(())
 }
 
-/// Rate [Hz] and noise in the order of the channels.
+/// Rate [Hz] and noise in the order of the channels; infinite for a channel that the rig has no sensor of: it tells nothing.
 pub(super) fn sensors(
     document: &Document<'_>,
     keys: &RigKeys,
     chain: Chain,
 ) -> Result<(f64, [f64; 4]), ScenarioError> {
-    let mut values = [1.0; SENSOR_KEYS.len()];
+    let mut values = [f64::INFINITY; SENSOR_KEYS.len()];
     let output = chain.output().map(|channel| channel as usize);
     for (index, (value, (dotted, range))) in values.iter_mut().zip(SENSOR_KEYS).enumerate() {
         let (table, key) = split(dotted);
-        let measured = output.is_none_or(|output| PLACES[index] == Some(output));
-        if !measured && !keys.sensors.contains_key(key) {
+        // The rate must be known, and of a part of the device its output's noise.
+        let is_asked = match output {
+            None => PLACES[index].is_none(),
+            Some(output) => PLACES[index] == Some(output),
+        };
+        if !is_asked && !keys.sensors.contains_key(key) {
+            // A part of the device may be told of no other sensor; its noise then does not count.
+            *value = if output.is_some() { 1.0 } else { *value };
             continue;
         }
         let section = Section::new(document, table);
         *value = exact(&section, key, find(&section, keys, table, key)?, range)?;
     }
     let [rate, noise @ ..] = values;
+    if noise.iter().all(|noise| noise.is_infinite()) {
+        let section = Section::new(document, "sensors");
+        let expected = "the noise of one sensor at least: regulator_pressure_pa, stroke_m, force_n or acceleration_m_per_s2";
+        return Err(section.missing("force_n", expected));
+    }
     Ok((rate, noise))
 }
 

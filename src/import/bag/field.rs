@@ -53,10 +53,47 @@ impl Kind {
     }
 }
 
+/// Which of a topic's messages, or of their elements, are meant.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Picked {
+    /// The joint, by its name.
+    pub joint: Option<String>,
+    /// The frame, by its name.
+    pub frame: Option<String>,
+}
+
+/// Lists that name the joints of a message, of `sensor_msgs/JointState` and of controllers' states.
+const JOINT_NAMES: [&str; 2] = ["name", "joint_names"];
+
 /// A message, read.
 pub(super) struct Message(Value);
 
 impl Definition {
+    /// Do its messages name joints, beside lists with an element for each?
+    pub fn has_joints(&self) -> bool {
+        let names = |list: &&&str| self.field(&format!("{list}[0]")).is_some();
+        JOINT_NAMES.iter().find(names).is_some()
+    }
+
+    /// Do its messages have a frame?
+    pub fn has_frames(&self) -> bool {
+        self.field("header.frame_id").is_some()
+    }
+
+    /// Is the field of a path true or false?
+    pub fn is_bool(&self, path: &str) -> bool {
+        // A field within another message is seldom a flag.
+        let own = self.schema.spec.fields.iter().find(|f| f.name == path);
+        own.is_some_and(|field| matches!(field.ty, Type::BuiltIn(BuiltInType::Bool)))
+    }
+
+    /// Paths of lists of numbers whose lengths the messages know.
+    pub fn lists(&self) -> Vec<String> {
+        let first = |path: String| path.strip_suffix("[0]").map(str::to_owned);
+        let listed = self.numbers().into_iter().filter_map(first);
+        listed.collect()
+    }
+
     /// Reads the definition of the messages of this name.
     pub fn parse(name: &str, text: &str) -> Result<Self, String> {
         let schema = MessageSchema::parse(name, text).map_err(|cause| format!("{cause:#}"))?;
@@ -225,7 +262,70 @@ fn steps(path: &str) -> Option<Vec<Step>> {
     Some(steps)
 }
 
+impl Field {
+    /// The same of another element of its list.
+    pub fn at(&self, place: usize) -> Self {
+        let mut steps = self.0.clone();
+        if let Some(Step::Index(index)) = steps.last_mut() {
+            *index = place;
+        }
+        Self(steps)
+    }
+}
+
 impl Message {
+    /// Names of its joints.
+    pub fn joints(&self) -> Vec<String> {
+        let Value::Message(fields) = &self.0 else {
+            return Vec::new();
+        };
+        let list = JOINT_NAMES.iter().find_map(|name| fields.get(*name));
+        match list {
+            Some(
+                Value::PrimitiveArray(PrimitiveArray::String(names))
+                | Value::PrimitiveSeq(PrimitiveArray::String(names)),
+            ) => names.clone(),
+            Some(Value::Array(names) | Value::Sequence(names)) => {
+                let text = |value: &Value| match value {
+                    Value::String(name) => name.clone(),
+                    _ => String::new(),
+                };
+                names.iter().map(text).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Name of its frame.
+    pub fn frame(&self) -> Option<String> {
+        let path = ["header", "frame_id"].map(|name| Step::Name(name.to_owned()));
+        match self.value(&path)? {
+            Value::String(name) => Some(name.clone()),
+            _ => None,
+        }
+    }
+
+    /// The place of the joint that is meant, if one is.
+    ///
+    /// # Errors
+    /// The joints, or the frame, that it is of instead.
+    pub fn place_of(&self, picked: &Picked) -> Result<Option<usize>, Vec<String>> {
+        if let Some(frame) = &picked.frame {
+            let own = self.frame().unwrap_or_default();
+            if own != *frame {
+                return Err(vec![own]);
+            }
+        }
+        let Some(joint) = &picked.joint else {
+            return Ok(None);
+        };
+        let names = self.joints();
+        match names.iter().position(|name| name == joint) {
+            Some(place) => Ok(Some(place)),
+            None => Err(names),
+        }
+    }
+
     fn value(&self, steps: &[Step]) -> Option<&Value> {
         let mut value = &self.0;
         for step in steps {

@@ -2,35 +2,15 @@
 //! read that is not what was written.
 
 use std::collections::BTreeMap;
-use std::convert::Infallible;
 
 use mcap::parse_record;
 use mcap::records::Record;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
+use super::store::{Message, There};
+
 /// Longest record or chunk [B]; a length beyond it is a damaged one.
 const LONGEST: usize = 1 << 30;
-
-/// A topic that is there, with the name, the encoding and the text of its definition.
-#[derive(Debug, Clone)]
-pub(super) struct There {
-    pub topic: String,
-    pub encoding: String,
-    pub schema: Option<(String, String, Vec<u8>)>,
-}
-
-/// A message.
-pub(super) struct Message<'a> {
-    /// Its topic.
-    pub there: &'a There,
-    /// Its number in the file, from 1.
-    pub number: u64,
-    /// When it was logged and published [ns].
-    pub logged: u64,
-    pub published: u64,
-    /// What it says.
-    pub data: &'a [u8],
-}
 
 /// Shows every message, and answers with why the file breaks off, if it does.
 pub(super) fn visit<E>(
@@ -88,49 +68,4 @@ pub(super) fn visit<E>(
         }
     }
     Ok(None)
-}
-
-/// What a file holds, up to where it breaks off.
-#[derive(Default)]
-pub(super) struct Scan {
-    /// Topics that have messages, in the order of their names.
-    pub there: Vec<There>,
-    /// Why it breaks off, if it does.
-    pub cause: Option<String>,
-    /// Messages, and the times at which the first and the last were logged [ns].
-    messages: usize,
-    logged: Option<[u64; 2]>,
-}
-
-impl Scan {
-    /// Looks through a file.
-    pub fn of(bytes: &[u8]) -> Self {
-        let mut scan = Self::default();
-        let mut topics: BTreeMap<String, There> = BTreeMap::new();
-        let seen = visit(bytes, |message| -> Result<(), Infallible> {
-            scan.messages += 1;
-            let [first, last] = scan.logged.unwrap_or([message.logged; 2]);
-            scan.logged = Some([first.min(message.logged), last.max(message.logged)]);
-            if !topics.contains_key(&message.there.topic) {
-                topics.insert(message.there.topic.clone(), message.there.clone());
-            }
-            Ok(())
-        });
-        let Ok(cause) = seen;
-        scan.cause = cause;
-        scan.there = topics.into_values().collect();
-        scan
-    }
-
-    /// What can be read of it.
-    pub fn rest(&self) -> String {
-        match self.logged {
-            Some([first, last]) => format!(
-                "the first {} messages can be read, the last of them {:.3} s after the first",
-                self.messages,
-                (last - first) as f64 * 1e-9
-            ),
-            None => "no message of it can be read".to_owned(),
-        }
-    }
 }

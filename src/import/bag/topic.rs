@@ -1,12 +1,13 @@
-//! Topics of an MCAP: which of them a map's channels name, their fields and their times, and the rows that their messages make.
+//! Topics of a bag: which of them a map's channels name, their fields and their times, and the rows that their messages make.
 
 use std::path::Path;
 
-use super::bag::{Message, There};
-use super::field::{Definition, Field, Kind};
+use super::definition::definition;
+use super::field::{Definition, Field, Kind, Picked};
+use super::store::{Message, There};
 use crate::import::error::ImportError;
 use crate::import::log::{Remark, Rows, Times, nearest_first};
-use crate::import::map::{Column, FileMap};
+use crate::import::map::{ChannelMap, Column, FileMap};
 use crate::import::units;
 use crate::recording::Unit;
 
@@ -14,10 +15,17 @@ use crate::recording::Unit;
 const LOG_TIME: &str = "log_time";
 const PUBLISH_TIME: &str = "publish_time";
 
-/// A topic's messages, their fields read.
+/// Most names that are kept for a message to list.
+const KEPT: usize = 64;
+
+/// A topic's messages, or those of one joint or frame, their fields read.
 pub(super) struct Topic {
     /// Its name.
     pub name: String,
+    /// The joint and the frame whose messages are meant; any where there is none.
+    picked: Picked,
+    /// Joints, or frames, that other messages are of.
+    others: Vec<String>,
     channels: Vec<usize>,
     definition: Definition,
     fields: Vec<Field>,
@@ -43,14 +51,27 @@ pub(super) fn topics(
     let mut topics: Vec<Topic> = Vec::new();
     for (index, channel) in map.channels.iter().enumerate() {
         let (owner, field_path) = owner(path, &channel.column, there)?;
-        let known = topics.iter().position(|topic| topic.name == owner.topic);
-        let place = match known {
+        let picked = Picked {
+            joint: channel.joint.clone(),
+            frame: channel.frame.clone(),
+        };
+        let known = |topic: &Topic| topic.name == owner.topic && topic.picked == picked;
+        let place = match topics.iter().position(known) {
             Some(place) => place,
             None => {
-                let definition = definition(path, &channel.column, owner)?;
+                let definition = definition(owner).map_err(|found| ImportError::Kind {
+                    file: path.to_owned(),
+                    column: channel.column.clone(),
+                    found,
+                    expected:
+                        "messages of ROS 2: encoding `cdr`, their definition of encoding `ros2msg`"
+                            .to_owned(),
+                })?;
                 let time = time_field(path, map, &owner.topic, &definition)?;
                 topics.push(Topic {
                     name: owner.topic.clone(),
+                    picked,
+                    others: Vec::new(),
                     channels: Vec::new(),
                     definition,
                     fields: Vec::new(),
@@ -61,24 +82,7 @@ pub(super) fn topics(
             }
         };
         let topic = &mut topics[place];
-        let (field, kind) = find(
-            path,
-            &channel.column,
-            &topic.name,
-            &topic.definition,
-            field_path,
-        )?;
-        if kind != Kind::Number {
-            return Err(ImportError::Kind {
-                file: path.to_owned(),
-                column: channel.column.clone(),
-                found: kind.words().to_owned(),
-                expected: format!(
-                    "a number: {}",
-                    numbers_of(&topic.name, &topic.definition, field_path)
-                ),
-            });
-        }
+        let field = field_of(path, channel, &topic.name, &topic.definition, field_path)?;
         topic.channels.push(index);
         topic.fields.push(field);
     }
@@ -127,29 +131,60 @@ fn owner<'a>(
     })
 }
 
-fn definition(path: &Path, column: &Column, owner: &There) -> Result<Definition, ImportError> {
-    let refuse = |found: String| ImportError::Kind {
+/// The field of a channel, which must be a number, or a list of them where a joint is named.
+fn field_of(
+    path: &Path,
+    channel: &ChannelMap,
+    topic: &str,
+    definition: &Definition,
+    field_path: &str,
+) -> Result<Field, ImportError> {
+    let refuse = |found: String, expected: String| ImportError::Kind {
         file: path.to_owned(),
-        column: column.clone(),
+        column: channel.column.clone(),
         found,
-        expected: "messages of ROS 2: encoding `cdr`, their definition of encoding `ros2msg`"
-            .to_owned(),
+        expected,
     };
-    match &owner.schema {
-        Some((name, encoding, data)) if encoding == "ros2msg" && owner.encoding == "cdr" => {
-            let text = String::from_utf8_lossy(data);
-            Definition::parse(name, &text).map_err(|cause| {
-                refuse(format!(
-                    "of messages whose definition cannot be read ({cause})"
-                ))
-            })
-        }
-        Some((_, encoding, _)) => Err(refuse(format!(
-            "of messages of encoding `{}` with a definition of encoding `{encoding}`",
-            owner.encoding
-        ))),
-        None => Err(refuse("of messages without a definition".to_owned())),
+    if channel.frame.is_some() && !definition.has_frames() {
+        let expected = "messages with a header, for `frame` to name one of its frames".to_owned();
+        return Err(refuse(
+            format!("of {topic}, whose messages have no frames"),
+            expected,
+        ));
     }
+    if channel.joint.is_some() {
+        if !definition.has_joints() {
+            let expected =
+                "messages with a list `name` or `joint_names`, for `joint` to name one of it"
+                    .to_owned();
+            return Err(refuse(
+                format!("of {topic}, whose messages name no joints"),
+                expected,
+            ));
+        }
+        // The element is found in each message, by the joint's place in it.
+        let list = definition.field(&format!("{field_path}[0]"));
+        let list = list.filter(|(_, kind)| *kind == Kind::Number);
+        let (element, _) = list.ok_or_else(|| {
+            let found = format!("no list with a number for each joint in {topic}");
+            let lists = definition.lists();
+            let lists: Vec<String> = lists.iter().map(|list| format!("{topic}.{list}")).collect();
+            refuse(
+                found,
+                format!("one of {}, without an index", lists.join(", ")),
+            )
+        })?;
+        return Ok(element);
+    }
+    let (field, kind) = find(path, &channel.column, topic, definition, field_path)?;
+    if kind == Kind::Number {
+        return Ok(field);
+    }
+    let numbers = numbers_of(topic, definition, field_path);
+    Err(refuse(
+        kind.words().to_owned(),
+        format!("a number: {numbers}"),
+    ))
 }
 
 /// A field by its path, with the names there are where it is not.
@@ -205,7 +240,7 @@ fn time_field(
             let expected = format!(
                 "`{LOG_TIME}`, `{PUBLISH_TIME}` or a field of every topic's messages, such as `header.stamp`"
             );
-            return Err(refuse("no times of an MCAP", expected));
+            return Err(refuse("no times of a bag", expected));
         }
     };
     match name.as_str() {
@@ -252,6 +287,17 @@ impl Topic {
         };
         let reading = self.definition.decode(message.data).map_err(fail)?;
         let nanoseconds = |ns: u64| i64::try_from(ns).unwrap_or(i64::MAX);
+        let place = match reading.place_of(&self.picked) {
+            Ok(place) => place,
+            Err(others) => {
+                for name in others {
+                    if self.others.len() < KEPT && !self.others.contains(&name) {
+                        self.others.push(name);
+                    }
+                }
+                return Ok(());
+            }
+        };
         let (mut seconds, mut stamp) = (0.0, 0);
         match &self.time {
             TimeField::Log => stamp = nanoseconds(message.logged),
@@ -266,11 +312,35 @@ impl Topic {
                 seconds = time.ok_or_else(|| fail("it has no time".to_owned()))?;
             }
         }
-        let value = |field: &Field| reading.number(field).unwrap_or(f64::NAN);
+        let value = |field: &Field| {
+            let number = match place {
+                Some(place) => reading.number(&field.at(place)),
+                None => reading.number(field),
+            };
+            number.unwrap_or(f64::NAN)
+        };
         let values = self.fields.iter().map(value).collect();
         self.rows
             .push((message.logged, message.number, seconds, stamp, values));
         Ok(())
+    }
+
+    /// Refuses a joint or a frame that no message is of.
+    fn picks_nothing(&self, path: &Path, column: Column) -> ImportError {
+        let (key, name) = match (&self.picked.joint, &self.picked.frame) {
+            (Some(joint), _) => ("joint", joint.as_str()),
+            (None, frame) => ("frame", frame.as_deref().unwrap_or_default()),
+        };
+        ImportError::Kind {
+            file: path.to_owned(),
+            column,
+            found: format!("of no {key} `{name}`"),
+            expected: format!(
+                "`{key}` to be one of those in {}: {}",
+                self.name,
+                nearest_first(name, &self.others)
+            ),
+        }
     }
 
     /// Its rows, in the order in which they were logged: within a file they may stand in another.
@@ -281,9 +351,13 @@ impl Topic {
         remarks: &[Remark],
     ) -> Result<Rows, ImportError> {
         self.rows.sort_by_key(|row| (row.0, row.1));
+        if self.rows.is_empty() {
+            let column = map.channels[self.channels[0]].column.clone();
+            return Err(self.picks_nothing(path, column));
+        }
         for (place, channel) in self.channels.iter().enumerate() {
             let empty = self.rows.iter().all(|row| row.4[place].is_nan());
-            if empty && !self.rows.is_empty() {
+            if empty {
                 return Err(ImportError::Kind {
                     file: path.to_owned(),
                     column: map.channels[*channel].column.clone(),

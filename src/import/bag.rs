@@ -1,0 +1,67 @@
+//! A log as a bag of ROS 2 messages, MCAP or SQLite: a channel is a field of a topic's messages, `/wrench.wrench.force.z`, `/joint_states.position[1]`, or of
+//! a joint by its name.
+//!
+//! The messages' definitions stand in the file (encoding `ros2msg`), so any is read; of a SQLite bag from before ROS 2 Iron they do not, and the usual ones
+//! are known (`standard`). Each topic has times of its own.
+
+use std::path::Path;
+
+use super::error::ImportError;
+use super::log::{Remark, Rows};
+use super::map::FileMap;
+
+mod definition;
+mod field;
+pub(super) mod glance;
+mod mcap_file;
+mod sqlite_file;
+mod standard;
+mod store;
+mod topic;
+
+use store::{Scan, Stores};
+use topic::topics;
+
+/// Reads the topics that a map's channels name, the first channel's first.
+pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError> {
+    let stores = open(path)?;
+    let scan = Scan::of(&stores);
+    let mut remarks = Vec::new();
+    if let Some(cause) = &scan.cause {
+        let rest = scan.rest();
+        if !map.accepts_truncated {
+            let repaired = stores.repaired_by();
+            return Err(ImportError::Truncated {
+                file: path.to_owned(),
+                found: cause.clone(),
+                rest,
+                advice: format!(
+                    "`{repaired}` repairs it, or `accept_truncated = true` in the map's [[file]] uses them"
+                ),
+            });
+        }
+        remarks.push(Remark::Truncated(format!(
+            "it is cut off or damaged: {cause}; {rest}"
+        )));
+    }
+    let mut topics = topics(path, map, &scan.there)?;
+    // Where it ends was found out before.
+    stores.visit(|message| {
+        let of_message = |topic: &&mut topic::Topic| topic.name == message.there.topic;
+        topics
+            .iter_mut()
+            .filter(of_message)
+            .try_for_each(|topic| topic.take(path, message))
+    })?;
+    topics
+        .into_iter()
+        .map(|topic| topic.into_rows(path, map, &remarks))
+        .collect()
+}
+
+fn open(path: &Path) -> Result<Stores, ImportError> {
+    Stores::open(path).map_err(|cause| ImportError::Read {
+        file: path.to_owned(),
+        cause,
+    })
+}

@@ -1,0 +1,32 @@
+//! The definition of a topic's messages: that of the bag, or a usual one where the bag has none.
+
+use super::field::Definition;
+use super::standard;
+use super::store::There;
+
+/// Reads the definition of a topic's messages.
+///
+/// # Errors
+/// What its messages are instead of such that can be read.
+pub(super) fn definition(owner: &There) -> Result<Definition, String> {
+    let Some((name, encoding, data)) = &owner.schema else {
+        return Err("of messages without a definition".to_owned());
+    };
+    let parse = |text: &str| {
+        let read = Definition::parse(name, text);
+        read.map_err(|cause| format!("of messages whose definition cannot be read ({cause})"))
+    };
+    match (owner.encoding.as_str(), encoding.as_str()) {
+        ("cdr", "ros2msg") => parse(&String::from_utf8_lossy(data)),
+        ("cdr", "") => match standard::definition(name) {
+            Some(text) => parse(&text),
+            None => Err(format!(
+                "of messages {name}, whose definition does not stand in the bag and is none of the usual ones; \
+                 `ros2 bag convert` of ROS 2 Iron or later, run where they are installed, writes a bag with it"
+            )),
+        },
+        (own, _) => Err(format!(
+            "of messages of encoding `{own}` with a definition of encoding `{encoding}`"
+        )),
+    }
+}

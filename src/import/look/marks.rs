@@ -1,0 +1,145 @@
+//! The marks of a text's numbers: what stands before the decimals, and before every third digit.
+
+use std::path::Path;
+
+use super::Because;
+use crate::import::error::ImportError;
+use crate::import::map::Column;
+use crate::import::numbers::{self, Marks};
+use crate::import::text::Sheet;
+
+/// Decimal and thousands marks of all columns of numbers together, and how sure they are.
+///
+/// # Errors
+/// Decimal marks of both kinds.
+pub(super) fn marks(
+    path: &Path,
+    sheet: &Sheet,
+    of_numbers: &[bool],
+) -> Result<(Marks, Because), ImportError> {
+    let mut all: Vec<[Option<(u64, &str)>; 2]> = vec![[None; 2]; of_numbers.len()];
+    let (mut grouped, mut open, mut plain) = (None, None, false);
+    for (line, row) in &sheet.rows {
+        for (place, field) in row.iter().enumerate().take(of_numbers.len()) {
+            if !of_numbers[place] {
+                continue;
+            }
+            let decimal = match numbers::seen(field) {
+                numbers::Seen::Decimal(mark) => Some(mark),
+                numbers::Seen::Grouped(mark, decimal) => {
+                    grouped = Some(mark);
+                    decimal
+                }
+                numbers::Seen::Open(mark) => {
+                    open = Some(mark);
+                    None
+                }
+                numbers::Seen::Plain => {
+                    plain = true;
+                    None
+                }
+                numbers::Seen::Other => None,
+            };
+            if let Some(mark) = decimal {
+                let slot = &mut all[place][usize::from(mark == ',')];
+                *slot = slot.or(Some((*line, field)));
+            }
+        }
+    }
+    check_alike(path, sheet, &all)?;
+    let decimals: [Option<(u64, &str)>; 2] =
+        [0, 1].map(|mark| all.iter().find_map(|column| column[mark]));
+    let known = |mark: char| match mark {
+        '.' => decimals[0],
+        ',' => decimals[1],
+        _ => None,
+    };
+    let other = |mark: char| if mark == '.' { ',' } else { '.' };
+    let only = decimals
+        .iter()
+        .position(Option::is_some)
+        .map(|at| ['.', ','][at]);
+    let marks = |decimal: char, thousands: Option<char>| Marks { decimal, thousands };
+    let seen = |mark: char| {
+        let (line, field) = known(mark).unwrap_or((0, ""));
+        Because::certain(format!("`{field}` in line {line}"))
+    };
+    Ok(match (only, grouped, open) {
+        (Some(decimal), grouped, _) if grouped.is_some() => {
+            (marks(decimal, grouped), seen(decimal))
+        }
+        (Some(decimal), _, Some(mark)) if mark != decimal => {
+            (marks(decimal, Some(mark)), seen(decimal))
+        }
+        (Some(decimal), ..) => (marks(decimal, None), seen(decimal)),
+        (None, Some(mark), _) => (
+            marks(
+                if ".,".contains(mark) {
+                    other(mark)
+                } else {
+                    '.'
+                },
+                Some(mark),
+            ),
+            Because::likely("no number has decimals"),
+        ),
+        (None, None, Some(mark)) if plain => (
+            marks(other(mark), Some(mark)),
+            Because::likely(format!(
+                "`{mark}` stands before three digits and in large numbers alone"
+            )),
+        ),
+        (None, None, Some(mark)) => (
+            marks(mark, None),
+            Because::likely(format!("every number has `{mark}` before three digits")),
+        ),
+        (None, None, None) => (marks('.', None), Because::likely("no number has decimals")),
+    })
+}
+
+/// Refuses decimal marks of both kinds, in one column or in two.
+fn check_alike(
+    path: &Path,
+    sheet: &Sheet,
+    all: &[[Option<(u64, &str)>; 2]],
+) -> Result<(), ImportError> {
+    let refuse = |place: usize, line: u64, found: &str, expected: String| ImportError::Number {
+        file: path.to_owned(),
+        line,
+        column: Column::Number(place + 1),
+        found: found.to_owned(),
+        expected,
+    };
+    let marks = |decimal| Marks {
+        decimal,
+        thousands: None,
+    };
+    for (place, column) in all.iter().enumerate() {
+        if let [Some(point), Some(comma)] = column {
+            // The mark that comes first counts.
+            let (decimal, (line, field)) = if point < comma {
+                ('.', *comma)
+            } else {
+                (',', *point)
+            };
+            let rows = sheet.rows.iter();
+            let fields = rows.filter_map(|(line, row)| Some((*line, row.get(place)?)));
+            let expected = numbers::expected(field, line, marks(decimal), fields);
+            return Err(refuse(place, line, field, expected));
+        }
+    }
+    let first = |mark: usize| {
+        let mut columns = all.iter().enumerate();
+        columns.find_map(|(place, column)| Some((place, column[mark]?)))
+    };
+    match (first(0), first(1)) {
+        (Some((point, (_, its))), Some((place, (line, field)))) => {
+            let expected = format!(
+                "the decimal mark of column {}, `{its}`: `decimal_mark` can name one for the log; write one of the columns with the other's mark",
+                point + 1
+            );
+            Err(refuse(place, line, field, expected))
+        }
+        _ => Ok(()),
+    }
+}
