@@ -2,12 +2,13 @@
 //!
 //! What that leaves is plain: nothing goes beyond a level, and where the course would, it falls to a thousandth of it, again and again.
 
-/// Ratio of neighbours that may be such a fall, and one that no course makes.
-const RATIO: std::ops::RangeInclusive<f64> = 940.0..=1060.0;
+/// Ratio of neighbours from which a jump from near the level is one that no course makes.
 const JUMP: f64 = 300.0;
-/// Share by which the levels of falls may differ from one another.
-const SPREAD: f64 = 0.06;
-/// Falls and rises that there must be.
+/// How near, and how far a course may go from one sample to the next, as shares of the level.
+const NEAR: f64 = 0.5;
+/// Rounding of what was written, as a share.
+const ROUNDING: f64 = 1e-3;
+/// Falls and rises that there must be, and different values behind them: what is switched between two is no course.
 const LEAST: usize = 2;
 
 /// Falls to a thousandth.
@@ -19,32 +20,34 @@ pub struct Fallen {
     pub first: usize,
 }
 
-/// Looks for falls to a thousandth; none where a jump is another one, or the course goes beyond their level.
+/// Looks for falls to a thousandth; none where a jump is another one.
 #[must_use]
 pub fn thousandfold(values: &[f64]) -> Option<Fallen> {
-    let most = values
-        .iter()
-        .filter(|v| v.is_finite())
-        .fold(0.0, |most: f64, v| most.max(v.abs()));
+    let there = values.iter().filter(|v| v.is_finite());
+    let most = there.fold(0.0, |most: f64, v| most.max(v.abs()));
     let mut found = Fallen { count: 0, first: 0 };
+    let mut behind: Vec<f64> = Vec::new();
     for (index, pair) in values.windows(2).enumerate() {
-        let (high, low) = (
-            pair[0].abs().max(pair[1].abs()),
-            pair[0].abs().min(pair[1].abs()),
-        );
-        let at_level = high > (1.0 - SPREAD) * most;
-        if !at_level || low == 0.0 || low.is_nan() || high / low < JUMP {
+        let [a, b] = [pair[0].abs(), pair[1].abs()];
+        let (high, low) = (a.max(b), a.min(b));
+        if high < NEAR * most || low == 0.0 || low.is_nan() || high / low < JUMP {
             continue;
         }
-        if !RATIO.contains(&(high / low)) || pair[0] * pair[1] < 0.0 {
+        // What it was lies beyond the level, and not far from its neighbour.
+        let whole = 1e3 * low;
+        let is_beyond = whole > (1.0 - ROUNDING) * most && whole - high < NEAR * most;
+        if !is_beyond || pair[0] * pair[1] < 0.0 {
             return None;
         }
         if found.count == 0 {
             found.first = index + 1;
         }
         found.count += 1;
+        if !behind.contains(&low) {
+            behind.push(low);
+        }
     }
-    (found.count >= LEAST).then_some(found)
+    (found.count >= LEAST && behind.len() >= LEAST).then_some(found)
 }
 
 #[cfg(test)]
@@ -73,6 +76,21 @@ mod tests {
     }
 
     #[test]
+    fn a_steep_course_is_seen_as_well() {
+        // A pressure that is switched, read in millibars.
+        let course = |i: u32| 1500.0 * (0.5 + 0.5 * (0.35 * f64::from(i)).sin());
+        let wild: Vec<f64> = (0..200)
+            .map(course)
+            .map(|v| if v >= 1000.0 { v / 1000.0 } else { v })
+            .collect();
+        assert!(thousandfold(&wild).is_some());
+        assert_eq!(
+            thousandfold(&(0..200).map(course).collect::<Vec<_>>()),
+            None
+        );
+    }
+
+    #[test]
     fn noise_about_nothing_steps_and_single_wild_values_are_none() {
         let noise: Vec<f64> = (0..1000)
             .map(|i| (f64::from(i) * 1.7).sin() * 1e-3)
@@ -80,6 +98,8 @@ mod tests {
         assert_eq!(thousandfold(&noise), None);
         let steps: Vec<f64> = (0..100).map(|i| f64::from(i / 10 % 2)).collect();
         assert_eq!(thousandfold(&steps), None);
+        let switched: Vec<f64> = (0..100).map(|i| [1.0, 1000.0][i / 10 % 2]).collect();
+        assert_eq!(thousandfold(&switched), None);
         let mut single = vec![1.0; 100];
         single[50] = 1000.0;
         assert_eq!(thousandfold(&single[..51]), None);

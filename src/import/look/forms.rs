@@ -120,7 +120,7 @@ fn unit_of(message: &str, path: &str, joint: Option<&str>) -> Option<SaidUnit> {
     });
     let start = path.split(['.', '[']).next().unwrap_or(path);
     let (name, pressure) = match (message.as_str(), start) {
-        ("sensor_msgs/FluidPressure", "fluid_pressure") => ("Pa", None),
+        ("sensor_msgs/FluidPressure", "fluid_pressure") => ("Pa", Some(Pressure::Absolute)),
         ("sensor_msgs/JointState", "position") if slides => ("m", None),
         ("sensor_msgs/JointState", "position") => ("rad", None),
         ("sensor_msgs/JointState", "velocity") if slides => ("m/s", None),
@@ -138,14 +138,15 @@ fn unit_of(message: &str, path: &str, joint: Option<&str>) -> Option<SaidUnit> {
         ("geometry_msgs/PointStamped" | "geometry_msgs/PoseStamped", _)
             if !path.contains("orientation") =>
         {
-            ("m", None::<Pressure>)
+            ("m", None)
         }
         ("std_msgs/Bool", _) => ("1", None),
         _ => return None,
     };
+    let absolute = if pressure.is_some() { ", absolute" } else { "" };
     Some(SaidUnit {
         unit: named(name)?,
         pressure,
-        because: Because::certain(format!("{message} is in {name}")),
+        because: Because::certain(format!("{message} is in {name}{absolute}")),
     })
 }
