@@ -67,10 +67,7 @@ fn progress_ends_within_the_budget() {
     .unwrap();
     let (done, budget) = *most.lock().unwrap();
     assert_eq!(budget, 1200);
-    assert!(
-        done <= result.evaluations && result.evaluations <= budget,
-        "{done} {}",
-        result.evaluations
-    );
-    assert!(done > 300);
+    // What a part of the search leaves of its stretch of the budget is passed over, so that it ends where the time left does.
+    assert!(done <= budget && result.evaluations <= budget);
+    assert!(done > 9 * budget / 10, "{done} of {budget}");
 }
