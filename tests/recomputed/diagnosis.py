@@ -406,8 +406,8 @@ class Examination:
             fact("`nothing is missing`", account["headline"] == "nothing is missing", not beyond and not of.json["remaining"])
             fact("`Nowhere.`", "Nowhere." in text, not any(e[0] > NOISE_ALONE and not e[4] for e in of.errors()))
         close = [c for c in of.json["considered"] if c["log10_odds"] >= LEAST_ODDS] or of.json["alternatives"]
-        if "Nothing need be" in text:
-            fact("`Nothing need be` beside rivals that are not ruled out", bool(close), False)
+        if "nothing need be" in text:
+            fact("`nothing need be` beside rivals that are not ruled out", bool(close), False)
         for alternative in of.json["alternatives"]:
             fact("an alternative at least at odds of 1 to 100", alternative["odds"] >= 10**LEAST_ODDS, True)
         for link in of.json["links"]:
