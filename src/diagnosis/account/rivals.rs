@@ -97,7 +97,7 @@ impl Diagnosis {
             (false, settles) => {
                 let surer = settles.map_or(String::new(), |s| format!(" To be surer still: {s}"));
                 format!(
-                    "Nothing need be: {}{surer}",
+                    "To tell explanations apart nothing need be: {}{surer}",
                     nearest(&considered, self.looked_at)
                 )
             }
