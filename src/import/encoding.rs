@@ -11,6 +11,8 @@ use super::error::ImportError;
 
 /// Signs of units, currency and quotation that stand alone.
 const SIGNS: &str = "°²³µ±·×÷´§¹¼½¾€–—…„“”‚‘’«»©®\u{a0}";
+/// Those of them that no word holds; in other code pages their bytes are letters.
+const BETWEEN_WORDS: &str = "„“”‚‘…";
 /// Letters of German, French, Italian, Spanish, Portuguese and the Nordic languages.
 const LETTERS: &str = "äöüÄÖÜßàâæçèéêëîïôœùûÿÀÂÇÈÉÊËÎÔÙÛìòÌÒáíñóúÁÍÑÓÚåÅæÆøØãõÃÕ";
 /// Letters that stand together at most.
@@ -152,7 +154,8 @@ fn odd_character(bytes: &[u8]) -> Option<(usize, String)> {
         }
         let end = (at..bytes.len()).find(|i| !high(*i)).unwrap_or(bytes.len());
         let (run, _, _) = WINDOWS_1252.decode(&bytes[at..end]);
-        let in_word = (at > 0 && is_letter(at - 1)) || is_letter(end);
+        let [before, after] = [at > 0 && is_letter(at - 1), is_letter(end)];
+        let in_word = before || after;
         let mut letters = 0;
         for (index, character) in run.chars().enumerate() {
             letters = if LETTERS.contains(character) {
@@ -160,8 +163,9 @@ fn odd_character(bytes: &[u8]) -> Option<(usize, String)> {
             } else {
                 0
             };
-            let is_fine =
-                SIGNS.contains(character) || (letters > 0 && in_word && letters <= TOGETHER);
+            let is_torn = before && after && BETWEEN_WORDS.contains(character);
+            let is_sign = SIGNS.contains(character) && !is_torn;
+            let is_fine = is_sign || (letters > 0 && in_word && letters <= TOGETHER);
             if !is_fine {
                 let seen = if character.is_control() {
                     "no character".to_owned()

@@ -77,7 +77,7 @@ fn file_map(
         .as_ref()
         .map(|time| time_map(document, &table, keys.form, time))
         .transpose()?;
-    if time.is_none() && !matches!(keys.form, FormKey::Bag) {
+    if time.is_none() && !matches!(keys.form, FormKey::Bag | FormKey::Mcap) {
         return Err(section.missing("time", "the column that holds the times, and its unit"));
     }
     if keys.channel.is_empty() {
@@ -87,7 +87,7 @@ fn file_map(
         let reason = "a Parquet file that is cut off cannot be read at all".to_owned();
         return Err(section.misplaced("accept_truncated", reason));
     }
-    if !matches!(keys.form, FormKey::Bag) {
+    if !matches!(keys.form, FormKey::Bag | FormKey::Mcap) {
         for (i, channel) in keys.channel.iter().enumerate() {
             let section = Section::new(document, format!("{table}.channel[{i}]"));
             for (key, given) in [("joint", &channel.joint), ("frame", &channel.frame)] {
@@ -135,7 +135,7 @@ fn form(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
         FormKey::Text => return text_form(section, keys).map(Form::Text),
         FormKey::Parquet => Form::Parquet,
         FormKey::Mat5 => Form::Mat5,
-        FormKey::Bag => Form::Bag,
+        FormKey::Bag | FormKey::Mcap => Form::Bag,
     };
     match of_text.iter().find(|(_, given)| *given) {
         Some((key, _)) => Err(section.misplaced(key, "only a text has it".to_owned())),

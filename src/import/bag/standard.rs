@@ -95,14 +95,9 @@ mod tests {
                 assert!(read.field(&path).is_some(), "{}: {path}", standard.name);
             }
         }
-        let wrench =
-            Definition::parse("w", &definition("geometry_msgs/msg/WrenchStamped").unwrap());
-        assert!(
-            wrench
-                .unwrap()
-                .numbers()
-                .contains(&"wrench.force.z".to_owned())
-        );
+        let name = "geometry_msgs/msg/WrenchStamped";
+        let wrench = Definition::parse(name, &definition(name).unwrap()).unwrap();
+        assert!(wrench.numbers().contains(&"wrench.force.z".to_owned()));
         assert!(definition("my_msgs/msg/Own").is_none());
     }
 }

@@ -156,7 +156,7 @@ fn separator(text: &str) -> Option<(Separator, &'static str, f64, Vec<Kind>)> {
         let understood = same.iter().flat_map(|row| row.iter());
         let understood = understood.filter(|field| kind(field) != Kind::Text).count();
         let share = understood as f64 / (usual * tried.len()) as f64;
-        let has_numbers = kinds.iter().any(|kind| *kind == Kind::Number);
+        let has_numbers = kinds.contains(&Kind::Number);
         let is_better = best
             .as_ref()
             .is_none_or(|(_, _, most, _)| share > *most + 1e-9);

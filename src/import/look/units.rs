@@ -12,9 +12,12 @@ const NEAR: f64 = 1.2e4;
 /// Share of the samples that are at rest where any are.
 const REST: f64 = 0.01;
 
+/// Least and largest size, and the unit in which it is usual.
+type Usual = (f64, f64, &'static str);
+
 /// Ranges of the largest size of numbers and the unit in which they are usual; a gap is where two are.
 #[rustfmt::skip] // A table: a kind a line.
-const BY_SIZE: [(Unit, &[(f64, f64, &str)]); 5] = [
+const BY_SIZE: [(Unit, &[Usual]); 5] = [
     // Compressed air of a workshop: 1 to 16 bar.
     (Unit::Pascal, &[(1.3, 16.0, "bar"), (150.0, 1.6e3, "kPa"), (2e4, 2e6, "Pa")]),
     (Unit::Metre, &[(1e-3, 0.6, "m"), (2.0, 1.5e3, "mm"), (2e3, 1.5e6, "um")]),
@@ -108,6 +111,9 @@ fn pressure_of(text: &str) -> Option<Pressure> {
 fn pressure_of_name(name: &str) -> Option<Pressure> {
     let words = name.split(|c: char| !c.is_alphabetic());
     words.filter(|word| word.len() > 2).find_map(|word| {
+        if let Some((_, Some(pressure))) = of_text(word) {
+            return Some(pressure);
+        }
         let lower = word.to_lowercase();
         if lower.contains("überdruck") || lower.contains("ueberdruck") {
             return Some(Pressure::Gauge);

@@ -53,8 +53,9 @@ pub(super) enum FormKey {
     Text,
     Parquet,
     Mat5,
-    #[serde(alias = "mcap")]
     Bag,
+    /// As maps called a bag before it could be of SQLite.
+    Mcap,
 }
 
 /// `clock`.
