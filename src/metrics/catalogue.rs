@@ -71,7 +71,7 @@ pub const METRICS: &[Metric] = &[
     entry("coefficient_of_variation_percent", "%", "coefficient of variation",
         "standard deviation / mean", |s| s.coefficient_of_variation_percent),
     entry("force_rms_error_n", "N", "RMS error",
-        "of force - desired, while following", |s| s.force_rms_error_n),
+        "of force - desired, following", |s| s.force_rms_error_n),
     entry("force_rms_error_percent", "%", "RMS error",
         "of the desired force", |s| s.force_rms_error_percent),
     entry("largest_deviation_n", "N", "largest deviation",
