@@ -32,7 +32,7 @@ fn the_page_of_a_diagnosis_says_what_is_missing_and_comes_again_from_its_files()
         "Seals and guides rub",
         "What each link lacks",
         "not fitted to",
-        "What was ruled out",
+        "Other explanations",
         "What to record next",
         "Provenance",
     ] {

@@ -43,7 +43,8 @@ impl Search<'_> {
     }
 
     /// Fits in full the explanations that a rough fit cannot rule out beside the best one: nothing is said of a close rival by a rough fit. Where the best
-    /// explains too little, a term without a name is to stand in its place, and these are no rivals.
+    /// explains too little, a term without a name is to stand in its place, and these are no rivals. The best one with an effect more is none either: such
+    /// must also predict what was left out, which [`Self::add_small`] asks of it.
     pub(super) fn add_close(
         &self,
         full: &mut Vec<Hypothesis>,
@@ -56,9 +57,11 @@ impl Search<'_> {
         };
         let limit = self.rough_reference(best, rough) - 2.0 * LEAST_ODDS.ln();
         let is_fitted = |h: &Hypothesis| full.iter().any(|known| known.names() == h.names());
+        let own = best.names();
+        let is_richer = |h: &Hypothesis| own.iter().all(|name| h.names().contains(name));
         let mut close: Vec<&Hypothesis> = rough
             .iter()
-            .filter(|h| self.rough_score(h) < limit && !is_fitted(h))
+            .filter(|h| self.rough_score(h) < limit && !is_fitted(h) && !is_richer(h))
             .collect();
         close.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         let more: Vec<Hypothesis> = (close.into_iter().take(MOST_CLOSE))
