@@ -182,11 +182,11 @@ impl Search<'_> {
         }
         self.eliminate(&mut full, say);
         self.add_plainer(&mut full, &all, say);
-        self.add_close(&mut full, &all, &scale, say);
         self.add_small(&mut full, &scale, say);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.prefer_plain(&mut full, &scale);
         self.add_unlisted(&mut full, &unexplained, &scale, say);
+        self.add_close(&mut full, &all, &scale, say);
         let before = unexplained.fit.rough - noise;
         let reference = full
             .first()

@@ -71,7 +71,8 @@ impl Search<'_> {
             say(&format!("  close: {:?} {:.1}", h.effects, self.score(h)));
         }
         full.extend(more);
-        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        // The search has weighed the first one with more than its score.
+        full[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
     }
 
     /// Rough cost that others are compared with: of the same effects as the best explanation, fitted roughly where that was done.
