@@ -155,7 +155,10 @@ fn odd_character(bytes: &[u8]) -> Option<(usize, String)> {
         let end = (at..bytes.len()).find(|i| !high(*i)).unwrap_or(bytes.len());
         let (run, _, _) = WINDOWS_1252.decode(&bytes[at..end]);
         let [before, after] = [at > 0 && is_letter(at - 1), is_letter(end)];
-        let in_word = before || after;
+        // A small letter before a capital begins no word: code page 850 has its degree there.
+        let begins =
+            |c: char| !(c.is_lowercase() && bytes.get(end).is_some_and(u8::is_ascii_uppercase));
+        let in_word = before || (after && run.chars().all(begins));
         let mut letters = 0;
         for (index, character) in run.chars().enumerate() {
             letters = if LETTERS.contains(character) {
