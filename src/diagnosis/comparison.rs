@@ -7,7 +7,7 @@ use super::clean::clean;
 use super::diagnose::Diagnosis;
 use super::flange::Run;
 use super::links::{Link, left_by};
-use super::regime::{regimes, values_of};
+use super::regime::{TIME, regimes, values_of};
 use crate::plant::{CHANNELS, Chain, Channel, PlantInputs, PlantParameters, simulate};
 
 /// Variables that are of the air in the chambers.
@@ -188,7 +188,8 @@ impl Diagnosis {
         // A slide that a motor drives has no air, whatever its numbers say.
         let airless = self.believed.chain == Chain::DrivenSlide;
         let mut known = telling.iter().map(|regime| regime.variable);
-        let variable = known.find(|name| !airless || !OF_AIR.contains(name))?;
+        let known = known.find(|name| !airless || !OF_AIR.contains(name));
+        let variable = known.unwrap_or(TIME);
         let values = values_of(variable, &self.evidence, &best.plant, &best.courses)?;
         let noise = self.evidence.noise[channel as usize];
         let after = of(&best.residuals);
@@ -204,7 +205,8 @@ impl Diagnosis {
         let held = self.evidence.predict(improved, true, None);
         let balance =
             |(link, regimes): &(super::links::LinkResidual, Vec<super::regime::Regime>)| {
-                let variable = regimes.first()?.variable;
+                // A link that no variable tells of is shown over time, so that every number said of it is in the file.
+                let variable = regimes.first().map_or(TIME, |regime| regime.variable);
                 let values = values_of(variable, &self.evidence, improved, &held.courses)?;
                 let after = left_by(link.link, &self.evidence, &held, &self.believed);
                 let channel = match link.link {

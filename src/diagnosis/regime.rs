@@ -17,9 +17,12 @@ const AS_MUCH: usize = 4;
 /// Speed below which the piston counts as resting [m/s].
 const RESTING: f64 = 2e-3;
 
+/// The variable that every mismatch has.
+pub const TIME: &str = "time";
+
 /// A variable that a mismatch may depend on, by its name in an answer.
 pub const VARIABLES: [&str; 13] = [
-    "time",
+    TIME,
     "stroke_m",
     "velocity",
     "velocity_sign",
