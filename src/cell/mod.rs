@@ -2,12 +2,13 @@
 
 mod error;
 mod part;
+mod plant;
 
 use glam::{DMat3, DVec3};
 use glamx::DPose3;
 
 pub use error::CellError;
-pub use part::{Part, choose_edge};
+pub use part::{Part, choose_edge, station};
 
 use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
@@ -18,6 +19,7 @@ use crate::path::plan::PlanRequest;
 use crate::path::profile::MotionLimits;
 use crate::path::{Plan, ToolPath};
 use crate::physics::push_only::PushOnly;
+use crate::plant::{EdgeStation, PlantParameters, Relief};
 use crate::scenario::{ArmScenario, Scenario, ScenarioError, attainable_set_pressure};
 
 /// A cell, ready to run.
@@ -30,6 +32,10 @@ pub struct Cell {
     pub arm_with_slide: Chain,
     /// What stands between motor and link of each of its joints, base first; none where they are one.
     pub transmissions: Vec<Option<TransmissionParameters>>,
+    /// Its physics.
+    pub plant: PlantParameters,
+    /// The middle of the followed edge, where the part is believed.
+    pub middle: EdgeStation,
     /// The device.
     pub device: Device,
     /// What sets the regulator's pressure, as it is at the start.
@@ -57,11 +63,21 @@ impl Cell {
             });
         }
         let mut arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
-        let transmissions = drives(&scenario, &mut arm.chain)?;
+        check_drives(&scenario, &arm.chain)?;
+        let plant = plant::of(&scenario, &arm.chain);
+        for (joint, friction) in arm.chain.joints.iter_mut().zip(plant.cell.joint_friction) {
+            joint.friction = friction;
+        }
+        let transmissions = plant::transmissions(&scenario, &arm.chain, &plant.cell);
         check_seed_posture(&scenario, &arm.chain)?;
         let arm_with_slide = with_slide(&arm.chain, &scenario);
         let part = Part::load(&scenario)?;
-        let device = Device::new(scenario.device.parameters.clone());
+        let middle = station(
+            &part.edge,
+            scenario.workpiece.world_from_part,
+            0.5 * part.edge.length,
+        );
+        let device = Device::new(plant.device.clone());
         let tool_path = ToolPath::along(
             part.edge.clone(),
             scenario.workpiece.world_from_part,
@@ -83,6 +99,8 @@ impl Cell {
             arm,
             arm_with_slide,
             transmissions,
+            plant,
+            middle,
             device,
             controller,
             part,
@@ -95,6 +113,18 @@ impl Cell {
     /// Component of gravity along the tool's axis [m/s2].
     pub fn gravity_along(&self, axis: DVec3) -> f64 {
         self.scenario.simulation.gravity.dot(axis)
+    }
+
+    /// How the part's surface is off its mesh where the ball is, at a place along the edge [m].
+    pub fn relief(&self, place: f64) -> Relief {
+        let world_from_part = self.scenario.workpiece.world_from_part;
+        let here = station(&self.part.edge, world_from_part, place);
+        let mut relief = self.plant.cell.relief(&self.middle, &here);
+        if let Some(ride) = &self.part.ride {
+            relief.height += ride.lift(here.station);
+            relief.gradient += here.tangent * ride.slope(here.station);
+        }
+        relief
     }
 
     /// Cosine between the tool's axis and the contact normal: the share of the contact force that the device sees.
@@ -126,32 +156,16 @@ pub fn arm_options(arm: &ArmScenario) -> ArmOptions {
     }
 }
 
-/// Gives the joints the friction that the scenario says, and says what stands between their motors and links.
-fn drives(
-    scenario: &Scenario,
-    chain: &mut Chain,
-) -> Result<Vec<Option<TransmissionParameters>>, CellError> {
-    let mut transmissions = vec![None; chain.len()];
-    for drive in &scenario.arm.drives {
-        let Some(axis) = chain.joints.iter().position(|j| j.name == drive.joint) else {
-            return Err(CellError::DriveUnknown {
-                file: scenario.path.clone(),
-                joint: drive.joint.clone(),
-                joints: chain.joints.iter().map(|j| j.name.clone()).collect(),
-            });
-        };
-        if let Some(friction) = drive.friction {
-            chain.joints[axis].friction = friction;
-        }
-        if drive.stiffness.is_finite() {
-            transmissions[axis] = Some(TransmissionParameters {
-                stiffness: drive.stiffness,
-                damping_time: drive.damping_time,
-                play: drive.backlash,
-            });
-        }
+fn check_drives(scenario: &Scenario, chain: &Chain) -> Result<(), CellError> {
+    let known = |name: &str| chain.joints.iter().any(|joint| joint.name == name);
+    match scenario.arm.drives.iter().find(|d| !known(&d.joint)) {
+        None => Ok(()),
+        Some(drive) => Err(CellError::DriveUnknown {
+            file: scenario.path.clone(),
+            joint: drive.joint.clone(),
+            joints: chain.joints.iter().map(|j| j.name.clone()).collect(),
+        }),
     }
-    Ok(transmissions)
 }
 
 fn check_seed_posture(scenario: &Scenario, arm: &Chain) -> Result<(), CellError> {

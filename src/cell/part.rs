@@ -6,6 +6,7 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
 use super::error::{CellError, millimetres};
+use crate::plant::EdgeStation;
 use crate::scenario::{
     BurrScenario, EdgeChoice, EdgeSelection, Misplacement, Scenario, WorkpieceScenario,
 };
@@ -206,4 +207,16 @@ fn burr(scenario: &BurrScenario) -> Result<Option<BurrProfile>, WorkpieceError> 
         } => Some(BurrProfile::bump(*position, *height, *width)?),
         BurrScenario::Table { path } => Some(BurrProfile::from_csv(path)?),
     })
+}
+
+/// A place on an edge [m] in the world.
+pub fn station(edge: &EdgeCurve, world_from_part: DPose3, place: f64) -> EdgeStation {
+    let place = place.clamp(0.0, edge.length);
+    let point = edge.at(place);
+    EdgeStation {
+        point: world_from_part.transform_point(point.point),
+        tangent: world_from_part.rotation * point.tangent,
+        bisector: (world_from_part.rotation * point.bisector).normalize_or(DVec3::Z),
+        station: place,
+    }
 }

@@ -6,7 +6,7 @@
 //! m the axis's own inertia at the start [kg m2], w natural frequency [rad/s], z damping ratio, T_i integral time [s]. tau_ff is the inverse dynamics of
 //! the reference with the device's moving mass, less the contact force's share.
 //! The proportional and derivative parts go to the engine as an implicit law, so a stiff servo is stable at any step; a law whose torque would leave the
-//! effort limit is replaced by the constant torque at the limit, and the integral waits.
+//! effort limit in the middle of the step is replaced by the constant torque at the limit, and the integral waits.
 
 use super::law::JointLaw;
 use crate::arm::chain::Chain;
@@ -49,7 +49,7 @@ pub struct Servo {
 /// What the servo is to do for one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisCommand {
-    /// Reference at the end of the step [rad].
+    /// Reference in the middle of the step [rad].
     pub position: f64,
     /// Reference speed [rad/s].
     pub velocity: f64,
@@ -98,15 +98,13 @@ impl Servo {
         dt: f64,
     ) -> JointLaw {
         let gains = &self.gains[axis];
-        let error = command.position - position;
+        let error = command.position - (position + 0.5 * dt * velocity);
         if !self.saturated[axis] {
-            self.integrals[axis] +=
-                gains.integral * (error - dt * (command.velocity - velocity)) * dt;
+            self.integrals[axis] += gains.integral * error * dt;
         }
         let constant =
             command.feed_forward + self.integrals[axis] + gains.derivative * command.velocity;
-        let foreseen = constant + gains.proportional * (error - dt * command.velocity)
-            - gains.derivative * velocity;
+        let foreseen = constant + gains.proportional * error - gains.derivative * velocity;
         self.saturated[axis] = foreseen.abs() > gains.effort;
         let mut law = if self.saturated[axis] {
             JointLaw::constant(foreseen.clamp(-gains.effort, gains.effort))

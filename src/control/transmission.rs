@@ -7,7 +7,7 @@
 //! seen from the joint [kg m2], K stiffness [N m/rad], b damping over stiffness [s], p play from flank to flank [rad]. (Spong, J. Dyn. Syst. Meas. Control
 //! 109, 1987; the play as in Nordin, Gutman, Automatica 38, 2002, sec. 2.)
 //!
-//! The motor takes a backward-Euler step against the link as it moves now; the link then meets the spring at the motor's new place, implicitly again.
+//! The motor takes a step of the midpoint rule against the link as it moves now; the link then meets the spring with the motor in the middle of the step.
 
 use super::law::JointLaw;
 
@@ -32,6 +32,8 @@ pub struct Motor {
     pub angle: f64,
     /// Its rate [rad/s].
     pub speed: f64,
+    /// Angle [rad] and rate [rad/s] in the middle of the last step.
+    pub middle: (f64, f64),
 }
 
 impl Motor {
@@ -49,6 +51,7 @@ impl Motor {
             inertia,
             angle,
             speed: 0.0,
+            middle: (angle, 0.0),
         };
         (motor, link)
     }
@@ -69,19 +72,23 @@ impl Motor {
             0.0
         };
         let damping = self.parameters.damping_time * stiffness;
-        let ahead = link + dt * link_speed;
+        let ahead = link + 0.5 * dt * link_speed;
         let torque = drive.force
             - drive.stiffness * (self.angle - drive.rest)
             - stiffness * (self.angle - ahead - side)
             + damping * link_speed;
-        let resistance =
-            self.inertia / dt + drive.damping + damping + dt * (drive.stiffness + stiffness);
-        self.speed = (self.inertia / dt * self.speed + torque) / resistance;
-        self.angle += dt * self.speed;
+        let resistance = 2.0 * self.inertia / dt
+            + drive.damping
+            + damping
+            + 0.5 * dt * (drive.stiffness + stiffness);
+        let speed = (2.0 * self.inertia / dt * self.speed + torque) / resistance;
+        self.middle = (self.angle + 0.5 * dt * speed, speed);
+        self.angle += dt * speed;
+        self.speed = 2.0 * speed - self.speed;
         JointLaw {
-            force: damping * self.speed,
+            force: damping * speed,
             stiffness,
-            rest: self.angle - side,
+            rest: self.middle.0 - side,
             damping,
         }
     }

@@ -21,6 +21,14 @@ pub trait Carrier {
     /// for the whole of a sub-step, so that the law is smooth in it.
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64;
 
+    /// Is what the load takes of the force wanted by itself?
+    const LOADED: bool = false;
+
+    /// What the load takes of `force` [N], positive against extension.
+    fn load(&self, _time: f64, _motion: PistonMotion, _touching: bool) -> f64 {
+        0.0
+    }
+
     /// Does the load push on the piston?
     fn touches(&self, time: f64, motion: PistonMotion) -> bool;
 

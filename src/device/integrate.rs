@@ -36,8 +36,17 @@ pub(super) struct Flow {
     pub(super) air: AirState,
     ledger: EnergyLedger,
     pub(super) motion: PistonMotion,
-    /// Impulse of the gas on the piston since the start of the step [N s].
-    impulse: f64,
+    /// Impulse since the start of the step: of the gas on the piston, and of the piston on its load [N s].
+    pub(super) impulses: Impulses,
+}
+
+/// Impulses over a step [N s].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Impulses {
+    /// Of the gas on the piston, along extension.
+    pub gas: f64,
+    /// Of the piston on its load, along extension.
+    pub load: f64,
 }
 
 impl Flow {
@@ -54,7 +63,10 @@ impl Flow {
                 stroke: self.motion.stroke + time * rates.motion.stroke,
                 speed: self.motion.speed + time * rates.motion.speed,
             },
-            impulse: self.impulse + time * rates.impulse,
+            impulses: Impulses {
+                gas: self.impulses.gas + time * rates.impulses.gas,
+                load: self.impulses.load + time * rates.impulses.load,
+            },
         }
     }
 }
@@ -84,7 +96,7 @@ pub(super) struct Leg<'a, C> {
 }
 
 impl Device {
-    /// Returns the impulse of the gas on the piston [N s].
+    /// Returns the impulses of the step.
     pub(super) fn integrate<C: Carrier, const LEDGER: bool>(
         &self,
         state: &mut DeviceState,
@@ -93,7 +105,7 @@ impl Device {
         carrier: &C,
         dt: f64,
         substeps: usize,
-    ) -> f64 {
+    ) -> Impulses {
         let regulator = &self.parameters.regulator;
         state.regulator.command(regulator, set_pressure);
         let delay = self.parameters.switching_delay;
@@ -105,7 +117,7 @@ impl Device {
             air: state.air,
             ledger: state.ledger,
             motion: *motion,
-            impulse: 0.0,
+            impulses: Impulses::default(),
         };
         let mut time = 0.0;
         while time < dt {
@@ -147,7 +159,7 @@ impl Device {
             *motion = flow.motion;
             state.seal_stroke = flow.motion.stroke;
         }
-        flow.impulse
+        flow.impulses
     }
 
     fn longest_substep<C: Carrier>(
@@ -335,7 +347,10 @@ impl<C: Carrier> Leg<'_, C> {
                 stroke: motion.speed,
                 speed: 0.0,
             },
-            impulse: gas_force,
+            impulses: Impulses {
+                gas: gas_force,
+                load: 0.0,
+            },
         };
         if C::MOVES {
             let seals = parameters
@@ -350,6 +365,9 @@ impl<C: Carrier> Leg<'_, C> {
             let carrier = self.carrier.force(time, motion, mode.touching);
             let force = gas_force - seal + stop + cushion + axial + carrier;
             rates.motion.speed = force / parameters.moving_mass;
+            if C::LOADED {
+                rates.impulses.load = self.carrier.load(time, motion, mode.touching);
+            }
             if LEDGER {
                 rates.ledger.seal_work = seal * motion.speed;
                 rates.ledger.stop_work = -stop * motion.speed;

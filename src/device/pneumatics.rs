@@ -181,7 +181,7 @@ impl Device {
         self.drag_seals(state, motion);
         let mut moved = motion;
         let impulse =
-            self.integrate::<_, true>(state, &mut moved, set_pressure, &Foretold, dt, substeps);
+            self.integrate::<_, true>(state, &mut moved, set_pressure, &Foretold, dt, substeps).gas;
         let seals = self.seals_over([(&state.air, motion.stroke + motion.speed * dt)]);
         let deflection =
             seals.deflection_after(state.seal_deflection, motion.speed * dt, motion.speed);
@@ -212,6 +212,7 @@ impl Device {
 
     /// Advances device and piston together by `dt` [s]: the piston, of the device's moving mass, moves under the device's force and its carrier's.
     /// `substeps` is the least number; stiff parts get more, and contacts, stops and reversals are met where they happen. Keeps the energy ledger.
+    /// Returns the piston's impulse on its load along extension [N s], of a carrier that tells it.
     pub fn advance_carried<C: Carrier>(
         &self,
         state: &mut DeviceState,
@@ -220,8 +221,9 @@ impl Device {
         carrier: &C,
         dt: f64,
         substeps: usize,
-    ) {
-        self.integrate::<C, true>(state, motion, set_pressure, carrier, dt, substeps);
+    ) -> f64 {
+        self.integrate::<C, true>(state, motion, set_pressure, carrier, dt, substeps)
+            .load
     }
 
     /// As [`Device::advance_carried`] without the ledger, a fifth faster.

@@ -233,7 +233,7 @@ impl CellCourse {
         let (ball, slide) = (balls[i], slides[i]);
         let along = (ball + slide * self.usual_stroke - edge.point).dot(edge.tangent);
         let station = edge.station + along;
-        let aside = self.aside(cell, edge.point + edge.tangent * along);
+        let aside = cell.aside(&self.middle, edge.point + edge.tangent * along);
         let (standoff, share) = match &self.sharp {
             None => (
                 n.dot(ball - edge.point - aside) - self.ball_radius,
@@ -259,18 +259,6 @@ impl CellCourse {
         felt.carried
             .push(self.moving_mass * acceleration.dot(slide));
         felt.pull.push((self.gravity - acceleration).dot(slide));
-    }
-
-    /// How far the part is from where it should be at one of its points [m].
-    fn aside(&self, cell: &CellParameters, point: DVec3) -> DVec3 {
-        let EdgeStation {
-            point: pivot,
-            tangent,
-            bisector,
-            ..
-        } = self.middle;
-        let turn = tangent.cross(bisector) * cell.part_tilt;
-        bisector * cell.part_shift + turn.cross(point - pivot)
     }
 
     /// Rate of a point that is known at the samples [m/s].

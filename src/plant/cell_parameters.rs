@@ -1,5 +1,8 @@
 //! What a cell's arm and part are like: springs in the joints, encoders that are off, a servo that lags, a part that is not where it is believed.
 
+use super::cell_course::EdgeStation;
+use glam::DVec3;
+
 /// Most joints that an arm may have.
 pub const MOST_JOINTS: usize = 8;
 
@@ -30,6 +33,17 @@ pub struct CellParameters {
     pub burr: Burr,
 }
 
+/// How a part's surface under the ball is off where its mesh has it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Relief {
+    /// How far the part is from where it should be [m].
+    pub aside: DVec3,
+    /// How far the surface stands out along its normal [m].
+    pub height: f64,
+    /// Gradient of that along the part [m/m].
+    pub gradient: DVec3,
+}
+
 /// A smooth bump on an edge: h exp(-((s - p)/w)^2 / 2).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Burr {
@@ -57,9 +71,29 @@ impl Burr {
         let away = (station - self.position) / self.width;
         self.height * (-0.5 * away * away).exp()
     }
+
+    /// Derivative of that [m/m].
+    pub fn slope(&self, station: f64) -> f64 {
+        -(station - self.position) / (self.width * self.width) * self.at(station)
+    }
 }
 
 impl CellParameters {
+    /// How far the part is from where it should be at one of its points [m], `middle` being the middle of its edge.
+    pub fn aside(&self, middle: &EdgeStation, point: DVec3) -> DVec3 {
+        let turn = middle.tangent.cross(middle.bisector) * self.part_tilt;
+        middle.bisector * self.part_shift + turn.cross(point - middle.point)
+    }
+
+    /// How the part is off at a station of its edge.
+    pub fn relief(&self, middle: &EdgeStation, station: &EdgeStation) -> Relief {
+        Relief {
+            aside: self.aside(middle, station.point),
+            height: self.burr.at(station.station),
+            gradient: station.tangent * self.burr.slope(station.station),
+        }
+    }
+
     /// Nothing gives, nothing is off.
     pub const RIGID: Self = Self {
         servo_bandwidth: f64::INFINITY,

@@ -25,7 +25,7 @@ mod sharp_edge;
 mod simulate;
 
 pub use cell_course::{CellCourse, EdgeStation, Felt, INERTIA_EVERY, JointCourse, Levers};
-pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS};
+pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS, Relief};
 pub use chain::{Chain, LinkParameters};
 pub use contact::{ContactLaw, ContactParameters, Periodic};
 pub use guide::Guide;

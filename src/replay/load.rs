@@ -3,7 +3,7 @@
 use super::{Commands, ReplayCell};
 use crate::arm::chain::JointKind;
 use crate::arm::load_arm;
-use crate::cell::{CellError, arm_options, choose_edge};
+use crate::cell::{CellError, arm_options, choose_edge, station};
 use crate::plant::{
     CellCourse, CellParameters, Chain, ContactLaw, ContactParameters, EdgeStation, LinkParameters,
     MOST_JOINTS, Periodic, PlantParameters, SensorErrors, SharpEdge,
@@ -158,18 +158,6 @@ impl LoadedCell {
             encoders: encoders.filter(|_| self.scenario.own),
         };
         self.cell.course(commands, bandwidth)
-    }
-}
-
-/// A place on an edge [m] in the world.
-fn station(edge: &EdgeCurve, world_from_part: DPose3, place: f64) -> EdgeStation {
-    let place = place.clamp(0.0, edge.length);
-    let point = edge.at(place);
-    EdgeStation {
-        point: world_from_part.transform_point(point.point),
-        tangent: world_from_part.rotation * point.tangent,
-        bisector: (world_from_part.rotation * point.bisector).normalize_or(DVec3::Z),
-        station: place,
     }
 }
 

@@ -1,15 +1,16 @@
-//! Tool on part: Rapier's contact made to obey a stiffness and damping in N/m and N s/m, once per true contact.
+//! Tool on part: where the ball touches, and Rapier's contact made to carry the force that the contact law has there.
 //!
-//!     F = k d + c d_dot, never pulling                                       d penetration of the ball [m]
+//!     p = r + l - d,   p' = l' - n.u - (n.a) x'                    penetration of the ball along a contact's normal n and its rate
 //!
-//! Rapier's contact is soft in terms of a natural frequency and a damping ratio of the constraint's own effective mass m, and takes one backward-Euler
-//! step of it (Catto's soft step): impulse = -h (k' (s + h v) + c' v), s separation at the start, v its rate at the end of the step, k' = m w^2, c' = 2 z m w.
-//! With m known, w and z follow from what k' and c' should be. k' = k: the static penetration is F/k. The position term is taken h v ahead, which damps a
-//! ringing contact by k h too much; so c' = c_h - (1 - theta) k h, where c_h = m (e^(h c / m) - 1) / h makes one step shrink the motion just as the
-//! continuous damper does, and theta in 0..1 gives back the implicit term when w h is too large for an explicit spring.
+//! r radius [m], d distance of the ball's centre from the part [m], l how far the part stands out (burr) [m], u velocity of the ball with the slide held
+//! [m/s], a slide's axis, x' its speed [m/s]. The law itself is the plant's (`plant::ContactParameters`), integrated with the slide (`slide`).
+//!
+//! Rapier's contact is soft in terms of a natural frequency w and the constraint's own effective mass m: impulse = -h m w^2 (s + h v), s separation, v its rate
+//! (Catto's soft step, undamped). With w so small that the rate does not count, a separation of -F/(m w^2) is a force F, and Rapier adds the friction that
+//! goes with it.
 //!
 //! The mesh's triangles meet the ball several times at one place: at an internal edge from the side (ghosts) and at a sharp edge from both faces (twice
-//! the stiffness). Only true contacts, local minima of the distance to the part, reach the solver: `ContactSurface` finds them, `dispatch` hands them over.
+//! the stiffness). Only true contacts, local minima of the distance to the part, count: `ContactSurface` finds them, `dispatch` hands them over.
 
 use glam::DVec3;
 use nalgebra::DVector;
@@ -17,24 +18,25 @@ use rapier3d::prelude::*;
 
 use super::dispatch::{TrueContact, TrueContacts};
 use super::world::ToolBall;
+use crate::plant::Relief;
 use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
 
-/// How far ahead of touching a contact is offered to the solver [m].
+/// How far ahead of touching a contact is offered to the slide [m].
 const REACH: f64 = 1e-3;
-/// Steps for which an effective mass is kept while the contact lasts: the arm turns by 1e-3 rad at most meanwhile.
-const MASS_STEPS: u32 = 8;
-/// w h up to which an explicit spring is accurate.
-const EXPLICIT_LIMIT: f64 = 0.5;
+/// Natural frequency of a contact that carries a given force [rad/s].
+const CARRIER_RATE: f64 = 0.1;
 
-/// Contact law between tool and part.
+/// A place where the ball touches the part, or is about to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PartContactParameters {
-    /// Stiffness [N/m].
-    pub stiffness: f64,
-    /// Damping [N s/m].
-    pub damping: f64,
-    /// Coulomb friction coefficient [1].
-    pub friction: f64,
+pub struct Touch {
+    /// Unit normal out of the part, in the world.
+    pub normal: DVec3,
+    /// How deep the ball is in the part; negative when apart [m].
+    pub penetration: f64,
+    /// How fast it goes deeper with the slide held [m/s].
+    pub rate: f64,
+    /// Share of the slide's motion that goes into the part [1].
+    pub share: f64,
 }
 
 /// Contact force over a step.
@@ -42,14 +44,8 @@ pub struct PartContactParameters {
 pub struct ContactReading {
     /// Sum of the normal force magnitudes [N].
     pub normal_force: f64,
-    /// Force on the tool in the world, friction included [N].
-    pub force_on_tool: DVec3,
-    /// Magnitude of the friction force [N].
-    pub friction_force: f64,
-    /// Deepest penetration at the start of the step [m]; negative when apart.
-    pub penetration: f64,
-    /// Outward normal of the deepest contact, zero where there is none [1].
-    pub normal: DVec3,
+    /// Friction on the tool in the world [N].
+    pub friction: DVec3,
 }
 
 /// The contact pair of tool and part.
@@ -57,108 +53,103 @@ pub struct PartContact {
     part_collider: ColliderHandle,
     contacts: TrueContacts,
     surface: ContactSurface,
-    parameters: PartContactParameters,
     tool: ToolBall,
     tool_collider: ColliderHandle,
     step: f64,
-    /// Height and slope of the burr under the ball.
-    lift: f64,
-    lift_gradient: DVec3,
     found: Vec<SurfaceContact>,
-    /// Steps until the effective mass is computed anew.
-    mass_steps_left: u32,
     jacobian: DVector<f64>,
     response: DVector<f64>,
 }
 
 impl PartContact {
-    /// Puts the part and the tool's ball into the world.
+    /// Puts the part and the tool's ball into the world, with a Coulomb friction coefficient [1].
     pub(super) fn insert(
         physics: &mut PhysicsWorld,
         part_body: RigidBodyHandle,
         tool_body: RigidBodyHandle,
         part: &TriangleMesh,
         tool: ToolBall,
-        parameters: PartContactParameters,
+        friction: f64,
         step: f64,
     ) -> Self {
         let contacts = TrueContacts::default();
         physics.narrow_phase = NarrowPhase::with_query_dispatcher(contacts.clone());
+        physics.integration_parameters.static_contact_softness =
+            SpringCoefficients::new(CARRIER_RATE / std::f64::consts::TAU, 0.0);
         // Rapier takes no more from it than its box, to know when the pair is near; `surface` knows the mesh.
         let mesh = ColliderBuilder::trimesh(part.vertices().to_vec(), part.triangles().to_vec())
             .expect("a part's mesh holds at least one triangle")
             .density(0.0)
-            .friction(parameters.friction)
+            .friction(friction)
             .friction_combine_rule(CoefficientCombineRule::Average);
         let part_collider = physics.insert_collider(mesh, Some(part_body));
         let ball = ColliderBuilder::ball(tool.radius)
             .translation(tool.centre_in_link)
             .density(0.0)
-            .friction(parameters.friction)
+            .friction(friction)
             .friction_combine_rule(CoefficientCombineRule::Average);
         let tool_collider = physics.insert_collider(ball, Some(tool_body));
         Self {
             part_collider,
             contacts,
             surface: ContactSurface::new(part),
-            parameters,
             tool,
             tool_collider,
             step,
-            lift: 0.0,
-            lift_gradient: DVec3::ZERO,
             found: Vec::new(),
-            mass_steps_left: 0,
             jacobian: DVector::zeros(0),
             response: DVector::zeros(0),
         }
     }
 
-    /// Raises the part's surface under the ball along its normal, for the next steps: height [m] and its gradient along the part [m/m].
-    pub fn set_lift(&mut self, lift: f64, gradient: DVec3) {
-        self.lift = lift;
-        self.lift_gradient = gradient;
+    /// Puts into `touches` where a ball at `centre` touches, `velocity` [m/s] being its velocity with the slide held and `axis` the slide's.
+    pub(super) fn find(
+        &mut self,
+        relief: &Relief,
+        centre: DVec3,
+        velocity: DVec3,
+        axis: DVec3,
+        touches: &mut Vec<Touch>,
+    ) {
+        let radius = self.tool.radius;
+        let reach = radius + REACH + relief.height.max(0.0);
+        let seen = centre - relief.aside;
+        self.surface.genuine_contacts(seen, reach, &mut self.found);
+        touches.clear();
+        touches.extend(self.found.iter().map(|contact| {
+            // A rising burr leans the normal back against the motion.
+            let normal = (contact.normal - relief.gradient).normalize();
+            let above = contact.distance - radius - relief.height;
+            Touch {
+                normal,
+                penetration: -above * normal.dot(contact.normal),
+                rate: -normal.dot(velocity),
+                share: -normal.dot(axis),
+            }
+        }));
     }
 
-    /// Finds the true contacts of the coming step and sets the solver's softness for them.
-    pub(super) fn prepare(
+    /// Has the tool pressed with given forces [N] along normals over the coming step.
+    pub(super) fn press(
         &mut self,
-        physics: &mut PhysicsWorld,
+        physics: &PhysicsWorld,
         joint: MultibodyJointHandle,
         tool_body: RigidBodyHandle,
         centre: DVec3,
+        forces: &[(DVec3, f64)],
     ) {
-        let reach = self.tool.radius + REACH + self.lift.max(0.0);
-        self.surface
-            .genuine_contacts(centre, reach, &mut self.found);
-        let (radius, lift, gradient) = (self.tool.radius, self.lift, self.lift_gradient);
-        let deepest = self.contacts.with(|contacts| {
-            contacts.clear();
-            contacts.extend(self.found.iter().map(|contact| {
-                // A rising burr leans the normal back against the motion.
-                let normal = (contact.normal - gradient).normalize();
-                let separation = (contact.distance - radius - lift) * normal.dot(contact.normal);
-                TrueContact { normal, separation }
-            }));
-            contacts
-                .iter()
-                .copied()
-                .min_by(|a, b| a.separation.total_cmp(&b.separation))
-        });
-        let Some(deepest) = deepest else {
-            self.mass_steps_left = 0;
-            return;
+        let separation = |&(normal, force): &(DVec3, f64)| {
+            let point = centre - normal * self.tool.radius;
+            let mass = self.effective_mass(physics, joint, tool_body, normal, point);
+            let stiffness = mass.unwrap_or(1.0) * CARRIER_RATE * CARRIER_RATE;
+            TrueContact {
+                normal,
+                separation: -force / stiffness,
+            }
         };
-        if self.mass_steps_left > 0 {
-            self.mass_steps_left -= 1;
-        } else {
-            let point = centre - deepest.normal * self.tool.radius;
-            let mass = self.effective_mass(physics, joint, tool_body, deepest.normal, point);
-            self.mass_steps_left = if mass.is_some() { MASS_STEPS - 1 } else { 0 };
-            let mass = mass.unwrap_or(1.0);
-            physics.integration_parameters.static_contact_softness =
-                softness(&self.parameters, mass, self.step);
-        }
+        let pressing = forces.iter().filter(|(_, force)| *force > 0.0);
+        let pressing: Vec<TrueContact> = pressing.map(separation).collect();
+        self.contacts.with(|contacts| *contacts = pressing);
     }
 
     /// Mass that a push along `direction` at `point` feels, as Rapier's solver will see it [kg]; unknown before the first step.
@@ -199,51 +190,20 @@ impl PartContact {
     /// Reads the forces of the last step.
     pub(super) fn read(&mut self, physics: &PhysicsWorld) -> ContactReading {
         let mut reading = ContactReading::default();
-        let step = self.step;
         let part = self.part_collider;
-        self.contacts.with(|contacts| {
-            if contacts.is_empty() {
-                return;
-            }
-            reading.penetration = -f64::MAX;
-            for pair in physics.narrow_phase.contact_pairs_with(self.tool_collider) {
-                let part_first = pair.collider1 == part;
-                for (manifold, contact) in pair.manifolds().iter().zip(contacts.iter()) {
-                    if manifold.data.solver_contacts.is_empty() {
-                        continue;
-                    }
-                    for point in &manifold.points {
-                        let normal_force = point.data.impulse / step;
-                        let tangent = point.data.warmstart_tangent_world / step;
-                        let friction = if part_first { -tangent } else { tangent };
-                        reading.normal_force += normal_force;
-                        reading.friction_force += friction.length();
-                        reading.force_on_tool += contact.normal * normal_force + friction;
-                    }
-                    if -contact.separation > reading.penetration {
-                        reading.penetration = -contact.separation;
-                        reading.normal = contact.normal;
-                    }
+        for pair in physics.narrow_phase.contact_pairs_with(self.tool_collider) {
+            let part_first = pair.collider1 == part;
+            for manifold in pair.manifolds() {
+                if manifold.data.solver_contacts.is_empty() {
+                    continue;
+                }
+                for point in &manifold.points {
+                    let tangent = point.data.warmstart_tangent_world / self.step;
+                    reading.normal_force += point.data.impulse / self.step;
+                    reading.friction += if part_first { -tangent } else { tangent };
                 }
             }
-        });
+        }
         reading
     }
-}
-
-/// Rapier's softness that obeys the law for an effective mass [kg] and a step [s].
-fn softness(parameters: &PartContactParameters, mass: f64, step: f64) -> SpringCoefficients<f64> {
-    let frequency = (parameters.stiffness / mass).sqrt();
-    let phase = frequency * step;
-    let theta = if phase <= EXPLICIT_LIMIT {
-        0.0
-    } else {
-        1.0 - (EXPLICIT_LIMIT / phase).powi(2)
-    };
-    let discrete_damping = mass * ((step * parameters.damping / mass).exp_m1()) / step;
-    let damping = discrete_damping - (1.0 - theta) * parameters.stiffness * step;
-    SpringCoefficients::new(
-        frequency / std::f64::consts::TAU,
-        damping / (2.0 * mass * frequency),
-    )
 }

@@ -20,7 +20,7 @@ use rapier3d::prelude::*;
 pub struct TrueContact {
     /// Unit normal out of the part, in the world.
     pub normal: DVec3,
-    /// Distance between the ball's and the part's surface, lift of a burr included [m].
+    /// Separation that the solver is told [m]: it says the force (see `contact`), and nothing of where the surfaces are.
     pub separation: f64,
 }
 
@@ -91,8 +91,10 @@ fn fill(
 ) {
     let out_of_part = contact.normal;
     let out_of_tool = world_from_tool.rotation.inverse() * -contact.normal;
-    let on_tool = out_of_tool * radius;
-    let on_part = world_from_tool.translation - out_of_part * (radius + contact.separation);
+    // Both as far from where the surfaces meet, so that friction acts there.
+    let half = 0.5 * contact.separation;
+    let on_tool = out_of_tool * (radius - half);
+    let on_part = world_from_tool.translation - out_of_part * (radius + half);
     let (normals, points) = if tool_first {
         ([out_of_tool, out_of_part], [on_tool, on_part])
     } else {

@@ -1,13 +1,13 @@
 //! The coupled simulation: the arm in Rapier, the device's pneumatics in sub-steps of every rigid-body step, recorded at each step.
 //!
 //! The step, in order (`Simulation::step`):
-//! reference -> set pressure -> device (pneumatic sub-steps) -> joint laws (servo with feed-forward, slide) -> rigid bodies with contact -> sample.
+//! reference -> set pressure -> slide (device and contact, in sub-steps) -> joint laws (servo with feed-forward) -> rigid bodies with friction -> sample.
 
 pub mod contact;
 mod dispatch;
 mod error;
-pub mod runout;
 mod sample;
+pub mod slide;
 mod step;
 pub mod world;
 

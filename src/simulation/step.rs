@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use glamx::DPose3;
 
+use super::contact::Touch;
 use super::error::SimulationError;
-use super::runout::Runout;
 use super::sample::{FrameLog, SampleLog};
+use super::slide::{self, SlideCarrier, SlideStep};
 use super::world::{World, WorldDescription};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
@@ -18,7 +19,7 @@ use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::JointLaw;
 use crate::control::servo::{AxisCommand, Servo, ServoParameters};
 use crate::control::transmission::Motor;
-use crate::device::{DeviceForce, DeviceState, PistonMotion, PressureMap};
+use crate::device::{DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
 use crate::recording::Unit;
 use crate::recording::schema::{self, JointSignal};
@@ -35,11 +36,11 @@ const LOST: f64 = 0.05;
 pub struct StepTimes {
     /// Reference and set pressure.
     pub reference: Duration,
-    /// Pneumatics.
-    pub device: Duration,
+    /// Device and contact.
+    pub slide: Duration,
     /// Joint laws: inverse dynamics, servo.
     pub servo: Duration,
-    /// Rapier, contact included.
+    /// Rapier, friction included.
     pub rigid_bodies: Duration,
     /// Recording.
     pub sample: Duration,
@@ -49,7 +50,6 @@ pub struct StepTimes {
 pub struct Simulation<'a> {
     cell: &'a Cell,
     world: World,
-    runout: Option<Runout>,
     device: DeviceState,
     servo: Servo,
     /// What each axis's drive makes of its command, where the drives lag.
@@ -64,7 +64,12 @@ pub struct Simulation<'a> {
     answer: f64,
     sensors: SensorChain,
     readings: Readings,
-    slide_speed: f64,
+    /// Where the tool touches the part, or is about to.
+    touches: Vec<Touch>,
+    /// Mean forces of the step on them.
+    pressed: Vec<(DVec3, f64)>,
+    /// Acceleration that gravity, the arm and friction gave the slide over the last step [m/s2].
+    carried: f64,
     steps: usize,
     total_steps: usize,
     laws: Vec<JointLaw>,
@@ -122,7 +127,6 @@ impl<'a> Simulation<'a> {
         Self {
             cell,
             world,
-            runout: Runout::of(&scenario.contact),
             servo,
             lags,
             motors,
@@ -136,7 +140,9 @@ impl<'a> Simulation<'a> {
                 regulator_pressure: device.regulator.outlet,
                 ..Readings::default()
             },
-            slide_speed: 0.0,
+            touches: Vec::new(),
+            pressed: Vec::new(),
+            carried: gravity,
             device,
             steps: 0,
             total_steps,
@@ -195,17 +201,19 @@ impl<'a> Simulation<'a> {
             }
         };
         let dt = self.cell.scenario.simulation.step;
-        let reference = self.cell.plan.reference((self.steps + 1) as f64 * dt);
+        let start = self.steps as f64 * dt;
+        let middle = self.cell.plan.reference(start + 0.5 * dt);
+        let reference = self.cell.plan.reference(start + dt);
         let set_pressure = self.set_pressure(&reference);
         lap(|t| &mut t.reference);
-        let force = self.advance_device(set_pressure, dt);
-        lap(|t| &mut t.device);
-        let told = self.told(&reference, dt);
-        self.set_laws(&told, force, dt);
+        let slide = self.advance_slide(set_pressure, start, dt);
+        lap(|t| &mut t.slide);
+        let told = self.told(&middle, dt);
+        self.set_laws(&told, slide.device, dt);
         lap(|t| &mut t.servo);
-        self.raise_contact(&reference, dt);
-        self.world.step();
+        self.move_bodies(&slide, dt);
         self.steps += 1;
+        self.touch(&reference);
         lap(|t| &mut t.rigid_bodies);
         let result = self.sample(&reference, set_pressure);
         lap(|t| &mut t.sample);
@@ -237,16 +245,66 @@ impl<'a> Simulation<'a> {
         self.sensors.command(self.answer, step)
     }
 
-    fn advance_device(&mut self, set_pressure: f64, dt: f64) -> DeviceForce {
+    /// Stroke and speed of the slide.
+    fn motion(&self) -> PistonMotion {
         let slide = self.slide();
-        let motion = PistonMotion {
+        PistonMotion {
             stroke: self.world.positions()[slide],
             speed: self.world.velocities()[slide],
+        }
+    }
+
+    /// What acts on the slide from now on, at a time [s].
+    fn carrier(&self, time: f64) -> SlideCarrier<'_> {
+        let mass = self.cell.device.parameters().moving_mass;
+        let contact = &self.cell.plant.contact;
+        SlideCarrier {
+            contact,
+            touches: &self.touches,
+            start: time,
+            stroke: self.motion().stroke,
+            weight: mass * self.carried,
+            rate: contact.rate(mass),
+        }
+    }
+
+    /// Device and contact over the step; a clamped slide stays where it is.
+    fn advance_slide(&mut self, set_pressure: f64, start: f64, dt: f64) -> SlideStep {
+        let cell = self.cell;
+        let motion = self.motion();
+        let substeps = cell.scenario.simulation.substeps;
+        let mut pressed = std::mem::take(&mut self.pressed);
+        let mut device = self.device.clone();
+        let carrier = self.carrier(start);
+        let step = if cell.scenario.device.locked {
+            cell.device
+                .advance(&mut device, set_pressure, motion, dt, substeps);
+            let load = slide::mean_load(&carrier, motion, dt, &mut pressed);
+            SlideStep {
+                motion,
+                device: self.slide_force,
+                load,
+            }
+        } else {
+            let driven = (set_pressure, motion.speed);
+            let cut = (dt, substeps);
+            slide::advance(&cell.device, &mut device, &carrier, driven, cut, &mut pressed)
         };
-        let substeps = self.cell.scenario.simulation.substeps;
-        self.cell
-            .device
-            .advance(&mut self.device, set_pressure, motion, dt, substeps)
+        self.device = device;
+        self.pressed = pressed;
+        step
+    }
+
+    /// Arm and slide over the step.
+    fn move_bodies(&mut self, slide: &SlideStep, dt: f64) {
+        let speed = self.motion().speed;
+        let locked = self.cell.scenario.device.locked;
+        let led = if locked { None } else { Some(slide.motion) };
+        self.world.step(&self.pressed, led);
+        let mass = self.cell.device.parameters().moving_mass;
+        let gained = (self.motion().speed - speed) / dt;
+        self.slide_force = self.world.applied(self.slide()).0;
+        self.carried = gained - (self.slide_force - slide.load) / mass;
     }
 
     /// What the drives are told: the reference, as far as they lag behind it.
@@ -261,7 +319,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Laws of all degrees of freedom: the axes' servo with feed-forward, the device on the slide.
-    fn set_laws(&mut self, reference: &Reference, device: DeviceForce, dt: f64) {
+    fn set_laws(&mut self, reference: &Reference, device: f64, dt: f64) {
         let n = self.slide();
         let feed_forward = self.feed_forward(reference, device);
         for (axis, &feed_forward) in feed_forward.iter().enumerate().take(n) {
@@ -291,19 +349,13 @@ impl<'a> Simulation<'a> {
                 damping: 2.0 * (stiffness * device_scenario.parameters.moving_mass).sqrt(),
             }
         } else {
-            let speed = self.world.velocities()[n];
-            JointLaw {
-                force: device.force + device.damping * speed,
-                stiffness: device.stiffness,
-                rest: self.world.positions()[n] + speed * dt,
-                damping: device.damping,
-            }
+            JointLaw::constant(device)
         };
         self.world.set_laws(&self.laws);
     }
 
     /// Torques that the reference needs, with the contact force that the device's own force implies.
-    fn feed_forward(&self, reference: &Reference, device: DeviceForce) -> [f64; MAX_JOINTS] {
+    fn feed_forward(&self, reference: &Reference, device: f64) -> [f64; MAX_JOINTS] {
         let (cell, n) = (self.cell, self.slide());
         let chain = &cell.arm_with_slide;
         let base = cell.scenario.arm.world_from_base;
@@ -320,12 +372,7 @@ impl<'a> Simulation<'a> {
             &mut torque[..=n],
         );
         if cell.scenario.arm.servo.contact_feed_forward {
-            let pushing = if cell.scenario.device.locked {
-                self.slide_force
-            } else {
-                device.force
-            };
-            let contact = (pushing - torque[n]) / cell.axial_share();
+            let contact = (device - torque[n]) / cell.axial_share();
             let mut links = [DPose3::IDENTITY; MAX_JOINTS];
             self.world.link_poses(&mut links);
             let mut pressed = [0.0; MAX_JOINTS];
@@ -338,47 +385,48 @@ impl<'a> Simulation<'a> {
         torque
     }
 
-    /// Lifts the part's surface under the ball by the burr, and by the tool's runout.
-    fn raise_contact(&mut self, reference: &Reference, dt: f64) {
-        let turned = match &self.runout {
-            Some(runout) => runout.lift((self.steps as f64 + 0.5) * dt),
-            None => 0.0,
-        };
-        let Some(ride) = &self.cell.part.ride else {
-            if self.runout.is_some() {
-                self.world.part_contact_mut().set_lift(turned, DVec3::ZERO);
-            }
-            return;
-        };
+    /// Finds where the tool touches the part, on what stands out of it.
+    fn touch(&mut self, reference: &Reference) {
         // The ball is where the arm has really taken it: ahead of the reference's foot point by its error along the edge.
         let along = (self.world.tool_centre() - reference.centre).dot(reference.tangent);
-        let place = (reference.edge_length + along).clamp(0.0, ride.length());
-        let gradient = reference.tangent * ride.slope(place);
-        self.world
-            .part_contact_mut()
-            .set_lift(ride.lift(place) + turned, gradient);
+        let place = reference.edge_length + along;
+        let relief = self.cell.relief(place);
+        self.world.touches(&relief, &mut self.touches);
     }
 
     fn sample(&mut self, reference: &Reference, set_pressure: f64) -> Result<(), SimulationError> {
         let (cell, n) = (self.cell, self.slide());
         let time = self.steps as f64 * cell.scenario.simulation.step;
-        let contact = *self.world.contact();
-        let stroke = self.world.positions()[n];
+        let motion = self.motion();
+        let stroke = motion.stroke;
+        let carrier = self.carrier(time);
+        let mut normal_force = 0.0;
+        let mut normal = DVec3::ZERO;
+        let mut load = 0.0;
+        for touch in &self.touches {
+            let force = carrier.normal_force(touch, 0.0, motion);
+            normal_force += force;
+            normal += touch.normal * force;
+            load += touch.share * force;
+        }
+        let friction = self.world.contact().friction;
+        let force_on_part = -(normal + friction);
+        let normal = normal.normalize_or_zero();
         let gas = &cell.scenario.device.parameters.gas;
         let pressures = cell.device.pressures(&self.device, stroke);
-        self.slide_force = self.world.applied_force(n);
-        let force_on_part = -contact.force_on_tool;
-        let speed = self.world.velocities()[n];
+        let mass = cell.device.parameters().moving_mass;
+        if !cell.scenario.device.locked {
+            self.slide_force = cell.device.piston_force(&self.device, motion);
+        }
         self.readings = self.sensors.measure(
             time,
             &Truth {
                 force: force_on_part.dot(reference.axis),
                 stroke,
-                acceleration: (speed - self.slide_speed) / cell.scenario.simulation.step,
+                acceleration: (self.slide_force - load) / mass + self.carried,
                 regulator_pressure: self.device.regulator.outlet,
             },
         );
-        self.slide_speed = speed;
         if self.sensors.sampled() {
             self.read_encoders();
         }
@@ -387,15 +435,15 @@ impl<'a> Simulation<'a> {
         let across = off - reference.axis * off.dot(reference.axis);
         let signals = [
             reference.edge_length,
-            contact.normal_force,
+            normal_force,
             cell.scenario.process.force,
             force_on_part.x,
             force_on_part.y,
             force_on_part.z,
-            contact.friction_force,
+            friction.length(),
             self.slide_force,
             stroke,
-            self.world.velocities()[n],
+            motion.speed,
             pressures[0],
             pressures[1],
             gas.atmosphere + self.device.regulator.outlet,
@@ -416,8 +464,11 @@ impl<'a> Simulation<'a> {
         for (axis, joint) in joints.iter_mut().enumerate().take(n) {
             let velocity = self.world.velocities()[axis];
             let (applied, at_drive) = match &self.motors[axis] {
-                None => (self.world.applied_force(axis), velocity),
-                Some((motor, drive)) => (drive.at(motor.angle, motor.speed), motor.speed),
+                None => self.world.applied(axis),
+                Some((motor, drive)) => {
+                    let (angle, speed) = motor.middle;
+                    (drive.at(angle, speed), speed)
+                }
             };
             *joint = [
                 self.world.positions()[axis],
@@ -430,7 +481,7 @@ impl<'a> Simulation<'a> {
         self.check_finite(&signals, &joints[..n], reference.phase, time)?;
         self.log.push(time, reference.phase, &signals, &joints[..n]);
         if time >= self.next_frame {
-            self.frame(time, reference, force_on_part, contact.normal);
+            self.frame(time, reference, force_on_part, normal);
             self.next_frame += FRAME_INTERVAL;
         }
         let radius = cell.scenario.device.tool_radius;
@@ -440,7 +491,7 @@ impl<'a> Simulation<'a> {
                 edge_length: reference.edge_length,
                 off: across.length(),
                 radius,
-                force: contact.normal_force,
+                force: normal_force,
             });
         }
         self.check_axes(&joints[..n], reference.phase, time)?;

@@ -1,16 +1,24 @@
 //! Rapier behind one door: the arm and its slide as a reduced-coordinate multibody, the tool's ball on the part's mesh.
 //!
-//! Units SI, `f64` build of Rapier. Each degree of freedom is driven by a `JointLaw`, an affine force law that Rapier integrates implicitly through its
-//! per-joint spring and damper; nothing else acts on a joint, so the torque that was really applied is known after the step.
+//! Units SI, `f64` build of Rapier. Each degree of freedom is driven by a `JointLaw`, an affine force law; nothing else acts on a joint, so the torque that was
+//! really applied is known after the step. The law acts at one moment of the step,
+//!
+//!     v_m = (1 - theta) v + theta v',   q_m = q + theta h v_m,   q' = q + h v_m
+//!
+//! v, v' speeds at its start and end. theta = 1/(1 - exp(-z)) - 1/z, z = h times the law's own rate, is exact for a decay at that rate: 1/2, the implicit
+//! midpoint rule of second order, where the step resolves the law, 1 where it does not (exponential fitting: Liniger, Willoughby, SIAM J. Numer. Anal. 7,
+//! 1970). Rapier's per-joint spring and damper take the part in v' implicitly, and q' is put right after its step, which takes theta as 1.
 
 use glam::DVec3;
 use glamx::DPose3;
 use rapier3d::prelude::*;
 
-use super::contact::{ContactReading, PartContact, PartContactParameters};
+use super::contact::{ContactReading, PartContact, Touch};
 use crate::arm::chain::{Chain, JointKind};
 use crate::cell::Cell;
 use crate::control::law::JointLaw;
+use crate::device::PistonMotion;
+use crate::plant::Relief;
 use crate::workpiece::TriangleMesh;
 
 /// Stiffness of the spring that carries a constant force [N/m or N m/rad]: too soft to act as a spring.
@@ -37,10 +45,10 @@ pub struct WorldDescription<'a> {
     pub step: f64,
     /// The tool.
     pub tool: ToolBall,
-    /// The part, in the world frame, with its contact law.
+    /// The part, in the world frame.
     pub part: &'a TriangleMesh,
-    /// Contact law.
-    pub contact: PartContactParameters,
+    /// Coulomb friction coefficient of the tool on it [1].
+    pub friction: f64,
 }
 
 impl<'a> WorldDescription<'a> {
@@ -57,11 +65,7 @@ impl<'a> WorldDescription<'a> {
                 centre_in_link: DVec3::new(0.0, 0.0, scenario.device.tool_centre),
             },
             part: &cell.part.mesh_in_world,
-            contact: PartContactParameters {
-                stiffness: scenario.contact.stiffness,
-                damping: scenario.contact.damping,
-                friction: scenario.contact.friction,
-            },
+            friction: scenario.contact.friction,
         }
     }
 }
@@ -78,10 +82,28 @@ pub struct World {
     links: Vec<usize>,
     tool_body: RigidBodyHandle,
     tool: ToolBall,
+    /// Axis of the last joint, the slide's, in its link's frame.
+    slide_axis: DVec3,
+    step: f64,
+    /// Each joint's own inertia where it was put last [kg m2 or kg].
+    inertias: Vec<f64>,
     laws: Vec<JointLaw>,
+    /// The theta of each law.
+    moments: Vec<f64>,
+    /// Force [N or N m] and speed of each joint at the moment of the last step in which its law acts.
+    applied: Vec<(f64, f64)>,
     positions: Vec<f64>,
     velocities: Vec<f64>,
     reading: ContactReading,
+}
+
+/// Where in a step a law acts that decays by `z` in it.
+fn moment(z: f64) -> f64 {
+    if z < 1e-3 {
+        0.5 + z / 12.0
+    } else {
+        -1.0 / (-z).exp_m1() - 1.0 / z
+    }
 }
 
 impl World {
@@ -132,7 +154,7 @@ impl World {
             tool_body,
             description.part,
             description.tool,
-            description.contact,
+            description.friction,
             description.step,
         );
         let count = joints.len();
@@ -151,7 +173,12 @@ impl World {
             links,
             tool_body,
             tool: description.tool,
+            slide_axis: description.chain.joints[count - 1].axis,
+            step: description.step,
+            inertias: vec![f64::INFINITY; count],
             laws: vec![JointLaw::default(); count],
+            moments: vec![0.5; count],
+            applied: vec![(0.0, 0.0); count],
             positions: vec![0.0; count],
             velocities: vec![0.0; count],
             reading: ContactReading::default(),
@@ -186,57 +213,92 @@ impl World {
 
     /// Puts the joints at positions [rad or m] and at rest.
     pub fn set_positions(&mut self, positions: &[f64]) {
-        let displacement: Vec<f64> = positions
-            .iter()
-            .zip(&self.positions)
-            .map(|(target, now)| target - now)
-            .collect();
+        let pairs = positions.iter().zip(&self.positions);
+        let displacement: Vec<f64> = pairs.map(|(target, now)| target - now).collect();
+        self.displace(&displacement);
+        self.multibody_mut().generalized_velocity_mut().fill(0.0);
+        self.read_joints();
+        let masses = self.mass_matrix();
+        self.inertias = (0..self.joints.len()).map(|i| masses[(i, i)]).collect();
+    }
+
+    /// Moves the joints by displacements [rad or m], their speeds as they are.
+    fn displace(&mut self, displacement: &[f64]) {
         let physics = &mut self.physics;
         let (multibody, _) = physics
             .multibody_joints
             .get_mut(self.joints[0])
             .expect("the multibody lives as long as the world");
         multibody.forward_kinematics(&physics.bodies, true);
-        multibody.apply_displacements(&displacement);
-        multibody.generalized_velocity_mut().fill(0.0);
+        multibody.apply_displacements(displacement);
         multibody.forward_kinematics(&physics.bodies, false);
         multibody.update_rigid_bodies(&mut physics.bodies, true);
-        self.read_joints();
     }
 
-    /// Sets the law of each degree of freedom for the next steps.
+    /// Sets the law of each degree of freedom for the next step.
     pub fn set_laws(&mut self, laws: &[JointLaw]) {
         self.laws.copy_from_slice(laws);
-        let multibody = self
-            .physics
-            .multibody_joints
-            .get_mut_internal(self.joints[0])
-            .expect("the multibody lives as long as the world")
-            .0;
+        let h = self.step;
         for (i, law) in laws.iter().enumerate() {
+            let (inertia, q, v) = (self.inertias[i], self.positions[i], self.velocities[i]);
+            let rate = (law.damping / inertia).max((law.stiffness / inertia).sqrt());
+            let theta = moment(h * rate);
+            self.moments[i] = theta;
+            let early = (1.0 - theta) * v;
+            let force = law.at(q + theta * h * early, early);
             let (stiffness, rest) = if law.stiffness > 0.0 {
-                (law.stiffness, law.rest + law.force / law.stiffness)
+                let stiffness = theta * theta * law.stiffness;
+                (stiffness, q + force / stiffness)
             } else {
-                (
-                    CARRIER_STIFFNESS,
-                    self.positions[i] + law.force / CARRIER_STIFFNESS,
-                )
+                (CARRIER_STIFFNESS, q + force / CARRIER_STIFFNESS)
             };
-            multibody.damping_mut()[i] = law.damping;
-            if let Some(link) = multibody.link_mut(self.links[i]) {
-                link.joint.set_spring(self.axes[i], stiffness, rest);
+            let (axis, link) = (self.axes[i], self.links[i]);
+            let multibody = self.multibody_mut();
+            multibody.damping_mut()[i] = theta * law.damping;
+            if let Some(link) = multibody.link_mut(link) {
+                link.joint.set_spring(axis, stiffness, rest);
             }
         }
     }
 
-    /// Advances by one step.
-    pub fn step(&mut self) {
+    /// Where the tool touches the part, or is about to, whose surface is off its mesh by `relief`.
+    pub fn touches(&mut self, relief: &Relief, touches: &mut Vec<Touch>) {
+        let centre = self.tool_centre();
+        let body = &self.physics.bodies[self.tool_body];
+        let axis = body.rotation() * self.slide_axis;
+        let speed = self.velocities[self.velocities.len() - 1];
+        let velocity = body.velocity_at_point(centre) - axis * speed;
+        self.part_contact
+            .find(relief, centre, velocity, axis, touches);
+    }
+
+    /// Advances by one step, the tool pressed on the part with forces [N] along normals. The slide ends where its own law took it, `slide`, moved on by what
+    /// the arm did meanwhile that this law did not know; as the law set for it says where there is none.
+    pub fn step(&mut self, pressed: &[(DVec3, f64)], slide: Option<PistonMotion>) {
         let centre = self.tool_centre();
         self.part_contact
-            .prepare(&mut self.physics, self.joints[0], self.tool_body, centre);
+            .press(&self.physics, self.joints[0], self.tool_body, centre, pressed);
+        let before = (self.positions.clone(), self.velocities.clone());
         self.physics.step_with_events(&(), &());
         self.read_joints();
         self.reading = self.part_contact.read(&self.physics);
+        let h = self.step;
+        let last = self.joints.len() - 1;
+        let mut displacement = vec![0.0; self.joints.len()];
+        for i in 0..=last {
+            let (q, v, theta) = (before.0[i], before.1[i], self.moments[i]);
+            let speed = (1.0 - theta) * v + theta * self.velocities[i];
+            self.applied[i] = (self.laws[i].at(q + theta * h * speed, speed), speed);
+            let end = match slide {
+                Some(slide) if i == last => {
+                    slide.stroke + 0.5 * h * (self.velocities[i] - slide.speed)
+                }
+                _ => q + h * speed,
+            };
+            displacement[i] = end - self.positions[i];
+        }
+        self.displace(&displacement);
+        self.read_joints();
     }
 
     fn read_joints(&mut self) {
@@ -264,9 +326,9 @@ impl World {
         &self.velocities
     }
 
-    /// Force that a degree of freedom's law applied over the last step [N or N m].
-    pub fn applied_force(&self, joint: usize) -> f64 {
-        self.laws[joint].at(self.positions[joint], self.velocities[joint])
+    /// Force that a degree of freedom's law applied over the last step [N or N m], and its speed then [rad/s or m/s].
+    pub fn applied(&self, joint: usize) -> (f64, f64) {
+        self.applied[joint]
     }
 
     /// Contact over the last step.
@@ -288,11 +350,6 @@ impl World {
             let link = multibody.link(link).expect("each joint has its link");
             *pose = *link.local_to_world();
         }
-    }
-
-    /// The contact, to shift it while the run goes on (burr under the ball).
-    pub fn part_contact_mut(&mut self) -> &mut PartContact {
-        &mut self.part_contact
     }
 
     /// Torques that hold Rapier's bodies still against gravity at the current positions [N m or N]: minus the sum of J^T m g.
@@ -348,8 +405,8 @@ impl World {
     }
 }
 
-/// Parameters under which Rapier's soft contact is the spring and damper that `PartContact` asks for: one backward-Euler solve a step, no second
-/// pass that would undo the spring's velocity, no cap on its recovery.
+/// Parameters under which Rapier's soft contact carries the force that `PartContact` asks for: one solve a step, no second pass that would undo its
+/// velocity, no cap on its recovery.
 fn integration_parameters(step: f64) -> IntegrationParameters {
     IntegrationParameters {
         dt: step,
