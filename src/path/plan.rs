@@ -123,6 +123,21 @@ pub struct Reference {
     pub centre: DVec3,
 }
 
+impl Reference {
+    /// Position, velocity and acceleration in the middle between this and a reference that comes `dt` [s] later, of the cubic through both; all else as there.
+    pub fn middle(&self, later: &Self, dt: f64) -> Self {
+        let mut middle = *later;
+        for i in 0..MAX_JOINTS {
+            let (from, to) = (self.position[i], later.position[i]);
+            let (leaving, arriving) = (self.velocity[i], later.velocity[i]);
+            middle.position[i] = 0.5 * (from + to) + 0.125 * dt * (leaving - arriving);
+            middle.velocity[i] = 1.5 * (to - from) / dt - 0.25 * (leaving + arriving);
+            middle.acceleration[i] = (arriving - leaving) / dt;
+        }
+        middle
+    }
+}
+
 /// A stretch of the job over which one spline runs.
 #[derive(Debug, Clone)]
 pub(super) struct Leg {

@@ -59,6 +59,8 @@ pub struct Simulation<'a> {
     /// What each encoder read last [rad], and their noise.
     encoders: [f64; MAX_JOINTS],
     encoder_noise: Noise,
+    /// Where the plan is now.
+    reference: Reference,
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
@@ -132,6 +134,7 @@ impl<'a> Simulation<'a> {
             motors,
             encoders: [0.0; MAX_JOINTS],
             encoder_noise: Noise::new(scenario.simulation.seed, Stream::Encoders),
+            reference,
             controller: cell.controller.clone(),
             answer: set_pressure,
             sensors,
@@ -202,8 +205,9 @@ impl<'a> Simulation<'a> {
         };
         let dt = self.cell.scenario.simulation.step;
         let start = self.steps as f64 * dt;
-        let middle = self.cell.plan.reference(start + 0.5 * dt);
         let reference = self.cell.plan.reference(start + dt);
+        let middle = self.reference.middle(&reference, dt);
+        self.reference = reference;
         let set_pressure = self.set_pressure(&reference);
         lap(|t| &mut t.reference);
         let slide = self.advance_slide(set_pressure, start, dt);

@@ -92,6 +92,7 @@ pub struct World {
     moments: Vec<f64>,
     /// Force [N or N m] and speed of each joint at the moment of the last step in which its law acts.
     applied: Vec<(f64, f64)>,
+    displacements: Vec<f64>,
     positions: Vec<f64>,
     velocities: Vec<f64>,
     reading: ContactReading,
@@ -179,6 +180,7 @@ impl World {
             laws: vec![JointLaw::default(); count],
             moments: vec![0.5; count],
             applied: vec![(0.0, 0.0); count],
+            displacements: vec![0.0; count],
             positions: vec![0.0; count],
             velocities: vec![0.0; count],
             reading: ContactReading::default(),
@@ -189,7 +191,13 @@ impl World {
 
     /// Rapier damps every angular degree of freedom by default; here only what the model says may act.
     fn clear_joint_defaults(&mut self) {
-        let multibody = self.multibody_mut();
+        let physics = &mut self.physics;
+        let multibodies = &mut physics.multibody_joints;
+        let (multibody, _) = multibodies
+            .get_mut_internal(self.joints[0])
+            .expect("the multibody lives as long as the world");
+        // It learns only now that its root is fixed, and which degrees of freedom it has.
+        multibody.forward_kinematics(&physics.bodies, true);
         multibody.damping_mut().fill(0.0);
         multibody.armature_mut().fill(0.0);
         multibody.frictions_mut().fill(0.0);
@@ -213,24 +221,24 @@ impl World {
 
     /// Puts the joints at positions [rad or m] and at rest.
     pub fn set_positions(&mut self, positions: &[f64]) {
-        let pairs = positions.iter().zip(&self.positions);
-        let displacement: Vec<f64> = pairs.map(|(target, now)| target - now).collect();
-        self.displace(&displacement);
+        for (i, target) in positions.iter().enumerate() {
+            self.displacements[i] = target - self.positions[i];
+        }
+        self.displace();
         self.multibody_mut().generalized_velocity_mut().fill(0.0);
         self.read_joints();
         let masses = self.mass_matrix();
         self.inertias = (0..self.joints.len()).map(|i| masses[(i, i)]).collect();
     }
 
-    /// Moves the joints by displacements [rad or m], their speeds as they are.
-    fn displace(&mut self, displacement: &[f64]) {
+    /// Moves the joints by their displacements, their speeds as they are.
+    fn displace(&mut self) {
         let physics = &mut self.physics;
         let (multibody, _) = physics
             .multibody_joints
             .get_mut(self.joints[0])
             .expect("the multibody lives as long as the world");
-        multibody.forward_kinematics(&physics.bodies, true);
-        multibody.apply_displacements(displacement);
+        multibody.apply_displacements(&self.displacements);
         multibody.forward_kinematics(&physics.bodies, false);
         multibody.update_rigid_bodies(&mut physics.bodies, true);
     }
@@ -278,15 +286,17 @@ impl World {
         let centre = self.tool_centre();
         self.part_contact
             .press(&self.physics, self.joints[0], self.tool_body, centre, pressed);
-        let before = (self.positions.clone(), self.velocities.clone());
+        for (i, (_, start)) in self.applied.iter_mut().enumerate() {
+            *start = self.velocities[i];
+            self.displacements[i] = self.positions[i];
+        }
         self.physics.step_with_events(&(), &());
         self.read_joints();
         self.reading = self.part_contact.read(&self.physics);
         let h = self.step;
         let last = self.joints.len() - 1;
-        let mut displacement = vec![0.0; self.joints.len()];
         for i in 0..=last {
-            let (q, v, theta) = (before.0[i], before.1[i], self.moments[i]);
+            let (q, v, theta) = (self.displacements[i], self.applied[i].1, self.moments[i]);
             let speed = (1.0 - theta) * v + theta * self.velocities[i];
             self.applied[i] = (self.laws[i].at(q + theta * h * speed, speed), speed);
             let end = match slide {
@@ -295,9 +305,9 @@ impl World {
                 }
                 _ => q + h * speed,
             };
-            displacement[i] = end - self.positions[i];
+            self.displacements[i] = end - self.positions[i];
         }
-        self.displace(&displacement);
+        self.displace();
         self.read_joints();
     }
 
