@@ -438,21 +438,21 @@ fn an_improved_file_differs_from_the_believed_one_by_the_diagnosis_alone() {
             .find(|effect| effect.name == "coulomb_viscous_friction")
             .unwrap(),
         parameters: vec![
-            ("coulomb_force_n", 13.2000004, Some([12.8, 13.6])),
-            ("viscous_coefficient_n_s_per_m", 90.123456, None),
-            ("presliding_displacement_m", 4.1234567e-5, None),
+            ("coulomb_force_n", 13.200000000004, Some([12.8, 13.6])),
+            ("viscous_coefficient_n_s_per_m", 90.123456789123, None),
+            ("presliding_displacement_m", 4.123456789123e-5, None),
         ],
     };
-    let moved = [("cylinder.dead_volume_m3", 1.471_234_56e-5, 1.45e-5, 1.5e-5)];
+    let moved = [("cylinder.dead_volume_m3", 1.471_234_567_891e-5, 1.45e-5, 1.5e-5)];
     let expected = RIG.replace(
         "{ value = 1.454e-05, tolerance = 0.1 }   # each chamber",
-        "{ value = 1.47123e-5, low = 1.45e-5, high = 1.5e-5 }   # each chamber",
+        "{ value = 1.47123457e-5, low = 1.45e-5, high = 1.5e-5 }   # each chamber",
     ) + "
 # Found: seals and guides rub: a dry part and one that grows with speed.
 [effect.coulomb_viscous_friction]
 coulomb_force_n = { value = 13.2, low = 12.8, high = 13.6 }
-viscous_coefficient_n_s_per_m = 90.1235
-presliding_displacement_m = 4.12346e-5
+viscous_coefficient_n_s_per_m = 90.1234568
+presliding_displacement_m = 4.12345679e-5
 ";
     assert_eq!(improved_text(&rig, &moved, &[friction], None), expected);
     assert_eq!(improved_text(&rig, &[], &[], None), RIG);
@@ -501,7 +501,7 @@ fn a_term_without_a_name_reads_back_as_it_was_found() {
         assert_eq!(read(&none).plant, rig.plant);
     }
     let mut ragged = terms()[0].clone();
-    ragged.coefficients[1] = -31.234_567_89;
+    ragged.coefficients[1] = -31.234_600_000_004;
     let text = improved_text(&rig, &[], &[], Some(&ragged));
     assert_eq!(read(&text).plant.latent, Some(terms()[0].clone()));
     assert!(text.ends_with(
