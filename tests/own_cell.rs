@@ -180,8 +180,7 @@ const BRACKET: Job = Job {
     ],
 };
 
-/// How the tool is set on the edge, in steps that are finer than a cell needs: Rapier is of first order in them, and seals of 60 N s/m behave like ones of
-/// 51 at 0.25 ms.
+/// How the tool is set on the edge.
 const PROCESS: &str = "feed_mm_per_s = FEED
 lean_deg = LEAN
 approach_distance_mm = 10
@@ -193,7 +192,6 @@ kind = \"proportional_integral\"
 period_ms = 20
 
 [simulation]
-step_ms = 0.05
 seed = SEED
 ";
 

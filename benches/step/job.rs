@@ -4,6 +4,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
 use idc_cell::arm::chain::MAX_JOINTS;
 use idc_cell::arm::dynamics::{inverse_dynamics, mass_matrix};
 use idc_cell::arm::kinematics::{jacobian_at, link_poses};
@@ -11,6 +12,8 @@ use idc_cell::cell::Cell;
 use idc_cell::control::law::JointLaw;
 use idc_cell::path::{Phase, Reference};
 use idc_cell::scenario::load;
+use idc_cell::plant::{ContactParameters, Relief};
+use idc_cell::simulation::contact::Touch;
 use idc_cell::simulation::world::{World, WorldDescription};
 use idc_cell::simulation::{Simulation, StepTimes};
 
@@ -141,7 +144,7 @@ pub fn servo_gains(cell: &Cell) -> Vec<(f64, f64)> {
 }
 
 /// The rigid-body world alone, holding the arm where following is under way; the ball on the edge, or `lift` [m] off it.
-pub fn holding_world(cell: &Cell, lift: f64) -> World {
+pub fn holding_world(cell: &Cell, lift: f64) -> Holding {
     let scenario = &cell.scenario;
     let mut world = World::new(&WorldDescription::of(cell));
     let reference = cell.plan.reference(follow_span(cell).0 + LEAD);
@@ -173,9 +176,50 @@ pub fn holding_world(cell: &Cell, lift: f64) -> World {
         JointLaw::constant(force[count - 1])
     };
     laws.push(slide);
-    world.set_laws(&laws);
+    let mut holding = Holding {
+        world,
+        laws,
+        contact: cell.plant.contact,
+        touches: Vec::new(),
+        pressed: Vec::new(),
+    };
     for _ in 0..2000 {
-        world.step();
+        holding.step();
     }
-    world
+    holding
+}
+
+/// A world that is held, its contact a spring and damper at the start of each step.
+pub struct Holding {
+    world: World,
+    laws: Vec<JointLaw>,
+    contact: ContactParameters,
+    touches: Vec<Touch>,
+    pressed: Vec<(DVec3, f64)>,
+}
+
+impl Holding {
+    pub fn step(&mut self) {
+        self.world.touches(&Relief::default(), &mut self.touches);
+        let speed = self.world.velocities()[self.laws.len() - 1];
+        self.pressed.clear();
+        for touch in &self.touches {
+            let rate = touch.rate + touch.share * speed;
+            let force = self.contact.force(touch.penetration, rate);
+            self.pressed.push((touch.normal, force));
+        }
+        self.world.set_laws(&self.laws);
+        self.world.step(&self.pressed, None);
+    }
+
+    /// Force of the tool on the part [N].
+    pub fn force(&self) -> f64 {
+        self.world.contact().normal_force
+    }
+
+    /// How deep the ball is in the part [m].
+    pub fn penetration(&self) -> f64 {
+        let depths = self.touches.iter().map(|touch| touch.penetration);
+        depths.fold(f64::NEG_INFINITY, f64::max)
+    }
 }

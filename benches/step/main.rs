@@ -71,9 +71,9 @@ struct Rounds {
 /// Parts of a timed step, in its order.
 const PARTS: [&str; 5] = [
     "reference, set pressure",
-    "device",
+    "device, contact",
     "servo, inverse dynamics",
-    "rigid bodies, contact (Rapier)",
+    "rigid bodies, friction (Rapier)",
     "sample",
 ];
 
@@ -89,7 +89,7 @@ fn compare(cell: &Cell) -> Result<(), Box<dyn Error>> {
         following.run(STEPS, Some(&mut times));
         let parts = [
             times.reference,
-            times.device,
+            times.slide,
             times.servo,
             times.rigid_bodies,
             times.sample,
@@ -109,10 +109,10 @@ fn compare(cell: &Cell) -> Result<(), Box<dyn Error>> {
         }
     }
     print_ours(&mut rounds);
-    let (force, desired) = (world.contact().normal_force, cell.scenario.process.force);
+    let (force, desired) = (world.force(), cell.scenario.process.force);
     println!(
         "the rigid bodies alone press with {force:.4} N of {desired} N, {:.4} mm deep",
-        world.contact().penetration * 1e3
+        world.penetration() * 1e3
     );
     match &peer {
         Ok(peer) => print_peer(cell, &mut rounds, peer, last_round.as_ref()),

@@ -65,7 +65,7 @@ fn place(error: &AppError) -> Option<Place> {
         AppError::Cell(CellError::EdgeStretch { file, key, .. }) => {
             of_key(file, &format!("workpiece.edge.{key}"))
         }
-        AppError::Cell(CellError::Effect { file, effect }) => {
+        AppError::Cell(CellError::Effect { file, effect, .. }) => {
             of_key(file, &format!("effect.{effect}"))
         }
         AppError::Cell(CellError::Burr { file, .. }) => of_key(file, "workpiece.burr.kind"),

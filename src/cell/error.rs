@@ -85,13 +85,15 @@ pub enum CellError {
         /// What is wrong with it.
         source: WorkpieceError,
     },
-    /// Physics that a diagnosis found: the simulation has keys of its own for it.
-    #[error("{}: `effect.{effect}` is what a diagnosis found, which is diagnosed and predicted with but not run; say it by the keys of the cell", file.display())]
+    /// An effect that a running cell cannot have.
+    #[error("{}: `effect.{effect}` cannot stand here: {reason}", file.display())]
     Effect {
         /// Scenario file.
         file: PathBuf,
-        /// The first effect.
-        effect: &'static str,
+        /// The effect.
+        effect: String,
+        /// Why not.
+        reason: String,
     },
     /// A drive of a joint that the arm does not have.
     #[error("{}: `arm.drives` names joint `{joint}`, expected one of {}", file.display(), joints.join(", "))]

@@ -56,15 +56,9 @@ impl Cell {
     /// # Errors
     /// What is missing, refused or out of reach, by file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
-        if let Some((effect, _)) = scenario.effects.first() {
-            return Err(CellError::Effect {
-                file: scenario.path.clone(),
-                effect: effect.name,
-            });
-        }
         let mut arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         check_drives(&scenario, &arm.chain)?;
-        let plant = plant::of(&scenario, &arm.chain);
+        let plant = plant::of(&scenario, &arm.chain)?;
         for (joint, friction) in arm.chain.joints.iter_mut().zip(plant.cell.joint_friction) {
             joint.friction = friction;
         }

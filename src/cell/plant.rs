@@ -1,15 +1,21 @@
 //! A cell's physics as one description, the same that a diagnosis compares with recordings: what its scenario says, and the effects put in.
 
+use super::error::CellError;
 use crate::arm::chain::Chain;
 use crate::control::transmission::TransmissionParameters;
+use crate::effects::vocabulary;
 use crate::plant::{
     CellParameters, Chain as DeviceChain, ContactLaw, ContactParameters, LinkParameters, Periodic,
     PlantParameters, SensorErrors,
 };
 use crate::scenario::Scenario;
+use crate::scenario::recorded_cell::apply;
 
 /// The description of a cell whose arm is `chain`.
-pub(super) fn of(scenario: &Scenario, chain: &Chain) -> PlantParameters {
+///
+/// # Errors
+/// An effect that a running cell cannot have.
+pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, CellError> {
     let contact = &scenario.contact;
     let mut cell = CellParameters {
         servo_bandwidth: scenario.arm.servo.lag_bandwidth,
@@ -27,7 +33,7 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> PlantParameters {
             }
         }
     }
-    PlantParameters {
+    let mut plant = PlantParameters {
         chain: DeviceChain::Whole,
         links: LinkParameters::NONE,
         device: scenario.device.parameters.clone(),
@@ -50,7 +56,31 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> PlantParameters {
         cell,
         sensors: SensorErrors::NONE,
         latent: None,
+    };
+    apply(&scenario.effects, &mut plant);
+    let refuse = |effect: &str, reason: String| CellError::Effect {
+        file: scenario.path.clone(),
+        effect: effect.to_owned(),
+        reason,
+    };
+    let joints = chain.joints.len();
+    for (effect, _) in &scenario.effects {
+        match vocabulary(effect.name) {
+            (_, Some(joint)) if joint > joints => {
+                return Err(refuse(effect.name, format!("the arm has {joints} joints")));
+            }
+            ("joint_backlash", Some(joint)) if plant.cell.joint_stiffness[joint - 1].is_infinite() => {
+                let reason = "its teeth_stiffness_n_m_per_rad must be finite";
+                return Err(refuse(effect.name, reason.to_owned()));
+            }
+            _ => {}
+        }
     }
+    if plant.sensors.force_delay < 0.0 {
+        let reason = "its offset_s is negative, and a cell that runs reads no force before it is there";
+        return Err(refuse("channel_time_offset", reason.to_owned()));
+    }
+    Ok(plant)
 }
 
 /// What stands between motor and link of each joint; none where they are one.

@@ -77,13 +77,8 @@ impl SensorErrors {
         signal
     }
 
-    /// Reading of a load cell [N] at a time [s] whose filter and stamps do nothing, from contact force [N] and acceleration [m/s2] then.
-    pub fn immediate_force_reading(&self, time: f64, force: f64, acceleration: f64) -> f64 {
-        self.converted(force + self.crosstalk_mass * acceleration, time)
-    }
-
     /// The filtered signal [N] with gain, zero and limit.
-    fn converted(&self, signal: f64, time: f64) -> f64 {
+    pub(super) fn converted(&self, signal: f64, time: f64) -> f64 {
         let reading = self.force_gain * signal + self.force_bias + self.force_drift * time;
         reading.clamp(-self.force_limit, self.force_limit)
     }
@@ -179,8 +174,6 @@ mod tests {
         };
         let read = errors.force_readings(&[0.0, 2.0], &[10.0, 50.0], &[5.0, 20.0]);
         assert!((read[0] - (1.1 * 11.5 + 2.0)).abs() < 1e-12);
-        assert_eq!(errors.immediate_force_reading(0.0, 10.0, 5.0), read[0]);
-        assert_eq!(errors.immediate_force_reading(2.0, 50.0, 20.0), read[1]);
         assert_eq!(read[1], 60.0);
     }
 }

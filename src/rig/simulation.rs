@@ -8,6 +8,7 @@ use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
+use crate::plant::{RunningSensors, SensorReadings};
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::ScenarioError;
 use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
@@ -109,6 +110,8 @@ pub struct RigSimulation<'a> {
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
+    /// What the sensors do to what they measure.
+    errors: RunningSensors,
     sensors: SensorChain,
     readings: Readings,
     estimator: Option<RigEstimator>,
@@ -143,6 +146,7 @@ impl<'a> RigSimulation<'a> {
             motion,
             controller: rig.controller.clone(),
             answer: 0.0,
+            errors: RunningSensors::new(scenario.sensor_errors),
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
             estimator: scenario.estimator.as_ref().map(RigEstimator::new),
@@ -279,18 +283,19 @@ impl<'a> RigSimulation<'a> {
 
     fn sample(&mut self, set_pressure: f64) {
         let truth = self.truth();
-        let errors = &self.rig.scenario.sensor_errors;
+        let there = SensorReadings {
+            force: truth.contact_force,
+            stroke: truth.motion.stroke,
+            regulator_pressure: truth.regulator_pressure,
+        };
+        let read = self.errors.read(truth.time, &there, truth.acceleration);
         self.readings = self.sensors.measure(
             truth.time,
             &Truth {
-                force: errors.immediate_force_reading(
-                    truth.time,
-                    truth.contact_force,
-                    truth.acceleration,
-                ),
-                stroke: errors.stroke_gain * truth.motion.stroke,
+                force: read.force,
+                stroke: read.stroke,
                 acceleration: truth.acceleration,
-                regulator_pressure: truth.regulator_pressure,
+                regulator_pressure: read.regulator_pressure,
             },
         );
         let desired = match &self.rig.scenario.command {

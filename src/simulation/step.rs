@@ -21,6 +21,7 @@ use crate::control::servo::{AxisCommand, Servo, ServoParameters};
 use crate::control::transmission::Motor;
 use crate::device::{DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
+use crate::plant::{RunningSensors, SensorReadings};
 use crate::recording::Unit;
 use crate::recording::schema::{self, JointSignal};
 use crate::sensing::noise::{Noise, Stream};
@@ -64,6 +65,8 @@ pub struct Simulation<'a> {
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
+    /// What the sensors do to what they measure.
+    errors: RunningSensors,
     sensors: SensorChain,
     readings: Readings,
     /// Where the tool touches the part, or is about to.
@@ -100,7 +103,10 @@ impl<'a> Simulation<'a> {
         };
         let device = cell.device.at_rest(stroke, set_pressure);
         let mut positions = cell.plan.start();
-        let bandwidth = scenario.arm.servo.lag_bandwidth;
+        for (position, offset) in positions.iter_mut().zip(cell.plant.cell.encoder_offset) {
+            *position -= offset;
+        }
+        let bandwidth = cell.plant.cell.servo_bandwidth;
         let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
         let lags = if bandwidth.is_finite() {
             positions.iter().map(lag).collect()
@@ -137,6 +143,7 @@ impl<'a> Simulation<'a> {
             reference,
             controller: cell.controller.clone(),
             answer: set_pressure,
+            errors: RunningSensors::new(cell.plant.sensors),
             sensors,
             readings: Readings {
                 stroke,
@@ -334,6 +341,11 @@ impl<'a> Simulation<'a> {
             };
             let (position, velocity) =
                 (self.world.positions()[axis], self.world.velocities()[axis]);
+            // The servo closes on the encoder: the arm stands off by what it reads too much.
+            let command = AxisCommand {
+                position: command.position - self.cell.plant.cell.encoder_offset[axis],
+                ..command
+            };
             self.laws[axis] = match &mut self.motors[axis] {
                 None => self.servo.law(axis, &command, position, velocity, dt),
                 Some((motor, drive)) => {
@@ -422,13 +434,20 @@ impl<'a> Simulation<'a> {
         if !cell.scenario.device.locked {
             self.slide_force = cell.device.piston_force(&self.device, motion);
         }
+        let acceleration = (self.slide_force - load) / mass + self.carried;
+        let there = SensorReadings {
+            force: force_on_part.dot(reference.axis),
+            stroke,
+            regulator_pressure: self.device.regulator.outlet,
+        };
+        let read = self.errors.read(time, &there, acceleration);
         self.readings = self.sensors.measure(
             time,
             &Truth {
-                force: force_on_part.dot(reference.axis),
-                stroke,
-                acceleration: (self.slide_force - load) / mass + self.carried,
-                regulator_pressure: self.device.regulator.outlet,
+                force: read.force,
+                stroke: read.stroke,
+                acceleration,
+                regulator_pressure: read.regulator_pressure,
             },
         );
         if self.sensors.sampled() {
@@ -509,7 +528,8 @@ impl<'a> Simulation<'a> {
                 None => self.world.positions()[axis],
                 Some((motor, _)) => motor.angle,
             };
-            self.encoders[axis] = angle + noise * self.encoder_noise.normal();
+            let offset = self.cell.plant.cell.encoder_offset[axis];
+            self.encoders[axis] = angle + offset + noise * self.encoder_noise.normal();
         }
     }
 

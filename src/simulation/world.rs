@@ -274,8 +274,17 @@ impl World {
         let centre = self.tool_centre();
         let body = &self.physics.bodies[self.tool_body];
         let axis = body.rotation() * self.slide_axis;
-        let speed = self.velocities[self.velocities.len() - 1];
-        let velocity = body.velocity_at_point(centre) - axis * speed;
+        let arm = centre - body.mass_properties().world_com;
+        // The bodies' own velocities are those of the step before.
+        let multibody = self.multibody();
+        let last = self.joints.len() - 1;
+        let jacobian = multibody.body_jacobian(self.links[last]);
+        let mut velocity = DVec3::ZERO;
+        for (column, speed) in jacobian.column_iter().zip(&self.velocities).take(last) {
+            let linear = DVec3::new(column[0], column[1], column[2]);
+            let angular = DVec3::new(column[3], column[4], column[5]);
+            velocity += (linear + angular.cross(arm)) * *speed;
+        }
         self.part_contact
             .find(relief, centre, velocity, axis, touches);
     }

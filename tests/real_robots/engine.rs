@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use glamx::DPose3;
-use idc_cell::simulation::contact::PartContactParameters;
 use idc_cell::simulation::world::{ToolBall, World, WorldDescription};
 use idc_cell::workpiece::TriangleMesh;
 
@@ -34,11 +33,7 @@ fn differences(robot: &Robot) -> (f64, f64) {
             centre_in_link: DVec3::ZERO,
         },
         part: &part,
-        contact: PartContactParameters {
-            stiffness: 1e5,
-            damping: 0.0,
-            friction: 0.0,
-        },
+        friction: 0.0,
     });
     let (mut mass_off, mut gravity_off) = (0.0f64, 0.0f64);
     for case in &robot.cases {

@@ -77,7 +77,7 @@ pub(super) fn of_scenario(
         tolerance: TOLERANCE,
         start_stroke_tolerance: 0.0,
         own: true,
-        force_delay: scenario.simulation.step,
+        force_delay: 0.0,
         sample_rate: sensing.sample_rate,
     })
 }
