@@ -202,6 +202,12 @@ pub enum AppError {
         /// What is wrong, and what was expected.
         reason: String,
     },
+    /// An effect that cannot be put in as it is asked for.
+    #[error("--with: {reason}")]
+    With {
+        /// What is wrong, and what was expected.
+        reason: String,
+    },
     /// A scenario that cannot be with what is set.
     #[error("{flags}: {source}")]
     Set {

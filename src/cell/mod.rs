@@ -10,7 +10,8 @@ use glamx::DPose3;
 pub use error::CellError;
 pub use part::{Part, choose_edge, station};
 
-use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind};
+use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind, MAX_JOINTS};
+use crate::arm::kinematics::{jacobian_at, link_poses};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
 use crate::control::force::ForceController;
 use crate::control::transmission::TransmissionParameters;
@@ -119,6 +120,24 @@ impl Cell {
             relief.gradient += here.tangent * ride.slope(here.station);
         }
         relief
+    }
+
+    /// The joint, from 1, whose turning moves the tool most along the contact normal in the middle of the job: what is wrong with it shows most.
+    pub fn telling_joint(&self) -> usize {
+        let reference = self.plan.reference(0.5 * self.plan.duration());
+        let count = self.arm.chain.len();
+        let mut links = [DPose3::IDENTITY; MAX_JOINTS];
+        let base = self.scenario.arm.world_from_base;
+        let position = &reference.position[..count];
+        link_poses(&self.arm.chain, base, position, &mut links[..count]);
+        let jacobian = jacobian_at(&self.arm.chain, &links[..count], reference.centre);
+        let normal = reference.normal.to_array();
+        let along = |joint: usize| -> f64 {
+            let rows = normal.iter().enumerate();
+            rows.map(|(row, n)| n * jacobian[(row, joint)]).sum()
+        };
+        let most = (0..count).max_by(|&a, &b| along(a).abs().total_cmp(&along(b).abs()));
+        most.unwrap_or_default() + 1
     }
 
     /// Cosine between the tool's axis and the contact normal: the share of the contact force that the device sees.

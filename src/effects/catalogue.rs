@@ -1,5 +1,6 @@
 //! The effects that are known.
 
+use super::cell::{CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG};
 use super::effect::Effect;
 use super::{chambers, contact, force_balance, regulator, sensors};
 
@@ -40,3 +41,13 @@ pub static CATALOGUE: &[Effect] = &[
     sensors::stroke_sensor_gain_error::EFFECT,
     sensors::channel_time_offset::EFFECT,
 ];
+
+/// All effects of a whole device and of the cell about it, those of joints one by one.
+pub fn every() -> impl Iterator<Item = &'static Effect> {
+    CATALOGUE
+        .iter()
+        .chain(&CELL_EFFECTS)
+        .chain(JOINT_EFFECTS.iter().flatten())
+        .chain(&JOINT_FRICTION)
+        .chain([&SERVO_LAG])
+}

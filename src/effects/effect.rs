@@ -72,6 +72,8 @@ pub struct Effect {
     pub subsystem: Subsystem,
     /// Its numbers, reported ones first.
     pub parameters: fn(&PlantParameters) -> Vec<Parameter>,
+    /// Its numbers at a size that devices and cells usually show, beside what is believed of them; all of them, in that order.
+    pub usual: fn(&PlantParameters) -> Vec<f64>,
     /// Values to start from, one list of all parameters each.
     pub starts: fn(&Clues<'_>) -> Vec<Vec<f64>>,
     /// Effects of the same group exclude one another.

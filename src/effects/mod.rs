@@ -13,7 +13,7 @@ mod quantity;
 mod regulator;
 mod sensors;
 
-pub use catalogue::CATALOGUE;
+pub use catalogue::{CATALOGUE, every};
 pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG, vocabulary};
 pub use effect::{Clues, Effect, Parameter, Subsystem};
 pub use links::{LINK_EFFECTS, candidates};

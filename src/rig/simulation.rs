@@ -17,7 +17,7 @@ use crate::sensing::{Readings, SensorChain, Truth};
 /// A bench rig with its job: all that does not change during a run.
 #[derive(Debug, Clone)]
 pub struct Rig {
-    /// What to do.
+    /// What to do, with the rig as it is.
     pub scenario: BenchScenario,
     /// The device.
     pub device: Device,
@@ -31,7 +31,6 @@ impl Rig {
     /// # Errors
     /// A controller whose loop would be unstable.
     pub fn new(scenario: BenchScenario) -> Result<Self, ScenarioError> {
-        let device = Device::new(scenario.device.parameters.clone());
         // A controller sees the contact as it is at the largest force, where it is stiffest.
         let largest = match &scenario.command {
             CommandScenario::Force(steps) => steps.iter().map(|step| step.1).fold(0.0, f64::max),
@@ -51,9 +50,11 @@ impl Rig {
             contact,
             scenario.step,
         )?;
+        // From here on it is not what is believed that counts.
+        let scenario = scenario.as_it_is();
         Ok(Self {
+            device: Device::new(scenario.device.parameters.clone()),
             scenario,
-            device,
             controller,
         })
     }

@@ -11,13 +11,16 @@ use super::document::Document;
 use super::error::ScenarioError;
 use super::estimator::{EstimatorBase, estimator as set_up_estimator};
 use super::load::expectations;
-use super::rig_device::{BenchDevice, bench_device};
+use super::recorded_cell::{EffectKeys, apply, effects_of};
+use super::rig_device::{BenchDevice, USUAL_CONTACT, bench_device};
+use super::rig_file::blank;
 use super::sections::bench_sections;
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
+use crate::effects::{Effect, Subsystem};
 use crate::estimation::ContactForceEstimator;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{ContactLaw, ContactParameters, SensorErrors};
+use crate::plant::{ContactLaw, ContactParameters, PlantParameters, SensorErrors};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
@@ -39,6 +42,8 @@ pub struct BenchScenario {
     pub load: LoadScenario,
     /// A hand that pushes against extension.
     pub hand: Option<HandScenario>,
+    /// Physics beyond the believed device, with all its numbers.
+    pub effects: Vec<(&'static Effect, Vec<f64>)>,
     /// What is commanded, in order of time.
     pub command: CommandScenario,
     /// Positions of the 5/2 valve, in order of time: time [s], position. Extending before the first.
@@ -115,6 +120,58 @@ impl CommandScenario {
             Self::SetPressure(steps) | Self::Force(steps) => steps,
         }
     }
+}
+
+impl BenchScenario {
+    /// The rig as its owner believes it to be.
+    #[must_use]
+    pub fn believed(&self) -> PlantParameters {
+        let contact = match self.load {
+            LoadScenario::Free => USUAL_CONTACT,
+            LoadScenario::Contact { contact, .. } => contact,
+        };
+        PlantParameters {
+            device: self.device.parameters.clone(),
+            gravity_along_extension: self.gravity_along_extension,
+            contact,
+            sensors: self.sensor_errors,
+            ..blank()
+        }
+    }
+
+    /// The rig as it is, with its effects put in.
+    #[must_use]
+    pub fn as_it_is(mut self) -> Self {
+        let mut plant = self.believed();
+        apply(&self.effects, &mut plant);
+        self.device.parameters = plant.device;
+        self.gravity_along_extension = plant.gravity_along_extension;
+        self.sensor_errors = plant.sensors;
+        if let LoadScenario::Contact { contact, .. } = &mut self.load {
+            *contact = plant.contact;
+        }
+        self
+    }
+}
+
+/// The effects that a bench's file names.
+fn effects_of_bench(
+    document: &Document<'_>,
+    keys: &EffectKeys,
+) -> Result<Vec<(&'static Effect, Vec<f64>)>, ScenarioError> {
+    let effects = effects_of(document, keys)?;
+    for (effect, values) in &effects {
+        let reason = match effect.subsystem {
+            Subsystem::Arm => "a bench has no arm",
+            Subsystem::Workpiece => "a bench has no part with an edge",
+            Subsystem::Sensors if effect.name == "channel_time_offset" && values[0] < 0.0 => {
+                "its offset_s is negative, and a bench that runs reads no force before it is there"
+            }
+            _ => continue,
+        };
+        return Err(Section::new(document, "effect").misplaced(effect.name, reason.to_owned()));
+    }
+    Ok(effects)
 }
 
 /// Reads a bench scenario from a document that says that it is one.
@@ -194,6 +251,7 @@ pub(super) fn from_document(
         gravity_along_extension,
         start_stroke,
         load,
+        effects: effects_of_bench(document, &file.effect)?,
         hand: file
             .hand
             .as_ref()

@@ -52,6 +52,10 @@ pub(super) struct BenchFile {
     pub bench: BenchKeys,
     pub load: LoadKeys,
     pub hand: Option<HandKeys>,
+    /// Physics beyond the believed device, by its name in the catalogue.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub effect: super::recorded_cell::EffectKeys,
     #[serde(default)]
     pub command: Vec<CommandKeys>,
     #[serde(default)]

@@ -22,7 +22,7 @@ pub(super) struct BenchDevice {
 }
 
 /// The contact of a load that says nothing of it.
-const USUAL_CONTACT: ContactParameters = ContactParameters {
+pub(super) const USUAL_CONTACT: ContactParameters = ContactParameters {
     law: ContactLaw::Linear { stiffness: 1.5e5 },
     damping: 4e2,
     surface_offset: 0.0,

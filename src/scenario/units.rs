@@ -87,6 +87,21 @@ impl Unit {
             .expect("the last suffix is empty, which ends every key")
     }
 
+    /// A value under a key as it is under the key of another unit of the same quantity, in SI; none if they differ in more than the unit.
+    pub fn convert(from: &str, value: f64, to: &str) -> Option<f64> {
+        let (own, other) = (Self::of_key(from), Self::of_key(to));
+        let stem = |key: &str, unit: Self| key[..key.len() - unit.suffix.len()].to_owned();
+        let alike = stem(from, own) == stem(to, other) && own.basic() == other.basic();
+        alike.then(|| own.to_si(value))
+    }
+
+    /// Its symbol in basic units.
+    fn basic(self) -> String {
+        let parts = [("mm", "m"), ("um", "m"), ("cm", "m"), ("ms", "s"), ("deg", "rad")];
+        let symbol = self.symbol.replace("bar gauge", "Pa").replace(" absolute", "");
+        parts.iter().fold(symbol, |symbol, (from, to)| symbol.replace(from, to))
+    }
+
     /// Is it the pure number?
     pub fn is_one(self) -> bool {
         self.suffix.is_empty()

@@ -14,9 +14,10 @@ use super::job::{Job, Manner};
 use super::settings::{Setting, Variant, blamed, product, with_flags};
 use super::source::Source;
 use super::variants;
+use crate::cell::Cell;
 use crate::recording::rerun::Opening;
 use crate::report::Style;
-use crate::scenario::{AnyScenario, ScenarioTemplate, load_any};
+use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate, load_any};
 
 #[derive(Debug, Args)]
 pub(in super::super) struct RunArguments {
@@ -25,6 +26,9 @@ pub(in super::super) struct RunArguments {
     /// Another value for a key of the scenario by its dotted path, as in process.force_n=150; of several values, divided by commas, each is run, and of several --set each combination.
     #[arg(long = "set", value_name = "KEY=VALUE[,VALUE..]", value_parser = Setting::parse)]
     pub(super) settings: Vec<Setting>,
+    /// An effect of the catalogue to put in: its name, and those of its numbers that are not to have their usual size, in any unit of theirs, as in tool_runout:amplitude_mm=0.1,frequency_hz=120 or joint_friction:joint=3; may be given several times.
+    #[arg(long = "with", value_name = "EFFECT[:KEY=VALUE,..]", value_parser = EffectRequest::parse)]
+    pub(super) effects: Vec<EffectRequest>,
     /// With --set, leave runs as they are that stand complete, as of one that was interrupted.
     #[arg(long, requires = "settings", conflicts_with = "force")]
     pub(super) resume: bool,
@@ -78,13 +82,17 @@ impl RunArguments {
 
 /// Runs a scenario, or each of its variants.
 pub(in super::super) fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
-    let variants = product(&arguments.settings)?;
-    let Some(template) = (!arguments.settings.is_empty())
+    let mut variants = product(&arguments.settings)?;
+    let Some(template) = (!arguments.settings.is_empty() || !arguments.effects.is_empty())
         .then(|| ScenarioTemplate::read(&arguments.scenario))
         .transpose()?
     else {
         return one(arguments, load_any(&arguments.scenario)?, None);
     };
+    let effects = put_in(&arguments.effects, &template)?;
+    for variant in &mut variants {
+        variant.edits.splice(0..0, effects.iter().cloned());
+    }
     if let Some(input) = (variants.iter())
         .map(|variant| arguments.folder().join(&variant.name).join(VARIED))
         .find(|copy| is_same(copy, &arguments.scenario))
@@ -102,6 +110,29 @@ pub(in super::super) fn run(arguments: &RunArguments) -> Result<ExitCode, AppErr
     let scenario =
         (template.with(&alone.edits)).map_err(|error| blamed(error, &alone.edits, &template))?;
     one(arguments, scenario, Some((&template, alone)))
+}
+
+/// What the effects that are asked for change of a scenario.
+fn put_in(
+    requests: &[EffectRequest],
+    template: &ScenarioTemplate,
+) -> Result<Vec<KeyValue>, AppError> {
+    if requests.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (believed, telling) = match template.with(&[])? {
+        AnyScenario::Bench(bench) => (bench.believed(), 1),
+        AnyScenario::Cell(cell) => {
+            let cell = Cell::new(*cell)?;
+            (cell.plant.clone(), cell.telling_joint())
+        }
+    };
+    let mut edits = Vec::new();
+    for request in requests {
+        let own = request.edits(&believed, telling);
+        edits.extend(own.map_err(|reason| AppError::With { reason })?);
+    }
+    Ok(edits)
 }
 
 fn one(

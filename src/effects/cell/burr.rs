@@ -45,6 +45,7 @@ pub(super) const EFFECT: Effect = Effect {
             },
         ]
     },
+    usual: |_| vec![0.1, 3e-4, 2e-3],
     starts: |clues: &Clues<'_>| {
         let places = clues.bumps.iter();
         places.map(|place| vec![*place, 1e-4, 2e-3]).collect()

@@ -47,6 +47,7 @@ pub(super) const fn effect<const J: usize>() -> Effect {
                 },
             )]
         },
+        usual: |p| vec![(0.1 * p.cell.joint_stiffness[J]).min(1.5e5)],
         starts: |clues: &Clues<'_>| {
             let believed = clues.plant.cell.joint_stiffness[J];
             if believed.is_infinite() {

@@ -54,6 +54,7 @@ pub(super) const fn effect<const J: usize>() -> Effect {
                 },
             ]
         },
+        usual: |p| vec![7e-4, p.cell.joint_stiffness[J].min(1e6)],
         starts: |clues: &Clues<'_>| {
             let teeth = clues.plant.cell.joint_stiffness[J].min(1e6);
             [2e-4, 1e-3, 4e-3]

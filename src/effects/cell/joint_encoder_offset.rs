@@ -42,6 +42,7 @@ pub(super) const fn effect<const J: usize>() -> Effect {
                 [-0.1, 0.1],
             )]
         },
+        usual: |_| vec![1e-3],
         starts: |_| vec![vec![0.0], vec![2e-3], vec![-2e-3]],
     }
 }

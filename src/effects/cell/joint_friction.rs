@@ -39,6 +39,7 @@ pub(super) const fn effect<const J: usize>() -> Effect {
                 [0.0, 1e4],
             )]
         },
+        usual: |p| vec![p.cell.joint_friction[J] + 20.0],
         starts: |clues: &Clues<'_>| vec![vec![clues.plant.cell.joint_friction[J]]],
     }
 }

@@ -38,5 +38,6 @@ pub(super) const EFFECT: Effect = Effect {
             ),
         ]
     },
+    usual: |_| vec![8e-4, 4e-3],
     starts: |_| vec![vec![0.0, 0.0], vec![1e-3, 0.0], vec![-1e-3, 0.0]],
 };

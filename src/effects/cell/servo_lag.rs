@@ -24,5 +24,6 @@ pub static SERVO_LAG: Effect = Effect {
             [0.1, 1e3],
         )]
     },
+    usual: |_| vec![25.0],
     starts: |clues: &Clues<'_>| vec![vec![clues.plant.cell.servo_bandwidth]],
 };

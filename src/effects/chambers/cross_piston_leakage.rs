@@ -22,5 +22,6 @@ pub const EFFECT: Effect = Effect {
             [1e-10, 1e-4],
         )]
     },
+    usual: |p| vec![0.02 * p.device.supply_orifice],
     starts: |c| shares(&[0.01, 0.05, 0.2], c.plant.device.supply_orifice),
 };

@@ -23,6 +23,7 @@ pub const EFFECT: Effect = Effect {
             [0.1 * a, 20.0 * a],
         )]
     },
+    usual: |p| vec![1.5 * p.device.dead_volume],
     starts: |c| {
         shares(
             &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],

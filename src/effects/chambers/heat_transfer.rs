@@ -26,5 +26,6 @@ pub const EFFECT: Effect = Effect {
     subsystem: Subsystem::Chambers,
     group: None,
     parameters: |_| vec![reported(CONDUCTANCE, Logarithmic, [1e-3, 10.0])],
+    usual: |_| vec![0.1],
     starts: |_| each(&[0.01, 0.05, 0.2, 0.8]),
 };

@@ -62,6 +62,7 @@ pub const EFFECT: Effect = Effect {
             },
         ]
     },
+    usual: |_| vec![5e-5, 5e7, 1.0],
     starts: |_| {
         vec![
             vec![2e-5, 3e7, 2.0],

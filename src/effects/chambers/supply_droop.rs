@@ -50,6 +50,7 @@ pub const EFFECT: Effect = Effect {
             reported(COMPRESSOR, Logarithmic, [1e-6, 0.1]),
         ]
     },
+    usual: |_| vec![1e-3, 5e-4],
     starts: |_| {
         vec![
             vec![1e-4, 5e-5],

@@ -24,6 +24,7 @@ pub const EFFECT: Effect = Effect {
             [0.05 * a, 20.0 * a],
         )]
     },
+    usual: |p| vec![0.5 * p.device.supply_orifice],
     starts: |c| {
         shares(
             &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],

@@ -18,6 +18,7 @@ pub const EFFECT: Effect = Effect {
         let k = (STIFFNESS.get)(p);
         vec![reported(STIFFNESS, Logarithmic, [0.01 * k, 50.0 * k])]
     },
+    usual: |p| vec![0.6 * p.contact.stiffness_at(USUAL_FORCE)],
     starts: |c| {
         let k = (STIFFNESS.get)(c.plant);
         shares(&[0.1, 0.25, 0.5, 0.8, 1.25, 2.5], k)

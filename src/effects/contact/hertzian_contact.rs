@@ -24,6 +24,7 @@ pub const EFFECT: Effect = Effect {
     subsystem: Subsystem::Contact,
     group: Some("contact_law"),
     parameters: |_| vec![reported(HERTZ, Logarithmic, [1e5, 1e10])],
+    usual: |p| vec![p.contact.stiffness_at(USUAL_FORCE).powf(1.5) / USUAL_FORCE.sqrt()],
     starts: |c| {
         // As stiff as what is believed at a force that such a device is used at [N].
         let k = (STIFFNESS.get)(c.plant);

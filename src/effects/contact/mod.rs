@@ -37,3 +37,6 @@ fn waves(clues: &Clues<'_>, in_question: fn(f64) -> bool) -> Vec<Vec<f64>> {
         .flat_map(|f| [vec![*f, SMALL_WAVE, 0.0], vec![*f, 0.0, SMALL_WAVE]])
         .collect()
 }
+
+/// Force at which an elastic contact is as stiff as it is believed to be [N].
+const USUAL_FORCE: f64 = 150.0;

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [-0.02, 0.02],
         )]
     },
+    usual: |_| vec![5e-4],
     starts: |_| each(&[-2e-3, -6e-4, 6e-4, 2e-3]),
 };

@@ -34,5 +34,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
+    usual: |_| vec![2.0, 2e-4, 0.0],
     starts: |c| waves(c, |f| f < SLOWEST_TOOL),
 };

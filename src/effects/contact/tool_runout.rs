@@ -34,5 +34,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
+    usual: |_| vec![83.0, 5e-5, 0.0],
     starts: |c| waves(c, |f| f >= SLOWEST_TOOL),
 };

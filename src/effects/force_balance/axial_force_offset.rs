@@ -22,5 +22,6 @@ pub const EFFECT: Effect = Effect {
             [-500.0, 500.0],
         )]
     },
+    usual: |_| vec![12.0],
     starts: |_| vec![vec![0.0]],
 };

@@ -24,6 +24,7 @@ pub const EFFECT: Effect = Effect {
             hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
         ]
     },
+    usual: |_| vec![10.0, 60.0, 3e-5],
     starts: |_| {
         vec![
             vec![3.0, 20.0, 5e-5],

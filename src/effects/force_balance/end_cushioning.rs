@@ -30,6 +30,7 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
+    usual: |_| vec![800.0, 8e-3],
     starts: |_| {
         vec![
             vec![300.0, 0.004],

@@ -22,6 +22,7 @@ pub const EFFECT: Effect = Effect {
             [0.2 * m, 5.0 * m],
         )]
     },
+    usual: |p| vec![1.2 * p.device.moving_mass],
     starts: |c| {
         shares(
             &[0.6, 0.8, 0.92, 1.08, 1.25, 1.7],

@@ -22,6 +22,7 @@ pub const EFFECT: Effect = Effect {
             hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
         ]
     },
+    usual: |_| vec![12.0, 8e-4, 40.0],
     starts: |_| {
         vec![
             vec![8.0, 5e-4, 30.0],

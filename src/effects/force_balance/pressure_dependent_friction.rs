@@ -28,6 +28,7 @@ pub const EFFECT: Effect = Effect {
             hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
         ]
     },
+    usual: |_| vec![5e-5, 3.0, 40.0, 3e-5],
     starts: |c| {
         let mut starts = vec![vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]];
         // One small cylinder, moved slowly.

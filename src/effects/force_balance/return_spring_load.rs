@@ -22,5 +22,6 @@ pub const EFFECT: Effect = Effect {
             [-5e4, 5e4],
         )]
     },
+    usual: |_| vec![400.0],
     starts: |_| vec![vec![0.0]],
 };

@@ -35,6 +35,7 @@ pub const EFFECT: Effect = Effect {
             hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
         ]
     },
+    usual: |_| vec![10.0, 16.0, 0.01, 60.0, 3e-5],
     starts: |_| {
         vec![
             vec![4.0, 8.0, 0.008, 30.0, 5e-5],

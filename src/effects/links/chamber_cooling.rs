@@ -32,5 +32,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
+    usual: |_| vec![2e3, 5.0],
     starts: |_| vec![vec![300.0, 2.0], vec![300.0, 10.0]],
 };

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [0.0, 1e3],
         )]
     },
+    usual: |_| vec![0.5],
     starts: |_| each(&[0.5, 2.0, 5.0, 10.0, 30.0]),
 };

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [1e-15, 1e-3],
         )]
     },
+    usual: |_| vec![1e-9],
     starts: |_| each(&[1e-11, 1e-10, 1e-9, 1e-8, 1e-7]),
 };

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [1e-8, 10.0],
         )]
     },
+    usual: |_| vec![1e-3],
     starts: |_| each(&[1e-5, 1e-4, 1e-3, 1e-2, 0.1]),
 };

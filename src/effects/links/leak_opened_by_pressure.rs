@@ -29,6 +29,7 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
+    usual: |_| vec![1e-3, 1e-6],
     starts: |_| {
         [1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1]
             .into_iter()

@@ -29,5 +29,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
+    usual: |_| vec![0.5, 0.1],
     starts: |_| vec![vec![0.2, 0.5], vec![0.2, 2.0]],
 };

@@ -22,5 +22,6 @@ pub const EFFECT: Effect = Effect {
             [1e-11, 1e-1],
         )]
     },
+    usual: |_| vec![1e-5],
     starts: |_| each(&[5e-8, 5e-7, 5e-6, 5e-5, 5e-4]),
 };

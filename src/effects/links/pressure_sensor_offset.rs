@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [-2e5, 2e5],
         )]
     },
+    usual: |_| vec![500.0],
     starts: |_| vec![vec![0.0]],
 };

@@ -30,5 +30,6 @@ pub const EFFECT: Effect = Effect {
             [1e-3, 30.0],
         )]
     },
+    usual: |_| vec![0.05],
     starts: |c| shares(&[0.1, 0.4, 3.0], c.plant.device.regulator.time_constant),
 };

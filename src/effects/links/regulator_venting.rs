@@ -29,5 +29,6 @@ pub const EFFECT: Effect = Effect {
             [1e-3, 30.0],
         )]
     },
+    usual: |_| vec![0.1],
     starts: |c| shares(&[0.3, 1.5, 4.0], c.plant.device.regulator.time_constant),
 };

@@ -22,5 +22,6 @@ pub const EFFECT: Effect = Effect {
             [-5000.0, 5000.0],
         )]
     },
+    usual: |_| vec![20.0],
     starts: |_| vec![vec![0.0]],
 };

@@ -22,6 +22,7 @@ pub const EFFECT: Effect = Effect {
             [0.3 * g, 3.0 * g],
         )]
     },
+    usual: |p| vec![0.95 * p.device.regulator.gain],
     starts: |c| {
         let g = c.plant.device.regulator.gain;
         vec![vec![0.97 * g], vec![1.03 * g]]

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [10.0, 2e5],
         )]
     },
+    usual: |_| vec![3e3],
     starts: |_| each(&[2e3, 6e3, 15e3]),
 };

@@ -31,6 +31,7 @@ pub const EFFECT: Effect = Effect {
         ]
     },
     // A small valve on a large load is far slower than one on a device.
+    usual: |_| vec![1.5e5, 1.5e5],
     starts: |c| match c.plant.chain {
         Chain::Regulator => [3e4, 1e5, 3e5]
             .into_iter()

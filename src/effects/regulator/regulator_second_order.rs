@@ -51,6 +51,7 @@ pub const EFFECT: Effect = Effect {
             reported(DAMPING_RATIO, Logarithmic, [0.02, 5.0]),
         ]
     },
+    usual: |_| vec![25.0, 0.35],
     starts: |c| {
         let w = 1.0 / c.plant.device.regulator.time_constant;
         vec![vec![1.5 * w, 0.6], vec![1.5 * w, 0.3], vec![4.0 * w, 0.4]]

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [1e-3, 1.0],
         )]
     },
+    usual: |_| vec![0.03],
     starts: |_| each(&[0.01, 0.03, 0.08]),
 };

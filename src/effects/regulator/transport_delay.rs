@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [5e-4, 2.0],
         )]
     },
+    usual: |_| vec![0.05],
     starts: |_| each(&[0.01, 0.03, 0.1, 0.25]),
 };

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [-0.5, 0.5],
         )]
     },
+    usual: |_| vec![0.015],
     starts: |_| each(&[4e-3, 0.015, 0.04, -0.01]),
 };

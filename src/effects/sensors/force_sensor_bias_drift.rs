@@ -31,5 +31,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
+    usual: |_| vec![3.0, 0.3],
     starts: |_| vec![vec![0.0, 0.0]],
 };

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [1e-4, 2.0],
         )]
     },
+    usual: |_| vec![0.02],
     starts: |_| each(&[3e-3, 0.01, 0.03, 0.1]),
 };

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [5.0, 5000.0],
         )]
     },
+    usual: |_| vec![120.0],
     starts: |c| vec![vec![c.largest_force]],
 };

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [-20.0, 20.0],
         )]
     },
+    usual: |_| vec![0.5],
     starts: |_| vec![vec![0.0]],
 };

@@ -21,5 +21,6 @@ pub const EFFECT: Effect = Effect {
             [0.2, 5.0],
         )]
     },
+    usual: |_| vec![1.02],
     starts: |_| vec![vec![1.0]],
 };

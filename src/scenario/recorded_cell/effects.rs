@@ -10,7 +10,7 @@ use super::super::document::Document;
 use super::super::error::ScenarioError;
 use super::super::rig_file::blank;
 use super::RecordedCell;
-use crate::effects::{CATALOGUE, CELL_EFFECTS, Effect, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG};
+use crate::effects::{Effect, every};
 use crate::plant::PlantParameters;
 
 /// `[effect.NAME]`: all its numbers by name.
@@ -19,31 +19,26 @@ pub(in super::super) type EffectKeys = BTreeMap<String, BTreeMap<String, f64>>;
 /// An effect's name with its numbers: name, value, 95 % interval.
 pub type FoundNumbers = (&'static str, Vec<(&'static str, f64, [f64; 2])>);
 
-fn all() -> impl Iterator<Item = &'static Effect> {
-    CATALOGUE
-        .iter()
-        .chain(&CELL_EFFECTS)
-        .chain(JOINT_EFFECTS.iter().flatten())
-        .chain(&JOINT_FRICTION)
-        .chain([&SERVO_LAG])
-}
-
 /// The effects that a file names, in the order of the catalogue, each with all its numbers.
 pub(super) fn effects(
     document: &Document<'_>,
     keys: &EffectKeys,
 ) -> Result<Vec<(&'static Effect, Vec<f64>)>, ScenarioError> {
     let section = Section::new(document, "effect");
-    if let Some(name) = keys.keys().find(|name| all().all(|e| e.name != **name)) {
-        let names: Vec<&str> = all().map(|effect| effect.name).collect();
+    if let Some(name) = keys.keys().find(|name| every().all(|e| e.name != **name)) {
+        let names: Vec<&str> = every().map(|effect| effect.name).collect();
         let expected = format!("one of {}", names.join(", "));
         return Err(section.refuse(name, "an unknown effect".to_owned(), expected));
     }
-    let mut effects = Vec::new();
-    for effect in all() {
+    let mut effects: Vec<(&'static Effect, Vec<f64>)> = Vec::new();
+    for effect in every() {
         let Some(given) = keys.get(effect.name) else {
             continue;
         };
+        if let Some((other, _)) = effects.iter().find(|(other, _)| other.excludes(effect)) {
+            let reason = format!("effect.{} stands in its place", other.name);
+            return Err(section.misplaced(effect.name, reason));
+        }
         let own = Section::new(document, format!("effect.{}", effect.name));
         let parameters = (effect.parameters)(&blank());
         let names: Vec<&str> = parameters.iter().map(|p| p.quantity.name).collect();

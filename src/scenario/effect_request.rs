@@ -1,0 +1,183 @@
+//! An effect asked for by name, as `--with` does: from its name and some of its numbers, in any unit of theirs, to the keys of a scenario file.
+
+use super::suggestion::nearest;
+use super::units::Unit;
+use super::variation::KeyValue;
+use crate::effects::{Effect, every, vocabulary};
+use crate::plant::PlantParameters;
+
+/// Key of the joint that an effect is about.
+const JOINT: &str = "joint";
+
+/// An effect asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectRequest {
+    /// Its name in the vocabulary.
+    name: String,
+    /// Joint, from 1.
+    joint: Option<usize>,
+    /// Numbers that are given: key with its unit, value.
+    numbers: Vec<(String, f64)>,
+}
+
+impl EffectRequest {
+    /// `NAME` or `NAME:KEY=VALUE,..`, as in `tool_runout:amplitude_mm=0.1,frequency_hz=120` or `joint_friction:joint=3`.
+    ///
+    /// # Errors
+    /// What is wrong with it, for people.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let (name, given) = text.split_once(':').unwrap_or((text, ""));
+        let names: Vec<&str> = every().map(|effect| vocabulary(effect.name).0).collect();
+        if !names.contains(&name) {
+            let advice = nearest(name, &names);
+            return Err(format!("there is no effect `{name}`{advice}"));
+        }
+        let mut request = Self {
+            name: name.to_owned(),
+            joint: None,
+            numbers: Vec::new(),
+        };
+        for pair in given.split(',').filter(|pair| !pair.is_empty()) {
+            let expected = || format!("`{pair}` is not KEY=VALUE with a number, as in offset_mm=0.5");
+            let (key, value) = pair.split_once('=').ok_or_else(expected)?;
+            let value: f64 = value.trim().parse().map_err(|_| expected())?;
+            if key == JOINT {
+                let whole = value.fract() == 0.0 && (1.0..=64.0).contains(&value);
+                if !whole || !request.is_of_joint() {
+                    return Err(format!("`{pair}` says no joint of {name}"));
+                }
+                request.joint = Some(value as usize);
+            } else {
+                request.numbers.push((key.to_owned(), value));
+            }
+        }
+        Ok(request)
+    }
+
+    /// Is it about one joint, and of which it does not say?
+    pub fn wants_joint(&self) -> bool {
+        self.joint.is_none() && self.is_of_joint()
+    }
+
+    fn is_of_joint(&self) -> bool {
+        every().any(|effect| {
+            let (name, joint) = vocabulary(effect.name);
+            name == self.name && joint.is_some()
+        })
+    }
+
+    /// The scenario's keys, what is not given at its usual size beside what is believed, of the joint `telling` where it does not say which.
+    ///
+    /// # Errors
+    /// A number or a joint that the effect does not have, for people.
+    pub fn edits(
+        &self,
+        believed: &PlantParameters,
+        telling: usize,
+    ) -> Result<Vec<KeyValue>, String> {
+        let wanted = self.is_of_joint().then(|| self.joint.unwrap_or(telling));
+        let is_it = |effect: &&'static Effect| vocabulary(effect.name) == (&*self.name, wanted);
+        let effect = every().find(is_it).ok_or_else(|| {
+            let joint = wanted.unwrap_or_default();
+            format!("there is no joint {joint} for {} to be of", self.name)
+        })?;
+        let parameters = (effect.parameters)(believed);
+        let names: Vec<&str> = parameters.iter().map(|p| p.quantity.name).collect();
+        let mut values = (effect.usual)(believed);
+        for (key, value) in &self.numbers {
+            let stands = |name: &&str| Unit::convert(key, *value, name);
+            if let Some((place, value)) = names
+                .iter()
+                .enumerate()
+                .find_map(|(i, name)| Some((i, stands(name)?)))
+            {
+                values[place] = value;
+                continue;
+            }
+            // A periodic effect's amplitude, all of it in its sine.
+            let sine = names.iter().position(|name| *name == "sine_m");
+            let amplitude = Unit::convert(key, *value, "amplitude_m");
+            match (sine, amplitude) {
+                (Some(sine), Some(amplitude)) => {
+                    values[sine] = amplitude;
+                    values[sine + 1] = 0.0;
+                }
+                _ => {
+                    let all = names.join(", ");
+                    return Err(format!(
+                        "{} has no number `{key}`, expected some of {all}",
+                        self.name
+                    ));
+                }
+            }
+        }
+        let pairs = names.iter().zip(values);
+        let key = |name: &str| format!("effect.{}.{name}", effect.name);
+        Ok(pairs
+            .map(|(name, value)| KeyValue::number(key(name), value))
+            .collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rig_file::blank;
+    use super::*;
+
+    fn edits(text: &str) -> Vec<(String, String)> {
+        let request = EffectRequest::parse(text).unwrap();
+        let edits = request.edits(&blank(), 2).unwrap();
+        let shown = |edit: &KeyValue| (edit.key().to_owned(), edit.shown());
+        edits.iter().map(shown).collect()
+    }
+
+    #[test]
+    fn what_is_given_counts_in_any_unit_and_the_rest_is_usual() {
+        let runout = edits("tool_runout:amplitude_mm=0.1,frequency_hz=120");
+        let expected = [("frequency_hz", "120"), ("sine_m", "0.0001"), ("cosine_m", "0")];
+        let key = |name: &str| format!("effect.tool_runout.{name}");
+        assert_eq!(runout, expected.map(|(n, v)| (key(n), v.to_owned())));
+        assert_eq!(edits("joint_friction"), edits("joint_friction:joint=2"));
+        let third = edits("joint_friction:joint=3,friction_n_m=7");
+        assert_eq!(third, [("effect.joint_friction_3.friction_n_m".to_owned(), "7".to_owned())]);
+        let friction = edits("coulomb_viscous_friction:presliding_displacement_um=40");
+        assert_eq!(friction[0].1, "10");
+        assert_eq!(friction[2].1, "0.00004");
+    }
+
+    #[test]
+    fn what_an_effect_does_not_have_is_refused() {
+        for (text, said) in [
+            ("tool_runot", "did you mean `tool_runout`?"),
+            ("tool_runout:joint=2", "says no joint"),
+            ("tool_runout:frequency_hz", "is not KEY=VALUE"),
+        ] {
+            let error = EffectRequest::parse(text).unwrap_err();
+            assert!(error.contains(said), "{error}");
+        }
+        for (text, said) in [
+            ("tool_runout:amplitude_ms=0.1", "no number `amplitude_ms`"),
+            ("joint_friction:joint=9", "no joint 9"),
+        ] {
+            let request = EffectRequest::parse(text).unwrap();
+            let error = request.edits(&blank(), 1).unwrap_err();
+            assert!(error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_usual_size_of_every_effect_has_all_its_numbers_within_their_range() {
+        let mut plant = blank();
+        plant.cell.joint_stiffness = [1e6; crate::plant::MOST_JOINTS];
+        plant.contact.law = crate::plant::ContactLaw::Linear { stiffness: 1.5e5 };
+        for effect in every().chain(crate::effects::LINK_EFFECTS) {
+            let parameters = (effect.parameters)(&plant);
+            let usual = (effect.usual)(&plant);
+            assert_eq!(parameters.len(), usual.len(), "{effect:?}");
+            for (parameter, value) in parameters.iter().zip(usual) {
+                let [low, high] = parameter.bounds;
+                assert!((low..=high).contains(&value), "{effect:?}: {value}");
+            }
+        }
+    }
+}
