@@ -39,3 +39,4 @@ mod stiff_reference;
 mod stops;
 mod uniformity;
 mod view;
+mod what_if;

@@ -93,6 +93,8 @@ pub struct World {
     /// Force [N or N m] and speed of each joint at the moment of the last step in which its law acts.
     applied: Vec<(f64, f64)>,
     displacements: Vec<f64>,
+    /// Motion of the ball's centre that the bodies have not followed yet [m].
+    shift: DVec3,
     positions: Vec<f64>,
     velocities: Vec<f64>,
     reading: ContactReading,
@@ -181,6 +183,7 @@ impl World {
             moments: vec![0.5; count],
             applied: vec![(0.0, 0.0); count],
             displacements: vec![0.0; count],
+            shift: DVec3::ZERO,
             positions: vec![0.0; count],
             velocities: vec![0.0; count],
             reading: ContactReading::default(),
@@ -224,15 +227,6 @@ impl World {
         for (i, target) in positions.iter().enumerate() {
             self.displacements[i] = target - self.positions[i];
         }
-        self.displace();
-        self.multibody_mut().generalized_velocity_mut().fill(0.0);
-        self.read_joints();
-        let masses = self.mass_matrix();
-        self.inertias = (0..self.joints.len()).map(|i| masses[(i, i)]).collect();
-    }
-
-    /// Moves the joints by their displacements, their speeds as they are.
-    fn displace(&mut self) {
         let physics = &mut self.physics;
         let (multibody, _) = physics
             .multibody_joints
@@ -241,6 +235,35 @@ impl World {
         multibody.apply_displacements(&self.displacements);
         multibody.forward_kinematics(&physics.bodies, false);
         multibody.update_rigid_bodies(&mut physics.bodies, true);
+        multibody.generalized_velocity_mut().fill(0.0);
+        self.shift = DVec3::ZERO;
+        self.read_joints();
+        let masses = self.mass_matrix();
+        self.inertias = (0..self.joints.len()).map(|i| masses[(i, i)]).collect();
+    }
+
+    /// Moves the joints by their displacements, their speeds as they are. The bodies follow at the start of the next step; until then the tool is where the
+    /// Jacobian takes it, to the square of what a law gains in a step.
+    fn displace(&mut self) {
+        let displacements = std::mem::take(&mut self.displacements);
+        self.shift = self.moved(&displacements);
+        self.multibody_mut().apply_displacements(&displacements);
+        self.displacements = displacements;
+    }
+
+    /// Motion of the ball's centre with motions of the joints.
+    fn moved(&self, motions: &[f64]) -> DVec3 {
+        let body = &self.physics.bodies[self.tool_body];
+        let centre = body.position().transform_point(self.tool.centre_in_link);
+        let arm = centre - body.mass_properties().world_com;
+        let link = self.links[self.joints.len() - 1];
+        let columns = self.multibody().body_jacobian(link).column_iter();
+        let moved = columns.zip(motions).map(|(column, motion)| {
+            let linear = DVec3::new(column[0], column[1], column[2]);
+            let angular = DVec3::new(column[3], column[4], column[5]);
+            (linear + angular.cross(arm)) * *motion
+        });
+        moved.fold(DVec3::ZERO, |sum, part| sum + part)
     }
 
     /// Sets the law of each degree of freedom for the next step.
@@ -274,17 +297,8 @@ impl World {
         let centre = self.tool_centre();
         let body = &self.physics.bodies[self.tool_body];
         let axis = body.rotation() * self.slide_axis;
-        let arm = centre - body.mass_properties().world_com;
         // The bodies' own velocities are those of the step before.
-        let multibody = self.multibody();
-        let last = self.joints.len() - 1;
-        let jacobian = multibody.body_jacobian(self.links[last]);
-        let mut velocity = DVec3::ZERO;
-        for (column, speed) in jacobian.column_iter().zip(&self.velocities).take(last) {
-            let linear = DVec3::new(column[0], column[1], column[2]);
-            let angular = DVec3::new(column[3], column[4], column[5]);
-            velocity += (linear + angular.cross(arm)) * *speed;
-        }
+        let velocity = self.moved(&self.velocities[..self.joints.len() - 1]);
         self.part_contact
             .find(relief, centre, velocity, axis, touches);
     }
@@ -360,6 +374,7 @@ impl World {
         self.physics.bodies[self.tool_body]
             .position()
             .transform_point(self.tool.centre_in_link)
+            + self.shift
     }
 
     /// Poses of the links behind the joints in the world, base first; writes as many as `out` holds.
