@@ -15,13 +15,23 @@ fn plate() -> Bench {
 }
 
 fn samples(bench: &Bench, file: &str, with: &[&str]) -> Recording {
-    let mut arguments = vec!["run", file, "--out", "out", "--force", "--quiet", "--no-recording"];
+    let mut arguments = vec![
+        "run",
+        file,
+        "--out",
+        "out",
+        "--force",
+        "--quiet",
+        "--no-recording",
+    ];
     for effect in with {
         arguments.extend(["--with", effect]);
     }
     let outcome = bench.idc(&arguments, &[]);
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""), "{with:?}");
-    read_parquet(&bench.path("out/samples.parquet")).unwrap().recording
+    read_parquet(&bench.path("out/samples.parquet"))
+        .unwrap()
+        .recording
 }
 
 /// Largest difference of all signals, of their largest size.
@@ -87,13 +97,25 @@ fn what_is_off_is_off_by_as_much_as_was_said() {
     };
     let nominal = samples(&bench, "scenario.toml", &[]);
     let stroke = |recording: &Recording| mean(recording, "stroke");
-    let moved = samples(&bench, "scenario.toml", &["part_misplaced:shift_mm=0.8,tilt_m_per_m=0"]);
+    let moved = samples(
+        &bench,
+        "scenario.toml",
+        &["part_misplaced:shift_mm=0.8,tilt_m_per_m=0"],
+    );
     assert!((stroke(&moved) - stroke(&nominal) + 8e-4).abs() < 1e-6);
-    let biased = samples(&bench, "scenario.toml", &["force_sensor_gain_error:gain=1.1"]);
+    let biased = samples(
+        &bench,
+        "scenario.toml",
+        &["force_sensor_gain_error:gain=1.1"],
+    );
     let read = mean(&biased, "measured_force") / mean(&nominal, "measured_force");
     assert!((read - 1.1).abs() < 1e-6, "{read}");
     // What an encoder reads too much the arm stands off by: both are in the recording.
-    let off = samples(&bench, "scenario.toml", &["joint_encoder_offset:joint=3,offset_rad=0.001"]);
+    let off = samples(
+        &bench,
+        "scenario.toml",
+        &["joint_encoder_offset:joint=3,offset_rad=0.001"],
+    );
     let encoder = mean(&off, "joint_3_encoder") - mean(&off, "joint_3_position");
     assert!((encoder - 1e-3).abs() < 1e-9, "{encoder}");
     let reference = mean(&off, "joint_3_encoder") - mean(&off, "joint_3_reference");
@@ -119,19 +141,45 @@ fn what_does_not_fit_is_refused_in_one_line() {
         ("tool_runot", "did you mean `tool_runout`?"),
         ("joint_friction:joint=7", "the arm has 6 joints"),
         ("tool_runout:amplitude_ms=1", "no number `amplitude_ms`"),
-        ("channel_time_offset:offset_ms=-5", "no force before it is there"),
+        (
+            "channel_time_offset:offset_ms=-5",
+            "no force before it is there",
+        ),
     ] {
-        let outcome = bench.idc(&["run", "scenario.toml", "--with", with, "--out", "out"], &[]);
+        let outcome = bench.idc(
+            &["run", "scenario.toml", "--with", with, "--out", "out"],
+            &[],
+        );
         assert_eq!(outcome.code, 2, "{with}");
         assert!(outcome.err.contains(said), "{with}: {}", outcome.err);
         assert!(!bench.path("out").exists(), "{with}");
     }
-    let both = ["run", "scenario.toml", "--with", "stribeck_friction", "--with", "coulomb_viscous_friction", "--out", "out"];
+    let both = [
+        "run",
+        "scenario.toml",
+        "--with",
+        "stribeck_friction",
+        "--with",
+        "coulomb_viscous_friction",
+        "--out",
+        "out",
+    ];
     let outcome = bench.idc(&both, &[]);
     assert_eq!(outcome.code, 2);
-    assert!(outcome.err.contains("stands in its place"), "{}", outcome.err);
+    assert!(
+        outcome.err.contains("stands in its place"),
+        "{}",
+        outcome.err
+    );
     let stand = Bench::new("paper_step");
-    let outcome = stand.idc(&["run", "scenario.toml", "--with", "burr", "--out", "out"], &[]);
+    let outcome = stand.idc(
+        &["run", "scenario.toml", "--with", "burr", "--out", "out"],
+        &[],
+    );
     assert_eq!(outcome.code, 2);
-    assert!(outcome.err.contains("a bench has no part"), "{}", outcome.err);
+    assert!(
+        outcome.err.contains("a bench has no part"),
+        "{}",
+        outcome.err
+    );
 }

@@ -69,7 +69,9 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
             (_, Some(joint)) if joint > joints => {
                 return Err(refuse(effect.name, format!("the arm has {joints} joints")));
             }
-            ("joint_backlash", Some(joint)) if plant.cell.joint_stiffness[joint - 1].is_infinite() => {
+            ("joint_backlash", Some(joint))
+                if plant.cell.joint_stiffness[joint - 1].is_infinite() =>
+            {
                 let reason = "its teeth_stiffness_n_m_per_rad must be finite";
                 return Err(refuse(effect.name, reason.to_owned()));
             }
@@ -77,7 +79,8 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
         }
     }
     if plant.sensors.force_delay < 0.0 {
-        let reason = "its offset_s is negative, and a cell that runs reads no force before it is there";
+        let reason =
+            "its offset_s is negative, and a cell that runs reads no force before it is there";
         return Err(refuse("channel_time_offset", reason.to_owned()));
     }
     Ok(plant)

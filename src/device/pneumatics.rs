@@ -180,8 +180,9 @@ impl Device {
     ) -> DeviceForce {
         self.drag_seals(state, motion);
         let mut moved = motion;
-        let impulse =
-            self.integrate::<_, true>(state, &mut moved, set_pressure, &Foretold, dt, substeps).gas;
+        let impulse = self
+            .integrate::<_, true>(state, &mut moved, set_pressure, &Foretold, dt, substeps)
+            .gas;
         let seals = self.seals_over([(&state.air, motion.stroke + motion.speed * dt)]);
         let deflection =
             seals.deflection_after(state.seal_deflection, motion.speed * dt, motion.speed);

@@ -137,6 +137,9 @@ pub fn odds(log10: f64) -> String {
     const LARGE: f64 = 6.0;
     match -log10 {
         power if power >= LARGE => format!("below 1 to 10^{LARGE:.0}"),
+        // What was fitted roughly alone may be ahead of what was fitted in full.
+        power if power <= -LARGE => format!("above 10^{LARGE:.0} to 1"),
+        power if power < -0.05 => format!("{} to 1", significant(10f64.powf(-power), 2)),
         power => format!("1 to {}", significant(10f64.powf(power), 2)),
     }
 }

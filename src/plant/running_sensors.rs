@@ -36,12 +36,7 @@ impl RunningSensors {
     }
 
     /// What is read at a time [s], later than the last, from what is then; acceleration along extension [m/s2].
-    pub fn read(
-        &mut self,
-        time: f64,
-        truth: &SensorReadings,
-        acceleration: f64,
-    ) -> SensorReadings {
+    pub fn read(&mut self, time: f64, truth: &SensorReadings, acceleration: f64) -> SensorReadings {
         let errors = self.errors;
         let mut signal = truth.force + errors.crosstalk_mass * acceleration;
         if errors.force_lag > 0.0 {

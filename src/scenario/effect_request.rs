@@ -38,7 +38,8 @@ impl EffectRequest {
             numbers: Vec::new(),
         };
         for pair in given.split(',').filter(|pair| !pair.is_empty()) {
-            let expected = || format!("`{pair}` is not KEY=VALUE with a number, as in offset_mm=0.5");
+            let expected =
+                || format!("`{pair}` is not KEY=VALUE with a number, as in offset_mm=0.5");
             let (key, value) = pair.split_once('=').ok_or_else(expected)?;
             let value: f64 = value.trim().parse().map_err(|_| expected())?;
             if key == JOINT {
@@ -134,12 +135,22 @@ mod tests {
     #[test]
     fn what_is_given_counts_in_any_unit_and_the_rest_is_usual() {
         let runout = edits("tool_runout:amplitude_mm=0.1,frequency_hz=120");
-        let expected = [("frequency_hz", "120"), ("sine_m", "0.0001"), ("cosine_m", "0")];
+        let expected = [
+            ("frequency_hz", "120"),
+            ("sine_m", "0.0001"),
+            ("cosine_m", "0"),
+        ];
         let key = |name: &str| format!("effect.tool_runout.{name}");
         assert_eq!(runout, expected.map(|(n, v)| (key(n), v.to_owned())));
         assert_eq!(edits("joint_friction"), edits("joint_friction:joint=2"));
         let third = edits("joint_friction:joint=3,friction_n_m=7");
-        assert_eq!(third, [("effect.joint_friction_3.friction_n_m".to_owned(), "7".to_owned())]);
+        assert_eq!(
+            third,
+            [(
+                "effect.joint_friction_3.friction_n_m".to_owned(),
+                "7".to_owned()
+            )]
+        );
         let friction = edits("coulomb_viscous_friction:presliding_displacement_um=40");
         assert_eq!(friction[0].1, "10");
         assert_eq!(friction[2].1, "0.00004");

@@ -97,9 +97,20 @@ impl Unit {
 
     /// Its symbol in basic units.
     fn basic(self) -> String {
-        let parts = [("mm", "m"), ("um", "m"), ("cm", "m"), ("ms", "s"), ("deg", "rad")];
-        let symbol = self.symbol.replace("bar gauge", "Pa").replace(" absolute", "");
-        parts.iter().fold(symbol, |symbol, (from, to)| symbol.replace(from, to))
+        let parts = [
+            ("mm", "m"),
+            ("um", "m"),
+            ("cm", "m"),
+            ("ms", "s"),
+            ("deg", "rad"),
+        ];
+        let symbol = self
+            .symbol
+            .replace("bar gauge", "Pa")
+            .replace(" absolute", "");
+        parts
+            .iter()
+            .fold(symbol, |symbol, (from, to)| symbol.replace(from, to))
     }
 
     /// Is it the pure number?

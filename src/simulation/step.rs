@@ -299,7 +299,14 @@ impl<'a> Simulation<'a> {
         } else {
             let driven = (set_pressure, motion.speed);
             let cut = (dt, substeps);
-            slide::advance(&cell.device, &mut device, &carrier, driven, cut, &mut pressed)
+            slide::advance(
+                &cell.device,
+                &mut device,
+                &carrier,
+                driven,
+                cut,
+                &mut pressed,
+            )
         };
         self.device = device;
         self.pressed = pressed;

@@ -307,8 +307,13 @@ impl World {
     /// the arm did meanwhile that this law did not know; as the law set for it says where there is none.
     pub fn step(&mut self, pressed: &[(DVec3, f64)], slide: Option<PistonMotion>) {
         let centre = self.tool_centre();
-        self.part_contact
-            .press(&self.physics, self.joints[0], self.tool_body, centre, pressed);
+        self.part_contact.press(
+            &self.physics,
+            self.joints[0],
+            self.tool_body,
+            centre,
+            pressed,
+        );
         for (i, (_, start)) in self.applied.iter_mut().enumerate() {
             *start = self.velocities[i];
             self.displacements[i] = self.positions[i];

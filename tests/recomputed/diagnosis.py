@@ -317,6 +317,10 @@ class Examination:
         if "below 1 to 10^6" in text:
             self.check.fact(f"{where}: odds below 1 to 10^6", max(powers) <= -6, True)
             text = text.replace("below 1 to 10^6", " ")
+        if "above 10^6 to 1" in text:
+            self.check.fact(f"{where}: odds above 10^6 to 1", min(powers) <= -6 or max(powers) >= 6, True)
+            text = text.replace("above 10^6 to 1", " ")
+        text = self.take(where, text, rf"(?P<odds>{NUMBER}) to 1\b(?!\.)", lambda m: {"odds": 10 ** near(math.log10(float(m.group("odds"))))})
         text = self.take(where, text, rf"1 to (?P<odds>{NUMBER})", lambda m: {"odds": 10 ** -near(-math.log10(float(m.group("odds"))))})
         # Counts of what was tried stand in no file; 95 % is the level of every interval.
         for known in (r"those of 95 %", r"95 % interval", r"chambers? [12]", r"of \d+ other explanations", r"none of the \d+ effects", r"of the \d+ experiments", r"joint \d", r"all \d+ recordings", r"in \d+ stretches that make [\d.]+ s", r"m/s2|mm2|cm3"):

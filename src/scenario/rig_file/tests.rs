@@ -443,7 +443,12 @@ fn an_improved_file_differs_from_the_believed_one_by_the_diagnosis_alone() {
             ("presliding_displacement_m", 4.123456789123e-5, None),
         ],
     };
-    let moved = [("cylinder.dead_volume_m3", 1.471_234_567_891e-5, 1.45e-5, 1.5e-5)];
+    let moved = [(
+        "cylinder.dead_volume_m3",
+        1.471_234_567_891e-5,
+        1.45e-5,
+        1.5e-5,
+    )];
     let expected = RIG.replace(
         "{ value = 1.454e-05, tolerance = 0.1 }   # each chamber",
         "{ value = 1.47123457e-5, low = 1.45e-5, high = 1.5e-5 }   # each chamber",
