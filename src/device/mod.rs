@@ -1,8 +1,7 @@
 //! The intelligent deburring control device: regulator, line, 5/2 valve, two chambers, seals, piston and end stops, coupled.
 //!
-//! The device does not know who carries its piston. A rig with a piston of its own implements [`Carrier`] and gets the whole device integrated with
-//! it ([`Device::advance_carried`]); a rigid-body engine foretells the piston's motion over a step and gets a force back ([`Device::advance`]).
-//! Either way every line of the device is the same.
+//! The device does not know who carries its piston. A bench, a recording and the slide of a cell implement [`Carrier`] and get the whole device integrated with
+//! the piston ([`Device::advance_carried`]); who holds the piston at a speed gets a force back ([`Device::advance`]). Either way every line of the device is the same.
 
 mod carrier;
 mod integrate;

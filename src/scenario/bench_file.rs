@@ -54,7 +54,6 @@ pub(super) struct BenchFile {
     pub hand: Option<HandKeys>,
     /// Physics beyond the believed device, by its name in the catalogue.
     #[serde(default)]
-    #[schemars(skip)]
     pub effect: super::recorded_cell::EffectKeys,
     #[serde(default)]
     pub command: Vec<CommandKeys>,
