@@ -71,10 +71,6 @@ fn an_effect_of_a_cell_by_its_name_is_what_the_cell_s_keys_say() {
             "coulomb_viscous_friction:coulomb_force_n=8,presliding_displacement_um=50",
             "[device.override]\nseal_coulomb_force_n = 8\nseal_static_force_n = 8\nseal_viscous_coefficient_n_s_per_m = 60\nseal_presliding_displacement_um = 50\n",
         ),
-        (
-            "transport_delay:delay_ms=90",
-            "[device.override]\nregulator_dead_time_ms = 90\n",
-        ),
     ] {
         let keyed = text.replacen(arm, &format!("{arm}{key}"), 1);
         bench.write("keyed.toml", keyed);
@@ -127,7 +123,7 @@ fn on_a_bench_a_controller_knows_nothing_of_an_effect() {
     let bench = Bench::new("paper_step");
     let nominal = samples(&bench, "scenario.toml", &[]);
     let weaker = samples(&bench, "scenario.toml", &["regulator_gain_error:gain=0.9"]);
-    let ends = |recording: &Recording| *recording.values("force").unwrap().last().unwrap();
+    let ends = |recording: &Recording| *recording.values("contact_force").unwrap().last().unwrap();
     let share = ends(&weaker) / ends(&nominal);
     assert!((0.85..0.95).contains(&share), "{share}");
     let set = |recording: &Recording| recording.values("set_pressure").unwrap().to_vec();
