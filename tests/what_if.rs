@@ -99,6 +99,14 @@ fn what_is_off_is_off_by_as_much_as_was_said() {
         &["part_misplaced:shift_mm=0.8,tilt_m_per_m=0"],
     );
     assert!((stroke(&moved) - stroke(&nominal) + 8e-4).abs() < 1e-6);
+    // A heavier slide presses with its weight, of which the controller knows nothing.
+    let scenario = idc_cell::scenario::load(&bench.path("scenario.toml")).unwrap();
+    let heavier = scenario.device.parameters.moving_mass + 1.0;
+    let with = format!("moving_mass_error:mass_kg={heavier}");
+    let heavy = samples(&bench, "scenario.toml", &[&with]);
+    let more = mean(&heavy, "contact_force") - mean(&nominal, "contact_force");
+    let slope = std::f64::consts::FRAC_1_SQRT_2;
+    assert!((more - 9.81 * slope).abs() < 0.02, "{more}");
     let biased = samples(
         &bench,
         "scenario.toml",

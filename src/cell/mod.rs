@@ -29,8 +29,10 @@ pub struct Cell {
     pub scenario: Scenario,
     /// The arm.
     pub arm: Arm,
-    /// The arm with the device's slide as its last joint.
+    /// The arm with the device's slide as its last joint, as its controller believes it to be.
     pub arm_with_slide: Chain,
+    /// The same as it is.
+    pub bodies: Chain,
     /// What stands between motor and link of each of its joints, base first; none where they are one.
     pub transmissions: Vec<Option<TransmissionParameters>>,
     /// Its physics.
@@ -65,7 +67,9 @@ impl Cell {
         }
         let transmissions = plant::transmissions(&scenario, &arm.chain, &plant.cell);
         check_seed_posture(&scenario, &arm.chain)?;
-        let arm_with_slide = with_slide(&arm.chain, &scenario);
+        let believed_mass = scenario.device.parameters.moving_mass;
+        let arm_with_slide = with_slide(&arm.chain, &scenario, believed_mass);
+        let bodies = with_slide(&arm.chain, &scenario, plant.device.moving_mass);
         let part = Part::load(&scenario)?;
         let middle = station(
             &part.edge,
@@ -93,6 +97,7 @@ impl Cell {
             scenario,
             arm,
             arm_with_slide,
+            bodies,
             transmissions,
             plant,
             middle,
@@ -192,10 +197,9 @@ fn check_seed_posture(scenario: &Scenario, arm: &Chain) -> Result<(), CellError>
     }
 }
 
-/// The arm's chain with the device's moving part on a prismatic joint along the flange's z.
-fn with_slide(arm: &Chain, scenario: &Scenario) -> Chain {
+/// The arm's chain with the device's moving part, of a mass [kg], on a prismatic joint along the flange's z.
+fn with_slide(arm: &Chain, scenario: &Scenario, mass: f64) -> Chain {
     let device = &scenario.device;
-    let mass = device.parameters.moving_mass;
     let gyration = device.moving_radius_of_gyration;
     let mut chain = arm.clone();
     chain.joints.push(Joint {

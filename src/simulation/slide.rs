@@ -12,6 +12,9 @@ use super::contact::Touch;
 use crate::device::{Carrier, Device, DeviceState, PistonMotion};
 use crate::plant::ContactParameters;
 
+/// Share of its motion below which a slide says nothing of the force at a touch beside it [1].
+const LEAST_SHARE: f64 = 1e-6;
+
 /// What acts on the slide over a step from outside the device.
 #[derive(Debug, Clone, Copy)]
 pub struct SlideCarrier<'a> {
@@ -142,7 +145,9 @@ fn share_out(
     pressed: &mut Vec<(DVec3, f64)>,
 ) {
     pressed.clear();
-    if let [touch] = carrier.touches {
+    if let [touch] = carrier.touches
+        && touch.share.abs() > LEAST_SHARE
+    {
         pressed.push((touch.normal, load / touch.share));
         return;
     }

@@ -56,7 +56,7 @@ impl<'a> WorldDescription<'a> {
     pub fn of(cell: &'a Cell) -> Self {
         let scenario = &cell.scenario;
         Self {
-            chain: &cell.arm_with_slide,
+            chain: &cell.bodies,
             world_from_base: scenario.arm.world_from_base,
             gravity: scenario.simulation.gravity,
             step: scenario.simulation.step,
