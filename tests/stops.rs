@@ -160,7 +160,7 @@ fn a_chamber_that_empties_in_microseconds_is_no_reason_to_stop() {
 
 #[test]
 fn a_device_out_of_all_proportion() {
-    // Hydrogen through 100 mm2 into a tenth of a cubic centimetre: more sub-steps than there are for a step of 5 ms. Where it fails is for its swing to say.
+    // Hydrogen through 100 mm2 into a tenth of a cubic centimetre: more sub-steps than there are for a step of 5 ms.
     let bench = leaky(0.1, 100.0);
     bench.replace(
         "scenario.toml",
@@ -176,7 +176,7 @@ fn a_device_out_of_all_proportion() {
     let reason = stopped(&outcome);
     for words in [
         "chamber_2_mass became -",
-        " in phase ",
+        " in phase retract",
         "step_ms = 5 is too long",
     ] {
         assert!(reason.contains(words), "{reason}");
