@@ -4,10 +4,7 @@ use super::error::CellError;
 use crate::arm::chain::Chain;
 use crate::control::transmission::TransmissionParameters;
 use crate::effects::vocabulary;
-use crate::plant::{
-    CellParameters, Chain as DeviceChain, ContactLaw, ContactParameters, LinkParameters, Periodic,
-    PlantParameters, SensorErrors,
-};
+use crate::plant::{CellParameters, Periodic, PlantParameters};
 use crate::scenario::Scenario;
 use crate::scenario::recorded_cell::apply;
 
@@ -33,29 +30,13 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
             }
         }
     }
-    let mut plant = PlantParameters {
-        chain: DeviceChain::Whole,
-        links: LinkParameters::NONE,
-        device: scenario.device.parameters.clone(),
-        // The arm says it, step by step.
-        gravity_along_extension: 0.0,
-        contact: ContactParameters {
-            law: ContactLaw::Linear {
-                stiffness: contact.stiffness,
-            },
-            damping: contact.damping,
-            surface_offset: 0.0,
-            // A ball that turns towards the part finds its surface nearer.
-            runout: Periodic {
-                sine: -contact.runout_amplitude,
-                cosine: 0.0,
-                frequency: contact.runout_frequency,
-            },
-            waviness: Periodic::NONE,
-        },
-        cell,
-        sensors: SensorErrors::NONE,
-        latent: None,
+    let law = (contact.stiffness, contact.damping);
+    let mut plant = PlantParameters::of_cell(scenario.device.parameters.clone(), law, cell);
+    // A ball that turns towards the part finds its surface nearer.
+    plant.contact.runout = Periodic {
+        sine: -contact.runout_amplitude,
+        cosine: 0.0,
+        frequency: contact.runout_frequency,
     };
     apply(&scenario.effects, &mut plant);
     let refuse = |effect: &str, reason: String| CellError::Effect {

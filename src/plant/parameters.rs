@@ -2,7 +2,7 @@
 
 use super::cell_parameters::CellParameters;
 use super::chain::{Chain, LinkParameters};
-use super::contact::ContactParameters;
+use super::contact::{ContactLaw, ContactParameters, Periodic};
 use super::latent::{Latent, Port};
 use super::sensors::SensorErrors;
 use crate::device::DeviceParameters;
@@ -29,6 +29,31 @@ pub struct PlantParameters {
 }
 
 impl PlantParameters {
+    /// A cell with ideal sensors, whose tool meets a linear contact of a stiffness [N/m] and a damping [N s/m].
+    pub fn of_cell(
+        device: DeviceParameters,
+        (stiffness, damping): (f64, f64),
+        cell: CellParameters,
+    ) -> Self {
+        Self {
+            chain: Chain::Whole,
+            links: LinkParameters::NONE,
+            device,
+            // The arm says it, moment by moment.
+            gravity_along_extension: 0.0,
+            contact: ContactParameters {
+                law: ContactLaw::Linear { stiffness },
+                damping,
+                surface_offset: 0.0,
+                runout: Periodic::NONE,
+                waviness: Periodic::NONE,
+            },
+            cell,
+            sensors: SensorErrors::NONE,
+            latent: None,
+        }
+    }
+
     /// Does the rig move as another one does where there is no workpiece?
     pub fn moves_freely_as(&self, other: &Self) -> bool {
         self.chain == other.chain

@@ -5,8 +5,7 @@ use crate::arm::chain::JointKind;
 use crate::arm::load_arm;
 use crate::cell::{CellError, arm_options, choose_edge, station};
 use crate::plant::{
-    CellCourse, CellParameters, Chain, ContactLaw, ContactParameters, EdgeStation, LinkParameters,
-    MOST_JOINTS, Periodic, PlantParameters, SensorErrors, SharpEdge,
+    CellCourse, CellParameters, EdgeStation, MOST_JOINTS, PlantParameters, SharpEdge,
 };
 use crate::scenario::RecordedCell;
 use crate::scenario::recorded_cell::apply;
@@ -86,35 +85,18 @@ impl LoadedCell {
         for (own, stiffness) in joint_stiffness.iter_mut().zip(&scenario.joint_stiffness) {
             *own = *stiffness;
         }
-        let mut plant = PlantParameters {
-            device: scenario.device.parameters.clone(),
-            // The course of the flange says it, sample by sample.
-            gravity_along_extension: 0.0,
-            contact: ContactParameters {
-                law: ContactLaw::Linear {
-                    stiffness: scenario.contact.stiffness,
-                },
-                damping: scenario.contact.damping,
-                surface_offset: 0.0,
-                runout: Periodic::NONE,
-                waviness: Periodic::NONE,
-            },
-            cell: CellParameters {
-                servo_bandwidth: scenario.servo_bandwidth,
-                joint_stiffness,
-                joint_damping: scenario.joint_damping[0],
-                friction: scenario.contact.friction,
-                joint_friction: self.frictions(),
-                ..CellParameters::RIGID
-            },
-            latent: None,
-            chain: Chain::Whole,
-            links: LinkParameters::NONE,
-            sensors: SensorErrors {
-                force_delay: scenario.force_delay,
-                ..SensorErrors::NONE
-            },
+        let contact = &scenario.contact;
+        let cell = CellParameters {
+            servo_bandwidth: scenario.servo_bandwidth,
+            joint_stiffness,
+            joint_damping: scenario.joint_damping[0],
+            friction: contact.friction,
+            joint_friction: self.frictions(),
+            ..CellParameters::RIGID
         };
+        let device = scenario.device.parameters.clone();
+        let law = (contact.stiffness, contact.damping);
+        let mut plant = PlantParameters::of_cell(device, law, cell);
         apply(&scenario.effects, &mut plant);
         plant
     }

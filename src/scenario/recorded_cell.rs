@@ -112,8 +112,6 @@ pub struct RecordedCell {
     /// Is it a cell that this project runs? Its joints do not give, gravity is theirs to carry, its encoders say where its motors went; its ball meets the
     /// edge as the mesh has it, its load cell measures along the slide, and a recording starts with the slide out on its stop.
     pub own: bool,
-    /// How late its force is stamped [s]: in a row of a run stands that of the step which ended with it.
-    pub force_delay: f64,
     /// Samples per second of its sensors, if they are fewer than the recording's rows [Hz].
     pub sample_rate: f64,
 }
@@ -168,7 +166,6 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         )?,
         device,
         own: false,
-        force_delay: 0.0,
         sample_rate: f64::INFINITY,
         servo_bandwidth: joints.number(
             "servo_bandwidth_hz",

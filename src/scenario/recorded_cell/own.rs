@@ -77,7 +77,6 @@ pub(super) fn of_scenario(
         tolerance: TOLERANCE,
         start_stroke_tolerance: 0.0,
         own: true,
-        force_delay: 0.0,
         sample_rate: sensing.sample_rate,
     })
 }
