@@ -1,5 +1,7 @@
 //! One step of the coupled cell, read from top to bottom.
 
+mod checks;
+
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
@@ -22,15 +24,12 @@ use crate::control::transmission::Motor;
 use crate::device::{DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
 use crate::plant::{RunningSensors, SensorReadings};
-use crate::recording::Unit;
-use crate::recording::schema::{self, JointSignal};
+use crate::recording::schema::JointSignal;
 use crate::sensing::noise::{Noise, Stream};
 use crate::sensing::{Readings, SensorChain, Truth};
 
 /// Time between two frames of the picture [s].
 const FRAME_INTERVAL: f64 = 0.02;
-/// Distance from its reference at which an axis counts as lost [rad].
-const LOST: f64 = 0.05;
 
 /// Time spent in each part of the step, measured only on request [s].
 #[derive(Debug, Clone, Copy, Default)]
@@ -551,88 +550,6 @@ impl<'a> Simulation<'a> {
             .contact_points
             .push(self.world.tool_centre() - normal * radius);
         self.frames.contact_forces.push(force);
-    }
-
-    fn check_finite(
-        &self,
-        signals: &[f64],
-        joints: &[[f64; JointSignal::ALL.len()]],
-        phase: Phase,
-        time: f64,
-    ) -> Result<(), SimulationError> {
-        let sensors = schema::CELL_SENSORS.iter();
-        let sensors = sensors.filter_map(|sensor| schema::definition(sensor));
-        let mut named = signals.iter().zip(schema::SIGNALS.iter().chain(sensors));
-        let bad = named.find(|(value, signal)| {
-            !value.is_finite() || (signal.unit == Unit::Kilogram && **value < 0.0)
-        });
-        let bad = bad.map(|(value, signal)| (signal.quantity, *value));
-        let bad = bad.or_else(|| {
-            joints
-                .iter()
-                .flatten()
-                .find(|v| !v.is_finite())
-                .map(|v| ("a joint", *v))
-        });
-        match bad {
-            None => Ok(()),
-            Some((quantity, value)) => Err(SimulationError::NotFinite {
-                quantity,
-                value,
-                time,
-                phase: phase.name(),
-                step: self.cell.scenario.simulation.step,
-            }),
-        }
-    }
-
-    fn check_axes(
-        &self,
-        joints: &[[f64; JointSignal::ALL.len()]],
-        phase: Phase,
-        time: f64,
-    ) -> Result<(), SimulationError> {
-        for (axis, joint) in joints.iter().enumerate() {
-            let error = joint[1] - joint[0];
-            if error.abs() > LOST {
-                let axis = &self.cell.arm.chain.joints[axis];
-                return Err(SimulationError::AxisLost {
-                    axis: axis.name.clone(),
-                    error: error.abs(),
-                    accepted: LOST,
-                    torque: joint[3].abs(),
-                    effort: axis.effort,
-                    time,
-                    phase: phase.name(),
-                });
-            }
-        }
-        Ok(())
-    }
-
-    /// The slide must never reach its inner end, and on the edge not its outer one either.
-    fn check_stroke(
-        &self,
-        reference: &Reference,
-        stroke: f64,
-        time: f64,
-    ) -> Result<(), SimulationError> {
-        let scenario = &self.cell.scenario;
-        let full_stroke = scenario.device.parameters.full_stroke;
-        if scenario.device.locked {
-            return Ok(());
-        }
-        let on_edge = reference.phase == Phase::Follow;
-        if stroke <= 0.0 || (on_edge && stroke >= full_stroke) {
-            return Err(SimulationError::StrokeRanOut {
-                time,
-                phase: reference.phase.name(),
-                edge_length: reference.edge_length,
-                stroke,
-                full_stroke,
-            });
-        }
-        Ok(())
     }
 }
 
