@@ -3,7 +3,6 @@
 use super::error::CellError;
 use crate::arm::chain::Chain;
 use crate::control::transmission::TransmissionParameters;
-use crate::effects::vocabulary;
 use crate::plant::{CellParameters, Periodic, PlantParameters};
 use crate::scenario::Scenario;
 use crate::scenario::recorded_cell::apply;
@@ -46,7 +45,7 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
     };
     let joints = chain.joints.len();
     for (effect, _) in &scenario.effects {
-        match vocabulary(effect.name) {
+        match effect.vocabulary() {
             (_, Some(joint)) if joint > joints => {
                 return Err(refuse(effect.name, format!("the arm has {joints} joints")));
             }

@@ -5,7 +5,8 @@ use super::evidence::{Evidence, Measured};
 use super::free::{Free, Prior};
 use super::recorded::{COLUMNS, Recorded, RecordedError};
 use super::search::Shown;
-use crate::effects::{Coordinate, Effect, Quantity};
+use crate::effects::{Coordinate, Effect};
+use crate::plant::Quantity;
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters};
 
 /// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
@@ -84,13 +85,15 @@ pub fn of_link(chain: Chain, noise: f64, drift: f64) -> Vec<Free> {
 
 const START_ERROR: Quantity = Quantity {
     name: "start_error_pa",
-    get: |p| p.links.start_error,
-    set: |p, v| p.links.start_error = v,
+    index: 0,
+    get: |p, _| p.links.start_error,
+    set: |p, _, v| p.links.start_error = v,
 };
 const PRESSURE_DRIFT: Quantity = Quantity {
     name: "pressure_sensor_drift_pa_per_s",
-    get: |p| p.sensors.pressure_drift,
-    set: |p, v| p.sensors.pressure_drift = v,
+    index: 0,
+    get: |p, _| p.sensors.pressure_drift,
+    set: |p, _, v| p.sensors.pressure_drift = v,
 };
 
 /// Recordings made fit to be believed.

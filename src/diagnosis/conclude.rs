@@ -18,7 +18,6 @@ use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms, root_mean_square
 use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
 use crate::effects::Effect;
-use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, Chain, Channel};
 
 /// Variables named at most for a link.
@@ -92,10 +91,10 @@ impl Diagnosis {
         });
         effects
             .map(|(effect, numbers)| FoundEffect {
-                name: vocabulary(effect.name).0.to_owned(),
+                name: effect.vocabulary().0.to_owned(),
                 subsystem: effect.subsystem.name().to_owned(),
                 confidence: self.confidence(effect.name),
-                parameters: joint_of(effect.name)
+                parameters: joint_of(effect)
                     .into_iter()
                     .chain(
                         numbers
@@ -392,7 +391,7 @@ impl Diagnosis {
         let believed = |number: &Number| {
             let free = self.best().fit.free.iter();
             let mut own = free.filter(|f| f.quantity.name == number.name);
-            own.next().map(|f| (f.quantity.get)(&self.believed))
+            own.next().map(|f| f.quantity.get(&self.believed))
         };
         let numbers = self.estimates.tolerated.iter();
         numbers
@@ -426,8 +425,8 @@ impl Diagnosis {
 }
 
 /// The joint that an effect is about, as one of its numbers.
-fn joint_of(name: &str) -> Option<(String, Estimate)> {
-    let joint = vocabulary(name).1? as f64;
+fn joint_of(effect: &Effect) -> Option<(String, Estimate)> {
+    let joint = effect.vocabulary().1? as f64;
     Some(("joint".to_owned(), Estimate::new(joint, joint, joint)))
 }
 

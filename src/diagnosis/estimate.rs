@@ -83,7 +83,7 @@ fn allowance(believed: &PlantParameters, free: &Free, value: f64, sample: f64) -
     if free.quantity.name == "frequency_hz" {
         return 0.0;
     }
-    let before = (free.quantity.get)(believed);
+    let before = free.quantity.get(believed);
     let own = value - if before.is_finite() { before } else { 0.0 };
     let late = ["delay_s", "offset_s", "time_constant_s"].contains(&free.quantity.name);
     let between = if late { sample / 12f64.sqrt() } else { 0.0 };
@@ -134,13 +134,13 @@ pub fn estimates(
     let numbers: Vec<usize> = hypothesis
         .effects
         .iter()
-        .map(|effect| (effect.parameters)(believed).len())
+        .map(|effect| effect.parameters(believed).len())
         .collect();
     let mut at = first;
     let tolerated = (0..at).map(|index| number(index, false)).collect();
     let mut effects = Vec::new();
     for (effect, own) in hypothesis.effects.iter().zip(numbers) {
-        let parameters = (effect.parameters)(believed);
+        let parameters = effect.parameters(believed);
         let mut list: Vec<Number> = parameters
             .iter()
             .enumerate()
@@ -192,12 +192,13 @@ mod tests {
     use super::*;
     use crate::diagnosis::case::tolerated;
     use crate::diagnosis::free::Prior;
-    use crate::effects::Quantity;
+    use crate::plant::Quantity;
 
     const MASS: Quantity = Quantity {
         name: "cylinder.moving_mass_kg",
-        get: |p| p.device.moving_mass,
-        set: |p, v| p.device.moving_mass = v,
+        index: 0,
+        get: |p, _| p.device.moving_mass,
+        set: |p, _, v| p.device.moving_mass = v,
     };
 
     #[test]

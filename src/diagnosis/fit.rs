@@ -149,7 +149,7 @@ fn prior_sum(free: &[Free], values: &[f64]) -> f64 {
 pub fn with_values(plant: &PlantParameters, free: &[Free], values: &[f64]) -> PlantParameters {
     let mut changed = plant.clone();
     for (f, value) in free.iter().zip(values) {
-        (f.quantity.set)(&mut changed, *value);
+        f.quantity.set(&mut changed, *value);
     }
     changed
 }
@@ -173,7 +173,7 @@ pub fn jacobian(
             }
             steps.push(step);
             let mut plant = here.plant.clone();
-            (f.quantity.set)(&mut plant, f.coordinate.value(at + step));
+            f.quantity.set(&mut plant, f.coordinate.value(at + step));
             plant
         })
         .collect();

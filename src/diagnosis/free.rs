@@ -1,7 +1,8 @@
 //! A quantity that a fit may move, and what is believed of it before the recordings are looked at.
 
-use crate::effects::{Coordinate, Effect, Quantity};
+use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
+use crate::plant::Quantity;
 
 /// What is believed of a quantity before the recordings are looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +58,8 @@ impl Free {
 
 /// The numbers of an effect as free quantities from a start.
 pub fn free_of(effect: &Effect, plant: &PlantParameters, start: &[f64]) -> Vec<Free> {
-    (effect.parameters)(plant)
+    effect
+        .parameters(plant)
         .into_iter()
         .zip(start)
         .map(|(parameter, start)| Free {

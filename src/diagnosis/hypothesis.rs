@@ -40,7 +40,7 @@ impl Hypothesis {
         let own: usize = self
             .effects
             .iter()
-            .map(|effect| (effect.parameters)(believed).len())
+            .map(|effect| effect.parameters(believed).len())
             .sum();
         self.fit.free.len() - own - latent::count(&self.fit.prediction.plant)
     }

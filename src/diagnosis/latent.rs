@@ -14,7 +14,8 @@ use super::hypothesis::Hypothesis;
 use super::search::Search;
 use super::spectrum;
 use super::unlisted::elsewhere::Elsewhere;
-use crate::effects::{Coordinate, Quantity};
+use crate::effects::Coordinate;
+use crate::plant::Quantity;
 use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, PlantParameters, Port, Variable};
 use rayon::prelude::*;
 
@@ -85,31 +86,34 @@ pub fn scale(port: Port) -> f64 {
         .map_or(1.0, |(_, scale, _)| *scale)
 }
 
-macro_rules! quantities {
-    ($($index:literal)*) => {
-        /// Coefficients of the latent term as quantities.
-        static COEFFICIENTS: [Quantity; MOST_COEFFICIENTS] = [$(Quantity {
-            name: concat!("coefficient_", $index),
-            get: |p| coefficient(p, $index),
-            set: |p, value| {
-                if let Some(c) = p.latent.as_mut().and_then(|l| l.coefficients.get_mut($index)) {
-                    *c = value;
-                }
-            },
-        }),*];
-        /// By how much each coefficient is above the one before it.
-        static RISES: [Quantity; MOST_COEFFICIENTS] = [$(Quantity {
-            name: concat!("rise_", $index),
-            get: |p| rise(p, $index),
-            set: |p, value| {
-                let further = value - rise(p, $index);
-                let coefficients = p.latent.iter_mut().flat_map(|l| &mut l.coefficients);
-                coefficients.skip($index).for_each(|c| *c += further);
-            },
-        }),*];
-    };
+/// A coefficient of the latent term.
+const fn coefficient_quantity(index: usize) -> Quantity {
+    Quantity {
+        name: "latent_coefficient",
+        index,
+        get: coefficient,
+        set: |p, index, value| {
+            let coefficients = p.latent.as_mut().map(|l| &mut l.coefficients);
+            if let Some(c) = coefficients.and_then(|c| c.get_mut(index)) {
+                *c = value;
+            }
+        },
+    }
 }
-quantities!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
+
+/// By how much a coefficient of the latent term is above the one before it.
+const fn rise_quantity(index: usize) -> Quantity {
+    Quantity {
+        name: "latent_rise",
+        index,
+        get: rise,
+        set: |p, index, value| {
+            let further = value - rise(p, index);
+            let coefficients = p.latent.iter_mut().flat_map(|l| &mut l.coefficients);
+            coefficients.skip(index).for_each(|c| *c += further);
+        },
+    }
+}
 
 fn coefficient(plant: &PlantParameters, index: usize) -> f64 {
     let latent = plant.latent.as_ref();
@@ -139,11 +143,12 @@ pub fn response(latent: &Latent, index: usize, at: f64) -> f64 {
 /// The frequency of a periodic term.
 const FREQUENCY: Quantity = Quantity {
     name: "latent_frequency",
-    get: |p| match p.latent.as_ref().map(|l| l.basis) {
+    index: 0,
+    get: |p, _| match p.latent.as_ref().map(|l| l.basis) {
         Some(Basis::Waves { frequency }) => frequency,
         _ => 0.0,
     },
-    set: |p, value| {
+    set: |p, _, value| {
         if let Some(Basis::Waves { frequency }) = p.latent.as_mut().map(|l| &mut l.basis) {
             *frequency = value;
         }
@@ -155,8 +160,8 @@ const FREQUENCY: Quantity = Quantity {
 fn free_of_latent(latent: &Latent) -> Vec<Free> {
     let scale = scale(latent.port);
     let count = latent.coefficients.len();
-    let free = |(quantity, value): (&Quantity, f64), deviation: f64| Free {
-        quantity: *quantity,
+    let free = |(quantity, value): (Quantity, f64), deviation: f64| Free {
+        quantity,
         start: value,
         coordinate: Coordinate::Linear(scale),
         bounds: [-1e3 * scale, 1e3 * scale],
@@ -171,11 +176,11 @@ fn free_of_latent(latent: &Latent) -> Vec<Free> {
             let before = std::iter::once(0.0).chain(c.clone());
             let rises = c.zip(before).map(|(c, before)| c - before);
             let believed = std::iter::once(BELIEVED).chain(std::iter::repeat(RISES_BY));
-            let rises = RISES[..count].iter().zip(rises).zip(believed);
+            let rises = (0..count).map(rise_quantity).zip(rises).zip(believed);
             rises.map(|(rise, by)| free(rise, by)).collect()
         }
         Basis::Waves { .. } => {
-            let waves = COEFFICIENTS[..count].iter().zip(c);
+            let waves = (0..count).map(coefficient_quantity).zip(c);
             waves.map(|wave| free(wave, BELIEVED)).collect()
         }
     };

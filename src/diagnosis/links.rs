@@ -51,7 +51,7 @@ const LINKS: [Link; 3] = [Link::Regulator, Link::Piston, Link::Contact];
 pub fn links(evidence: &Evidence, held: &Prediction, tolerated: &[Free]) -> Vec<LinkResidual> {
     let values: Vec<f64> = tolerated
         .iter()
-        .map(|f| f.clamp((f.quantity.get)(&held.plant)))
+        .map(|f| f.clamp(f.quantity.get(&held.plant)))
         .collect();
     let steps: Vec<f64> = tolerated
         .iter()
@@ -65,7 +65,7 @@ pub fn links(evidence: &Evidence, held: &Prediction, tolerated: &[Free]) -> Vec<
         .map(|i| {
             let f = &tolerated[i];
             let mut plant = held.plant.clone();
-            (f.quantity.set)(
+            f.quantity.set(
                 &mut plant,
                 f.coordinate.value(f.coordinate.of(values[i]) + steps[i]),
             );

@@ -75,7 +75,8 @@ fn square(evidence: &Evidence, best: &Fit, rival: &PlantParameters, inputs: &Pla
             let ahead = free.coordinate.value(at + STEP);
             let step = if ahead > free.bounds[1] { -STEP } else { STEP };
             let mut moved = plant.clone();
-            (free.quantity.set)(&mut moved, free.coordinate.value(at + step));
+            free.quantity
+                .set(&mut moved, free.coordinate.value(at + step));
             let there = whitened(&moved);
             let pairs = there.iter().zip(&here);
             pairs
@@ -106,7 +107,8 @@ mod tests {
     use super::super::fit::{Effort, ROUGH, fit};
     use super::super::free::{Free, Prior};
     use super::*;
-    use crate::effects::{Coordinate, Quantity};
+    use crate::effects::Coordinate;
+    use crate::plant::Quantity;
     use crate::plant::{
         Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, SensorErrors,
     };
@@ -183,8 +185,9 @@ mod tests {
     fn what_a_free_number_could_do_as_well_tells_nothing() {
         const GAIN: Quantity = Quantity {
             name: "gain",
-            get: |p| p.sensors.force_gain,
-            set: |p, v| p.sensors.force_gain = v,
+            index: 0,
+            get: |p, _| p.sensors.force_gain,
+            set: |p, _, v| p.sensors.force_gain = v,
         };
         let free = Free {
             quantity: GAIN,

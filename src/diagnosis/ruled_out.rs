@@ -65,7 +65,7 @@ pub(super) fn variant(
         bumps: &[],
     };
     // Each effect's starts in turn, the others at their last where they have less.
-    let starts: Vec<Vec<Vec<f64>>> = effects.iter().map(|e| (e.starts)(&clues)).collect();
+    let starts: Vec<Vec<Vec<f64>>> = effects.iter().map(|e| e.starts(&clues)).collect();
     let most = starts.iter().map(Vec::len).max().unwrap_or(1);
     let tried = (0..most).map(|turn| {
         let mut free = search.tolerated.clone();

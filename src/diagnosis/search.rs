@@ -316,7 +316,7 @@ impl Search<'_> {
             let Some(effect) = candidate.effects.last() else {
                 continue;
             };
-            for start in (effect.starts)(&self.clues(candidate, &[], &[])) {
+            for start in effect.starts(&self.clues(candidate, &[], &[])) {
                 let mut other = candidate.clone();
                 let own = other.fit.values.len() - start.len();
                 other.fit.values[own..].copy_from_slice(&start);
@@ -337,7 +337,7 @@ impl Search<'_> {
         let parameters = hypothesis
             .effects
             .iter()
-            .flat_map(|effect| (effect.parameters)(&self.believed));
+            .flat_map(|effect| effect.parameters(&self.believed));
         let parameters: Vec<_> = parameters.collect();
         let own = hypothesis.fit.free.len() - parameters.len();
         for (index, parameter) in parameters.iter().enumerate() {
@@ -407,9 +407,10 @@ struct Refined {
 
 /// Do two free quantities change the same number?
 pub fn same(a: &Free, b: &Free, plant: &PlantParameters) -> bool {
-    let value = (b.quantity.get)(plant);
+    let value = b.quantity.get(plant);
     let mut changed = plant.clone();
-    (a.quantity.set)(&mut changed, 1.7 * (a.quantity.get)(plant) + 1e-3);
-    let after = (b.quantity.get)(&changed);
+    a.quantity
+        .set(&mut changed, 1.7 * a.quantity.get(plant) + 1e-3);
+    let after = b.quantity.get(&changed);
     !(value == after || (value.is_nan() && after.is_nan()))
 }

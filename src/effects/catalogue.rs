@@ -48,6 +48,33 @@ pub fn every() -> impl Iterator<Item = &'static Effect> {
         .iter()
         .chain(&CELL_EFFECTS)
         .chain(JOINT_EFFECTS.iter().flatten())
-        .chain(&JOINT_FRICTION)
+        .chain(JOINT_FRICTION.iter())
         .chain([&SERVO_LAG])
+}
+
+/// Name in the vocabulary of an effect, and the joint that it is about, from 1.
+#[must_use]
+pub fn vocabulary(name: &str) -> (&str, Option<usize>) {
+    let effect = every().find(|effect| effect.name == name);
+    match effect {
+        Some(effect) => effect.vocabulary(),
+        None => (name, None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_s_effect_says_which_joint() {
+        for (index, [spring, encoder, play]) in JOINT_EFFECTS.iter().enumerate() {
+            let joint = index + 1;
+            assert_eq!(vocabulary(spring.name), ("compliant_joint", Some(joint)));
+            let name = vocabulary(encoder.name);
+            assert_eq!(name, ("joint_encoder_offset", Some(joint)));
+            assert_eq!(play.vocabulary(), ("joint_backlash", Some(joint)));
+        }
+        assert_eq!(vocabulary("burr"), ("burr", None));
+    }
 }

@@ -1,7 +1,7 @@
 //! A physical effect that a model may lack: an edit of the rig's description.
 
-use super::quantity::{Coordinate, Quantity};
-use crate::plant::PlantParameters;
+use super::quantity::Coordinate;
+use crate::plant::{PlantParameters, Quantity};
 
 /// Part of the chain in which an effect enters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,18 +64,35 @@ pub struct Clues<'a> {
     pub bumps: &'a [f64],
 }
 
+/// Which of several alike an effect is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Which {
+    /// The only one.
+    Only,
+    /// That of one joint.
+    Joint {
+        /// Name in the vocabulary.
+        kind: &'static str,
+        /// Joint, base first, from 0.
+        joint: usize,
+    },
+}
+
 /// An effect.
+#[derive(Clone)]
 pub struct Effect {
-    /// Name in an answer.
+    /// Name in an answer, by which it is told from all others.
     pub name: &'static str,
+    /// Which of several alike it is.
+    pub which: Which,
     /// Where it enters.
     pub subsystem: Subsystem,
-    /// Its numbers, reported ones first.
-    pub parameters: fn(&PlantParameters) -> Vec<Parameter>,
+    /// Its numbers, reported ones first; of the one of several alike.
+    pub parameters: fn(&PlantParameters, usize) -> Vec<Parameter>,
     /// Its numbers at a size that devices and cells usually show, beside what is believed of them; all of them, in that order.
-    pub usual: fn(&PlantParameters) -> Vec<f64>,
+    pub usual: fn(&PlantParameters, usize) -> Vec<f64>,
     /// Values to start from, one list of all parameters each.
-    pub starts: fn(&Clues<'_>) -> Vec<Vec<f64>>,
+    pub starts: fn(&Clues<'_>, usize) -> Vec<Vec<f64>>,
     /// Effects of the same group exclude one another.
     pub group: Option<&'static str>,
 }
@@ -87,6 +104,47 @@ impl std::fmt::Debug for Effect {
 }
 
 impl Effect {
+    /// Its numbers, reported ones first.
+    pub fn parameters(&self, plant: &PlantParameters) -> Vec<Parameter> {
+        (self.parameters)(plant, self.index())
+    }
+
+    /// Its numbers at a size that devices and cells usually show, beside what is believed of them; all of them, in that order.
+    pub fn usual(&self, plant: &PlantParameters) -> Vec<f64> {
+        (self.usual)(plant, self.index())
+    }
+
+    /// Values to start from, one list of all parameters each.
+    pub fn starts(&self, clues: &Clues<'_>) -> Vec<Vec<f64>> {
+        (self.starts)(clues, self.index())
+    }
+
+    /// Which of several alike, from 0.
+    fn index(&self) -> usize {
+        match self.which {
+            Which::Only => 0,
+            Which::Joint { joint, .. } => joint,
+        }
+    }
+
+    /// The same of one joint, from 0. Its name is kept as long as the program runs: one for each joint that an arm may have.
+    pub(super) fn of_joint(self, joint: usize) -> Self {
+        let kind = self.name;
+        Self {
+            name: format!("{kind}_{}", joint + 1).leak(),
+            which: Which::Joint { kind, joint },
+            ..self
+        }
+    }
+
+    /// Its name in the vocabulary, and the joint that it is about, from 1.
+    pub fn vocabulary(&self) -> (&'static str, Option<usize>) {
+        match self.which {
+            Which::Only => (self.name, None),
+            Which::Joint { kind, joint } => (kind, Some(joint + 1)),
+        }
+    }
+
     /// Can it not stand beside another one?
     pub fn excludes(&self, other: &Effect) -> bool {
         self.name == other.name || (self.group.is_some() && self.group == other.group)

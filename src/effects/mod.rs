@@ -13,9 +13,9 @@ mod quantity;
 mod regulator;
 mod sensors;
 
-pub use catalogue::{CATALOGUE, every};
-pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG, vocabulary};
-pub use effect::{Clues, Effect, Parameter, Subsystem};
+pub use catalogue::{CATALOGUE, every, vocabulary};
+pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG};
+pub use effect::{Clues, Effect, Parameter, Subsystem, Which};
 pub use links::{LINK_EFFECTS, candidates};
 pub use meaning::meaning;
-pub use quantity::{Coordinate, Quantity};
+pub use quantity::Coordinate;

@@ -1,13 +1,13 @@
 //! What an effect is written with.
 
-pub use super::effect::{Clues, Effect, Parameter, Subsystem};
+pub use super::effect::{Clues, Effect, Parameter, Subsystem, Which};
 pub use super::quantity::Coordinate::{self, Linear, Logarithmic};
-pub use super::quantity::Quantity;
+pub use crate::plant::Quantity;
 
 /// A quantity that is one place of the description: `quantity!("name_unit", p => p.device.bore)`.
 macro_rules! quantity {
     ($name:literal, $p:ident => $($place:tt)+) => {
-        Quantity { name: $name, get: |$p| $($place)+, set: |$p, value| $($place)+ = value }
+        Quantity { name: $name, index: 0, get: |$p, _| $($place)+, set: |$p, _, value| $($place)+ = value }
     };
 }
 pub(super) use quantity;

@@ -1,23 +1,4 @@
-//! A number of the rig's description that a fit may move: how to read it, how to change it, what is believed of it.
-
-use crate::plant::PlantParameters;
-
-/// A number of the rig's description.
-#[derive(Clone, Copy)]
-pub struct Quantity {
-    /// Name with its unit, as in an answer: `coulomb_force_n`.
-    pub name: &'static str,
-    /// Reads it.
-    pub get: fn(&PlantParameters) -> f64,
-    /// Changes it.
-    pub set: fn(&mut PlantParameters, f64),
-}
-
-impl std::fmt::Debug for Quantity {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(self.name)
-    }
-}
+//! How the coordinates of a fit relate to a number of the rig's description.
 
 /// How the fit's coordinate u relates to a value.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 use super::suggestion::nearest;
 use super::units::Unit;
 use super::variation::KeyValue;
-use crate::effects::{Effect, every, vocabulary};
+use crate::effects::{Effect, every};
 use crate::plant::PlantParameters;
 
 /// Key of the joint that an effect is about.
@@ -27,7 +27,7 @@ impl EffectRequest {
     /// What is wrong with it, for people.
     pub fn parse(text: &str) -> Result<Self, String> {
         let (name, given) = text.split_once(':').unwrap_or((text, ""));
-        let names: Vec<&str> = every().map(|effect| vocabulary(effect.name).0).collect();
+        let names: Vec<&str> = every().map(|effect| effect.vocabulary().0).collect();
         if !names.contains(&name) {
             let advice = nearest(name, &names);
             return Err(format!("there is no effect `{name}`{advice}"));
@@ -62,7 +62,7 @@ impl EffectRequest {
 
     fn is_of_joint(&self) -> bool {
         every().any(|effect| {
-            let (name, joint) = vocabulary(effect.name);
+            let (name, joint) = effect.vocabulary();
             name == self.name && joint.is_some()
         })
     }
@@ -77,14 +77,14 @@ impl EffectRequest {
         telling: usize,
     ) -> Result<Vec<KeyValue>, String> {
         let wanted = self.is_of_joint().then(|| self.joint.unwrap_or(telling));
-        let is_it = |effect: &&'static Effect| vocabulary(effect.name) == (&*self.name, wanted);
+        let is_it = |effect: &&'static Effect| effect.vocabulary() == (&*self.name, wanted);
         let effect = every().find(is_it).ok_or_else(|| {
             let joint = wanted.unwrap_or_default();
             format!("there is no joint {joint} for {} to be of", self.name)
         })?;
-        let parameters = (effect.parameters)(believed);
+        let parameters = effect.parameters(believed);
         let names: Vec<&str> = parameters.iter().map(|p| p.quantity.name).collect();
-        let mut values = (effect.usual)(believed);
+        let mut values = effect.usual(believed);
         for (key, value) in &self.numbers {
             let stands = |name: &&str| Unit::convert(key, *value, name);
             if let Some((place, value)) = names
@@ -182,8 +182,8 @@ mod tests {
         plant.cell.joint_stiffness = [1e6; crate::plant::MOST_JOINTS];
         plant.contact.law = crate::plant::ContactLaw::Linear { stiffness: 1.5e5 };
         for effect in every().chain(crate::effects::LINK_EFFECTS) {
-            let parameters = (effect.parameters)(&plant);
-            let usual = (effect.usual)(&plant);
+            let parameters = effect.parameters(&plant);
+            let usual = effect.usual(&plant);
             assert_eq!(parameters.len(), usual.len(), "{effect:?}");
             for (parameter, value) in parameters.iter().zip(usual) {
                 let [low, high] = parameter.bounds;

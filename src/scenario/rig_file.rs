@@ -11,8 +11,9 @@ use std::path::{Path, PathBuf};
 
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
-use crate::effects::{Effect, Quantity};
+use crate::effects::Effect;
 use crate::plant::PlantParameters;
+use crate::plant::Quantity;
 use keys::{RigKeys, sections};
 use values::{check_together, pressure_drift, recordings, sensors};
 

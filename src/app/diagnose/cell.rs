@@ -12,10 +12,8 @@ use crate::diagnosis::free::{Free, Prior};
 use crate::diagnosis::joint_friction::{DriveLoad, JointFriction, joint_friction};
 use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, hold};
 use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
-use crate::effects::{
-    CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, Quantity, vocabulary,
-};
-use crate::plant::{CHANNELS, ContactLaw, PlantInputs, PlantParameters};
+use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS};
+use crate::plant::{CHANNELS, ContactLaw, PlantInputs, PlantParameters, Quantity};
 use crate::recording::csv::{CellRecording, read_cell_csv};
 use crate::recording::parquet::read_parquet;
 use crate::recording::samples::cell_recording;
@@ -324,23 +322,24 @@ fn candidates(cell: &LoadedCell) -> Vec<&'static Effect> {
         .chain(&CELL_EFFECTS)
         .chain(JOINT_EFFECTS[..joints].iter().flatten())
         // Joints whose gravity is compensated are described by their springs alone.
-        .filter(|e| cell.scenario.own || vocabulary(e.name).0 != "joint_backlash")
+        .filter(|e| cell.scenario.own || e.vocabulary().0 != "joint_backlash")
         .collect()
 }
 
 /// A number of the device or the contact that is believed within the file's tolerance.
 macro_rules! number {
-    ($name:literal, $p:ident => $($place:tt)+) => { Quantity { name: $name, get: |$p| $($place)+, set: |$p, value| $($place)+ = value } };
+    ($name:literal, $p:ident => $($place:tt)+) => { Quantity { name: $name, index: 0, get: |$p, _| $($place)+, set: |$p, _, value| $($place)+ = value } };
 }
 
 fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free> {
     let scenario = &cell.scenario;
     let stiffness = Quantity {
         name: "contact.stiffness_n_per_m",
-        get: |p| match p.contact.law {
+        index: 0,
+        get: |p, _| match p.contact.law {
             ContactLaw::Linear { stiffness } | ContactLaw::Hertz { stiffness } => stiffness,
         },
-        set: |p, stiffness| p.contact.law = ContactLaw::Linear { stiffness },
+        set: |p, _, stiffness| p.contact.law = ContactLaw::Linear { stiffness },
     };
     let quantities = [
         number!("cylinder.moving_mass_kg", p => p.device.moving_mass),
@@ -354,7 +353,7 @@ fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free>
     ];
     let mut free: Vec<Free> = if scenario.tolerance > 0.0 {
         let of =
-            |quantity: Quantity| tolerated(quantity, (quantity.get)(believed), scenario.tolerance);
+            |quantity: Quantity| tolerated(quantity, quantity.get(believed), scenario.tolerance);
         quantities.map(of).to_vec()
     } else {
         Vec::new()

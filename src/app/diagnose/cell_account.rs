@@ -8,7 +8,6 @@ use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::servo::ServoLink;
 use crate::diagnosis::words::{of_column, with_interval};
-use crate::effects::vocabulary;
 use crate::plant::{Channel, simulate};
 use crate::quantity::{significant, with_unit};
 use crate::replay::LoadedCell;
@@ -24,7 +23,7 @@ pub(super) fn add_cell(
 ) {
     let mut arm = Vec::new();
     for effect in &diagnosis.best().effects {
-        if let (name, Some(joint)) = vocabulary(effect.name) {
+        if let (name, Some(joint)) = effect.vocabulary() {
             arm.push(format!(
                 "{name} is about joint {joint} from the base, `{}` of {}.",
                 cell.joints[joint - 1],

@@ -411,7 +411,7 @@ fn improved_cell(scenario: &RecordedCell, diagnosis: &Diagnosis) -> Result<Strin
         .effects
         .iter()
         .map(|(effect, numbers)| {
-            let own = (effect.parameters)(&diagnosis.believed);
+            let own = effect.parameters(&diagnosis.believed);
             let own = |n: &&Number| own.iter().any(|p| p.quantity.name == n.name);
             let numbers = numbers.iter().filter(own);
             (
@@ -473,7 +473,7 @@ fn improved(rig: &RigFile, diagnosis: &Diagnosis) -> String {
             .iter()
             .all(|(new, _)| !new.excludes(effect))
         {
-            let parameters = (effect.parameters)(&diagnosis.believed);
+            let parameters = effect.parameters(&diagnosis.believed);
             let pairs = parameters.iter().zip(values);
             effects.push(ImprovedEffect {
                 effect,
@@ -484,7 +484,7 @@ fn improved(rig: &RigFile, diagnosis: &Diagnosis) -> String {
         }
     }
     for (effect, numbers) in &estimates.effects {
-        let parameters = (effect.parameters)(&diagnosis.believed);
+        let parameters = effect.parameters(&diagnosis.believed);
         let own = |n: &&Number| parameters.iter().any(|p| p.quantity.name == n.name);
         effects.push(ImprovedEffect {
             effect,

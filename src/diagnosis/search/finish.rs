@@ -180,7 +180,7 @@ impl Search<'_> {
         let counts: Vec<usize> = hypothesis
             .effects
             .iter()
-            .map(|e| (e.parameters)(&self.believed).len())
+            .map(|e| e.parameters(&self.believed).len())
             .collect();
         let own = fit.free.len() - counts.iter().sum::<usize>();
         let start = own + counts[..index].iter().sum::<usize>();
@@ -197,7 +197,7 @@ impl Search<'_> {
             .iter()
             .filter(|f| !others.iter().any(|o| same(o, f, &self.believed)))
             .map(|f| Free {
-                start: f.clamp((f.quantity.get)(plant)),
+                start: f.clamp(f.quantity.get(plant)),
                 ..*f
             })
             .collect();
@@ -227,7 +227,7 @@ impl Search<'_> {
         let there = &richer.fit.prediction.plant;
         let free: Vec<Free> = (hypothesis.fit.free.iter())
             .map(|f| Free {
-                start: f.clamp((f.quantity.get)(there)),
+                start: f.clamp(f.quantity.get(there)),
                 ..*f
             })
             .collect();

@@ -6,7 +6,8 @@ use super::super::free::{Free, Prior, free_of};
 use super::super::hypothesis::Hypothesis;
 use super::super::{bumps, spectrum};
 use super::{Search, same};
-use crate::effects::{Clues, Coordinate, Effect, Quantity, Subsystem};
+use crate::effects::{Clues, Coordinate, Effect, Subsystem};
+use crate::plant::Quantity;
 use rayon::prelude::*;
 
 /// Effects whose starts are looked at with all their derivatives, beside those that have no secant.
@@ -23,8 +24,9 @@ const PHASE: &str = "sine_m";
 const WAY: Free = Free {
     quantity: Quantity {
         name: "way",
-        get: |_| 0.0,
-        set: |_, _| {},
+        index: 0,
+        get: |_, _| 0.0,
+        set: |_, _, _| {},
     },
     start: 0.0,
     coordinate: Coordinate::Linear(1.0),
@@ -62,7 +64,8 @@ impl Search<'_> {
             .copied()
             .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
             .flat_map(|effect| {
-                (effect.starts)(&clues)
+                effect
+                    .starts(&clues)
                     .into_iter()
                     .map(move |start| (effect, start))
             })
@@ -161,7 +164,7 @@ impl Search<'_> {
         let (cost, reached) = foretold(self.evidence, here, &free, &values, &columns, stage);
         let mut start = start.clone();
         if let [size] = &new[..] {
-            let none = (size.quantity.get)(&here.plant);
+            let none = size.quantity.get(&here.plant);
             let way = reached[values.len() - 1];
             if none.is_finite() {
                 start[0] = size.clamp(none + way * (size.start - none));
@@ -210,7 +213,7 @@ impl Search<'_> {
         free.extend(new);
         let mut plant = from.fit.prediction.plant.clone();
         for f in &free {
-            (f.quantity.set)(&mut plant, f.start);
+            f.quantity.set(&mut plant, f.start);
         }
         let effort = Effort {
             iterations,

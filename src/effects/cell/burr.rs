@@ -10,15 +10,17 @@ use Coordinate::{Linear, Logarithmic};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "burr",
+    which: Which::Only,
     subsystem: super::super::Subsystem::Workpiece,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 Quantity {
                     name: "position_m",
-                    get: |p| p.cell.burr.position,
-                    set: |p, v| p.cell.burr.position = v,
+                    index: 0,
+                    get: |p, _| p.cell.burr.position,
+                    set: |p, _, v| p.cell.burr.position = v,
                 },
                 Linear(1e-3),
                 [0.0, 100.0],
@@ -26,8 +28,9 @@ pub(super) const EFFECT: Effect = Effect {
             reported(
                 Quantity {
                     name: "height_m",
-                    get: |p| p.cell.burr.height,
-                    set: |p, v| p.cell.burr.height = v,
+                    index: 0,
+                    get: |p, _| p.cell.burr.height,
+                    set: |p, _, v| p.cell.burr.height = v,
                 },
                 Linear(1e-4),
                 [0.0, 0.02],
@@ -35,8 +38,9 @@ pub(super) const EFFECT: Effect = Effect {
             Parameter {
                 quantity: Quantity {
                     name: "width_m",
-                    get: |p| p.cell.burr.width,
-                    set: |p, v| p.cell.burr.width = v,
+                    index: 0,
+                    get: |p, _| p.cell.burr.width,
+                    set: |p, _, v| p.cell.burr.width = v,
                 },
                 coordinate: Logarithmic,
                 bounds: [2e-4, 0.02],
@@ -45,8 +49,8 @@ pub(super) const EFFECT: Effect = Effect {
             },
         ]
     },
-    usual: |_| vec![0.1, 3e-4, 2e-3],
-    starts: |clues: &Clues<'_>| {
+    usual: |_, _| vec![0.1, 3e-4, 2e-3],
+    starts: |clues: &Clues<'_>, _| {
         let places = clues.bumps.iter();
         places.map(|place| vec![*place, 1e-4, 2e-3]).collect()
     },

@@ -11,50 +11,36 @@ use Coordinate::Logarithmic;
 /// What a joint that is believed rigid may be [N m/rad].
 const RIGID: [f64; 2] = [1e3, 1e8];
 
-/// Name in the vocabulary.
-pub(super) const NAME: &str = "compliant_joint";
-
-pub(super) const fn effect<const J: usize>() -> Effect {
-    Effect {
-        name: numbered(
-            [
-                "compliant_joint_1",
-                "compliant_joint_2",
-                "compliant_joint_3",
-                "compliant_joint_4",
-                "compliant_joint_5",
-                "compliant_joint_6",
-                "compliant_joint_7",
-                "compliant_joint_8",
-            ],
-            J,
-        ),
-        subsystem: super::super::Subsystem::Arm,
-        group: None,
-        parameters: |p| {
-            let believed = p.cell.joint_stiffness[J];
-            vec![reported(
-                Quantity {
-                    name: "stiffness_n_m_per_rad",
-                    get: |p| p.cell.joint_stiffness[J],
-                    set: |p, v| p.cell.joint_stiffness[J] = v,
-                },
-                Logarithmic,
-                if believed.is_finite() {
-                    [1e-4 * believed, 100.0 * believed]
-                } else {
-                    RIGID
-                },
-            )]
-        },
-        usual: |p| vec![(0.1 * p.cell.joint_stiffness[J]).min(1.5e5)],
-        starts: |clues: &Clues<'_>| {
-            let believed = clues.plant.cell.joint_stiffness[J];
-            if believed.is_infinite() {
-                return vec![vec![1e7], vec![1e6], vec![1e5]];
-            }
-            let shares = [0.02, 0.1, 0.4].iter();
-            shares.map(|share| vec![share * believed]).collect()
-        },
-    }
-}
+/// Of which joint is to be said.
+pub(super) const EFFECT: Effect = Effect {
+    name: "compliant_joint",
+    which: Which::Only,
+    subsystem: super::super::Subsystem::Arm,
+    group: None,
+    parameters: |p, joint| {
+        let believed = p.cell.joint_stiffness[joint];
+        vec![reported(
+            Quantity {
+                name: "stiffness_n_m_per_rad",
+                index: joint,
+                get: |p, joint| p.cell.joint_stiffness[joint],
+                set: |p, joint, v| p.cell.joint_stiffness[joint] = v,
+            },
+            Logarithmic,
+            if believed.is_finite() {
+                [1e-4 * believed, 100.0 * believed]
+            } else {
+                RIGID
+            },
+        )]
+    },
+    usual: |p, joint| vec![(0.1 * p.cell.joint_stiffness[joint]).min(1.5e5)],
+    starts: |clues, joint| {
+        let believed = clues.plant.cell.joint_stiffness[joint];
+        if believed.is_infinite() {
+            return vec![vec![1e7], vec![1e6], vec![1e5]];
+        }
+        let shares = [0.02, 0.1, 0.4].iter();
+        shares.map(|share| vec![share * believed]).collect()
+    },
+};

@@ -9,58 +9,45 @@
 use super::*;
 use Coordinate::Logarithmic;
 
-/// Name in the vocabulary.
-pub(super) const NAME: &str = "joint_backlash";
-
-pub(super) const fn effect<const J: usize>() -> Effect {
-    Effect {
-        name: numbered(
-            [
-                "joint_backlash_1",
-                "joint_backlash_2",
-                "joint_backlash_3",
-                "joint_backlash_4",
-                "joint_backlash_5",
-                "joint_backlash_6",
-                "joint_backlash_7",
-                "joint_backlash_8",
-            ],
-            J,
-        ),
-        subsystem: super::super::Subsystem::Arm,
-        group: None,
-        parameters: |_| {
-            vec![
-                reported(
+/// Of which joint is to be said.
+pub(super) const EFFECT: Effect = Effect {
+    name: "joint_backlash",
+    which: Which::Only,
+    subsystem: super::super::Subsystem::Arm,
+    group: None,
+    parameters: |_, joint| {
+        vec![
+            reported(
+                Quantity {
+                    name: "play_rad",
+                    index: joint,
+                    get: |p, joint| p.cell.joint_play[joint],
+                    set: |p, joint, v| p.cell.joint_play[joint] = v,
+                },
+                Logarithmic,
+                [1e-6, 0.05],
+            ),
+            Parameter {
+                reported: false,
+                ..reported(
                     Quantity {
-                        name: "play_rad",
-                        get: |p| p.cell.joint_play[J],
-                        set: |p, v| p.cell.joint_play[J] = v,
+                        name: "teeth_stiffness_n_m_per_rad",
+                        index: joint,
+                        get: |p, joint| p.cell.joint_stiffness[joint],
+                        set: |p, joint, v| p.cell.joint_stiffness[joint] = v,
                     },
                     Logarithmic,
-                    [1e-6, 0.05],
-                ),
-                Parameter {
-                    reported: false,
-                    ..reported(
-                        Quantity {
-                            name: "teeth_stiffness_n_m_per_rad",
-                            get: |p| p.cell.joint_stiffness[J],
-                            set: |p, v| p.cell.joint_stiffness[J] = v,
-                        },
-                        Logarithmic,
-                        [1e3, 1e8],
-                    )
-                },
-            ]
-        },
-        usual: |p| vec![7e-4, p.cell.joint_stiffness[J].min(1e6)],
-        starts: |clues: &Clues<'_>| {
-            let teeth = clues.plant.cell.joint_stiffness[J].min(1e6);
-            [2e-4, 1e-3, 4e-3]
-                .iter()
-                .map(|play| vec![*play, teeth])
-                .collect()
-        },
-    }
-}
+                    [1e3, 1e8],
+                )
+            },
+        ]
+    },
+    usual: |p, joint| vec![7e-4, p.cell.joint_stiffness[joint].min(1e6)],
+    starts: |clues, joint| {
+        let teeth = clues.plant.cell.joint_stiffness[joint].min(1e6);
+        [2e-4, 1e-3, 4e-3]
+            .iter()
+            .map(|play| vec![*play, teeth])
+            .collect()
+    },
+};

@@ -11,38 +11,24 @@
 use super::*;
 use Coordinate::Linear;
 
-/// Name in the vocabulary.
-pub(super) const NAME: &str = "joint_encoder_offset";
-
-pub(super) const fn effect<const J: usize>() -> Effect {
-    Effect {
-        name: numbered(
-            [
-                "joint_encoder_offset_1",
-                "joint_encoder_offset_2",
-                "joint_encoder_offset_3",
-                "joint_encoder_offset_4",
-                "joint_encoder_offset_5",
-                "joint_encoder_offset_6",
-                "joint_encoder_offset_7",
-                "joint_encoder_offset_8",
-            ],
-            J,
-        ),
-        subsystem: super::super::Subsystem::Arm,
-        group: None,
-        parameters: |_| {
-            vec![reported(
-                Quantity {
-                    name: "offset_rad",
-                    get: |p| p.cell.encoder_offset[J],
-                    set: |p, v| p.cell.encoder_offset[J] = v,
-                },
-                Linear(5e-4),
-                [-0.1, 0.1],
-            )]
-        },
-        usual: |_| vec![1e-3],
-        starts: |_| vec![vec![0.0], vec![2e-3], vec![-2e-3]],
-    }
-}
+/// Of which joint is to be said.
+pub(super) const EFFECT: Effect = Effect {
+    name: "joint_encoder_offset",
+    which: Which::Only,
+    subsystem: super::super::Subsystem::Arm,
+    group: None,
+    parameters: |_, joint| {
+        vec![reported(
+            Quantity {
+                name: "offset_rad",
+                index: joint,
+                get: |p, joint| p.cell.encoder_offset[joint],
+                set: |p, joint, v| p.cell.encoder_offset[joint] = v,
+            },
+            Linear(5e-4),
+            [-0.1, 0.1],
+        )]
+    },
+    usual: |_, _| vec![1e-3],
+    starts: |_, _| vec![vec![0.0], vec![2e-3], vec![-2e-3]],
+};

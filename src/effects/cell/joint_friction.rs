@@ -8,38 +8,24 @@
 use super::*;
 use Coordinate::Linear;
 
-/// Name in the vocabulary.
-pub(super) const NAME: &str = "joint_friction";
-
-pub(super) const fn effect<const J: usize>() -> Effect {
-    Effect {
-        name: numbered(
-            [
-                "joint_friction_1",
-                "joint_friction_2",
-                "joint_friction_3",
-                "joint_friction_4",
-                "joint_friction_5",
-                "joint_friction_6",
-                "joint_friction_7",
-                "joint_friction_8",
-            ],
-            J,
-        ),
-        subsystem: super::super::Subsystem::Arm,
-        group: None,
-        parameters: |_| {
-            vec![reported(
-                Quantity {
-                    name: "friction_n_m",
-                    get: |p| p.cell.joint_friction[J],
-                    set: |p, v| p.cell.joint_friction[J] = v,
-                },
-                Linear(1.0),
-                [0.0, 1e4],
-            )]
-        },
-        usual: |p| vec![p.cell.joint_friction[J] + 20.0],
-        starts: |clues: &Clues<'_>| vec![vec![clues.plant.cell.joint_friction[J]]],
-    }
-}
+/// Of which joint is to be said.
+pub(super) const EFFECT: Effect = Effect {
+    name: "joint_friction",
+    which: Which::Only,
+    subsystem: super::super::Subsystem::Arm,
+    group: None,
+    parameters: |_, joint| {
+        vec![reported(
+            Quantity {
+                name: "friction_n_m",
+                index: joint,
+                get: |p, joint| p.cell.joint_friction[joint],
+                set: |p, joint, v| p.cell.joint_friction[joint] = v,
+            },
+            Linear(1.0),
+            [0.0, 1e4],
+        )]
+    },
+    usual: |p, joint| vec![p.cell.joint_friction[joint] + 20.0],
+    starts: |clues, joint| vec![vec![clues.plant.cell.joint_friction[joint]]],
+};

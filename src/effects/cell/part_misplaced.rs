@@ -14,15 +14,17 @@ use Coordinate::Linear;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "part_misplaced",
+    which: Which::Only,
     subsystem: super::super::Subsystem::Workpiece,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 Quantity {
                     name: "shift_m",
-                    get: |p| p.cell.part_shift,
-                    set: |p, v| p.cell.part_shift = v,
+                    index: 0,
+                    get: |p, _| p.cell.part_shift,
+                    set: |p, _, v| p.cell.part_shift = v,
                 },
                 Linear(2e-4),
                 [-0.02, 0.02],
@@ -30,14 +32,15 @@ pub(super) const EFFECT: Effect = Effect {
             reported(
                 Quantity {
                     name: "tilt_m_per_m",
-                    get: |p| p.cell.part_tilt,
-                    set: |p, v| p.cell.part_tilt = v,
+                    index: 0,
+                    get: |p, _| p.cell.part_tilt,
+                    set: |p, _, v| p.cell.part_tilt = v,
                 },
                 Linear(2e-3),
                 [-0.2, 0.2],
             ),
         ]
     },
-    usual: |_| vec![8e-4, 4e-3],
-    starts: |_| vec![vec![0.0, 0.0], vec![1e-3, 0.0], vec![-1e-3, 0.0]],
+    usual: |_, _| vec![8e-4, 4e-3],
+    starts: |_, _| vec![vec![0.0, 0.0], vec![1e-3, 0.0], vec![-1e-3, 0.0]],
 };

@@ -11,19 +11,21 @@ use Coordinate::Logarithmic;
 /// The effect; it is fitted on the encoders alone.
 pub static SERVO_LAG: Effect = Effect {
     name: "servo_lag",
+    which: Which::Only,
     subsystem: super::super::Subsystem::Arm,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             Quantity {
                 name: "bandwidth_hz",
-                get: |p| p.cell.servo_bandwidth,
-                set: |p, v| p.cell.servo_bandwidth = v,
+                index: 0,
+                get: |p, _| p.cell.servo_bandwidth,
+                set: |p, _, v| p.cell.servo_bandwidth = v,
             },
             Logarithmic,
             [0.1, 1e3],
         )]
     },
-    usual: |_| vec![25.0],
-    starts: |clues: &Clues<'_>| vec![vec![clues.plant.cell.servo_bandwidth]],
+    usual: |_, _| vec![25.0],
+    starts: |clues: &Clues<'_>, _| vec![vec![clues.plant.cell.servo_bandwidth]],
 };

@@ -14,9 +14,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "exhaust_restriction",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,
-    parameters: |p| {
+    parameters: |p, _| {
         let a = p.device.exhaust_orifice;
         vec![reported(
             quantity!("orifice_area_m2", p => p.device.exhaust_orifice),
@@ -24,8 +25,8 @@ pub const EFFECT: Effect = Effect {
             [0.05 * a, 20.0 * a],
         )]
     },
-    usual: |p| vec![0.5 * p.device.exhaust_orifice],
-    starts: |c| {
+    usual: |p, _| vec![0.5 * p.device.exhaust_orifice],
+    starts: |c, _| {
         shares(
             &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],
             c.plant.device.exhaust_orifice,

@@ -13,15 +13,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "external_leakage",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("orifice_area_m2", p => p.device.leakage.external),
             Logarithmic,
             [1e-10, 1e-4],
         )]
     },
-    usual: |p| vec![0.02 * p.device.supply_orifice],
-    starts: |c| shares(&[0.01, 0.05, 0.2], c.plant.device.supply_orifice),
+    usual: |p, _| vec![0.02 * p.device.supply_orifice],
+    starts: |c, _| shares(&[0.01, 0.05, 0.2], c.plant.device.supply_orifice),
 };

@@ -13,9 +13,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "extra_dead_volume",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,
-    parameters: |p| {
+    parameters: |p, _| {
         let a = p.device.dead_volume;
         vec![reported(
             quantity!("dead_volume_m3", p => p.device.dead_volume),
@@ -23,8 +24,8 @@ pub const EFFECT: Effect = Effect {
             [0.1 * a, 20.0 * a],
         )]
     },
-    usual: |p| vec![1.5 * p.device.dead_volume],
-    starts: |c| {
+    usual: |p, _| vec![1.5 * p.device.dead_volume],
+    starts: |c, _| {
         shares(
             &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],
             c.plant.device.dead_volume,

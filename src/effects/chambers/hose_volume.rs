@@ -18,18 +18,21 @@ use crate::plant::PlantParameters;
 
 const VOLUME: Quantity = Quantity {
     name: "volume_m3",
-    get: |p| p.device.hose.map_or(0.0, |h| h.volume),
-    set: |p, v| set_line(p, (v, line(p).1, line(p).2)),
+    index: 0,
+    get: |p, _| p.device.hose.map_or(0.0, |h| h.volume),
+    set: |p, _, v| set_line(p, (v, line(p).1, line(p).2)),
 };
 const RESISTANCE: Quantity = Quantity {
     name: "resistance_pa_s_per_kg",
-    get: |p| p.device.hose.map_or(0.0, |_| line(p).1),
-    set: |p, v| set_line(p, (line(p).0, v, line(p).2)),
+    index: 0,
+    get: |p, _| p.device.hose.map_or(0.0, |_| line(p).1),
+    set: |p, _, v| set_line(p, (line(p).0, v, line(p).2)),
 };
 const SEGMENTS: Quantity = Quantity {
     name: "segments",
-    get: |p| p.device.hose.map_or(0.0, |h| h.segments() as f64),
-    set: |p, v| set_line(p, (line(p).0, line(p).1, v.round() as usize)),
+    index: 0,
+    get: |p, _| p.device.hose.map_or(0.0, |h| h.segments() as f64),
+    set: |p, _, v| set_line(p, (line(p).0, line(p).1, v.round() as usize)),
 };
 
 /// Volume [m3], resistance [Pa s/kg] at its smallest flows, and segments of the line; where there is none, of one to begin with.
@@ -50,9 +53,10 @@ fn set_line(p: &mut PlantParameters, (volume, resistance, segments): (f64, f64, 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "hose_volume",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(VOLUME, Logarithmic, [1e-6, 2e-3]),
             reported(RESISTANCE, Logarithmic, [1e6, 5e9]),
@@ -62,8 +66,8 @@ pub const EFFECT: Effect = Effect {
             },
         ]
     },
-    usual: |_| vec![5e-5, 5e7, 1.0],
-    starts: |_| {
+    usual: |_, _| vec![5e-5, 5e7, 1.0],
+    starts: |_, _| {
         vec![
             vec![2e-5, 3e7, 2.0],
             vec![5e-5, 5e7, 2.0],

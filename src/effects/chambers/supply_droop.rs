@@ -20,8 +20,9 @@ fn reservoir(p: &PlantParameters) -> SupplyReservoir {
 
 const RESERVOIR: Quantity = Quantity {
     name: "reservoir_volume_m3",
-    get: |p| reservoir(p).volume,
-    set: |p, v| {
+    index: 0,
+    get: |p, _| reservoir(p).volume,
+    set: |p, _, v| {
         p.device.supply_reservoir = Some(SupplyReservoir {
             volume: v,
             ..reservoir(p)
@@ -30,8 +31,9 @@ const RESERVOIR: Quantity = Quantity {
 };
 const COMPRESSOR: Quantity = Quantity {
     name: "compressor_flow_kg_per_s",
-    get: |p| reservoir(p).compressor_flow,
-    set: |p, v| {
+    index: 0,
+    get: |p, _| reservoir(p).compressor_flow,
+    set: |p, _, v| {
         p.device.supply_reservoir = Some(SupplyReservoir {
             compressor_flow: v,
             ..reservoir(p)
@@ -42,16 +44,17 @@ const COMPRESSOR: Quantity = Quantity {
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "supply_droop",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(RESERVOIR, Logarithmic, [1e-5, 0.1]),
             reported(COMPRESSOR, Logarithmic, [1e-6, 0.1]),
         ]
     },
-    usual: |_| vec![1e-3, 5e-4],
-    starts: |_| {
+    usual: |_, _| vec![1e-3, 5e-4],
+    starts: |_, _| {
         vec![
             vec![1e-4, 5e-5],
             vec![1e-4, 2e-4],

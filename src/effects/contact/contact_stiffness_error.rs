@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "contact_stiffness_error",
+    which: Which::Only,
     subsystem: Subsystem::Contact,
     group: Some("contact_law"),
-    parameters: |p| {
-        let k = (STIFFNESS.get)(p);
+    parameters: |p, _| {
+        let k = STIFFNESS.get(p);
         vec![reported(STIFFNESS, Logarithmic, [0.01 * k, 50.0 * k])]
     },
-    usual: |p| vec![0.6 * p.contact.stiffness_at(USUAL_FORCE)],
-    starts: |c| {
-        let k = (STIFFNESS.get)(c.plant);
+    usual: |p, _| vec![0.6 * p.contact.stiffness_at(USUAL_FORCE)],
+    starts: |c, _| {
+        let k = STIFFNESS.get(c.plant);
         shares(&[0.1, 0.25, 0.5, 0.8, 1.25, 2.5], k)
     },
 };

@@ -11,23 +11,25 @@ use super::*;
 
 const HERTZ: Quantity = Quantity {
     name: "stiffness_n_per_m15",
-    get: |p| match p.contact.law {
+    index: 0,
+    get: |p, _| match p.contact.law {
         ContactLaw::Hertz { stiffness } => stiffness,
         ContactLaw::Linear { .. } => 0.0,
     },
-    set: |p, v| p.contact.law = ContactLaw::Hertz { stiffness: v },
+    set: |p, _, v| p.contact.law = ContactLaw::Hertz { stiffness: v },
 };
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "hertzian_contact",
+    which: Which::Only,
     subsystem: Subsystem::Contact,
     group: Some("contact_law"),
-    parameters: |_| vec![reported(HERTZ, Logarithmic, [1e5, 1e10])],
-    usual: |p| vec![p.contact.stiffness_at(USUAL_FORCE).powf(1.5) / USUAL_FORCE.sqrt()],
-    starts: |c| {
+    parameters: |_, _| vec![reported(HERTZ, Logarithmic, [1e5, 1e10])],
+    usual: |p, _| vec![p.contact.stiffness_at(USUAL_FORCE).powf(1.5) / USUAL_FORCE.sqrt()],
+    starts: |c, _| {
         // As stiff as what is believed at a force that such a device is used at [N].
-        let k = (STIFFNESS.get)(c.plant);
+        let k = STIFFNESS.get(c.plant);
         let d = 120.0 / k;
         let a = 120.0 / d.powf(1.5);
         shares(&[0.2, 0.5, 1.0, 2.5], a)

@@ -18,10 +18,11 @@ const SMALL_WAVE: f64 = 1e-5;
 /// Stiffness of either law.
 const STIFFNESS: Quantity = Quantity {
     name: "stiffness_n_per_m",
-    get: |p| match p.contact.law {
+    index: 0,
+    get: |p, _| match p.contact.law {
         ContactLaw::Linear { stiffness } | ContactLaw::Hertz { stiffness } => stiffness,
     },
-    set: |p, v| {
+    set: |p, _, v| {
         p.contact.law = match p.contact.law {
             ContactLaw::Linear { .. } => ContactLaw::Linear { stiffness: v },
             ContactLaw::Hertz { .. } => ContactLaw::Hertz { stiffness: v },

@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "surface_offset",
+    which: Which::Only,
     subsystem: Subsystem::Contact,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("offset_m", p => p.contact.surface_offset),
             Linear(5e-4),
             [-0.02, 0.02],
         )]
     },
-    usual: |_| vec![5e-4],
-    starts: |_| each(&[-2e-3, -6e-4, 6e-4, 2e-3]),
+    usual: |_, _| vec![5e-4],
+    starts: |_, _| each(&[-2e-3, -6e-4, 6e-4, 2e-3]),
 };

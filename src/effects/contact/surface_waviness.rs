@@ -13,9 +13,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "surface_waviness",
+    which: Which::Only,
     subsystem: Subsystem::Contact,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 quantity!("frequency_hz", p => p.contact.waviness.frequency),
@@ -34,6 +35,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
-    usual: |_| vec![2.0, 2e-4, 0.0],
-    starts: |c| waves(c, |f| f < SLOWEST_TOOL),
+    usual: |_, _| vec![2.0, 2e-4, 0.0],
+    starts: |c, _| waves(c, |f| f < SLOWEST_TOOL),
 };

@@ -13,9 +13,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "tool_runout",
+    which: Which::Only,
     subsystem: Subsystem::Contact,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 quantity!("frequency_hz", p => p.contact.runout.frequency),
@@ -34,6 +35,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
-    usual: |_| vec![83.0, 5e-5, 0.0],
-    starts: |c| waves(c, |f| f >= SLOWEST_TOOL),
+    usual: |_, _| vec![83.0, 5e-5, 0.0],
+    starts: |c, _| waves(c, |f| f >= SLOWEST_TOOL),
 };

@@ -14,9 +14,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "end_cushioning",
+    which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 quantity!("damping_n_s_per_m", p => p.device.end_cushioning.damping),
@@ -30,8 +31,8 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
-    usual: |_| vec![800.0, 8e-3],
-    starts: |_| {
+    usual: |_, _| vec![800.0, 8e-3],
+    starts: |_, _| {
         vec![
             vec![300.0, 0.004],
             vec![300.0, 0.01],

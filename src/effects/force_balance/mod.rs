@@ -14,8 +14,9 @@ use super::parts::*;
 /// Coulomb friction; static friction stays above it by as much as it did.
 const COULOMB: Quantity = Quantity {
     name: "coulomb_force_n",
-    get: |p| p.device.seal_friction.coulomb,
-    set: |p, v| {
+    index: 0,
+    get: |p, _| p.device.seal_friction.coulomb,
+    set: |p, _, v| {
         let s = &mut p.device.seal_friction;
         let extra = s.static_force - s.coulomb;
         s.coulomb = v;

@@ -12,9 +12,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "moving_mass_error",
+    which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,
-    parameters: |p| {
+    parameters: |p, _| {
         let m = p.device.moving_mass;
         vec![reported(
             quantity!("mass_kg", p => p.device.moving_mass),
@@ -22,8 +23,8 @@ pub const EFFECT: Effect = Effect {
             [0.2 * m, 5.0 * m],
         )]
     },
-    usual: |p| vec![1.2 * p.device.moving_mass],
-    starts: |c| {
+    usual: |p, _| vec![1.2 * p.device.moving_mass],
+    starts: |c, _| {
         shares(
             &[0.6, 0.8, 0.92, 1.08, 1.25, 1.7],
             c.plant.device.moving_mass,

@@ -13,17 +13,18 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "presliding_hysteresis",
+    which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(COULOMB, Logarithmic, [0.05, 500.0]),
             reported(PRESLIDING, Logarithmic, [1e-4, 1e-2]),
             hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
         ]
     },
-    usual: |_| vec![12.0, 8e-4, 40.0],
-    starts: |_| {
+    usual: |_, _| vec![12.0, 8e-4, 40.0],
+    starts: |_, _| {
         vec![
             vec![8.0, 5e-4, 30.0],
             vec![20.0, 5e-4, 40.0],

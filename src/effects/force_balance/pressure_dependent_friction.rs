@@ -18,9 +18,10 @@ const GROWTH: Quantity =
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "pressure_dependent_friction",
+    which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(GROWTH, Logarithmic, [1e-7, 1e-2]),
             hidden(COULOMB, Linear(3.0), [0.0, 500.0]),
@@ -28,8 +29,8 @@ pub const EFFECT: Effect = Effect {
             hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
         ]
     },
-    usual: |_| vec![5e-5, 3.0, 40.0, 3e-5],
-    starts: |c| {
+    usual: |_, _| vec![5e-5, 3.0, 40.0, 3e-5],
+    starts: |c, _| {
         let mut starts = vec![vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]];
         // One small cylinder, moved slowly.
         if c.plant.chain == Chain::MovedPiston {

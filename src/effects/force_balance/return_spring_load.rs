@@ -13,15 +13,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "return_spring_load",
+    which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("stiffness_n_per_m", p => p.device.axial_load.return_stiffness),
             Linear(100.0),
             [-5e4, 5e4],
         )]
     },
-    usual: |_| vec![400.0],
-    starts: |_| vec![vec![0.0]],
+    usual: |_, _| vec![400.0],
+    starts: |_, _| vec![vec![0.0]],
 };

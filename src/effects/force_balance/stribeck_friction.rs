@@ -12,8 +12,9 @@ use super::*;
 
 const STATIC: Quantity = Quantity {
     name: "static_force_n",
-    get: |p| p.device.seal_friction.static_force,
-    set: |p, v| {
+    index: 0,
+    get: |p, _| p.device.seal_friction.static_force,
+    set: |p, _, v| {
         let s = &mut p.device.seal_friction;
         s.static_force = v.max(s.coulomb);
     },
@@ -24,9 +25,10 @@ const STRIBECK: Quantity =
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "stribeck_friction",
+    which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(COULOMB, Logarithmic, [0.05, 500.0]),
             reported(STATIC, Linear(5.0), [0.05, 1000.0]),
@@ -35,8 +37,8 @@ pub const EFFECT: Effect = Effect {
             hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
         ]
     },
-    usual: |_| vec![10.0, 16.0, 0.01, 60.0, 3e-5],
-    starts: |_| {
+    usual: |_, _| vec![10.0, 16.0, 0.01, 60.0, 3e-5],
+    starts: |_, _| {
         vec![
             vec![4.0, 8.0, 0.008, 30.0, 5e-5],
             vec![8.0, 16.0, 0.008, 40.0, 5e-5],

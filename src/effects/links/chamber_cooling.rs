@@ -16,9 +16,10 @@ const LONGEST_COOLING: [f64; 2] = [0.1, 20.0];
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "chamber_cooling",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 quantity!("pressure_lost_pa", p => p.links.cooling),
@@ -32,6 +33,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
-    usual: |_| vec![2e3, 5.0],
-    starts: |_| vec![vec![300.0, 2.0], vec![300.0, 10.0]],
+    usual: |_, _| vec![2e3, 5.0],
+    starts: |_, _| vec![vec![300.0, 2.0], vec![300.0, 10.0]],
 };

@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "gap_leakage",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: LEAK,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("gap_conductance_per_volume_1_per_pa_s", p => p.links.leak.laminar),
             Logarithmic,
             [1e-15, 1e-3],
         )]
     },
-    usual: |_| vec![1e-9],
-    starts: |_| each(&[1e-11, 1e-10, 1e-9, 1e-8, 1e-7]),
+    usual: |_, _| vec![1e-9],
+    starts: |_, _| each(&[1e-11, 1e-10, 1e-9, 1e-8, 1e-7]),
 };

@@ -13,9 +13,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "leak_opened_by_pressure",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: LEAK,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 quantity!("conductance_per_volume_1_per_s", p => p.links.leak.proportional),
@@ -29,8 +30,8 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
-    usual: |_| vec![1e-3, 1e-6],
-    starts: |_| {
+    usual: |_, _| vec![1e-3, 1e-6],
+    starts: |_, _| {
         [1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1]
             .into_iter()
             .flat_map(|rate| [vec![rate, 2e-6], vec![rate, 1e-5]])

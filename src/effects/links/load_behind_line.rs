@@ -13,9 +13,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "load_behind_line",
+    which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 quantity!("share_1", p => p.links.load_share),
@@ -29,6 +30,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
-    usual: |_| vec![0.5, 0.1],
-    starts: |_| vec![vec![0.2, 0.5], vec![0.2, 2.0]],
+    usual: |_, _| vec![0.5, 0.1],
+    starts: |_, _| vec![vec![0.2, 0.5], vec![0.2, 2.0]],
 };

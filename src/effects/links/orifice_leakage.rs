@@ -13,15 +13,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "orifice_leakage",
+    which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: LEAK,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("orifice_area_per_volume_1_per_m", p => p.links.leak.orifice),
             Logarithmic,
             [1e-11, 1e-1],
         )]
     },
-    usual: |_| vec![1e-5],
-    starts: |_| each(&[5e-8, 5e-7, 5e-6, 5e-5, 5e-4]),
+    usual: |_, _| vec![1e-5],
+    starts: |_, _| each(&[5e-8, 5e-7, 5e-6, 5e-5, 5e-4]),
 };

@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "pressure_sensor_offset",
+    which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("offset_pa", p => p.sensors.pressure_offset),
             Linear(1000.0),
             [-2e5, 2e5],
         )]
     },
-    usual: |_| vec![500.0],
-    starts: |_| vec![vec![0.0]],
+    usual: |_, _| vec![500.0],
+    starts: |_, _| vec![vec![0.0]],
 };

@@ -13,23 +13,25 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_opens_at_zero",
+    which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             Quantity {
                 name: "open_time_constant_s",
-                get: |p| {
+                index: 0,
+                get: |p, _| {
                     let links = &p.links;
                     let own = links.shut_time_constant.or(links.venting_time_constant);
                     own.unwrap_or(p.device.regulator.time_constant)
                 },
-                set: |p, v| p.links.shut_time_constant = Some(v),
+                set: |p, _, v| p.links.shut_time_constant = Some(v),
             },
             Logarithmic,
             [1e-3, 30.0],
         )]
     },
-    usual: |_| vec![0.05],
-    starts: |c| shares(&[0.1, 0.4, 3.0], c.plant.device.regulator.time_constant),
+    usual: |_, _| vec![0.05],
+    starts: |c, _| shares(&[0.1, 0.4, 3.0], c.plant.device.regulator.time_constant),
 };

@@ -13,22 +13,24 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_venting",
+    which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             Quantity {
                 name: "venting_time_constant_s",
-                get: |p| {
+                index: 0,
+                get: |p, _| {
                     let own = p.links.venting_time_constant;
                     own.unwrap_or(p.device.regulator.time_constant)
                 },
-                set: |p, v| p.links.venting_time_constant = Some(v),
+                set: |p, _, v| p.links.venting_time_constant = Some(v),
             },
             Logarithmic,
             [1e-3, 30.0],
         )]
     },
-    usual: |_| vec![0.1],
-    starts: |c| shares(&[0.3, 1.5, 4.0], c.plant.device.regulator.time_constant),
+    usual: |_, _| vec![0.1],
+    starts: |c, _| shares(&[0.3, 1.5, 4.0], c.plant.device.regulator.time_constant),
 };

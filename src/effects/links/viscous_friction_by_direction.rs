@@ -13,15 +13,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "viscous_friction_by_direction",
+    which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("viscous_asymmetry_n_s_per_m", p => p.links.viscous_asymmetry),
             Linear(20.0),
             [-5000.0, 5000.0],
         )]
     },
-    usual: |_| vec![20.0],
-    starts: |_| vec![vec![0.0]],
+    usual: |_, _| vec![20.0],
+    starts: |_, _| vec![vec![0.0]],
 };

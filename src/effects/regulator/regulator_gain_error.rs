@@ -12,9 +12,10 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_gain_error",
+    which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,
-    parameters: |p| {
+    parameters: |p, _| {
         let g = p.device.regulator.gain;
         vec![reported(
             quantity!("gain", p => p.device.regulator.gain),
@@ -22,8 +23,8 @@ pub const EFFECT: Effect = Effect {
             [0.3 * g, 3.0 * g],
         )]
     },
-    usual: |p| vec![0.95 * p.device.regulator.gain],
-    starts: |c| {
+    usual: |p, _| vec![0.95 * p.device.regulator.gain],
+    starts: |c, _| {
         let g = c.plant.device.regulator.gain;
         vec![vec![0.97 * g], vec![1.03 * g]]
     },

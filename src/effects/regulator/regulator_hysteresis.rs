@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_hysteresis",
+    which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("half_width_pa", p => p.device.regulator.hysteresis),
             Logarithmic,
             [10.0, 2e5],
         )]
     },
-    usual: |_| vec![3e3],
-    starts: |_| each(&[2e3, 6e3, 15e3]),
+    usual: |_, _| vec![3e3],
+    starts: |_, _| each(&[2e3, 6e3, 15e3]),
 };

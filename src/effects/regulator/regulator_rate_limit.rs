@@ -14,9 +14,10 @@ use crate::plant::Chain;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_rate_limit",
+    which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 quantity!("rise_pa_per_s", p => p.device.regulator.rate_limit.rise),
@@ -31,8 +32,8 @@ pub const EFFECT: Effect = Effect {
         ]
     },
     // A small valve on a large load is far slower than one on a device.
-    usual: |_| vec![1.5e5, 1.5e5],
-    starts: |c| match c.plant.chain {
+    usual: |_, _| vec![1.5e5, 1.5e5],
+    starts: |c, _| match c.plant.chain {
         Chain::Regulator => [3e4, 1e5, 3e5]
             .into_iter()
             .flat_map(|rate| [vec![rate, 1e7], vec![rate, rate], vec![1e7, rate]])

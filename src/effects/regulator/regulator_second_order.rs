@@ -21,8 +21,9 @@ fn oscillator(p: &PlantParameters) -> SecondOrder {
 
 const FREQUENCY: Quantity = Quantity {
     name: "natural_frequency_rad_per_s",
-    get: |p| oscillator(p).natural_frequency,
-    set: |p, v| {
+    index: 0,
+    get: |p, _| oscillator(p).natural_frequency,
+    set: |p, _, v| {
         p.device.regulator.second_order = Some(SecondOrder {
             natural_frequency: v,
             ..oscillator(p)
@@ -31,8 +32,9 @@ const FREQUENCY: Quantity = Quantity {
 };
 const DAMPING_RATIO: Quantity = Quantity {
     name: "damping_ratio",
-    get: |p| oscillator(p).damping_ratio,
-    set: |p, v| {
+    index: 0,
+    get: |p, _| oscillator(p).damping_ratio,
+    set: |p, _, v| {
         p.device.regulator.second_order = Some(SecondOrder {
             damping_ratio: v,
             ..oscillator(p)
@@ -43,16 +45,17 @@ const DAMPING_RATIO: Quantity = Quantity {
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_second_order",
+    which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(FREQUENCY, Logarithmic, [0.5, 500.0]),
             reported(DAMPING_RATIO, Logarithmic, [0.02, 5.0]),
         ]
     },
-    usual: |_| vec![25.0, 0.35],
-    starts: |c| {
+    usual: |_, _| vec![25.0, 0.35],
+    starts: |c, _| {
         let w = 1.0 / c.plant.device.regulator.time_constant;
         vec![vec![1.5 * w, 0.6], vec![1.5 * w, 0.3], vec![4.0 * w, 0.4]]
     },

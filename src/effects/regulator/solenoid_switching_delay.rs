@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "solenoid_switching_delay",
+    which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("delay_s", p => p.device.switching_delay),
             Logarithmic,
             [1e-3, 1.0],
         )]
     },
-    usual: |_| vec![0.03],
-    starts: |_| each(&[0.01, 0.03, 0.08]),
+    usual: |_, _| vec![0.03],
+    starts: |_, _| each(&[0.01, 0.03, 0.08]),
 };

@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "channel_time_offset",
+    which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("offset_s", p => p.sensors.force_delay),
             Linear(0.005),
             [-0.5, 0.5],
         )]
     },
-    usual: |_| vec![0.015],
-    starts: |_| each(&[4e-3, 0.015, 0.04, -0.01]),
+    usual: |_, _| vec![0.015],
+    starts: |_, _| each(&[4e-3, 0.015, 0.04, -0.01]),
 };

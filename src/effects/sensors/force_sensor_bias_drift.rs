@@ -15,9 +15,10 @@ const FAR: f64 = 1e3;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "force_sensor_bias_drift",
+    which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![
             reported(
                 quantity!("bias_n", p => p.sensors.force_bias),
@@ -31,6 +32,6 @@ pub const EFFECT: Effect = Effect {
             ),
         ]
     },
-    usual: |_| vec![3.0, 0.3],
-    starts: |_| vec![vec![0.0, 0.0]],
+    usual: |_, _| vec![3.0, 0.3],
+    starts: |_, _| vec![vec![0.0, 0.0]],
 };

@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "force_sensor_gain_error",
+    which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("gain", p => p.sensors.force_gain),
             Linear(0.02),
             [0.2, 5.0],
         )]
     },
-    usual: |_| vec![1.05],
-    starts: |_| vec![vec![1.0]],
+    usual: |_, _| vec![1.05],
+    starts: |_, _| vec![vec![1.0]],
 };

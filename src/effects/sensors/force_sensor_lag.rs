@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "force_sensor_lag",
+    which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("time_constant_s", p => p.sensors.force_lag),
             Logarithmic,
             [1e-4, 2.0],
         )]
     },
-    usual: |_| vec![0.02],
-    starts: |_| each(&[3e-3, 0.01, 0.03, 0.1]),
+    usual: |_, _| vec![0.02],
+    starts: |_, _| each(&[3e-3, 0.01, 0.03, 0.1]),
 };

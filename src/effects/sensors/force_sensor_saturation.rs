@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "force_sensor_saturation",
+    which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("limit_n", p => p.sensors.force_limit),
             Linear(2.0),
             [5.0, 5000.0],
         )]
     },
-    usual: |_| vec![120.0],
-    starts: |c| vec![vec![c.largest_force]],
+    usual: |_, _| vec![120.0],
+    starts: |c, _| vec![vec![c.largest_force]],
 };

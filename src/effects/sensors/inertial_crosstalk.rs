@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "inertial_crosstalk",
+    which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("mass_kg", p => p.sensors.crosstalk_mass),
             Linear(0.1),
             [-20.0, 20.0],
         )]
     },
-    usual: |_| vec![0.5],
-    starts: |_| vec![vec![0.0]],
+    usual: |_, _| vec![0.5],
+    starts: |_, _| vec![vec![0.0]],
 };

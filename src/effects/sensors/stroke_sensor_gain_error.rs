@@ -12,15 +12,16 @@ use super::*;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "stroke_sensor_gain_error",
+    which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,
-    parameters: |_| {
+    parameters: |_, _| {
         vec![reported(
             quantity!("gain", p => p.sensors.stroke_gain),
             Linear(0.01),
             [0.2, 5.0],
         )]
     },
-    usual: |_| vec![1.02],
-    starts: |_| vec![vec![1.0]],
+    usual: |_, _| vec![1.02],
+    starts: |_, _| vec![vec![1.0]],
 };

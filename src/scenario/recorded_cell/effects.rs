@@ -40,7 +40,7 @@ pub(super) fn effects(
             return Err(section.misplaced(effect.name, reason));
         }
         let own = Section::new(document, format!("effect.{}", effect.name));
-        let parameters = (effect.parameters)(&blank());
+        let parameters = effect.parameters(&blank());
         let names: Vec<&str> = parameters.iter().map(|p| p.quantity.name).collect();
         if let Some(key) = given.keys().find(|key| !names.contains(&key.as_str())) {
             let expected = format!("one of {}", names.join(", "));
@@ -65,8 +65,8 @@ pub(super) fn effects(
 /// Adds effects to a cell's description.
 pub fn apply(effects: &[(&'static Effect, Vec<f64>)], plant: &mut PlantParameters) {
     for (effect, values) in effects {
-        for (parameter, value) in (effect.parameters)(plant).iter().zip(values) {
-            (parameter.quantity.set)(plant, *value);
+        for (parameter, value) in effect.parameters(plant).iter().zip(values) {
+            parameter.quantity.set(plant, *value);
         }
     }
 }

@@ -54,7 +54,7 @@ fn values(
 ) -> Result<Vec<f64>, ScenarioError> {
     let table = join("effect", effect.name);
     let section = Section::new(document, table.as_str());
-    let parameters = (effect.parameters)(plant);
+    let parameters = effect.parameters(plant);
     let names: Vec<&str> = parameters.iter().map(|p| p.quantity.name).collect();
     if let Some(key) = numbers.keys().find(|key| !names.contains(&key.as_str())) {
         let dotted = join(&table, key);
@@ -84,7 +84,7 @@ fn widened([low, high]: [f64; 2]) -> [f64; 2] {
 
 /// Makes an effect a part of the rig.
 pub(super) fn apply(effect: &Effect, values: &[f64], plant: &mut PlantParameters) {
-    for (parameter, value) in (effect.parameters)(plant).iter().zip(values) {
-        (parameter.quantity.set)(plant, *value);
+    for (parameter, value) in effect.parameters(plant).iter().zip(values) {
+        parameter.quantity.set(plant, *value);
     }
 }

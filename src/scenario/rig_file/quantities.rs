@@ -1,8 +1,8 @@
 //! The numbers of a rig file: where each stands in the rig's description, and the range in which it is plausible as SI.
 
 use crate::device::DeviceParameters;
-use crate::effects::Quantity;
 use crate::physics::regulator::RegulatorParameters;
+use crate::plant::Quantity;
 use crate::plant::{
     CellParameters, Chain, ContactLaw, ContactParameters, LinkParameters, Periodic,
     PlantParameters, SensorErrors,
@@ -23,9 +23,9 @@ macro_rules! row {
     ($key:literal, $($place:ident).+, $range:expr) => {
         Row {
             quantity: Quantity {
-                name: $key,
-                get: |plant| plant.$($place).+,
-                set: |plant, value| plant.$($place).+ = value,
+                name: $key, index: 0,
+                get: |plant, _| plant.$($place).+,
+                set: |plant, _, value| plant.$($place).+ = value,
             },
             range: $range,
         }
@@ -59,10 +59,11 @@ pub(super) static QUANTITIES: [Row; 19] = [
 /// Stiffness of the contact, which stands in its law.
 const CONTACT_STIFFNESS: Quantity = Quantity {
     name: "contact.stiffness_n_per_m",
-    get: |plant| match plant.contact.law {
+    index: 0,
+    get: |plant, _| match plant.contact.law {
         ContactLaw::Linear { stiffness } | ContactLaw::Hertz { stiffness } => stiffness,
     },
-    set: |plant, stiffness| plant.contact.law = ContactLaw::Linear { stiffness },
+    set: |plant, _, stiffness| plant.contact.law = ContactLaw::Linear { stiffness },
 };
 
 /// Keys of `[sensors]` with their plausible ranges: the rate, then the channels' noise in the order of `plant::CHANNELS`.

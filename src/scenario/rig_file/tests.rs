@@ -118,7 +118,7 @@ fn a_believed_rig_is_what_its_file_says_and_nothing_besides() {
     assert!(rig.effects.is_empty());
     for row in &quantities::QUANTITIES {
         assert!(
-            (row.quantity.get)(&rig.plant).is_finite(),
+            row.quantity.get(&rig.plant).is_finite(),
             "{:?}",
             row.quantity
         );
@@ -148,9 +148,9 @@ fn numbers_with_a_tolerance_are_listed_with_their_place_in_the_rig() {
     );
     let mut plant = rig.plant.clone();
     for tolerance in &rig.tolerances {
-        assert_eq!((tolerance.quantity.get)(&plant), tolerance.value);
-        (tolerance.quantity.set)(&mut plant, 2.0 * tolerance.value);
-        assert_eq!((tolerance.quantity.get)(&plant), 2.0 * tolerance.value);
+        assert_eq!(tolerance.quantity.get(&plant), tolerance.value);
+        tolerance.quantity.set(&mut plant, 2.0 * tolerance.value);
+        assert_eq!(tolerance.quantity.get(&plant), 2.0 * tolerance.value);
     }
 }
 
@@ -377,8 +377,8 @@ fn found() -> Vec<ImprovedEffect> {
         .iter()
         .filter(|effect| effect.group.is_none_or(|group| groups.insert(group)))
         .map(|effect| {
-            let start = (effect.starts)(&clues).remove(0);
-            let parameters = (effect.parameters)(&rig.plant);
+            let start = effect.starts(&clues).remove(0);
+            let parameters = effect.parameters(&rig.plant);
             let numbered = parameters.iter().zip(start).enumerate();
             let parameters = numbered
                 .map(|(i, (parameter, value))| {
@@ -404,7 +404,7 @@ fn an_improved_file_reads_back_as_the_rig_that_was_found() {
         .collect();
     let mut expected = rig.plant.clone();
     for (tolerance, moved) in rig.tolerances.iter().zip(&tolerated) {
-        (tolerance.quantity.set)(&mut expected, as_written(moved.1));
+        tolerance.quantity.set(&mut expected, as_written(moved.1));
     }
     for improved in &found {
         let values: Vec<f64> = improved

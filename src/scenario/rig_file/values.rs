@@ -52,7 +52,7 @@ pub(super) fn base(
         let section = Section::new(document, table);
         let number = find(&section, keys, table, key)?;
         let value = checked(&section, key, number.value, row.range)?;
-        (row.quantity.set)(plant, value);
+        row.quantity.set(plant, value);
         let tolerance = tolerance(&Section::new(document, row.quantity.name), number)?;
         if tolerance > 0.0 {
             tolerances.push(Tolerance {

@@ -106,7 +106,7 @@ fn effects() -> Value {
     let mut names = Map::new();
     for effect in Chain::ALL.into_iter().flat_map(candidates) {
         let mut properties = Map::new();
-        for parameter in (effect.parameters)(&super::super::rig_file::blank()) {
+        for parameter in effect.parameters(&super::super::rig_file::blank()) {
             properties.insert(
                 parameter.quantity.name.to_owned(),
                 json!({ "$ref": "#/definitions/number" }),
