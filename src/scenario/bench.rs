@@ -141,10 +141,16 @@ impl BenchScenario {
 
     /// The rig as it is, with its effects put in.
     #[must_use]
-    pub fn as_it_is(mut self) -> Self {
+    pub fn plant(&self) -> PlantParameters {
         let mut plant = self.believed();
         apply(&self.effects, &mut plant);
-        self.device.parameters = plant.device;
+        plant
+    }
+
+    /// The scenario with the rig's numbers as they are.
+    #[must_use]
+    pub fn as_it_is(mut self, plant: &PlantParameters) -> Self {
+        self.device.parameters = plant.device.clone();
         self.gravity_along_extension = plant.gravity_along_extension;
         self.sensor_errors = plant.sensors;
         if let LoadScenario::Contact { contact, .. } = &mut self.load {

@@ -158,6 +158,7 @@ pub(in super::super) fn blank() -> PlantParameters {
         cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
         latent: None,
+        own: Vec::new(),
         chain: Chain::Whole,
         links: LinkParameters::NONE,
     }
