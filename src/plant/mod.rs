@@ -38,6 +38,7 @@ pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
 pub use measured_motion::MeasuredMotion;
 pub use own_law::{
     Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, OwnLaw, SYMBOLS, Symbol, Unit,
+    kept_name,
 };
 pub use parameters::PlantParameters;
 pub use quantity::Quantity;

@@ -148,6 +148,7 @@ impl Expression {
                 reason: "expected a number, a name, a function such as max(..) or a bracket, joined by + - * / ^ < >".to_owned(),
             }
         })?;
+        include_signs(&mut root, text);
         look_up(&mut root, names)?;
         Ok(Self {
             text: text.to_owned(),
@@ -248,7 +249,8 @@ fn operand(input: &mut Input<'_>) -> ModalResult<Node> {
 
 fn bracket(input: &mut Input<'_>) -> ModalResult<Node> {
     preceded("(", cut_err((sum, ")")))
-        .map(|(node, _)| node)
+        .with_span()
+        .map(|((node, _), span)| Node { span, ..node })
         .parse_next(input)
 }
 
@@ -312,6 +314,23 @@ fn arguments(input: &mut Input<'_>) -> ModalResult<(Vec<Node>, usize)> {
     preceded((multispace0, "("), cut_err((list, close)))
         .map(|(list, close): (Vec<Node>, Range<usize>)| (list, close.end))
         .parse_next(input)
+}
+
+/// Widens what begins with a sign by the sign, which the parser hands on without its place.
+fn include_signs(node: &mut Node, text: &str) {
+    match &mut node.kind {
+        Kind::Negative(of) => {
+            include_signs(of, text);
+            let before = text.get(..of.span.start).and_then(|before| before.rfind('-'));
+            node.span.start = before.unwrap_or(of.span.start);
+        }
+        Kind::Function(_, of) => include_signs(of, text),
+        Kind::Operation(_, both) => {
+            both.iter_mut().for_each(|part| include_signs(part, text));
+            node.span.start = node.span.start.min(both[0].span.start);
+        }
+        Kind::Number(_) | Kind::Name(_) | Kind::Value(_) => {}
+    }
 }
 
 fn look_up(node: &mut Node, names: &[&str]) -> Result<(), ExpressionError> {
@@ -523,7 +542,7 @@ mod tests {
             assert_eq!(result.is_ok(), !text.contains("exp"), "{text}: {result:?}");
         }
         for (text, part, said) in [
-            ("c * (v + x)", "v + x", "m/s beside m"),
+            ("c * (v + x)", "(v + x)", "m/s beside m"),
             ("c * x", "c * x", "it is in N s, expected N"),
             ("c * v * sin(x)", "sin(x)", "sin of something in m"),
         ] {
