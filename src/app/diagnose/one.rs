@@ -23,7 +23,7 @@ use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::recorded::{recorded_of, run_of};
 use crate::diagnosis::servo::{Axes, ServoLink};
-use crate::effects::{Effect, PresentEffect, Which, candidates, sought};
+use crate::effects::{PresentEffect, candidates, sought};
 use crate::plant::{Chain, Channel, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
@@ -411,10 +411,6 @@ fn cell_case(folder: &Path, cell: &LoadedCell) -> Result<(Model, Case), AppError
 /// The effects of an improved file: what the believed one names already stays, unless what was found stands in its place.
 fn written<'a>(present: &'a [PresentEffect], diagnosis: &'a Diagnosis) -> Vec<WrittenEffect<'a>> {
     let found = &diagnosis.estimates.effects;
-    let law = |effect: &Effect| match effect.which {
-        Which::Own { place } => diagnosis.believed.own.get(place).map(|law| &*law.text),
-        Which::Only | Which::Joint { .. } => None,
-    };
     let kept = present.iter().filter_map(|present| {
         let effect = present.effect;
         if found.iter().any(|(new, _)| new.excludes(effect)) || is_sought(present) {
@@ -436,7 +432,7 @@ fn written<'a>(present: &'a [PresentEffect], diagnosis: &'a Diagnosis) -> Vec<Wr
         let numbers = numbers.iter().filter(own);
         WrittenEffect {
             effect,
-            law: law(effect),
+            law: diagnosis.law_of(effect),
             parameters: numbers
                 .map(|n| (n.name, n.value, Some(n.interval)))
                 .collect(),

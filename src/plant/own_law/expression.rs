@@ -321,7 +321,9 @@ fn include_signs(node: &mut Node, text: &str) {
     match &mut node.kind {
         Kind::Negative(of) => {
             include_signs(of, text);
-            let before = text.get(..of.span.start).and_then(|before| before.rfind('-'));
+            let before = text
+                .get(..of.span.start)
+                .and_then(|before| before.rfind('-'));
             node.span.start = before.unwrap_or(of.span.start);
         }
         Kind::Function(_, of) => include_signs(of, text),

@@ -69,8 +69,8 @@ pub struct Constant {
     pub name: &'static str,
     /// Its value [SI].
     pub value: f64,
-    /// Its unit, if the file says it.
-    pub unit: Option<Unit>,
+    /// Its unit as the file says it, if it does.
+    pub unit: Option<&'static str>,
     /// Between which values a diagnosis may fit it; none where it is taken to be exact.
     pub range: Option<[f64; 2]>,
 }
@@ -106,7 +106,13 @@ impl LawText {
     /// The part that is not.
     pub fn check(&self) -> Result<(), ExpressionError> {
         let known = SYMBOLS.iter().map(|symbol| Unit::read(symbol.unit).ok());
-        let units: Vec<Option<Unit>> = known.chain(self.constants.iter().map(|c| c.unit)).collect();
+        let units: Vec<Option<Unit>> = known
+            .chain(
+                self.constants
+                    .iter()
+                    .map(|c| c.unit.and_then(|unit| Unit::read(unit).ok())),
+            )
+            .collect();
         let expected = Unit::read(self.port.unit()).unwrap_or(Unit::ONE);
         self.expression.check_units(&units, expected)?;
         let ranges: Vec<[f64; 2]> = (SYMBOLS.iter().map(|symbol| symbol.range))

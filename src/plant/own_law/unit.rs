@@ -131,17 +131,7 @@ mod tests {
 
     #[test]
     fn a_unit_is_shown_as_it_is_read() {
-        for text in [
-            "N",
-            "m/s",
-            "kg/s",
-            "s",
-            "1",
-            "1/s",
-            "m^2",
-            "kg",
-            "Pa",
-        ] {
+        for text in ["N", "m/s", "kg/s", "s", "1", "1/s", "m^2", "kg", "Pa"] {
             assert_eq!(Unit::read(text).unwrap().to_string(), text);
         }
         assert_eq!(Unit::read("kg m/s^2"), Unit::read("N"));

@@ -142,17 +142,17 @@ fn constants(section: &Section<'_>, table: &Table) -> Result<Vec<Constant>, Scen
             let expected = "more than min".to_owned();
             return Err(inner.refuse("max", super::shown(known.value), expected));
         }
-        let unit = known.unit.as_deref().map(|text| {
-            Unit::read(text).map_err(|symbol| {
-                let expected =
-                    format!("a unit of SI without prefixes, as in \"N s/m\"; it has {symbol:?}");
-                inner.refuse("unit", format!("{text:?}"), expected)
-            })
-        });
+        if let Some(text) = &known.unit
+            && let Err(symbol) = Unit::read(text)
+        {
+            let expected =
+                format!("a unit of SI without prefixes, as in \"N s/m\"; it has {symbol:?}");
+            return Err(inner.refuse("unit", format!("{text:?}"), expected));
+        }
         constants.push(Constant {
             name: kept_name(key),
             value: known.value,
-            unit: unit.transpose()?,
+            unit: known.unit.as_deref().map(kept_name),
             range,
         });
     }

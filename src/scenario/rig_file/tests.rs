@@ -350,7 +350,11 @@ fn values_that_are_wrong_are_refused_with_what_was_expected() {
         "\"stairs.csv\"",
         "44:22: `recordings.fit[1]` is \"stairs.csv\" again, expected each recording once",
     );
-    refused("schema = 1", "schema = 3", "2:10: schema is 3, expected 1 to 2");
+    refused(
+        "schema = 1",
+        "schema = 3",
+        "2:10: schema is 3, expected 1 to 2",
+    );
     refused(
         "offset_s = 0.012",
         "offset_s = 12",

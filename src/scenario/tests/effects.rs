@@ -166,3 +166,17 @@ fn what_cannot_be_is_refused_with_its_place() {
         "{error}"
     );
 }
+
+#[test]
+fn the_page_of_the_files_has_every_port_and_variable() {
+    let page = std::fs::read_to_string("scenarios/README.md").unwrap();
+    for symbol in &crate::plant::SYMBOLS {
+        let row = format!("| {} | {} | {}", symbol.name, symbol.unit, symbol.meaning);
+        assert!(page.contains(&row), "{row}");
+    }
+    let (_, ports) = page.split_once("| port (`acts_on`)").unwrap();
+    let (ports, _) = ports.split_once("| variable").unwrap();
+    for port in crate::plant::Port::ALL {
+        assert!(ports.contains(port.name()), "{port:?}");
+    }
+}
