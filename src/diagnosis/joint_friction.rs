@@ -4,7 +4,7 @@
 //!
 //! Ordinary least squares; what is left is not white, so that its samples count for as many as are independent of each other (first-order autocorrelation:
 //! Bartlett, J. R. Stat. Soc. 8, 1946). A drive's torque is known through a torque constant, and its load through a model: neither better than the belief's
-//! tolerance.
+//! tolerance. What a model leaves out is the same over a whole recording: friction is known no better than the recordings agree on it.
 
 use super::free::{Prior, free_of};
 use super::search::{LOOK_ELSEWHERE, Shown};
@@ -52,6 +52,8 @@ pub struct JointFriction {
 
 /// Speed v_0 [rad/s].
 const STILL: f64 = 1e-3;
+/// How well the friction of a joint is known that is as believed, relative to it [1]: no data sheet says more.
+const KNOWN: f64 = 0.03;
 /// Sum of squares of sat(v) about its mean below which a joint hardly changed its speed, and nothing can be said.
 const LEAST_CHANGE: f64 = 5.0;
 
@@ -101,13 +103,32 @@ pub fn joint_friction(
     let likeness = (next / square.max(f64::MIN_POSITIVE)).clamp(0.0, 0.999);
     let independent = (1.0 - likeness) / (1.0 + likeness);
     let scatter = (square / count / (change * independent)).sqrt();
+    let scatter = scatter.max(disagreement(&centred, friction));
     Some(JointFriction {
         joint,
         friction,
-        deviation: scatter.hypot(tolerance * largest),
+        deviation: scatter.hypot(tolerance * largest).hypot(KNOWN * believed),
         believed,
         count: count * independent,
     })
+}
+
+/// Standard deviation of the friction by how far the recordings' own differ, each weighed by what it tells [N m].
+fn disagreement(recordings: &[Vec<[f64; 2]>], friction: f64) -> f64 {
+    let sums = recordings.iter().map(|rows| {
+        let change: f64 = rows.iter().map(|row| row[1] * row[1]).sum();
+        let product: f64 = rows.iter().map(|row| row[0] * row[1]).sum();
+        (change, product)
+    });
+    let telling: Vec<(f64, f64)> = sums.filter(|(change, _)| *change > 0.0).collect();
+    if telling.len() < 2 {
+        return 0.0;
+    }
+    let all: f64 = telling.iter().map(|(change, _)| change).sum();
+    let spread: f64 = (telling.iter())
+        .map(|(change, product)| change * (product / change - friction).powi(2))
+        .sum();
+    (spread / all / (telling.len() - 1) as f64).sqrt()
 }
 
 impl JointFriction {

@@ -264,21 +264,14 @@ pub(super) fn from_document(
     };
     let estimator = file.estimator.as_ref();
     let estimator = estimator.map(|keys| set_up_estimator(document, keys, &base));
-    Ok(BenchScenario {
+    let mut scenario = BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
         duration,
         gravity_along_extension,
         start_stroke,
         load,
-        effects: effects_of_bench(
-            document,
-            &file.effect,
-            &PlantParameters {
-                own: own.clone(),
-                ..blank()
-            },
-        )?,
+        effects: Vec::new(),
         latent,
         own,
         hand: file
@@ -297,7 +290,9 @@ pub(super) fn from_document(
         controller,
         expect: expectations(&section("expect"), &file.expect)?,
         device,
-    })
+    };
+    scenario.effects = effects_of_bench(document, &file.effect, &scenario.believed())?;
+    Ok(scenario)
 }
 
 fn simulation(

@@ -15,7 +15,6 @@ use super::effects::{EffectKeys, effects};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
 use super::rig_device::is_rig;
-use super::rig_file::blank;
 use super::sections::{bench_sections, scenario_sections};
 use super::sensing::sensing;
 use super::suggestion::Sections;
@@ -25,6 +24,7 @@ use super::{
     LimitOverride, ProcessScenario, Scenario, ServoScenario, SimulationScenario,
 };
 use crate::effects::{Effect, PresentEffect, every};
+use crate::plant::{CellParameters, PlantParameters};
 
 /// Reads and checks a scenario file of either kind and the device model file that it names.
 pub fn load_any(path: &Path) -> Result<AnyScenario, ScenarioError> {
@@ -120,7 +120,7 @@ fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, Scena
         controller,
         simulation,
         expect: expectations(&section("expect"), &file.expect)?,
-        effects: of_whole(document, &file.effect)?,
+        effects: of_whole(document, &file.effect, &device, &contact)?,
         device,
         contact,
     })
@@ -130,9 +130,14 @@ fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, Scena
 pub(super) fn of_whole(
     document: &Document<'_>,
     keys: &EffectKeys,
+    device: &DeviceScenario,
+    contact: &ContactScenario,
 ) -> Result<Vec<PresentEffect>, ScenarioError> {
     let known: Vec<&'static Effect> = every().collect();
-    effects(document, keys, &known, &blank())
+    let law = (contact.stiffness, contact.damping);
+    // Of the arm's joints a file that is read says little; the cell knows them (`cell::plant`).
+    let believed = PlantParameters::of_cell(device.parameters.clone(), law, CellParameters::RIGID);
+    effects(document, keys, &known, &believed)
 }
 
 pub(super) fn arm(

@@ -141,6 +141,7 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         return Err(section("device").misplaced("locked", reason));
     }
     let part = workpiece(&section("workpiece"), &file.workpiece)?;
+    let contact = load::contact(&section("contact"), &file.contact)?;
     refuse_what_is_sought(&document, &part)?;
     refuse_what_commands_say(&document)?;
     let (joints, sensors, belief) = (section("joints"), section("sensors"), section("belief"));
@@ -150,12 +151,12 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let standard = DVec3::new(0.0, 0.0, -9.81);
     Ok(RecordedCell {
         path: path.to_owned(),
-        effects: load::of_whole(&document, &file.effect)?,
+        effects: load::of_whole(&document, &file.effect, &device, &contact)?,
         text: text.clone(),
         title: section("").text("title", &file.title)?,
         arm: load::arm(&section("arm"), &file.arm)?,
         workpiece: part,
-        contact: load::contact(&section("contact"), &file.contact)?,
+        contact,
         gravity: belief.vector("gravity_m_per_s2", gravity, standard, -30.0..=30.0)?,
         tolerance: belief.number("tolerance", keys.tolerance.unwrap_or(0.005), 0.0..=0.5)?,
         start_stroke_tolerance: belief.number(

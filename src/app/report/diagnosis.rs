@@ -8,9 +8,7 @@ use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict}
 use crate::diagnosis::comparison::{Compared, Comparison};
 use crate::diagnosis::details::remaining_errors;
 use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::words::{
-    CHANNEL_WORDS, capital, in_unit, of_column, percent, yardstick,
-};
+use crate::diagnosis::words::{CHANNEL_WORDS, capital, in_unit, of_column, percent, yardstick};
 use crate::effects::meaning;
 use crate::page::{Block, Cell, Fact, Page, Section, Strip, Table, Tone};
 use crate::plant::CHANNELS;
