@@ -22,10 +22,11 @@ const INTRODUCTION: &str = "\
 
 The physics that a model of a cell or a device may lack, as `idc diagnose` looks for it and `idc run --with` puts it in. `idc effects` lists them, `idc effects NAME` tells what stands here of one.
 
-Each picture is two runs of the simulator, as believed and with the effect at its usual size, without noise: the signals that show it most, at the time at which they do. Runs are those of the
-scenarios in [assets/effects](../assets/effects): [steps](../assets/effects/steps.toml) of the set pressure on a load cell, a surface that goes to and fro
-([sway](../assets/effects/sway.toml)), free [strokes](../assets/effects/strokes.toml), a stretch of an [edge](../assets/effects/edge.toml) with the arm. What only a rig with a part of the
-device shows (`[rig] chain`) is a slide that is driven to and fro, a chamber that is shut off, or a regulator alone.
+Each picture is two runs of the simulator, as believed and with the effect, without noise: the signals that show it most, at the time at which they do. The size is in the title; it is the usual
+one where that is seen. Runs are those of the scenarios in [assets/effects](../assets/effects): [steps](../assets/effects/steps.toml) of the set pressure on a load cell, a surface that goes to
+and fro ([sway](../assets/effects/sway.toml)), free [strokes](../assets/effects/strokes.toml) and strokes that [draw](../assets/effects/draw.toml) much air, a stretch of an
+[edge](../assets/effects/edge.toml) with the arm. What only a rig with a part of the device shows (`[rig] chain`; marked \\*) is a slide that is driven to and fro, a chamber that is shut off, or a
+regulator alone.
 
 Numbers are in the units that people read; a key ends in the unit in which a file has it, and `--with NAME:KEY=VALUE` takes any other unit of it. Ranges and usual sizes are those of the device
 of [models/device.toml](../models/device.toml), where they depend on one. \"The source paper\" is that of [docs/PAPER.md](PAPER.md).
@@ -46,7 +47,8 @@ pub(super) fn write(folder: &Path, standing: Standing) -> Result<String, AppErro
     for (heading, effects) in &groups {
         let link = |effect: &&Effect| {
             let name = effect.vocabulary().0;
-            format!("- [{name}](#{name}): {}\n", effect.header().meaning)
+            let mark = if scene::is_of_part(effect) { "\\*" } else { "" };
+            format!("- [{name}](#{name}){mark}: {}\n", effect.header().meaning)
         };
         text += &format!("**{}**\n\n", capital(heading));
         text.extend(effects.iter().map(link));

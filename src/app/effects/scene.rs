@@ -400,9 +400,9 @@ fn of_joint(recording: &Recording, joint: usize) -> Vec<Signal> {
         pairs.map(|(read, told)| 1e3 * (read - told)).collect()
     });
     [
-        torque.map(|values| signal("torque", "Torque of the drive", "torque", "N m", values)),
+        torque.map(|values| signal("torque", "Torque", "torque", "N m", values)),
         speed.map(|values| signal("speed", "Speed", "speed", "mrad/s", values)),
-        trail.map(|values| signal("trail", "Encoder less command", "angle", "mrad", values)),
+        trail.map(|values| signal("trail", "Encoder error", "angle", "mrad", values)),
     ]
     .into_iter()
     .flatten()
