@@ -73,8 +73,8 @@ fn scenario_files() {
             &["scenario.toml", "`schema` is missing"],
         ),
         refusal(
-            |b| edit(b, "schema = 1", "schema = 2"),
-            &["scenario.toml:4:10: schema is 2, expected 1"],
+            |b| edit(b, "schema = 2", "schema = 3"),
+            &["scenario.toml:4:10: schema is 3, expected 1 to 2"],
         ),
         refusal(
             |b| edit(b, "force_n", "froce_n"),

@@ -8,7 +8,7 @@ use idc_cell::arm::chain::{BodyInertia, Chain, Joint, JointKind};
 use idc_cell::control::law::JointLaw;
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::seal_friction::SealFriction;
-use idc_cell::plant::{ContactLaw, ContactParameters, Periodic, Relief};
+use idc_cell::plant::{ContactLaw, ContactParameters, ForceTerms, Periodic, Relief};
 use idc_cell::simulation::contact::{ContactReading, Touch};
 use idc_cell::simulation::slide::{self, SlideCarrier};
 use idc_cell::simulation::world::{ToolBall, World, WorldDescription};
@@ -123,6 +123,8 @@ impl Press {
         let mass = self.device.parameters().moving_mass;
         let (stroke, speed) = (self.world.positions()[1], self.world.velocities()[1]);
         let carrier = SlideCarrier {
+            beyond: 0.0,
+            terms: ForceTerms::default(),
             contact: &self.contact,
             touches: &self.touches,
             start: self.time,
@@ -155,6 +157,8 @@ impl Press {
             speed: self.world.velocities()[1],
         };
         let carrier = SlideCarrier {
+            beyond: 0.0,
+            terms: ForceTerms::default(),
             contact: &self.contact,
             touches: &self.touches,
             start: self.time,

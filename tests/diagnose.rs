@@ -172,7 +172,7 @@ fn nothing_is_found_where_nothing_was_planted() {
         "{account}"
     );
     let improved = std::fs::read_to_string(bench.path("out/improved.toml")).unwrap();
-    assert!(!improved.contains("[effect."));
+    assert!(!improved.contains("[[effect]]"));
 }
 
 #[test]
@@ -398,7 +398,7 @@ fn a_rig_file_that_says_all_of_it_misses_nothing() {
     assert_eq!(names(&answer), Vec::<&str>::new());
     let improved = std::fs::read_to_string(bench.path("out/improved.toml")).unwrap();
     assert!(
-        improved.contains("[effect.axial_force_offset]\nforce_n = -20"),
+        improved.contains("[[effect]]\nname = \"axial_force_offset\"\nforce_n = -20"),
         "{improved}"
     );
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use idc_cell::effects::{Effect, kinds};
 
 use crate::common::project;
+use crate::help::place;
 use crate::program::Bench;
 
 fn name(effect: &Effect) -> &'static str {
@@ -84,6 +85,40 @@ fn a_name_that_is_none_is_refused_with_the_nearest() {
     let standing = bench.idc(&["effects", "burr", "--out", "picture.svg"], &[]);
     assert_eq!(standing.code, 2);
     assert!(standing.err.contains("--force"), "{}", standing.err);
+}
+
+/// What a page says to write into a file is what a file takes.
+#[test]
+fn the_lines_of_every_page_are_those_of_a_file() {
+    let folder = place();
+    let near = folder.path().join("runs/mine");
+    std::fs::create_dir_all(&near).unwrap();
+    let bench = Bench::new("paper_step");
+    for effect in kinds() {
+        let told = bench.idc(&["effects", name(effect), "--json"], &[]).out;
+        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+        let lines = told["lines"].as_array().unwrap().iter();
+        let lines: Vec<&str> = lines.map(|line| line.as_str().unwrap()).collect();
+        let whole = told["command"].as_str();
+        let shipped = match (whole, told["chain"].as_str()) {
+            (Some(command), _) => command.split(' ').nth(2).unwrap(),
+            (None, Some("closed_chamber")) => "assets/rigs/chamber_leak.toml",
+            (None, Some("driven_slide")) => "assets/rigs/emps.toml",
+            (None, chain) => {
+                assert_eq!(chain, Some("regulator"));
+                "assets/rigs/regulator_steps.toml"
+            }
+        };
+        let text = std::fs::read_to_string(project(shipped)).unwrap();
+        let text = text.replace("../plate.stl", "../../assets/plate.stl");
+        let file = near.join("file.toml");
+        std::fs::write(&file, format!("{text}\n{}\n", lines.join("\n"))).unwrap();
+        let refused = match whole {
+            Some(_) => idc_cell::scenario::load_any(&file).err(),
+            None => idc_cell::scenario::rig_file::load_rig(&file).err(),
+        };
+        assert!(refused.is_none(), "{}: {}", name(effect), refused.unwrap());
+    }
 }
 
 /// `idc effects --gallery docs --force` makes it again.

@@ -59,6 +59,7 @@ fn plant_of(rig: &Rig) -> PlantParameters {
         },
         sensors: SensorErrors::NONE,
         latent: None,
+        own: Vec::new(),
         chain: Chain::Whole,
         links: LinkParameters::NONE,
         cell: idc_cell::plant::CellParameters::RIGID,

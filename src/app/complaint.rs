@@ -65,9 +65,7 @@ fn place(error: &AppError) -> Option<Place> {
         AppError::Cell(CellError::EdgeStretch { file, key, .. }) => {
             of_key(file, &format!("workpiece.edge.{key}"))
         }
-        AppError::Cell(CellError::Effect { file, effect, .. }) => {
-            of_key(file, &format!("effect.{effect}"))
-        }
+        AppError::Cell(CellError::Effect { file, key, .. }) => of_key(file, key),
         AppError::Cell(CellError::Burr { file, .. }) => of_key(file, "workpiece.burr.kind"),
         AppError::Design(error) => match &**error {
             DesignError::File(error) => error.place().cloned(),

@@ -86,12 +86,14 @@ pub enum CellError {
         source: WorkpieceError,
     },
     /// An effect that a running cell cannot have.
-    #[error("{}: `effect.{effect}` cannot stand here: {reason}", file.display())]
+    #[error("{}: `{key}` ({effect}) cannot stand here: {reason}", file.display())]
     Effect {
         /// Scenario file.
         file: PathBuf,
+        /// Its table in the file.
+        key: String,
         /// The effect.
-        effect: String,
+        effect: &'static str,
         /// Why not.
         reason: String,
     },

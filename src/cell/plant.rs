@@ -3,9 +3,9 @@
 use super::error::CellError;
 use crate::arm::chain::Chain;
 use crate::control::transmission::TransmissionParameters;
-use crate::plant::{CellParameters, Periodic, PlantParameters};
+use crate::effects::PresentEffect;
+use crate::plant::{CellParameters, OwnLaw, Periodic, PlantParameters};
 use crate::scenario::Scenario;
-use crate::scenario::recorded_cell::apply;
 
 /// The description of a cell whose arm is `chain`.
 ///
@@ -37,31 +37,40 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
         cosine: 0.0,
         frequency: contact.runout_frequency,
     };
-    apply(&scenario.effects, &mut plant);
-    let refuse = |effect: &str, reason: String| CellError::Effect {
+    for effect in &scenario.effects {
+        effect.put_into(&mut plant);
+    }
+    let refuse = |present: &PresentEffect, reason: String| CellError::Effect {
         file: scenario.path.clone(),
-        effect: effect.to_owned(),
+        key: present.key.clone(),
+        effect: present.effect.vocabulary().0,
         reason,
     };
     let joints = chain.joints.len();
-    for (effect, _) in &scenario.effects {
-        match effect.vocabulary() {
+    for present in &scenario.effects {
+        let is_delay = present.effect.name == "channel_time_offset";
+        match present.effect.vocabulary() {
             (_, Some(joint)) if joint > joints => {
-                return Err(refuse(effect.name, format!("the arm has {joints} joints")));
+                return Err(refuse(present, format!("the arm has {joints} joints")));
             }
             ("joint_backlash", Some(joint))
                 if plant.cell.joint_stiffness[joint - 1].is_infinite() =>
             {
                 let reason = "its teeth_stiffness_n_m_per_rad must be finite";
-                return Err(refuse(effect.name, reason.to_owned()));
+                return Err(refuse(present, reason.to_owned()));
+            }
+            _ if is_delay && plant.sensors.force_delay < 0.0 => {
+                let reason = "its offset_s is negative, and a cell that runs reads no force before it is there";
+                return Err(refuse(present, reason.to_owned()));
             }
             _ => {}
         }
-    }
-    if plant.sensors.force_delay < 0.0 {
-        let reason =
-            "its offset_s is negative, and a cell that runs reads no force before it is there";
-        return Err(refuse("channel_time_offset", reason.to_owned()));
+        let of_surface =
+            |law: &OwnLaw| Some(&law.text) == present.law.as_ref() && law.uses_surface();
+        if plant.own.iter().any(of_surface) {
+            let reason = "its expression has x_s, and in a running cell the tool does not know where the surface is before it touches";
+            return Err(refuse(present, reason.to_owned()));
+        }
     }
     Ok(plant)
 }

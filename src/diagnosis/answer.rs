@@ -1,5 +1,6 @@
 //! diagnosis.json: what was found, in the form of an answer that can be scored.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -7,6 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::details::Details;
 use super::estimate::Limit;
 use super::unlisted::report::UnlistedReport;
+use super::words::spoken;
+use crate::effects::meaning;
+use crate::plant::LawText;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
 
@@ -62,9 +66,65 @@ pub struct FoundEffect {
     pub parameters: Vec<(String, Estimate)>,
     /// Variables on which it depends.
     pub depends_on: Vec<String>,
+    /// The law, of an effect that a user wrote.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<FoundLaw>,
     /// What is known of physics without a name.
     #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
     pub unlisted: Option<Box<UnlistedReport>>,
+}
+
+/// A law that a user wrote.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FoundLaw {
+    /// Port at which it acts.
+    pub acts_on: String,
+    /// Its expression.
+    pub is: String,
+    /// Units of its constants, of those that have one.
+    pub units: BTreeMap<String, String>,
+}
+
+impl FoundLaw {
+    /// A law as a diagnosis reports it.
+    #[must_use]
+    pub fn of(law: &LawText) -> Self {
+        let units = law.constants.iter();
+        Self {
+            acts_on: law.port.name().to_owned(),
+            is: law.expression.text().to_owned(),
+            units: units
+                .filter_map(|c| Some((c.name.to_owned(), c.unit?.to_owned())))
+                .collect(),
+        }
+    }
+
+    /// In words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let port = self.acts_on.replace('_', " ");
+        format!("a law of the user's own, {port} = {}", self.is)
+    }
+}
+
+impl FoundEffect {
+    /// What it is, in a line for people.
+    #[must_use]
+    pub fn meaning(&self) -> String {
+        let own = self.law.as_ref().map(FoundLaw::words);
+        own.unwrap_or_else(|| meaning(&self.name).to_owned())
+    }
+
+    /// How one of its numbers is told: words, unit, and that unit's multiples in one of SI.
+    #[must_use]
+    pub fn spoken(&self, name: &str) -> (String, String, f64) {
+        if let Some(law) = &self.law {
+            let unit = law.units.get(name).cloned().unwrap_or_default();
+            return (name.to_owned(), unit, 1.0);
+        }
+        let (words, unit, factor) = spoken(name);
+        (words, unit.to_owned(), factor)
+    }
 }
 
 /// A number with its 95 % interval, in the unit that its name ends with.
@@ -269,6 +329,7 @@ mod tests {
                     ("coulomb_force_n".to_owned(), estimate(12.1, 11.6, 12.7)),
                 ],
                 depends_on: vec!["velocity_sign".to_owned()],
+                law: None,
                 unlisted: None,
             }],
             mismatch: vec![Mismatch {

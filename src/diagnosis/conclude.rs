@@ -1,7 +1,7 @@
 //! From what was found to diagnosis.json.
 
 use super::answer::{
-    Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, UNLISTED, Verdict,
+    Alternative, Answer, Estimate, FoundEffect, FoundLaw, Mismatch, SCHEMA, UNLISTED, Verdict,
 };
 use super::details::{
     ChannelMisfit, ChannelNoise, Considered, Details, IN_TURN, LinkReport, NextExperiment,
@@ -17,8 +17,8 @@ use super::links::Link;
 use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms, root_mean_square};
 use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
-use crate::effects::Effect;
-use crate::plant::{CHANNELS, Chain, Channel};
+use crate::effects::{Effect, Which};
+use crate::plant::{CHANNELS, Chain, Channel, LawText};
 
 /// Variables named at most for a link.
 const MOST_REGIMES: usize = 5;
@@ -76,6 +76,14 @@ impl Diagnosis {
         }
     }
 
+    /// The law that an effect is which a user wrote.
+    pub fn law_of(&self, effect: &Effect) -> Option<&LawText> {
+        match effect.which {
+            Which::Own { place } => self.believed.own.get(place).map(|law| &*law.text),
+            Which::Only | Which::Joint { .. } => None,
+        }
+    }
+
     /// What is missing, with its numbers: the one place where a diagnosis gets its effects from.
     fn found(&self) -> Vec<FoundEffect> {
         let effects = self.estimates.effects.iter();
@@ -87,6 +95,7 @@ impl Diagnosis {
             depends_on: (self.best().depends_on.iter())
                 .map(|name| (*name).to_owned())
                 .collect(),
+            law: None,
             unlisted: self.unlisted_report().map(Box::new),
         });
         effects
@@ -104,6 +113,7 @@ impl Diagnosis {
                     )
                     .collect(),
                 depends_on: Vec::new(),
+                law: self.law_of(effect).map(FoundLaw::of),
                 unlisted: None,
             })
             .chain(unlisted)

@@ -91,6 +91,7 @@ impl FlangeDiagnosis {
                 .map(|(name, value)| (name.to_owned(), value))
                 .collect(),
             depends_on: Vec::new(),
+            law: None,
             unlisted: None,
         };
         let impedance = self.impedance();

@@ -126,6 +126,7 @@ mod tests {
             },
             sensors: SensorErrors::NONE,
             latent: None,
+            own: Vec::new(),
             chain: Chain::Whole,
             links: LinkParameters::NONE,
             cell: crate::plant::CellParameters::RIGID,

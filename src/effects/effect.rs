@@ -76,6 +76,11 @@ pub enum Which {
         /// Joint, base first, from 0.
         joint: usize,
     },
+    /// A law that a user wrote, by its place in the description.
+    Own {
+        /// Its place among the description's own, from 0.
+        place: usize,
+    },
 }
 
 /// An effect.
@@ -126,6 +131,7 @@ impl Effect {
         match self.which {
             Which::Only => 0,
             Which::Joint { joint, .. } => joint,
+            Which::Own { place } => place,
         }
     }
 
@@ -142,7 +148,7 @@ impl Effect {
     /// Its name in the vocabulary, and the joint that it is about, from 1.
     pub fn vocabulary(&self) -> (&'static str, Option<usize>) {
         match self.which {
-            Which::Only => (self.name, None),
+            Which::Only | Which::Own { .. } => (self.name, None),
             Which::Joint { kind, joint } => (kind, Some(joint + 1)),
         }
     }

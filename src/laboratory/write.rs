@@ -98,7 +98,7 @@ fn rig_text(believed: &Believed, fit: &[&str], predict: &str) -> String {
         |value: f64, tolerance: f64| format!("{{ value = {value:?}, tolerance = {tolerance:?} }}");
     let quoted: Vec<String> = fit.iter().map(|name| format!("\"{name}.csv\"")).collect();
     let mut text = String::from(
-        "# The device as its owner believes it to be. SI units; tolerances are relative.\nschema = 1\n",
+        "# The device as its owner believes it to be. SI units; tolerances are relative.\nschema = 2\n",
     );
     let mut table = |name: &str, rows: &[(&str, String)]| {
         // Writing into a text cannot fail.

@@ -4,7 +4,7 @@
 
 use super::contact::ContactParameters;
 use super::flexing::Swung;
-use super::latent::{Latent, Variable};
+use super::terms::ForceTerms;
 use crate::device::{Carrier, FINE_SWING, PistonMotion};
 
 /// Largest sub-step times the fastest rate of a piston that is held to its measured motion [rad]: what it does then is compared roughly.
@@ -34,8 +34,8 @@ pub(super) struct ReplayCarrier<'a> {
     pub swung: Swung,
     /// What the piston is held to, if it is.
     pub hold: Option<Hold>,
-    /// A force without a name, with the value of its variable at the start of the sample.
-    pub latent: Option<(&'a Latent, f64)>,
+    /// Further forces.
+    pub terms: ForceTerms<'a>,
 }
 
 /// A motion over one step that the piston is held to.
@@ -97,17 +97,9 @@ impl ReplayCarrier<'_> {
         self.weight[0] + time * self.weight[1]
     }
 
-    /// The force without a name [N].
-    pub fn latent_force(&self, time: f64, motion: PistonMotion) -> f64 {
-        self.latent.map_or(0.0, |(latent, held)| {
-            let at = match latent.variable {
-                Variable::Time => self.start + time,
-                Variable::Stroke => motion.stroke,
-                Variable::Velocity => motion.speed,
-                _ => held,
-            };
-            latent.value(at, motion.speed)
-        })
+    /// The further forces [N].
+    pub fn term_force(&self, time: f64, motion: PistonMotion) -> f64 {
+        self.terms.force(self.start + time, motion)
     }
 
     /// Force that holds the piston to a measured motion [N].
@@ -133,7 +125,7 @@ impl Carrier for ReplayCarrier<'_> {
         if let Some(hold) = &self.hold {
             force += hold.force(time, motion);
         }
-        force += self.latent_force(time, motion);
+        force += self.term_force(time, motion);
         if touching {
             let (penetration, rate) = self.penetration(time, motion);
             force -= self.axial_share() * self.contact.pushing(penetration, rate);

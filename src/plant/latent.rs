@@ -47,6 +47,14 @@ impl Port {
         Self::PressureReading,
     ];
 
+    /// Does it change what a sensor says, and nothing else?
+    pub fn is_reading(self) -> bool {
+        matches!(
+            self,
+            Self::ForceReading | Self::StrokeReading | Self::PressureReading
+        )
+    }
+
     /// Name in files and answers.
     pub fn name(self) -> &'static str {
         match self {
@@ -67,6 +75,16 @@ impl Port {
             Self::PistonForce | Self::ForceReading => "n",
             Self::OutletPressure | Self::PressureReading => "pa",
             Self::FirstChamberFlow | Self::SecondChamberFlow => "kg_per_s",
+            Self::Surface | Self::StrokeReading => "m",
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::PistonForce | Self::ForceReading => "N",
+            Self::OutletPressure | Self::PressureReading => "Pa",
+            Self::FirstChamberFlow | Self::SecondChamberFlow => "kg/s",
             Self::Surface | Self::StrokeReading => "m",
         }
     }
@@ -200,6 +218,15 @@ pub struct Moment {
 }
 
 impl Moment {
+    /// The same a time [s] later, as far as its motion tells.
+    pub fn ahead(&self, time: f64) -> Self {
+        Self {
+            time: self.time + time,
+            stroke: self.stroke + time * self.speed,
+            ..*self
+        }
+    }
+
     /// One of them.
     pub fn of(&self, variable: Variable) -> f64 {
         match variable {

@@ -17,6 +17,7 @@ mod guide;
 mod inputs;
 mod latent;
 mod measured_motion;
+mod own_law;
 mod parameters;
 mod quantity;
 mod riding;
@@ -25,6 +26,7 @@ mod sensors;
 mod servo;
 mod sharp_edge;
 mod simulate;
+mod terms;
 
 pub use cell_course::{CellCourse, EdgeStation, Felt, INERTIA_EVERY, JointCourse, Levers};
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS, Relief};
@@ -34,6 +36,10 @@ pub use guide::Guide;
 pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
 pub use measured_motion::MeasuredMotion;
+pub use own_law::{
+    Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, OwnLaw, SYMBOLS, Symbol, Unit,
+    kept_name,
+};
 pub use parameters::PlantParameters;
 pub use quantity::Quantity;
 pub use running_sensors::{RunningSensors, SensorReadings};
@@ -41,3 +47,4 @@ pub use sensors::SensorErrors;
 pub use servo::{Followed, follow, shown};
 pub use sharp_edge::{SharpEdge, Touch};
 pub use simulate::{CHANNELS, Channel, PlantCourse, Trajectory, readings, simulate, trajectory};
+pub use terms::ForceTerms;

@@ -3,7 +3,8 @@
 use super::cell_parameters::CellParameters;
 use super::chain::{Chain, LinkParameters};
 use super::contact::{ContactLaw, ContactParameters, Periodic};
-use super::latent::{Latent, Port};
+use super::latent::Latent;
+use super::own_law::OwnLaw;
 use super::sensors::SensorErrors;
 use crate::device::DeviceParameters;
 
@@ -26,6 +27,8 @@ pub struct PlantParameters {
     pub sensors: SensorErrors,
     /// A term without a name.
     pub latent: Option<Latent>,
+    /// Laws of a user's own.
+    pub own: Vec<OwnLaw>,
 }
 
 impl PlantParameters {
@@ -51,6 +54,7 @@ impl PlantParameters {
             cell,
             sensors: SensorErrors::NONE,
             latent: None,
+            own: Vec::new(),
         }
     }
 
@@ -62,17 +66,20 @@ impl PlantParameters {
             && self.gravity_along_extension == other.gravity_along_extension
             && self.cell == other.cell
             && self.moving_latent() == other.moving_latent()
+            && self.moving_laws().eq(other.moving_laws())
     }
 
     /// The term without a name, if it is not of a reading alone.
     fn moving_latent(&self) -> Option<&Latent> {
-        let moves = |latent: &&Latent| {
-            !matches!(
-                latent.port,
-                Port::ForceReading | Port::StrokeReading | Port::PressureReading
-            )
-        };
-        self.latent.as_ref().filter(moves)
+        self.latent
+            .as_ref()
+            .filter(|latent| !latent.port.is_reading())
+    }
+
+    /// Laws of a user's own that are not of a reading alone.
+    fn moving_laws(&self) -> impl Iterator<Item = &OwnLaw> {
+        let moves = |law: &&OwnLaw| law.acts && !law.text.port.is_reading();
+        self.own.iter().filter(moves)
     }
 
     /// Does the rig move as another one does, whatever its sensors say?

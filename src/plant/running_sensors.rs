@@ -15,6 +15,15 @@ pub struct SensorReadings {
     pub regulator_pressure: f64,
 }
 
+impl SensorReadings {
+    /// Adds to pressure, stroke and force.
+    pub fn add(&mut self, [pressure, stroke, force]: [f64; 3]) {
+        self.regulator_pressure += pressure;
+        self.stroke += stroke;
+        self.force += force;
+    }
+}
+
 /// Sensors that have errors, in a simulation that goes on.
 #[derive(Debug, Clone)]
 pub struct RunningSensors {

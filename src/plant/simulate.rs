@@ -9,6 +9,7 @@ use super::inputs::PlantInputs;
 use super::latent::{Moment, Port};
 use super::parameters::PlantParameters;
 use super::riding::Riding;
+use super::terms::ForceTerms;
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::valve::ValvePosition;
 
@@ -98,15 +99,16 @@ pub fn readings(
         sensors.force_readings(&inputs.time, force, &truth.acceleration),
         truth.acceleration.clone(),
     ];
-    if let Some(latent) = &plant.latent {
-        let channel = match latent.port {
-            Port::PressureReading => 0,
-            Port::StrokeReading => 1,
-            Port::ForceReading => 2,
-            _ => return readings,
-        };
-        for (i, reading) in readings[channel].iter_mut().enumerate() {
-            *reading += latent.at(&truth.moment(inputs, i));
+    let ports = [
+        Port::PressureReading,
+        Port::StrokeReading,
+        Port::ForceReading,
+    ];
+    for (readings, port) in readings.iter_mut().zip(ports) {
+        if plant.acts_at(port) {
+            for (i, reading) in readings.iter_mut().enumerate() {
+                *reading += plant.term(port, &truth.moment(inputs, i));
+            }
         }
     }
     readings
@@ -176,7 +178,7 @@ pub fn trajectory(
             surface: [0.0; 4],
             rate: if present { rate } else { 0.0 },
             hold: None,
-            latent: None,
+            terms: ForceTerms::default(),
         };
         if let Some(felt) = &felt {
             carrier.share = felt.share[i];
@@ -210,9 +212,9 @@ pub fn trajectory(
             carrier.surface = riding.surface;
             normal = Some(riding.normal);
         }
-        if let Some(latent) = &plant.latent {
+        if plant.has_terms() {
             let pressures = device.pressures(&state, motion.stroke);
-            let mut moment = Moment {
+            let moment = Moment {
                 time: inputs.time[i],
                 stroke: motion.stroke,
                 speed: motion.speed,
@@ -222,21 +224,9 @@ pub fn trajectory(
                 surface: inputs.surface[i],
                 contact_force: carrier.contact_force(0.0, motion),
             };
-            if latent.port == Port::PistonForce {
-                carrier.latent = Some((latent, moment.of(latent.variable)));
-            } else {
-                // Held over the sample at its value in the middle.
-                moment.time += 0.5 * h;
-                moment.stroke += 0.5 * h * motion.speed;
-                let value = latent.at(&moment);
-                match latent.port {
-                    Port::OutletPressure => state.disturbance.outlet = value,
-                    Port::FirstChamberFlow => state.disturbance.mass_flows[0] = value,
-                    Port::SecondChamberFlow => state.disturbance.mass_flows[1] = value,
-                    Port::Surface => carrier.surface[0] += value,
-                    _ => {}
-                }
-            }
+            carrier.surface[0] += plant.term(Port::Surface, &moment.ahead(0.5 * h));
+            state.disturbance = plant.disturbance(&moment, h);
+            carrier.terms = ForceTerms::over(plant, &moment);
         }
         if let Some(flexing) = &mut flexing {
             flexing.face(i, normal);
@@ -345,8 +335,8 @@ impl Trajectory {
         let pressures = device.pressures(state, motion.stroke);
         let contact_force = carrier.contact_force(0.0, motion);
         let hold_force = carrier.hold_force(0.0, motion);
-        let latent_force = carrier.latent_force(0.0, motion);
-        let outside = carrier.weight_at(0.0) + hold_force + latent_force
+        let term_force = carrier.term_force(0.0, motion);
+        let outside = carrier.weight_at(0.0) + hold_force + term_force
             - carrier.axial_share() * contact_force;
         let force = device.piston_force(state, motion) + outside;
         self.outlet

@@ -258,6 +258,7 @@ mod tests {
                 confidence: 1.0,
                 parameters: vec![("gain".to_owned(), Estimate::new(value, low, high))],
                 depends_on: Vec::new(),
+                law: None,
                 unlisted: None,
             }],
             mismatch: vec![Mismatch {

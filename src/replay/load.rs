@@ -8,7 +8,6 @@ use crate::plant::{
     CellCourse, CellParameters, EdgeStation, MOST_JOINTS, PlantParameters, SharpEdge,
 };
 use crate::scenario::RecordedCell;
-use crate::scenario::recorded_cell::apply;
 use crate::workpiece::{EdgeCurve, load_mesh};
 use glam::DVec3;
 use glamx::DPose3;
@@ -97,7 +96,9 @@ impl LoadedCell {
         let device = scenario.device.parameters.clone();
         let law = (contact.stiffness, contact.damping);
         let mut plant = PlantParameters::of_cell(device, law, cell);
-        apply(&scenario.effects, &mut plant);
+        for effect in &scenario.effects {
+            effect.put_into(&mut plant);
+        }
         plant
     }
 

@@ -6,12 +6,12 @@
 //! Source paper, eq. (1), whose sign of g is that of a device that extends upwards.
 
 use crate::device::{Carrier, PistonMotion};
-use crate::plant::ContactParameters;
+use crate::plant::{ContactParameters, ForceTerms, Moment, PlantParameters, Port};
 use crate::scenario::bench::{BenchScenario, LoadScenario};
 
 /// Load and other forces over one step, during which the surface's and the hand's courses are taken as parabolas.
 #[derive(Debug, Clone, Copy)]
-pub struct BenchCarrier {
+pub struct BenchCarrier<'a> {
     mass: f64,
     weight: f64,
     contact: Option<ContactParameters>,
@@ -21,6 +21,8 @@ pub struct BenchCarrier {
     surface: [f64; 3],
     /// The hand's force [N] and its rate [N/s] and curvature [N/s2].
     hand: [f64; 3],
+    /// Further forces.
+    terms: ForceTerms<'a>,
 }
 
 /// Value, first and second derivative of peak/2 (1 - cos(2 pi frequency (t - start))).
@@ -41,7 +43,7 @@ fn parabola(course: [f64; 3], time: f64) -> f64 {
     course[0] + time * (course[1] + 0.5 * time * course[2])
 }
 
-impl BenchCarrier {
+impl<'a> BenchCarrier<'a> {
     /// What acts on the piston from `time` [s] on.
     pub fn at(scenario: &BenchScenario, time: f64) -> Self {
         let mass = scenario.device.parameters.moving_mass;
@@ -68,7 +70,20 @@ impl BenchCarrier {
             start: time,
             surface,
             hand,
+            terms: ForceTerms::default(),
         }
+    }
+
+    /// The same with the further forces of a description, and where it puts the surface, over a step [s] that starts at a moment.
+    pub fn with_terms(mut self, plant: &'a PlantParameters, moment: Moment, step: f64) -> Self {
+        self.surface[0] += plant.term(Port::Surface, &moment.ahead(0.5 * step));
+        self.terms = ForceTerms::over(plant, &moment);
+        self
+    }
+
+    /// The further forces [N].
+    pub fn term_force(&self, time: f64, motion: PistonMotion) -> f64 {
+        self.terms.force(self.start + time, motion)
     }
 
     /// Where the surface stands along the stroke [m].
@@ -105,7 +120,7 @@ impl BenchCarrier {
     }
 }
 
-impl Carrier for BenchCarrier {
+impl Carrier for BenchCarrier<'_> {
     const MOVES: bool = true;
 
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
@@ -116,7 +131,7 @@ impl Carrier for BenchCarrier {
             }
             _ => 0.0,
         };
-        self.weight - load - parabola(self.hand, time)
+        self.weight - load - parabola(self.hand, time) + self.term_force(time, motion)
     }
 
     fn touches(&self, time: f64, motion: PistonMotion) -> bool {

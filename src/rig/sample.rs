@@ -44,7 +44,7 @@ pub(super) struct RigSample<'a> {
     pub device: &'a DeviceState,
     pub truth: &'a RigTruth,
     pub readings: &'a Readings,
-    pub carrier: &'a BenchCarrier,
+    pub carrier: &'a BenchCarrier<'a>,
     /// Set pressure that the regulator acts on [Pa gauge].
     pub set_pressure: f64,
     /// Contact force asked for [N]; NaN where pressures are.

@@ -8,7 +8,7 @@ use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{RunningSensors, SensorReadings};
+use crate::plant::{Moment, PlantParameters, RunningSensors, SensorReadings};
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::ScenarioError;
 use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
@@ -23,6 +23,8 @@ pub struct Rig {
     pub device: Device,
     /// What answers forces with set pressures, as it is at the start.
     pub controller: ForceController,
+    /// The rig's physics as one description, as it is.
+    pub plant: PlantParameters,
 }
 
 impl Rig {
@@ -51,11 +53,13 @@ impl Rig {
             scenario.step,
         )?;
         // From here on it is not what is believed that counts.
-        let scenario = scenario.as_it_is();
+        let plant = scenario.plant();
+        let scenario = scenario.as_it_is(&plant);
         Ok(Self {
             device: Device::new(scenario.device.parameters.clone()),
             scenario,
             controller,
+            plant,
         })
     }
 
@@ -116,6 +120,8 @@ pub struct RigSimulation<'a> {
     sensors: SensorChain,
     readings: Readings,
     estimator: Option<RigEstimator>,
+    /// Set pressure of the last step [Pa gauge], and the air that had come in before it [kg].
+    last: [f64; 2],
     steps: usize,
     total_steps: usize,
     log: RigLog,
@@ -151,6 +157,7 @@ impl<'a> RigSimulation<'a> {
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
             estimator: scenario.estimator.as_ref().map(RigEstimator::new),
+            last: [0.0; 2],
             steps: 0,
             total_steps,
             log: RigLog::new(total_steps + 1),
@@ -221,7 +228,16 @@ impl<'a> RigSimulation<'a> {
         self.device.valve = held(&scenario.valve, time).unwrap_or(ValvePosition::Extend);
         let wanted = self.set_pressure(time);
         let set_pressure = self.sensors.command(wanted, scenario.step);
-        let carrier = BenchCarrier::at(scenario, time);
+        let mut carrier = BenchCarrier::at(scenario, time);
+        if self.rig.plant.has_terms() {
+            let moment = Moment {
+                set_pressure,
+                ..self.moment(&carrier)
+            };
+            carrier = carrier.with_terms(&self.rig.plant, moment, scenario.step);
+            self.device.disturbance = self.rig.plant.disturbance(&moment, scenario.step);
+        }
+        self.last = [set_pressure, self.device.air.entered];
         self.rig.device.advance_carried(
             &mut self.device,
             &mut self.motion,
@@ -264,21 +280,48 @@ impl<'a> RigSimulation<'a> {
         }
     }
 
+    /// The variables of now.
+    fn moment(&self, carrier: &BenchCarrier<'_>) -> Moment {
+        let [set_pressure, entered] = self.last;
+        Moment {
+            time: self.time(),
+            stroke: self.motion.stroke,
+            speed: self.motion.speed,
+            pressures: self.rig.device.pressures(&self.device, self.motion.stroke),
+            mass_flow: (self.device.air.entered - entered) / self.rig.scenario.step,
+            set_pressure,
+            surface: carrier.surface(),
+            contact_force: carrier.contact_force(0.0, self.motion),
+        }
+    }
+
+    /// What acts on the piston now.
+    fn carrier(&self) -> BenchCarrier<'_> {
+        let carrier = BenchCarrier::at(&self.rig.scenario, self.time());
+        if self.rig.plant.has_terms() {
+            let moment = self.moment(&carrier);
+            carrier.with_terms(&self.rig.plant, moment, 0.0)
+        } else {
+            carrier
+        }
+    }
+
     /// What the rig does now.
     pub fn truth(&self) -> RigTruth {
         let scenario = &self.rig.scenario;
-        let carrier = BenchCarrier::at(scenario, self.time());
+        let carrier = self.carrier();
         let device = &self.rig.device;
         let mass = scenario.device.parameters.moving_mass;
         let force = device.piston_force(&self.device, self.motion);
         let contact_force = carrier.contact_force(0.0, self.motion);
-        let outside = mass * scenario.gravity_along_extension - carrier.hand_force();
+        let outside = mass * scenario.gravity_along_extension - carrier.hand_force()
+            + carrier.term_force(0.0, self.motion);
         RigTruth {
             time: self.time(),
             motion: self.motion,
             acceleration: (force + outside - contact_force) / mass,
             contact_force,
-            regulator_pressure: self.device.regulator.outlet,
+            regulator_pressure: self.device.regulator.outlet + self.device.disturbance.outlet,
         }
     }
 
@@ -289,7 +332,10 @@ impl<'a> RigSimulation<'a> {
             stroke: truth.motion.stroke,
             regulator_pressure: truth.regulator_pressure,
         };
-        let read = self.errors.read(truth.time, &there, truth.acceleration);
+        let mut read = self.errors.read(truth.time, &there, truth.acceleration);
+        if self.rig.plant.has_terms() {
+            read.add(self.rig.plant.reading_terms(&self.moment(&self.carrier())));
+        }
         self.readings = self.sensors.measure(
             truth.time,
             &Truth {

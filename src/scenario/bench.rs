@@ -8,19 +8,19 @@ use super::bench_file::{
 use super::check::Section;
 use super::controller::{ControllerScenario, ForceLaw, check_force, controller};
 use super::document::Document;
+use super::effects::{EffectKeys, effects};
 use super::error::ScenarioError;
 use super::estimator::{EstimatorBase, estimator as set_up_estimator};
 use super::load::expectations;
-use super::recorded_cell::{EffectKeys, apply, effects_of};
 use super::rig_device::{BenchDevice, USUAL_CONTACT, bench_device};
 use super::rig_file::blank;
 use super::sections::bench_sections;
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
-use crate::effects::{Effect, Subsystem};
+use crate::effects::{Effect, PresentEffect, Subsystem, every};
 use crate::estimation::ContactForceEstimator;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{ContactLaw, ContactParameters, PlantParameters, SensorErrors};
+use crate::plant::{ContactLaw, ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
@@ -43,7 +43,7 @@ pub struct BenchScenario {
     /// A hand that pushes against extension.
     pub hand: Option<HandScenario>,
     /// Physics beyond the believed device, with all its numbers.
-    pub effects: Vec<(&'static Effect, Vec<f64>)>,
+    pub effects: Vec<PresentEffect>,
     /// What is commanded, in order of time.
     pub command: CommandScenario,
     /// Positions of the 5/2 valve, in order of time: time [s], position. Extending before the first.
@@ -58,6 +58,10 @@ pub struct BenchScenario {
     pub sensing: SensingParameters,
     /// What the sensors of a rig file do to what they measure, ahead of that chain.
     pub sensor_errors: SensorErrors,
+    /// A term without a name that the rig file has.
+    pub latent: Option<Latent>,
+    /// Laws of a user's own that the rig file has.
+    pub own: Vec<OwnLaw>,
     /// What sets the regulator's pressure where forces are commanded.
     pub controller: ControllerScenario,
     /// Estimator of the contact force, set up as it believes noise and device to be.
@@ -135,16 +139,26 @@ impl BenchScenario {
             gravity_along_extension: self.gravity_along_extension,
             contact,
             sensors: self.sensor_errors,
+            latent: self.latent.clone(),
+            own: self.own.clone(),
             ..blank()
         }
     }
 
     /// The rig as it is, with its effects put in.
     #[must_use]
-    pub fn as_it_is(mut self) -> Self {
+    pub fn plant(&self) -> PlantParameters {
         let mut plant = self.believed();
-        apply(&self.effects, &mut plant);
-        self.device.parameters = plant.device;
+        for effect in &self.effects {
+            effect.put_into(&mut plant);
+        }
+        plant
+    }
+
+    /// The scenario with the rig's numbers as they are.
+    #[must_use]
+    pub fn as_it_is(mut self, plant: &PlantParameters) -> Self {
+        self.device.parameters = plant.device.clone();
         self.gravity_along_extension = plant.gravity_along_extension;
         self.sensor_errors = plant.sensors;
         if let LoadScenario::Contact { contact, .. } = &mut self.load {
@@ -158,18 +172,23 @@ impl BenchScenario {
 fn effects_of_bench(
     document: &Document<'_>,
     keys: &EffectKeys,
-) -> Result<Vec<(&'static Effect, Vec<f64>)>, ScenarioError> {
-    let effects = effects_of(document, keys)?;
-    for (effect, values) in &effects {
-        let reason = match effect.subsystem {
+    plant: &PlantParameters,
+) -> Result<Vec<PresentEffect>, ScenarioError> {
+    let known: Vec<&'static Effect> = every().collect();
+    let effects = effects(document, keys, &known, plant)?;
+    for present in &effects {
+        let reason = match present.effect.subsystem {
             Subsystem::Arm => "a bench has no arm",
             Subsystem::Workpiece => "a bench has no part with an edge",
-            Subsystem::Sensors if effect.name == "channel_time_offset" && values[0] < 0.0 => {
+            Subsystem::Sensors
+                if present.effect.name == "channel_time_offset" && present.values[0] < 0.0 =>
+            {
                 "its offset_s is negative, and a bench that runs reads no force before it is there"
             }
             _ => continue,
         };
-        return Err(Section::new(document, "effect").misplaced(effect.name, reason.to_owned()));
+        let reason = format!("{}: {reason}", present.effect.name);
+        return Err(Section::new(document, present.key.as_str()).misplaced_itself(reason));
     }
     Ok(effects)
 }
@@ -180,13 +199,14 @@ pub(super) fn from_document(
     document: &Document<'_>,
 ) -> Result<BenchScenario, ScenarioError> {
     let file: BenchFile = document.parse(&bench_sections())?;
-    debug_assert_eq!(file.schema, super::file::SCHEMA);
     let section = |table: &str| Section::new(document, table);
     let BenchDevice {
         device,
         gravity_along_extension,
         contact,
         sensor_errors,
+        latent,
+        own,
     } = bench_device(&section("device"), &file.device)?;
     let bench = section("bench");
     let duration = bench.number("duration_s", file.bench.duration_s, 0.01..=3600.0)?;
@@ -251,7 +271,16 @@ pub(super) fn from_document(
         gravity_along_extension,
         start_stroke,
         load,
-        effects: effects_of_bench(document, &file.effect)?,
+        effects: effects_of_bench(
+            document,
+            &file.effect,
+            &PlantParameters {
+                own: own.clone(),
+                ..blank()
+            },
+        )?,
+        latent,
+        own,
         hand: file
             .hand
             .as_ref()

@@ -44,6 +44,7 @@ pub(super) struct KindOnly {
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BenchFile {
+    #[expect(dead_code, reason = "checked by Document::new")]
     pub schema: u32,
     #[expect(dead_code, reason = "read as `KindOnly`; here so that it is known")]
     pub kind: Kind,
@@ -54,7 +55,7 @@ pub(super) struct BenchFile {
     pub hand: Option<HandKeys>,
     /// Physics beyond the believed device, by its name in the catalogue.
     #[serde(default)]
-    pub effect: super::recorded_cell::EffectKeys,
+    pub effect: super::effects::EffectKeys,
     #[serde(default)]
     pub command: Vec<CommandKeys>,
     #[serde(default)]

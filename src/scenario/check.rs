@@ -31,6 +31,11 @@ impl<'a> Section<'a> {
         self.document
     }
 
+    /// Dotted name of one of its keys.
+    pub fn dotted(&self, key: &str) -> String {
+        join(&self.table, key)
+    }
+
     /// Keys that the file gives in it.
     pub fn given(&self) -> impl Iterator<Item = &str> {
         self.document.keys_in(&self.table)
@@ -192,6 +197,15 @@ impl<'a> Section<'a> {
             place: self.document.place(&self.table),
             key: join(&self.table, key),
             expected: expected.to_owned(),
+        }
+    }
+
+    /// Refuses that the table itself, or the key it stands for, is present.
+    pub fn misplaced_itself(&self, reason: String) -> ScenarioError {
+        ScenarioError::Misplaced {
+            place: self.document.place(&self.table),
+            key: self.table.clone(),
+            reason,
         }
     }
 

@@ -35,10 +35,6 @@ pub(super) fn load_with_overrides(
     let text = read_text(path)?;
     let document = Document::new(path, &text, SCHEMA)?;
     let file: ModelFile = document.parse(&model_sections())?;
-    debug_assert_eq!(
-        file.schema, SCHEMA,
-        "other schemas are refused by Document::new"
-    );
     let model = Layers {
         layers: overrides
             .into_iter()

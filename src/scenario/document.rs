@@ -16,6 +16,8 @@ use super::units::Unit;
 pub(crate) struct Document<'a> {
     file: &'a Path,
     text: &'a str,
+    /// Version of its format that it says it is of; 1 where it says none.
+    schema: i64,
     /// Every key and list element, tables before what they hold.
     entries: Vec<Entry>,
 }
@@ -50,11 +52,12 @@ pub(crate) fn place_of_key(file: &Path, key: &str, schema: u32) -> Option<Place>
 }
 
 impl<'a> Document<'a> {
-    /// Checks that a file's text is TOML of schema version `schema`, and notes where its keys stand.
+    /// Checks that a file's text is TOML of schema version `schema`, or of one before, and notes where its keys stand.
     pub fn new(file: &'a Path, text: &'a str, schema: u32) -> Result<Self, ScenarioError> {
         let mut document = Self {
             file,
             text,
+            schema: 1,
             entries: Vec::new(),
         };
         let table = DeTable::parse(text).map_err(|error| ScenarioError::Syntax {
@@ -66,13 +69,15 @@ impl<'a> Document<'a> {
         if let Some(value) = table.get_ref().get("schema")
             && let DeValue::Integer(integer) = value.get_ref()
             && let Ok(found) = i64::from_str_radix(integer.as_str(), integer.radix())
-            && found != i64::from(schema)
         {
-            return Err(ScenarioError::Schema {
-                place: document.place_of(value.span()),
-                found,
-                expected: schema,
-            });
+            if !(1..=i64::from(schema)).contains(&found) {
+                return Err(ScenarioError::Schema {
+                    place: document.place_of(value.span()),
+                    found,
+                    expected: schema,
+                });
+            }
+            document.schema = found;
         }
         Ok(document)
     }
@@ -80,6 +85,30 @@ impl<'a> Document<'a> {
     /// Fills a type from the file; `sections` are the tables that the file may have.
     pub fn parse<T: Deserialize<'a>>(&self, sections: &Sections) -> Result<T, ScenarioError> {
         toml::from_str(self.text).map_err(|error| self.explain(&error, sections))
+    }
+
+    /// Version of its format that the file says it is of.
+    pub fn schema(&self) -> i64 {
+        self.schema
+    }
+
+    /// Place of a part of a text that is a key's value, by its bytes in the text; of the whole where it is written with escapes.
+    pub fn place_in_text(&self, key: &str, part: &Range<usize>) -> Place {
+        let Some(entry) = self.entries.iter().find(|entry| entry.key == key) else {
+            return self.place(key);
+        };
+        let value = entry.value_span.clone();
+        let written = self.text.get(value.clone()).unwrap_or_default();
+        if written.len() < 2
+            || written.contains('\\')
+            || ["\"\"\"", "'''"]
+                .iter()
+                .any(|quote| written.starts_with(quote))
+        {
+            return self.place(key);
+        }
+        let start = value.start + 1;
+        self.place_of(start + part.start..(start + part.end).min(value.end))
     }
 
     /// Folder that relative paths in the file start from.

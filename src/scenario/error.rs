@@ -71,7 +71,7 @@ pub enum ScenarioError {
         expected: &'static str,
     },
     /// The file is written for another version of this format.
-    #[error("{place}: schema is {found}, expected {expected}")]
+    #[error("{place}: schema is {found}, expected {}", versions(*expected))]
     Schema {
         /// Where.
         place: Place,
@@ -112,6 +112,18 @@ pub enum ScenarioError {
         /// What was expected.
         expected: String,
     },
+    /// A law of a user's own that cannot be.
+    #[error("{place}: `{key}`, at `{part}`: {reason}")]
+    Expression {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// The part of the expression.
+        part: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A key that only has a meaning together with another one.
     #[error("{place}: `{key}` cannot stand here: {reason}")]
     Misplaced {
@@ -124,6 +136,14 @@ pub enum ScenarioError {
     },
 }
 
+/// Versions of a format up to the last.
+fn versions(last: u32) -> String {
+    match last {
+        1 => "1".to_owned(),
+        last => format!("1 to {last}"),
+    }
+}
+
 impl ScenarioError {
     /// The dotted key that it is about, if it is about one.
     pub fn key(&self) -> Option<&str> {
@@ -131,6 +151,7 @@ impl ScenarioError {
             Self::UnknownKey { key, .. }
             | Self::MissingKey { key, .. }
             | Self::Value { key, .. }
+            | Self::Expression { key, .. }
             | Self::Misplaced { key, .. } => Some(key),
             _ => None,
         }
@@ -144,6 +165,7 @@ impl ScenarioError {
             | Self::UnknownKey { place, .. }
             | Self::MissingKey { place, .. }
             | Self::Value { place, .. }
+            | Self::Expression { place, .. }
             | Self::Misplaced { place, .. } => Some(place),
             Self::NoSuchFile { .. } | Self::Read { .. } | Self::OtherKind { .. } => None,
         }
@@ -157,6 +179,7 @@ impl ScenarioError {
             | Self::UnknownKey { place, .. }
             | Self::MissingKey { place, .. }
             | Self::Value { place, .. }
+            | Self::Expression { place, .. }
             | Self::Misplaced { place, .. } => *place = other,
             Self::NoSuchFile { .. } | Self::Read { .. } | Self::OtherKind { .. } => {}
         }

@@ -11,12 +11,13 @@ use super::controller::ControllerKeys;
 use super::sensing::keys::SensingKeys;
 
 /// Version of both formats.
-pub(super) const SCHEMA: u32 = 1;
+pub(super) const SCHEMA: u32 = 2;
 
 /// A scenario file.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ScenarioFile {
+    #[expect(dead_code, reason = "checked by Document::new")]
     pub schema: u32,
     #[expect(dead_code, reason = "read as `KindOnly`; here so that it is known")]
     pub kind: Option<super::bench_file::Kind>,
@@ -36,7 +37,7 @@ pub(super) struct ScenarioFile {
     #[serde(default)]
     pub expect: BTreeMap<String, BoundKeys>,
     #[serde(default)]
-    pub effect: super::recorded_cell::EffectKeys,
+    pub effect: super::effects::EffectKeys,
 }
 
 /// `[arm]`.
@@ -105,6 +106,7 @@ pub(super) struct DeviceKeys {
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelFile {
+    #[expect(dead_code, reason = "checked by Document::new")]
     pub schema: u32,
     pub device: ModelKeys,
 }

@@ -11,10 +11,11 @@ use super::check::Section;
 use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
 use super::document::{Document, read_text};
+use super::effects::{EffectKeys, effects};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
-use super::recorded_cell::effects_of;
 use super::rig_device::is_rig;
+use super::rig_file::blank;
 use super::sections::{bench_sections, scenario_sections};
 use super::sensing::sensing;
 use super::suggestion::Sections;
@@ -23,6 +24,7 @@ use super::{
     AnyScenario, ArmScenario, ContactScenario, DeviceScenario, DriveScenario, Expectation,
     LimitOverride, ProcessScenario, Scenario, ServoScenario, SimulationScenario,
 };
+use crate::effects::{Effect, PresentEffect, every};
 
 /// Reads and checks a scenario file of either kind and the device model file that it names.
 pub fn load_any(path: &Path) -> Result<AnyScenario, ScenarioError> {
@@ -91,11 +93,6 @@ pub fn load_bench(path: &Path) -> Result<BenchScenario, ScenarioError> {
 /// Reads the scenario of a cell from a document that does not say otherwise.
 fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, ScenarioError> {
     let file: ScenarioFile = document.parse(&scenario_sections())?;
-    debug_assert_eq!(
-        file.schema,
-        file::SCHEMA,
-        "other schemas are refused by Document::new"
-    );
     let section = |table: &str| Section::new(document, table);
     let device = device(&section("device"), &file.device)?;
     let contact = contact(&section("contact"), &file.contact)?;
@@ -123,10 +120,19 @@ fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, Scena
         controller,
         simulation,
         expect: expectations(&section("expect"), &file.expect)?,
-        effects: effects_of(document, &file.effect)?,
+        effects: of_whole(document, &file.effect)?,
         device,
         contact,
     })
+}
+
+/// The effects of a file that may name any.
+pub(super) fn of_whole(
+    document: &Document<'_>,
+    keys: &EffectKeys,
+) -> Result<Vec<PresentEffect>, ScenarioError> {
+    let known: Vec<&'static Effect> = every().collect();
+    effects(document, keys, &known, &blank())
 }
 
 pub(super) fn arm(

@@ -6,7 +6,7 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use crate::device::DeviceParameters;
-use crate::effects::Effect;
+use crate::effects::PresentEffect;
 use crate::sensing::SensingParameters;
 
 pub mod bench;
@@ -16,6 +16,7 @@ pub mod controller;
 mod device;
 pub(crate) mod document;
 mod effect_request;
+pub mod effects;
 pub mod error;
 mod estimator;
 mod file;
@@ -93,7 +94,7 @@ pub struct Scenario {
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
     /// Physics beyond the cell, as a diagnosis writes it into improved.toml, with all its numbers; nothing that is simulated.
-    pub effects: Vec<(&'static Effect, Vec<f64>)>,
+    pub effects: Vec<PresentEffect>,
 }
 
 /// The arm.

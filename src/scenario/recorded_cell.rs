@@ -15,14 +15,13 @@ use super::load;
 use super::sections::recorded_cell_sections;
 use super::workpiece::workpiece;
 use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, WorkpieceScenario};
-use crate::effects::Effect;
+use crate::effects::PresentEffect;
 
-mod effects;
 mod own;
 
-pub(super) use effects::EffectKeys;
-pub use effects::{FoundNumbers, apply, improved_cell_text};
-pub(super) use own::effects_of;
+mod improved;
+
+pub use improved::improved_cell_text;
 
 /// The file.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
@@ -42,7 +41,7 @@ pub(super) struct RecordedCellFile {
     #[serde(default)]
     pub belief: BeliefKeys,
     #[serde(default)]
-    pub effect: EffectKeys,
+    pub effect: super::effects::EffectKeys,
 }
 
 /// `[joints]`.
@@ -82,7 +81,7 @@ pub struct RecordedCell {
     /// Its text.
     text: String,
     /// Effects that the file names, in the order of the catalogue, with all their numbers.
-    pub effects: Vec<(&'static Effect, Vec<f64>)>,
+    pub effects: Vec<PresentEffect>,
     /// Name for people.
     pub title: String,
     /// The robot arm; its servo is in `servo_bandwidth`.
@@ -151,7 +150,7 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let standard = DVec3::new(0.0, 0.0, -9.81);
     Ok(RecordedCell {
         path: path.to_owned(),
-        effects: effects::effects(&document, &file.effect)?,
+        effects: load::of_whole(&document, &file.effect)?,
         text: text.clone(),
         title: section("").text("title", &file.title)?,
         arm: load::arm(&section("arm"), &file.arm)?,

@@ -9,7 +9,9 @@ use super::error::ScenarioError;
 use super::file::{DeviceKeys, SCHEMA};
 use super::load::device;
 use super::rig_file::load_rig;
-use crate::plant::{ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors};
+use crate::plant::{
+    ContactLaw, ContactParameters, Latent, OwnLaw, Periodic, PlantParameters, SensorErrors,
+};
 
 /// What a device brings to a bench.
 pub(super) struct BenchDevice {
@@ -19,6 +21,10 @@ pub(super) struct BenchDevice {
     /// Contact, unless the load gives another.
     pub contact: ContactParameters,
     pub sensor_errors: SensorErrors,
+    /// A term without a name, as a diagnosis found it.
+    pub latent: Option<Latent>,
+    /// Laws of a user's own.
+    pub own: Vec<OwnLaw>,
 }
 
 /// The contact of a load that says nothing of it.
@@ -49,6 +55,8 @@ pub(super) fn bench_device(
             gravity_along_extension: 0.0,
             contact: USUAL_CONTACT,
             sensor_errors: SensorErrors::NONE,
+            latent: None,
+            own: Vec::new(),
         });
     }
     let overrides = Section::new(section.document(), "device.override");
@@ -72,6 +80,8 @@ pub(super) fn bench_device(
         gravity_along_extension: rig.plant.gravity_along_extension,
         contact: rig.plant.contact,
         sensor_errors: rig.plant.sensors,
+        latent: rig.plant.latent,
+        own: rig.plant.own,
     })
 }
 
@@ -80,15 +90,8 @@ fn refuse_without_counterpart(
     section: &Section<'_>,
     plant: &PlantParameters,
 ) -> Result<(), ScenarioError> {
-    if let Some(latent) = &plant.latent {
-        let reason = format!(
-            "it has [latent], a term without a name over {}, which a bench does not have; idc predict takes it",
-            latent.variable.name()
-        );
-        return Err(section.misplaced("model", reason));
-    }
     if plant.sensors.force_delay < 0.0 {
-        let reason = "it has effect.channel_time_offset with a negative offset_s, and a bench that runs reads no force before it is there";
+        let reason = "its channel_time_offset has a negative offset_s, and a bench that runs reads no force before it is there";
         return Err(section.misplaced("model", reason.to_owned()));
     }
     Ok(())

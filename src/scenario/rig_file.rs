@@ -4,20 +4,20 @@
 //!     key = { value = 5.09, tolerance = 0.01 }     believed to lie within 1 % of it
 //!     key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
 //!     [rig]  chain = "moved_piston"                a part of the device ([`crate::plant::Chain`]); only that part's numbers are then asked for
-//!     [effect.coulomb_viscous_friction]            physics beyond the believed model, with all its numbers
+//!     [[effect]]                                   physics beyond the believed model (`super::effects`)
 //!     [latent]                                     physics that no known effect explains (`latent`)
 
 use std::path::{Path, PathBuf};
 
 use super::document::{Document, read_text};
+use super::effects::effects;
 use super::error::ScenarioError;
-use crate::effects::Effect;
+use crate::effects::{PresentEffect, candidates};
 use crate::plant::PlantParameters;
 use crate::plant::Quantity;
 use keys::{RigKeys, sections};
 use values::{check_together, pressure_drift, recordings, sensors};
 
-mod effect;
 mod entry;
 mod improved;
 mod keys;
@@ -28,12 +28,13 @@ mod quantities;
 pub(super) mod tests;
 mod values;
 
-pub use improved::{ImprovedEffect, as_written, improved_text};
+pub use improved::improved_text;
 pub(super) use number::NUMBER_OR_TABLE;
 pub(super) use quantities::{blank, described_numbers};
+pub(super) use values::{checked, plain};
 
 /// Version of the format.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 /// A rig file, checked.
 #[derive(Debug, Clone)]
@@ -57,7 +58,7 @@ pub struct RigFile {
     /// Recording whose inputs are to be predicted.
     pub predict: Option<String>,
     /// Effects that the file names, in the order of the catalogue, with all their numbers.
-    pub effects: Vec<(&'static Effect, Vec<f64>)>,
+    pub effects: Vec<PresentEffect>,
 }
 
 /// A number of the rig that is not exactly known.
@@ -96,13 +97,12 @@ pub fn load_rig(path: &Path) -> Result<RigFile, ScenarioError> {
 pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     let document = Document::new(path, text, SCHEMA)?;
     let keys: RigKeys = document.parse(&sections())?;
-    debug_assert_eq!(keys.schema, SCHEMA, "others are refused by Document::new");
     let mut plant = quantities::blank();
     let tolerances = values::base(&document, &keys, &mut plant)?;
     check_together(&document, &plant)?;
-    let effects = effect::effects(&document, &keys.effect, &plant)?;
-    for (effect, values) in &effects {
-        effect::apply(effect, values, &mut plant);
+    let effects = effects(&document, &keys.effect, &candidates(plant.chain), &plant)?;
+    for effect in &effects {
+        effect.put_into(&mut plant);
     }
     plant.latent = latent::latent(&document, keys.latent.as_ref())?;
     let (rate, noise) = sensors(&document, &keys, plant.chain)?;

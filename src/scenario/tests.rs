@@ -3,6 +3,7 @@
 mod bench;
 mod controller;
 mod device;
+mod effects;
 mod estimator;
 mod messages;
 mod readme;

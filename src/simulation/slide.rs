@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::contact::Touch;
 use crate::device::{Carrier, Device, DeviceState, PistonMotion};
-use crate::plant::ContactParameters;
+use crate::plant::{ContactParameters, ForceTerms};
 
 /// Share of its motion below which a slide says nothing of the force at a touch beside it [1].
 const LEAST_SHARE: f64 = 1e-6;
@@ -30,13 +30,17 @@ pub struct SlideCarrier<'a> {
     pub weight: f64,
     /// Fastest rate of the moving mass on the contact [1/s].
     pub rate: f64,
+    /// How far the surface stands beyond where the part has it, along extension [m].
+    pub beyond: f64,
+    /// Further forces on the slide.
+    pub terms: ForceTerms<'a>,
 }
 
 impl SlideCarrier<'_> {
     /// Penetration [m] and its rate [m/s] at a touch.
     fn penetration(&self, touch: &Touch, time: f64, motion: PistonMotion) -> (f64, f64) {
         let (deviation, rate) = self.contact.deviation(self.start + time);
-        let moved = motion.stroke - self.stroke;
+        let moved = motion.stroke - self.stroke - self.beyond;
         (
             touch.penetration + time * touch.rate + touch.share * moved - deviation,
             touch.rate + touch.share * motion.speed - rate,
@@ -55,7 +59,8 @@ impl Carrier for SlideCarrier<'_> {
     const LOADED: bool = true;
 
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
-        self.weight - self.load(time, motion, touching)
+        let further = self.terms.force(self.start + time, motion);
+        self.weight + further - self.load(time, motion, touching)
     }
 
     fn load(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
@@ -87,9 +92,8 @@ impl Carrier for SlideCarrier<'_> {
     fn rate_within(&self, motion: PistonMotion, reach: f64, dt: f64) -> f64 {
         let nearest = self.contact.least_deviation();
         let meets = |touch: &Touch| {
-            let moved = motion.stroke - self.stroke + reach;
-            let deepest =
-                touch.penetration + dt * touch.rate.abs() + touch.share.abs() * moved.abs();
+            let moved = (motion.stroke - self.stroke + reach).abs() + self.beyond.abs();
+            let deepest = touch.penetration + dt * touch.rate.abs() + touch.share.abs() * moved;
             deepest > nearest
         };
         if self.touches.iter().any(meets) {

@@ -23,7 +23,7 @@ use crate::control::servo::{AxisCommand, Servo, ServoParameters};
 use crate::control::transmission::Motor;
 use crate::device::{DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
-use crate::plant::{RunningSensors, SensorReadings};
+use crate::plant::{ForceTerms, Moment, Port, RunningSensors, SensorReadings};
 use crate::recording::schema::JointSignal;
 use crate::sensing::noise::{Noise, Stream};
 use crate::sensing::{Readings, SensorChain, Truth};
@@ -72,6 +72,8 @@ pub struct Simulation<'a> {
     touches: Vec<Touch>,
     /// Mean forces of the step on them.
     pressed: Vec<(DVec3, f64)>,
+    /// Air that has come in [kg], and how fast it did over the last step [kg/s].
+    entered: (f64, f64),
     /// Acceleration that gravity, the arm and friction gave the slide over the last step [m/s2].
     carried: f64,
     steps: usize,
@@ -151,6 +153,7 @@ impl<'a> Simulation<'a> {
             },
             touches: Vec::new(),
             pressed: Vec::new(),
+            entered: (0.0, 0.0),
             carried: gravity,
             device,
             steps: 0,
@@ -275,6 +278,37 @@ impl<'a> Simulation<'a> {
             stroke: self.motion().stroke,
             weight: mass * self.carried,
             rate: contact.rate(mass),
+            beyond: 0.0,
+            terms: ForceTerms::default(),
+        }
+    }
+
+    /// The same with what else the cell's description has there, over a step [s].
+    fn with_terms<'b>(&'b self, mut carrier: SlideCarrier<'b>, step: f64) -> SlideCarrier<'b> {
+        let plant = &self.cell.plant;
+        if plant.has_terms() {
+            let moment = self.moment(&carrier);
+            carrier.beyond = plant.term(Port::Surface, &moment.ahead(0.5 * step));
+            carrier.terms = ForceTerms::over(plant, &moment);
+        }
+        carrier
+    }
+
+    /// The variables of now. Where the surface stands no one knows but where the tool touches it.
+    fn moment(&self, carrier: &SlideCarrier<'_>) -> Moment {
+        let motion = self.motion();
+        let forces = self.touches.iter();
+        Moment {
+            time: carrier.start,
+            stroke: motion.stroke,
+            speed: motion.speed,
+            pressures: self.cell.device.pressures(&self.device, motion.stroke),
+            mass_flow: self.entered.1,
+            set_pressure: self.answer,
+            surface: f64::NAN,
+            contact_force: forces
+                .map(|touch| carrier.normal_force(touch, 0.0, motion))
+                .sum(),
         }
     }
 
@@ -285,7 +319,10 @@ impl<'a> Simulation<'a> {
         let substeps = cell.scenario.simulation.substeps;
         let mut pressed = std::mem::take(&mut self.pressed);
         let mut device = self.device.clone();
-        let carrier = self.carrier(start);
+        let carrier = self.with_terms(self.carrier(start), dt);
+        if cell.plant.has_terms() {
+            device.disturbance = cell.plant.disturbance(&self.moment(&carrier), dt);
+        }
         let step = if cell.scenario.device.locked {
             cell.device
                 .advance(&mut device, set_pressure, motion, dt, substeps);
@@ -307,6 +344,8 @@ impl<'a> Simulation<'a> {
                 &mut pressed,
             )
         };
+        let entered = device.air.entered;
+        self.entered = (entered, (entered - self.entered.0) / dt);
         self.device = device;
         self.pressed = pressed;
         step
@@ -421,7 +460,8 @@ impl<'a> Simulation<'a> {
         let time = self.steps as f64 * cell.scenario.simulation.step;
         let motion = self.motion();
         let stroke = motion.stroke;
-        let carrier = self.carrier(time);
+        let carrier = self.with_terms(self.carrier(time), 0.0);
+        let further = carrier.terms.force(time, motion);
         let mut normal_force = 0.0;
         let mut normal = DVec3::ZERO;
         let mut load = 0.0;
@@ -438,15 +478,18 @@ impl<'a> Simulation<'a> {
         let pressures = cell.device.pressures(&self.device, stroke);
         let mass = cell.device.parameters().moving_mass;
         if !cell.scenario.device.locked {
-            self.slide_force = cell.device.piston_force(&self.device, motion);
+            self.slide_force = cell.device.piston_force(&self.device, motion) + further;
         }
         let acceleration = (self.slide_force - load) / mass + self.carried;
         let there = SensorReadings {
             force: force_on_part.dot(reference.axis),
             stroke,
-            regulator_pressure: self.device.regulator.outlet,
+            regulator_pressure: self.device.regulator.outlet + self.device.disturbance.outlet,
         };
-        let read = self.errors.read(time, &there, acceleration);
+        let mut read = self.errors.read(time, &there, acceleration);
+        if cell.plant.has_terms() {
+            read.add(cell.plant.reading_terms(&self.moment(&self.carrier(time))));
+        }
         self.readings = self.sensors.measure(
             time,
             &Truth {

@@ -77,8 +77,8 @@ pub(super) fn recorded(file: &Path) -> Result<Report, AppError> {
         "servo",
         format!("{} Hz, critically damped", shown(scenario.servo_bandwidth)),
     );
-    for (effect, _) in &scenario.effects {
-        report.fact("believed", effect.name);
+    for present in &scenario.effects {
+        report.fact("believed", present.effect.name);
     }
     files(&mut report, &scenario.arm, &scenario.workpiece);
     report.next(format!(

@@ -75,8 +75,8 @@ fn describe(report: &mut Report, rig: &RigFile) {
     for (index, chunk) in tolerances.chunks(2).enumerate() {
         report.fact(if index == 0 { "believed" } else { "" }, chunk.join(", "));
     }
-    for (effect, _) in &rig.effects {
-        report.fact("effect", effect.name);
+    for present in &rig.effects {
+        report.fact("effect", present.effect.name);
     }
     if let Some(latent) = &plant.latent {
         let variable = latent.variable.name();

@@ -12,7 +12,7 @@ use crate::diagnosis::free::{Free, Prior};
 use crate::diagnosis::joint_friction::{DriveLoad, JointFriction, joint_friction};
 use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, hold};
 use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
-use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS};
+use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, sought};
 use crate::plant::{CHANNELS, ContactLaw, PlantInputs, PlantParameters, Quantity};
 use crate::recording::csv::{CellRecording, read_cell_csv};
 use crate::recording::parquet::read_parquet;
@@ -136,7 +136,8 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppErro
     } else {
         servo_link(&axes, noise, bandwidth)
     };
-    let believed = cell.plant();
+    let mut believed = cell.plant();
+    let own = sought(&mut believed);
     let shown = servo.as_ref().and_then(|servo| servo.shown(&believed));
     let bandwidth = match (&servo, &shown) {
         (Some(servo), Some(_)) => servo.bandwidth,
@@ -171,7 +172,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppErro
             noise: [pressure, stroke, force, UNMEASURED],
             recordings,
             unseen,
-            candidates: candidates(cell),
+            candidates: candidates(cell).into_iter().chain(own).collect(),
             shown: shown
                 .into_iter()
                 .chain(frictions.iter().filter_map(|f| f.shown(&believed)))

@@ -23,15 +23,15 @@ use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::recorded::{recorded_of, run_of};
 use crate::diagnosis::servo::{Axes, ServoLink};
-use crate::effects::candidates;
+use crate::effects::{PresentEffect, candidates, sought};
 use crate::plant::{Chain, Channel, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
 use crate::recording::scene::Scene;
 use crate::replay::LoadedCell;
-use crate::scenario::RecordedCell;
-use crate::scenario::recorded_cell::{FoundNumbers, improved_cell_text};
-use crate::scenario::rig_file::{ImprovedEffect, RigFile, from_text, improved_text, load_rig};
+use crate::scenario::effects::WrittenEffect;
+use crate::scenario::recorded_cell::improved_cell_text;
+use crate::scenario::rig_file::{RigFile, from_text, improved_text, load_rig};
 
 const RIG: &str = "rig.toml";
 
@@ -158,7 +158,11 @@ impl Prepared {
                 let plant = from_text(Path::new(IMPROVED), &text)?.plant;
                 (text, plant)
             }
-            Model::Cell { cell, .. } => (improved_cell(&cell.scenario, &diagnosis)?, found.clone()),
+            Model::Cell { cell, .. } => {
+                let scenario = &cell.scenario;
+                let effects = written(&scenario.effects, &diagnosis);
+                (improved_cell_text(scenario, &effects)?, found.clone())
+            }
         };
         let prediction = prediction(&case, &plant)?;
         let picture = picture(&diagnosis)?;
@@ -404,23 +408,43 @@ fn cell_case(folder: &Path, cell: &LoadedCell) -> Result<(Model, Case), AppError
     Ok((model, read.case))
 }
 
-/// improved.toml of a cell: its scenario file with what was found.
-fn improved_cell(scenario: &RecordedCell, diagnosis: &Diagnosis) -> Result<String, AppError> {
-    let effects: Vec<FoundNumbers> = diagnosis
-        .estimates
-        .effects
-        .iter()
-        .map(|(effect, numbers)| {
-            let own = effect.parameters(&diagnosis.believed);
-            let own = |n: &&Number| own.iter().any(|p| p.quantity.name == n.name);
-            let numbers = numbers.iter().filter(own);
-            (
-                effect.name,
-                numbers.map(|n| (n.name, n.value, n.interval)).collect(),
-            )
+/// The effects of an improved file: what the believed one names already stays, unless what was found stands in its place.
+fn written<'a>(present: &'a [PresentEffect], diagnosis: &'a Diagnosis) -> Vec<WrittenEffect<'a>> {
+    let found = &diagnosis.estimates.effects;
+    let kept = present.iter().filter_map(|present| {
+        let effect = present.effect;
+        if found.iter().any(|(new, _)| new.excludes(effect)) || is_sought(present) {
+            return None;
+        }
+        let parameters = effect.parameters(&diagnosis.believed);
+        let pairs = parameters.iter().zip(&present.values);
+        Some(WrittenEffect {
+            effect,
+            law: present.law.as_deref(),
+            parameters: pairs
+                .map(|(p, value)| (p.quantity.name, *value, None))
+                .collect(),
         })
-        .collect();
-    Ok(improved_cell_text(scenario, &effects)?)
+    });
+    let new = found.iter().map(|(effect, numbers)| {
+        let parameters = effect.parameters(&diagnosis.believed);
+        let own = |n: &&Number| parameters.iter().any(|p| p.quantity.name == n.name);
+        let numbers = numbers.iter().filter(own);
+        WrittenEffect {
+            effect,
+            law: diagnosis.law_of(effect),
+            parameters: numbers
+                .map(|n| (n.name, n.value, Some(n.interval)))
+                .collect(),
+        }
+    });
+    kept.chain(new).collect()
+}
+
+/// Is it a law whose numbers were sought? Then it stands in the file only where they were found.
+fn is_sought(present: &PresentEffect) -> bool {
+    let law = present.law.as_ref();
+    law.is_some_and(|law| law.constants.iter().any(|c| c.range.is_some()))
 }
 
 fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
@@ -436,8 +460,10 @@ fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
         })
     };
     let tolerances = rig.tolerances.iter();
+    let mut believed = rig.plant.clone();
+    let own = sought(&mut believed);
     Ok(Case {
-        believed: rig.plant.clone(),
+        believed,
         tolerated: tolerances
             .map(|t| tolerated(t.quantity, t.value, t.tolerance))
             .chain(case::of_link(
@@ -452,7 +478,7 @@ fn case_of(rig: &RigFile, folder: &Path) -> Result<Case, AppError> {
             .map(read)
             .collect::<Result<_, _>>()?,
         unseen: rig.predict.as_ref().map(read).transpose()?,
-        candidates: candidates(rig.plant.chain),
+        candidates: candidates(rig.plant.chain).into_iter().chain(own).collect(),
         shown: Vec::new(),
     })
 }
@@ -465,35 +491,6 @@ fn improved(rig: &RigFile, diagnosis: &Diagnosis) -> String {
         .iter()
         .map(|n| (n.name, n.value, n.interval[0], n.interval[1]))
         .collect();
-    let mut effects: Vec<ImprovedEffect> = Vec::new();
-    // What the rig file names already stays, unless what was found stands in its place.
-    for (effect, values) in &rig.effects {
-        if estimates
-            .effects
-            .iter()
-            .all(|(new, _)| !new.excludes(effect))
-        {
-            let parameters = effect.parameters(&diagnosis.believed);
-            let pairs = parameters.iter().zip(values);
-            effects.push(ImprovedEffect {
-                effect,
-                parameters: pairs
-                    .map(|(p, value)| (p.quantity.name, *value, None))
-                    .collect(),
-            });
-        }
-    }
-    for (effect, numbers) in &estimates.effects {
-        let parameters = effect.parameters(&diagnosis.believed);
-        let own = |n: &&Number| parameters.iter().any(|p| p.quantity.name == n.name);
-        effects.push(ImprovedEffect {
-            effect,
-            parameters: numbers
-                .iter()
-                .filter(own)
-                .map(|n| (n.name, n.value, Some(n.interval)))
-                .collect(),
-        });
-    }
+    let effects = written(&rig.effects, diagnosis);
     improved_text(rig, &tolerated, &effects, diagnosis.best().unlisted())
 }

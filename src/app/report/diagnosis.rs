@@ -8,9 +8,7 @@ use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict}
 use crate::diagnosis::comparison::{Compared, Comparison};
 use crate::diagnosis::details::remaining_errors;
 use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::words::{
-    CHANNEL_WORDS, capital, in_unit, of_column, percent, spoken, yardstick,
-};
+use crate::diagnosis::words::{CHANNEL_WORDS, capital, in_unit, of_column, percent, yardstick};
 use crate::effects::meaning;
 use crate::page::{Block, Cell, Fact, Page, Section, Strip, Table, Tone};
 use crate::plant::CHANNELS;
@@ -74,8 +72,8 @@ fn told<'a>(answer: &Answer, title: &str, heading: &str) -> Option<Section<'a>> 
 /// What each effect is, in words.
 fn lead(answer: &Answer) -> Vec<String> {
     let said = |effect: &FoundEffect| {
-        let words = meaning(&effect.name);
-        (words != meaning("")).then(|| capital(words) + ".")
+        let words = effect.meaning();
+        (words != meaning("")).then(|| capital(&words) + ".")
     };
     let known = answer.effects.iter().filter(|e| e.name != UNLISTED);
     let mut lead: Vec<String> = known.filter_map(said).collect();
@@ -161,7 +159,7 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
         .fold(0.0, |most: f64, e| most.max(e.abs()));
     let widest = widest.clamp(1e-6, 1.0);
     let rows = known.iter().map(|(effect, (name, estimate))| {
-        let (words, unit, factor) = spoken(name);
+        let (words, unit, factor) = effect.spoken(name);
         let number = |v: f64| Cell::from(significant(factor * v, 4));
         let [low, high] = relative(estimate);
         // Which joint is known or not; it has no interval.
@@ -180,7 +178,7 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
             unless_certain(number(estimate.high)),
             Cell::from(match estimate.at_limit {
                 Some(_) => format!("{unit}, at the end of its range"),
-                None => unit.to_owned(),
+                None => unit,
             }),
             match low.is_finite() && high.is_finite() {
                 true => unless_certain(Cell::Interval([-widest, low, 0.0, high, widest])),

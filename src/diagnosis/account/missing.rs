@@ -1,5 +1,6 @@
 //! What is missing, how much of the mismatch it explains, and what is left.
 
+use super::super::answer::FoundLaw;
 use super::super::details::{IN_TURN, PredictionError, RemainingError};
 use super::super::diagnose::{Diagnosis, spoken_name};
 use super::super::estimate::Limit;
@@ -18,11 +19,21 @@ impl Diagnosis {
     pub(super) fn what_is_missing(&self) -> Vec<String> {
         let mut paragraphs = Vec::new();
         for (effect, numbers) in &self.estimates.effects {
+            let law = self.law_of(effect);
             let numbers: Vec<String> = numbers
                 .iter()
                 .filter(|n| n.reported || self.is_of_link())
                 .map(|n| {
-                    let (words, unit, factor) = spoken(n.name);
+                    let constant =
+                        law.and_then(|law| law.constants.iter().find(|c| c.name == n.name));
+                    let (words, unit, factor) = match constant {
+                        Some(constant) => (
+                            format!("{} =", n.name),
+                            constant.unit.unwrap_or_default(),
+                            1.0,
+                        ),
+                        None => spoken(n.name),
+                    };
                     let interval = n.interval.map(|end| end * factor);
                     let value = with_interval(n.value * factor, interval, unit);
                     match n.at_limit {
@@ -38,8 +49,14 @@ impl Diagnosis {
             paragraphs.push(format!(
                 "{} ({subsystem}): {}. {}. Probability {}; the intervals are those of 95 %.",
                 spoken_name(effect.name),
-                meaning(effect.name),
-                capital(&listed(&numbers)),
+                law.map_or_else(
+                    || meaning(effect.name).to_owned(),
+                    |law| FoundLaw::of(law).words()
+                ),
+                match law {
+                    None => capital(&listed(&numbers)),
+                    Some(_) => format!("With {}", listed(&numbers)),
+                },
                 probability(self.confidence(effect.name))
             ));
         }

@@ -38,6 +38,7 @@ fn plant() -> PlantParameters {
         cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
         latent: None,
+        own: Vec::new(),
         chain: Chain::Whole,
         links: LinkParameters::NONE,
     }

@@ -5,8 +5,7 @@ use super::super::document::Document;
 use super::super::error::ScenarioError;
 use super::super::sensing::white;
 use super::super::{BurrScenario, Misplacement, Scenario};
-use super::{EffectKeys, RecordedCell, effects};
-use crate::effects::Effect;
+use super::RecordedCell;
 use crate::sensing::{Channel, FilterParameters};
 
 /// Relative tolerance of a number that a scenario states: none of a data sheet is truer.
@@ -94,12 +93,4 @@ fn noise<S>(section: &Section<'_>, channel: &Channel<S>, usual: f64) -> Result<f
             Err(section.refuse("kind", "\"real\"".to_owned(), expected.to_owned()))
         }
     }
-}
-
-/// The effects that the scenario of a cell names.
-pub(in super::super) fn effects_of(
-    document: &Document<'_>,
-    keys: &EffectKeys,
-) -> Result<Vec<(&'static Effect, Vec<f64>)>, ScenarioError> {
-    effects::effects(document, keys)
 }

@@ -1,29 +1,11 @@
 //! An improved rig file: the believed one with the values that a diagnosis found, in its own order and with its own comments, and the physics found below them.
 
-use std::fmt::Write as _;
-
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
+use super::super::effects::{WrittenEffect, append, as_written, remove_effects};
 use super::values::plain;
 use super::{RigFile, latent};
-use crate::effects::{Effect, meaning};
 use crate::plant::Latent;
-
-/// An effect with all its numbers, reported or not, as [`Effect::parameters`] lists them.
-#[derive(Debug, Clone)]
-pub struct ImprovedEffect {
-    /// The effect.
-    pub effect: &'static Effect,
-    /// Name, value and, where it is known, 95 % interval of each [SI].
-    pub parameters: Vec<(&'static str, f64, Option<[f64; 2]>)>,
-}
-
-/// The value that a reader of the file gets: nine significant digits. Six of a frequency of 120 Hz turn its phase by 0.04 rad in ten seconds, and the model in
-/// the file is then another one than that whose errors the report states.
-#[must_use]
-pub fn as_written(value: f64) -> f64 {
-    format!("{value:.8e}").parse().unwrap_or(value)
-}
 
 /// Text of the improved file. `tolerated` are key (as in [`super::Tolerance`]), value, low and high of what was moved; what is not among them stands as it did.
 /// `effects` and `unnamed` are all that the improved rig has.
@@ -31,7 +13,7 @@ pub fn as_written(value: f64) -> f64 {
 pub fn improved_text(
     rig: &RigFile,
     tolerated: &[(&str, f64, f64, f64)],
-    effects: &[ImprovedEffect],
+    effects: &[WrittenEffect<'_>],
     unnamed: Option<&Latent>,
 ) -> String {
     let mut document: DocumentMut = rig
@@ -43,7 +25,9 @@ pub fn improved_text(
             improve(&mut document[table][key], *value, [*low, *high]);
         }
     }
-    document.remove("effect");
+    if !(effects.is_empty() && rig.effects.is_empty()) {
+        remove_effects(&mut document);
+    }
     document.remove(latent::TABLE);
     let mut text = document.to_string();
     if !text.ends_with('\n') {
@@ -76,22 +60,4 @@ fn number_of(value: f64) -> Value {
     plain(as_written(value))
         .parse()
         .unwrap_or_else(|_| value.into())
-}
-
-fn append(text: &mut String, improved: &ImprovedEffect) {
-    let name = improved.effect.name;
-    // Writing into a text cannot fail.
-    let _ = writeln!(text, "\n# Found: {}.\n[effect.{name}]", meaning(name));
-    for (key, value, interval) in &improved.parameters {
-        let value = plain(as_written(*value));
-        let _ = match interval {
-            None => writeln!(text, "{key} = {value}"),
-            Some([low, high]) => writeln!(
-                text,
-                "{key} = {{ value = {value}, low = {}, high = {} }}",
-                plain(as_written(*low)),
-                plain(as_written(*high))
-            ),
-        };
-    }
 }

@@ -15,6 +15,7 @@ pub(super) type Numbers = BTreeMap<String, Number>;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RigKeys {
+    #[expect(dead_code, reason = "checked by Document::new")]
     pub schema: u32,
     #[serde(default)]
     pub rig: PartKeys,
@@ -35,7 +36,7 @@ pub(super) struct RigKeys {
     #[serde(default)]
     pub recordings: RecordingsKeys,
     #[serde(default)]
-    pub effect: BTreeMap<String, Numbers>,
+    pub effect: super::super::effects::EffectKeys,
     pub latent: Option<BTreeMap<String, Entry>>,
 }
 
@@ -86,7 +87,7 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("sensors", &["rate_hz", "force_n", "stroke_m", "regulator_pressure_pa", "acceleration_m_per_s2", "regulator_pressure_drift_pa_per_s"]),
     ];
     let with_accuracy = [
-        "cylinder.*", "end_stop.*", "regulator.*", "valve.*", "gas.*", "contact.*", "sensors.*", "effect.*",
+        "cylinder.*", "end_stop.*", "regulator.*", "valve.*", "gas.*", "contact.*", "sensors.*",
     ];
     sections.extend(with_accuracy.map(|tables| (tables, keys::<NumberKeys>())));
     sections

@@ -16,10 +16,10 @@ use std::fmt::Write as _;
 
 use super::super::check::Section;
 use super::super::document::{Document, join};
+use super::super::effects::as_written;
 use super::super::error::ScenarioError;
 use super::super::suggestion::nearest;
 use super::entry::Entry;
-use super::improved::as_written;
 use super::values::plain;
 use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, Port, Variable};
 

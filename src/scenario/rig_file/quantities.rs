@@ -158,6 +158,7 @@ pub(in super::super) fn blank() -> PlantParameters {
         cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
         latent: None,
+        own: Vec::new(),
         chain: Chain::Whole,
         links: LinkParameters::NONE,
     }
@@ -172,7 +173,7 @@ mod tests {
 
     #[test]
     fn the_file_to_start_from_has_every_number_with_its_unit_and_range() {
-        let document = Document::new(std::path::Path::new("rig.toml"), TEMPLATE, 1).unwrap();
+        let document = Document::new(std::path::Path::new("rig.toml"), TEMPLATE, 2).unwrap();
         let (drift_table, drift_key, _) = DRIFT;
         for (table, key, text, [low, high]) in described_numbers() {
             if (table.as_str(), key.as_str()) == (drift_table, drift_key) {

@@ -1,5 +1,6 @@
 //! Rig files that are right, and what is said of those that are not.
 
+use crate::scenario::effects::{WrittenEffect, as_written};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -175,7 +176,7 @@ fn effects_become_part_of_the_rig_and_are_listed() {
     let listed: Vec<(&str, &[f64])> = rig
         .effects
         .iter()
-        .map(|(effect, values)| (effect.name, values.as_slice()))
+        .map(|present| (present.effect.name, present.values.as_slice()))
         .collect();
     assert_eq!(
         listed,
@@ -349,7 +350,11 @@ fn values_that_are_wrong_are_refused_with_what_was_expected() {
         "\"stairs.csv\"",
         "44:22: `recordings.fit[1]` is \"stairs.csv\" again, expected each recording once",
     );
-    refused("schema = 1", "schema = 2", "2:10: schema is 2, expected 1");
+    refused(
+        "schema = 1",
+        "schema = 3",
+        "2:10: schema is 3, expected 1 to 2",
+    );
     refused(
         "offset_s = 0.012",
         "offset_s = 12",
@@ -358,12 +363,12 @@ fn values_that_are_wrong_are_refused_with_what_was_expected() {
     refused(
         "[effect.channel_time_offset]\noffset_s = 0.012",
         "[effect.stribeck_friction]\ncoulomb_force_n = 8\nstatic_force_n = 12\nstribeck_velocity_m_per_s = 0.01\nviscous_coefficient_n_s_per_m = 9\npresliding_displacement_m = 4e-5",
-        "47:9: `effect.stribeck_friction` cannot stand here: effect.coulomb_viscous_friction stands in its place",
+        "47:9: `effect.stribeck_friction` cannot stand here: coulomb_viscous_friction stands in its place already",
     );
 }
 
 /// The whole catalogue, each at a start of its own, groups apart.
-fn found() -> Vec<ImprovedEffect> {
+fn found() -> Vec<WrittenEffect<'static>> {
     let rig = read(RIG);
     let periodic = [3.0, 37.0];
     let clues = crate::effects::Clues {
@@ -387,7 +392,11 @@ fn found() -> Vec<ImprovedEffect> {
                     (parameter.quantity.name, value, interval.filter(|_| i == 0))
                 })
                 .collect();
-            ImprovedEffect { effect, parameters }
+            WrittenEffect {
+                effect,
+                law: None,
+                parameters,
+            }
         })
         .collect()
 }
@@ -412,7 +421,10 @@ fn an_improved_file_reads_back_as_the_rig_that_was_found() {
             .iter()
             .map(|p| as_written(p.1))
             .collect();
-        effect::apply(improved.effect, &values, &mut expected);
+        let parameters = improved.effect.parameters(&expected);
+        for (parameter, value) in parameters.iter().zip(values) {
+            parameter.quantity.set(&mut expected, value);
+        }
     }
     let text = improved_text(&rig, &tolerated, &found, None);
     let improved = read(&text);
@@ -432,7 +444,8 @@ fn an_improved_file_reads_back_as_the_rig_that_was_found() {
 #[test]
 fn an_improved_file_differs_from_the_believed_one_by_the_diagnosis_alone() {
     let rig = read(RIG);
-    let friction = ImprovedEffect {
+    let friction = WrittenEffect {
+        law: None,
         effect: crate::effects::CATALOGUE
             .iter()
             .find(|effect| effect.name == "coulomb_viscous_friction")
@@ -452,9 +465,13 @@ fn an_improved_file_differs_from_the_believed_one_by_the_diagnosis_alone() {
     let expected = RIG.replace(
         "{ value = 1.454e-05, tolerance = 0.1 }   # each chamber",
         "{ value = 1.47123457e-5, low = 1.45e-5, high = 1.5e-5 }   # each chamber",
-    ) + "
+    );
+    // What has effects is of the version that has them as a list.
+    let expected = expected.replace("schema = 1", "schema = 2")
+        + "
 # Found: seals and guides rub: a dry part and one that grows with speed.
-[effect.coulomb_viscous_friction]
+[[effect]]
+name = \"coulomb_viscous_friction\"
 coulomb_force_n = { value = 13.2, low = 12.8, high = 13.6 }
 viscous_coefficient_n_s_per_m = 90.1234568
 presliding_displacement_m = 4.12345679e-5

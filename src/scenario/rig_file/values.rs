@@ -131,7 +131,7 @@ fn find<'a>(
 }
 
 /// A value that is plausible in the unit of its key.
-pub(super) fn checked(
+pub(in super::super) fn checked(
     section: &Section<'_>,
     key: &str,
     value: f64,
@@ -154,7 +154,7 @@ pub(super) fn checked(
 }
 
 /// A number in the shorter of its usual forms.
-pub(super) fn plain(value: f64) -> String {
+pub(in super::super) fn plain(value: f64) -> String {
     let usual = value == 0.0 || (1e-3..1e6).contains(&value.abs());
     if usual || !value.is_finite() {
         value.to_string()

@@ -19,7 +19,7 @@ pub fn schema() -> Value {
     let chains = Chain::ALL.map(Chain::name);
     tables.insert(
         "schema".to_owned(),
-        json!({ "const": 1, "description": "Version of this format." }),
+        json!({ "enum": [1, 2], "description": "Version of this format." }),
     );
     tables.insert(
         "rig".to_owned(),
@@ -50,7 +50,8 @@ pub fn schema() -> Value {
             "additionalProperties": false,
         }),
     );
-    tables.insert("effect".to_owned(), effects());
+    let effects = Chain::ALL.into_iter().flat_map(candidates);
+    tables.insert("effect".to_owned(), super::super::effects::schema(effects));
     tables.insert(
         "latent".to_owned(),
         json!({ "type": "object", "description": "Physics that no known effect explains, as a diagnosis writes it." }),
@@ -59,7 +60,6 @@ pub fn schema() -> Value {
         "$schema": DIALECT,
         "title": "A rig file of idc: a device, its contact and its sensors as their owner believes them to be, in SI",
         "type": "object",
-        "definitions": { "number": number("A number of the effect, in the unit that its name ends with.", None) },
         "properties": tables,
         "required": ["schema"],
         "additionalProperties": false,
@@ -99,22 +99,4 @@ fn number(text: &str, range: Option<[f64; 2]>) -> Value {
             },
         ],
     })
-}
-
-/// `[effect.NAME]`, those of every part of a device.
-fn effects() -> Value {
-    let mut names = Map::new();
-    for effect in Chain::ALL.into_iter().flat_map(candidates) {
-        let mut properties = Map::new();
-        for parameter in effect.parameters(&super::super::rig_file::blank()) {
-            properties.insert(
-                parameter.quantity.name.to_owned(),
-                json!({ "$ref": "#/definitions/number" }),
-            );
-        }
-        names.insert(effect.name.to_owned(), table_of(properties));
-    }
-    let mut effects = table_of(names);
-    effects["description"] = "Physics beyond the believed model, as a diagnosis writes it.".into();
-    effects
 }

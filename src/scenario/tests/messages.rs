@@ -58,9 +58,9 @@ fn columns_count_characters() {
 fn another_schema_is_refused_before_its_unknown_keys() {
     refused(
         "schema = 1",
-        "schema = 2\nwarp = 1",
+        "schema = 3\nwarp = 1",
         "1:10",
-        "schema is 2, expected 1",
+        "schema is 3, expected 1 to 2",
     );
     refused(
         "schema = 1",

@@ -303,7 +303,7 @@ fn a_fault_in_the_device_model_is_placed_in_that_file() {
             "bore = 32",
             "unknown key `device.bore`; the key is `bore_mm`, in mm",
         ),
-        ("schema = 1", "schema = 3", "schema is 3, expected 1"),
+        ("schema = 2", "schema = 3", "schema is 3, expected 1 to 2"),
         (
             "[device]",
             "[devise]",

@@ -1,6 +1,8 @@
 //! `key = value` put into a TOML document, wherever the key's table or list stands in it.
 
-use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
+use toml_edit::{ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
+
+use crate::effects::vocabulary;
 
 /// A dotted key and the value that it is to have. List elements are counted from 0, as in `command[0].force_n`; a name with a dot stands in quotes.
 #[derive(Debug, Clone)]
@@ -151,6 +153,14 @@ fn put(item: &mut Item, path: &str, steps: &[Step], value: &Value) -> Result<(),
         return Ok(());
     };
     match step {
+        Step::Name(name) if item.is_array_of_tables() => {
+            let index = named(item, name);
+            let own = format!("{path}.{name}");
+            let mut element = taken(item, path, index)?;
+            let done = put(&mut element, &own, rest, value);
+            give_back(item, index, element);
+            done
+        }
         Step::Name(name) => {
             let inline = item.is_inline_table();
             let table = item.as_table_like_mut();
@@ -161,7 +171,13 @@ fn put(item: &mut Item, path: &str, steps: &[Step], value: &Value) -> Result<(),
             };
             if !table.contains_key(name) {
                 // Filled below.
-                table.insert(name, empty(rest, inline));
+                let list = path == EFFECTS && rest.len() == 2;
+                let new = if list {
+                    Item::ArrayOfTables(ArrayOfTables::new())
+                } else {
+                    empty(rest, inline)
+                };
+                table.insert(name, new);
             }
             match table.get_mut(name) {
                 Some(inner) => put(inner, &path, rest, value),
@@ -176,6 +192,32 @@ fn put(item: &mut Item, path: &str, steps: &[Step], value: &Value) -> Result<(),
             done
         }
     }
+}
+
+/// Tables that a list has by their names.
+const EFFECTS: &str = "effect";
+
+/// Place of the effect of a name in a list of them, put at its end where there is none.
+fn named(item: &mut Item, name: &str) -> usize {
+    let Some(tables) = item.as_array_of_tables_mut() else {
+        return 0;
+    };
+    let (kind, joint) = vocabulary(name);
+    let joint = joint.map(|joint| joint as i64);
+    let is_it = |table: &Table| {
+        let own = table.get("name").and_then(Item::as_str);
+        own == Some(kind) && table.get("joint").and_then(Item::as_integer) == joint
+    };
+    if let Some(place) = tables.iter().position(is_it) {
+        return place;
+    }
+    let mut table = Table::new();
+    table.insert("name", toml_edit::value(kind));
+    if let Some(joint) = joint {
+        table.insert("joint", toml_edit::value(joint));
+    }
+    tables.push(table);
+    tables.len() - 1
 }
 
 /// What is put where nothing stands: the value comes, or a table for it.
@@ -291,6 +333,30 @@ at_s = 1
         ] {
             assert_eq!(after(key, text).unwrap(), TEXT.replace(from, to), "{key}");
         }
+    }
+
+    #[test]
+    fn an_effect_is_told_by_its_name_and_joint() {
+        let mut document: DocumentMut = TEXT.parse().unwrap();
+        let mut put = |key: &str, value: f64| {
+            KeyValue::number(key, value).apply(&mut document).unwrap();
+        };
+        put("effect.tool_runout.sine_m", 0.25);
+        put("effect.joint_friction_3.friction_n_m", 20.0);
+        put("effect.tool_runout.frequency_hz", 120.0);
+        put("effect.joint_friction_3.friction_n_m", 21.0);
+        let expected = "
+[[effect]]
+name = \"tool_runout\"
+sine_m = 0.25
+frequency_hz = 120
+
+[[effect]]
+name = \"joint_friction\"
+joint = 3
+friction_n_m = 21
+";
+        assert_eq!(document.to_string(), TEXT.to_owned() + expected);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::words::{capital, of_column, percent, spoken, yardstick};
+use crate::diagnosis::words::{capital, of_column, percent, yardstick};
 use crate::quantity::significant;
 
 /// Verdict, numbers, prediction, and the account.
@@ -48,7 +48,7 @@ fn effects(answer: &Answer) -> String {
         // A string takes whatever is written to it.
         let _ = writeln!(rows, "| **{name}** | probability | {probability} |");
         for (name, estimate) in &effect.parameters {
-            let (words, unit, factor) = spoken(name);
+            let (words, unit, factor) = effect.spoken(name);
             let number = |value: f64| significant(factor * value, 4);
             let [low, value, high] = [estimate.low, estimate.value, estimate.high];
             // Which of several it is, such as a joint, has no interval.

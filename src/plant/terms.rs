@@ -1,0 +1,76 @@
+//! What acts at the ports of a rig beside its device, contact and sensors: a term without a name, and laws of a user's own.
+
+use super::latent::{Moment, Port};
+use super::parameters::PlantParameters;
+use crate::device::{Disturbance, PistonMotion};
+
+/// Further forces on the piston over a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ForceTerms<'a> {
+    /// The description that has them, with the moment at the start of the step; none where there are none.
+    of: Option<(&'a PlantParameters, Moment)>,
+}
+
+impl<'a> ForceTerms<'a> {
+    /// Those of a description over a step that starts at a moment.
+    pub fn over(plant: &'a PlantParameters, moment: &Moment) -> Self {
+        Self {
+            of: plant.acts_at(Port::PistonForce).then_some((plant, *moment)),
+        }
+    }
+
+    /// Their sum along extension [N] at a time [s] and a motion; what else they depend on is held.
+    #[inline]
+    pub fn force(&self, time: f64, motion: PistonMotion) -> f64 {
+        self.of.map_or(0.0, |(plant, held)| {
+            let moment = Moment {
+                time,
+                stroke: motion.stroke,
+                speed: motion.speed,
+                ..held
+            };
+            plant.term(Port::PistonForce, &moment)
+        })
+    }
+}
+
+impl PlantParameters {
+    /// Does anything act there?
+    pub fn acts_at(&self, port: Port) -> bool {
+        let latent = self.latent.as_ref().is_some_and(|l| l.port == port);
+        latent || self.own.iter().any(|law| law.acts && law.text.port == port)
+    }
+
+    /// Does anything act at any port?
+    pub fn has_terms(&self) -> bool {
+        self.latent.is_some() || self.own.iter().any(|law| law.acts)
+    }
+
+    /// What acts at a port at a moment, in the port's unit.
+    pub fn term(&self, port: Port, moment: &Moment) -> f64 {
+        let latent = self.latent.iter().filter(|latent| latent.port == port);
+        let own = self.own.iter().filter(|law| law.text.port == port);
+        latent.map(|latent| latent.at(moment)).sum::<f64>()
+            + own.map(|law| law.at(moment)).sum::<f64>()
+    }
+
+    /// What acts on the device over a step, held at its value in the middle; `moment` is the step's start and `step` its length [s].
+    pub fn disturbance(&self, moment: &Moment, step: f64) -> Disturbance {
+        let middle = moment.ahead(0.5 * step);
+        Disturbance {
+            outlet: self.term(Port::OutletPressure, &middle),
+            mass_flows: [Port::FirstChamberFlow, Port::SecondChamberFlow]
+                .map(|port| self.term(port, &middle)),
+        }
+    }
+
+    /// What it adds to the readings of pressure, stroke and force at a moment.
+    pub fn reading_terms(&self, moment: &Moment) -> [f64; 3] {
+        [
+            Port::PressureReading,
+            Port::StrokeReading,
+            Port::ForceReading,
+        ]
+        .map(|port| self.term(port, moment))
+    }
+}
