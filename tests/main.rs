@@ -12,6 +12,7 @@ mod convergence;
 mod design;
 mod determinism;
 mod diagnose;
+mod effects;
 mod equations;
 mod estimator;
 mod first_diagnosis;

@@ -36,6 +36,9 @@ enum Command {
     /// Explain a file without running it: what it describes, what would be done, what is missing.
     #[command(after_help = super::check::EXAMPLES)]
     Check(super::check::CheckArguments),
+    /// List the physics that a model may lack, explain an effect, draw what it looks like.
+    #[command(after_help = super::effects::EXAMPLES)]
+    Effects(super::effects::EffectsArguments),
     /// Write a commented file to start from: a cell, a rig file or an import map.
     #[command(after_help = super::new::EXAMPLES)]
     New(super::new::NewArguments),
@@ -145,6 +148,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
         Command::Run(arguments) => super::run::run(arguments),
         Command::Check(arguments) => super::check::run(arguments),
+        Command::Effects(arguments) => super::effects::run(arguments),
         Command::New(arguments) => super::new::run(arguments),
         Command::Design(arguments) => design(arguments),
         Command::View(arguments) => super::view::run(arguments),

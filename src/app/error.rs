@@ -208,6 +208,14 @@ pub enum AppError {
         /// What is wrong, and what was expected.
         reason: String,
     },
+    /// An effect that there is not.
+    #[error("there is no effect `{name}`: {advice}")]
+    NoEffect {
+        /// Its name.
+        name: String,
+        /// The nearest one.
+        advice: String,
+    },
     /// A scenario that cannot be with what is set.
     #[error("{flags}: {source}")]
     Set {

@@ -10,6 +10,7 @@ mod complaint;
 mod design;
 mod diagnose;
 mod edges;
+mod effects;
 mod error;
 mod estimate_figure;
 mod files;

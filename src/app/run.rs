@@ -9,7 +9,7 @@ mod variants;
 
 use std::time::Instant;
 
-pub(super) use command::{RunArguments, run};
+pub(super) use command::{RunArguments, put_in, run};
 pub(super) use source::Source;
 
 use super::error::AppError;

@@ -88,6 +88,8 @@ pub enum Which {
 pub struct Effect {
     /// Name in an answer, by which it is told from all others.
     pub name: &'static str,
+    /// Its file, whose header says what it is.
+    pub text: &'static str,
     /// Which of several alike it is.
     pub which: Which,
     /// Where it enters.

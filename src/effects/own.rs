@@ -44,6 +44,8 @@ pub fn own_effect(law: &LawText, place: usize) -> &'static Effect {
     // As its name it is kept for as long as the program runs: one for each that files name.
     let effect: &'static Effect = Box::leak(Box::new(Effect {
         name: law.name,
+        // The file that has it says what it is.
+        text: "",
         which,
         subsystem,
         parameters,

@@ -113,7 +113,7 @@ pub(in super::super) fn run(arguments: &RunArguments) -> Result<ExitCode, AppErr
 }
 
 /// What the effects that are asked for change of a scenario.
-fn put_in(
+pub(in super::super) fn put_in(
     requests: &[EffectRequest],
     template: &ScenarioTemplate,
 ) -> Result<Vec<KeyValue>, AppError> {

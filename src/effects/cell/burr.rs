@@ -1,15 +1,23 @@
-//! A burr on the edge: a smooth bump.
+//! A burr stands on the edge. A smooth bump.
 //!
 //!     l(s) = h exp(-((s - p)/w)^2 / 2)
 //!
-//! Signature: the stroke gives way at one place of the path, in every recording at the same, and the force kicks as it climbs and leaves.
-//! Confused with: nothing that is spread along the path; a disturbance at one time is at another place in another recording.
+//! l how far the part stands out along the bisector of its edge [m], s place along the edge and p that of the burr [m], h height and w standard width of the
+//! burr [m].
+//! Source: The bump is a normal curve, the simplest smooth one of a place, a height and a width: a choice of this project.
+//!
+//! Signature: The stroke gives way at one place of the path, in every recording at the same, and the force kicks as it climbs and leaves.
+//!
+//! Confused with:
+//! - surface_waviness: goes on all along the path.
+//! - a disturbance at one time: is at another place of the path in another recording.
 
 use super::*;
 use Coordinate::{Linear, Logarithmic};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "burr",
+    text: include_str!("burr.rs"),
     which: Which::Only,
     subsystem: super::super::Subsystem::Workpiece,
     group: None,

@@ -1,9 +1,17 @@
-//! A joint is softer than believed between its motor, where the encoder is, and its link.
+//! A joint gives way between its motor and its link, more than believed. The encoder sits on the motor.
 //!
-//!     theta_link = theta_motor + (J^T F - M(q) q'')/K      (Spong, J. Dyn. Syst. Meas. Control 109, 1987, quasi-static)
+//!     theta_link = theta_motor + (J^T F - M(q) q'')/K
 //!
-//! Signature: the stroke is off by J^2 F/K, in proportion to the contact force, with the joint's lever along the path; nothing where nothing touches.
-//! Confused with: contact stiffness (the same in every posture), the other joints (told apart by their levers: those of several leans and places).
+//! theta_link and theta_motor angles of link and motor [rad], J Jacobian of the tool's ball [m/rad] and J^T its transpose, F contact force [N], M inertia
+//! matrix of the arm [kg m2], q posture and q'' its acceleration [rad], [rad/s2], K stiffness of the joint [N m/rad].
+//! Source: Spong, J. Dyn. Syst. Meas. Control 109, 1987, quasi-static; gravity is taken to be compensated.
+//!
+//! Signature: The stroke is off by J^2 F/K, in proportion to the contact force, with the joint's lever along the path; nothing where nothing touches.
+//!
+//! Confused with:
+//! - contact_stiffness_error: the same in every posture.
+//! - joint_encoder_offset: the same at every force, and where nothing touches.
+//! - compliant_joint of another joint: told apart by their levers: those of several leans and places.
 
 use super::*;
 use Coordinate::Logarithmic;
@@ -14,6 +22,7 @@ const RIGID: [f64; 2] = [1e3, 1e8];
 /// Of which joint is to be said.
 pub(super) const EFFECT: Effect = Effect {
     name: "compliant_joint",
+    text: include_str!("compliant_joint.rs"),
     which: Which::Only,
     subsystem: super::super::Subsystem::Arm,
     group: None,

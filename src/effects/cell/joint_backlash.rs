@@ -1,10 +1,17 @@
-//! A joint has play between its motor, where the encoder is, and its link.
+//! A joint has play between its motor and its link. The encoder sits on the motor.
 //!
-//!     theta_link = theta_motor - sign(T) p/2 - T/K,   T torque that goes through the teeth      (Nordin, Gutman, Automatica 38, 2002, sec. 2)
+//!     theta_link = theta_motor - sign(T) p/2 - T/K
 //!
-//! Signature: the stroke jumps by the joint's lever times the play where the torque through the joint changes its sign, and stands off by half of that in
-//! between; on a joint that gravity loads to one side all along, as an encoder that is off.
-//! Confused with: joint_encoder_offset, where the torque never changes its sign; a soft joint, whose part grows with the force.
+//! theta_link and theta_motor angles of link and motor [rad], T torque that goes through the teeth [N m], p play from flank to flank [rad], K stiffness of
+//! the teeth [N m/rad].
+//! Source: Nordin, Gutman, Automatica 38, 2002, sec. 2.
+//!
+//! Signature: The stroke jumps by the joint's lever times the play where the torque through the joint changes its sign, and stands off by half of that in
+//! between; on a joint that is loaded to one side all along, as an encoder that is off.
+//!
+//! Confused with:
+//! - joint_encoder_offset: the same where the torque never changes its sign; otherwise it does not jump.
+//! - compliant_joint: its part grows with the force.
 
 use super::*;
 use Coordinate::Logarithmic;
@@ -12,6 +19,7 @@ use Coordinate::Logarithmic;
 /// Of which joint is to be said.
 pub(super) const EFFECT: Effect = Effect {
     name: "joint_backlash",
+    text: include_str!("joint_backlash.rs"),
     which: Which::Only,
     subsystem: super::super::Subsystem::Arm,
     group: None,

@@ -1,9 +1,15 @@
-//! A joint rubs more, or less, than believed: bearings and gears, dry.
+//! A joint rubs more than believed, or less. Bearings and gears, dry.
 //!
-//!     tau = tau_frictionless + F sat(q'/v_0)      (Swevers et al., IEEE Control Systems 27(5), 2007)
+//!     tau = tau_frictionless + F sat(q'/v_0)
 //!
-//! Signature: the torque of one drive has a part with the sign of its joint's speed, the same size whatever the load; tool and surface hardly show it.
-//! Confused with: nothing, for it is seen in a link of its own, from the motion to the drives' torques, beside which the device is looked at.
+//! tau torque of the drive and tau_frictionless what the motion takes without friction [N m], F friction [N m], sat dry friction's sign of the speed,
+//! rounded near rest, q' speed of the joint and v_0 that of the rounding [rad/s].
+//! Source: Swevers et al., IEEE Control Systems 27(5), 2007.
+//!
+//! Signature: The torque of one drive has a part with the sign of its joint's speed, the same size whatever the load; tool and surface hardly show it.
+//!
+//! Confused with:
+//! - nothing: it is seen in a link of its own, from the motion to the torques of the drives, beside which the device is looked at.
 
 use super::*;
 use Coordinate::Linear;
@@ -11,6 +17,7 @@ use Coordinate::Linear;
 /// Of which joint is to be said.
 pub(super) const EFFECT: Effect = Effect {
     name: "joint_friction",
+    text: include_str!("joint_friction.rs"),
     which: Which::Only,
     subsystem: super::super::Subsystem::Arm,
     group: None,

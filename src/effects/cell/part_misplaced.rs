@@ -1,19 +1,25 @@
-//! The part does not lie where the cell believes: it stands out by a shift along the bisector, and by a slope along the edge.
+//! The part stands out, or back, along the bisector of its edge, and slopes along it.
 //!
 //!     l(s) = shift + tilt (s - L/2)          along a straight edge
 //!
-//! Small displacements of a rigid body, about the middle of the edge (Siciliano et al., Robotics, 2009, sec. 2.4): round a corner the shift has another share
-//! along the bisector (`plant/cell_course.rs`). Turns about the edge and its bisector, and shifts across, are not looked for.
+//! l how far the part stands out along the bisector of its edge, positive towards the tool [m], s place along the edge and L its length [m], shift [m] and
+//! tilt [m/m]. Round a corner the shift has another share along the bisector. Turns about the edge and its bisector, and shifts across, are not looked for.
+//! Source: Small displacements of a rigid body, about the middle of the edge (Siciliano et al., Robotics, 2009, sec. 2.4).
 //!
-//! Signature: the stroke is off by l/c all along the ride, whatever the force and the speed; the tool touches earlier or later.
-//! Confused with: an encoder that is off (which moves the ball by a lever that changes along the path and with the lean), a soft joint (whose part grows
-//! with the force), a position sensor's gain (which is off where nothing touches, too).
+//! Signature: The stroke is off by l/c all along the ride, c cosine between bisector and slide, whatever the force and the speed; the tool touches earlier
+//! or later.
+//!
+//! Confused with:
+//! - joint_encoder_offset: moves the ball by a lever that changes along the path and with the lean.
+//! - compliant_joint: its part grows with the force.
+//! - stroke_sensor_gain_error: off where nothing touches, too.
 
 use super::*;
 use Coordinate::Linear;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "part_misplaced",
+    text: include_str!("part_misplaced.rs"),
     which: Which::Only,
     subsystem: super::super::Subsystem::Workpiece,
     group: None,

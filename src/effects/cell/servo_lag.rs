@@ -1,9 +1,14 @@
-//! The joints' servos are slower, or faster, than believed, all of them alike.
+//! The joints' servos follow their commands at another bandwidth than believed. All of them alike.
 //!
 //!     q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
 //!
-//! Signature: the encoders trail their commands by 2 q'/w; tool and surface hardly show it.
-//! Confused with: nothing, for it is seen in a link of its own, from the commands to the encoders, before the device is looked at.
+//! q angle of a joint and u its command [rad], q' and q'' speed [rad/s] and acceleration [rad/s2], w natural frequency [rad/s], f bandwidth [Hz].
+//! Source: Critically damped servo of second order (Ogata, Modern Control Engineering, 5.3).
+//!
+//! Signature: The encoders trail their commands by 2 q'/w; tool and surface hardly show it.
+//!
+//! Confused with:
+//! - nothing: it is seen in a link of its own, from the commands to the encoders, before the device is looked at.
 
 use super::*;
 use Coordinate::Logarithmic;
@@ -11,6 +16,7 @@ use Coordinate::Logarithmic;
 /// The effect; it is fitted on the encoders alone.
 pub static SERVO_LAG: Effect = Effect {
     name: "servo_lag",
+    text: include_str!("servo_lag.rs"),
     which: Which::Only,
     subsystem: super::super::Subsystem::Arm,
     group: None,

@@ -1,18 +1,24 @@
-//! Air leaks past the piston from chamber to chamber: a worn seal, a scratched bore.
+//! Air leaks past the piston from chamber to chamber. A worn seal, a scratched bore.
 //!
 //!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
 //!
-//! m_dot flow from the higher to the lower pressure [kg/s], A equivalent area [m2], C discharge coefficient [1], p_u and p_d upstream and downstream
-//! pressure [Pa], R specific gas constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//! m_dot flow from the higher to the lower pressure [kg/s], A equivalent area of the gap [m2], C discharge coefficient [1], p_u and p_d upstream and
+//! downstream pressure [Pa absolute], R specific gas constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function.
+//! Source: The source paper's eqs. (9) to (11), an isentropic nozzle.
 //!
-//! Signature: chamber 2 stands above the atmosphere and chamber 1 below the regulator while nothing moves; the force sags in proportion to the pressure.
-//! Confused with: external_leakage (chamber 1 alone), supply_restriction (a delay, no loss at rest), regulator_gain_error.
+//! Signature: While nothing moves chamber 1 stands below the regulator and chamber 2 above the atmosphere; the force sags, by more at a higher pressure.
+//!
+//! Confused with:
+//! - external_leakage: chamber 1 alone falls; chamber 2 stays at the atmosphere.
+//! - supply_restriction: a delay, and no loss at rest.
+//! - regulator_gain_error: the outlet itself is off in proportion.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "cross_piston_leakage",
+    text: include_str!("cross_piston_leakage.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

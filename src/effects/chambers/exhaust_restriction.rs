@@ -1,19 +1,24 @@
-//! Air leaves through another orifice than believed: a clogged or missing silencer.
+//! Air leaves through another orifice than believed. A clogged or missing silencer.
 //!
 //!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
 //!
-//! m_dot flow [kg/s], A area of the orifice [m2], C discharge coefficient [1], p_u and p_d upstream and downstream pressure [Pa], R specific gas constant
-//! [J/(kg K)], T temperature [K], f the choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//! m_dot flow [kg/s], A area of the orifice [m2], C discharge coefficient [1], p_u and p_d upstream and downstream pressure [Pa absolute], R specific gas
+//! constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function.
+//! Source: The source paper's eqs. (9) to (11), an isentropic nozzle.
 //!
-//! Signature: the vented chamber stays under pressure while the piston moves, and brakes or lets it run; nothing at rest.
-//! Confused with: coulomb_viscous_friction (brakes with no pressure behind it), extra_dead_volume (of both chambers), supply_restriction (of the other
-//! side of the piston).
+//! Signature: The vented chamber stays under pressure while the piston moves, and brakes it or lets it run; nothing at rest.
+//!
+//! Confused with:
+//! - coulomb_viscous_friction: brakes with no pressure behind it.
+//! - extra_dead_volume: slows the chambers on either side of the piston, filling and venting.
+//! - supply_restriction: of the other way: filling, not venting.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "exhaust_restriction",
+    text: include_str!("exhaust_restriction.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

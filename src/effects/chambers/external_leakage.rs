@@ -1,18 +1,24 @@
-//! Air leaks from chamber 1 to the surroundings: a fitting, a rod seal.
+//! Air leaks from chamber 1 to the surroundings. A fitting, a rod seal.
 //!
 //!     m_dot = A C p_u / sqrt(R T) f(p_a / p_u)
 //!
-//! m_dot flow out of chamber 1 [kg/s], A equivalent area [m2], C discharge coefficient [1], p_u its pressure and p_a that of the atmosphere [Pa],
-//! R specific gas constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//! m_dot flow out of chamber 1 [kg/s], A equivalent area of the leak [m2], C discharge coefficient [1], p_u pressure of the chamber and p_a that of the
+//! atmosphere [Pa absolute], R specific gas constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function.
+//! Source: The source paper's eqs. (9) to (11), an isentropic nozzle.
 //!
-//! Signature: chamber 1 stands below the regulator while nothing moves, by the drop that the leak's flow makes in the supply orifice.
-//! Confused with: cross_piston_leakage (chamber 2 rises too), regulator_gain_error (the outlet itself is off), supply_restriction.
+//! Signature: While nothing moves chamber 1 stands below the regulator, by the drop that the leak's flow makes in the supply orifice.
+//!
+//! Confused with:
+//! - cross_piston_leakage: chamber 2 rises too.
+//! - regulator_gain_error: the outlet itself is off; here it holds its set pressure.
+//! - supply_restriction: a delay, and no loss at rest.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "external_leakage",
+    text: include_str!("external_leakage.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

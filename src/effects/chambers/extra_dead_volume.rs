@@ -1,18 +1,24 @@
-//! The chambers' dead volume is another one than believed: fittings, ports and short lines behind the valve.
+//! The chambers' dead volume is another one than believed. Fittings, ports and short lines behind the valve.
 //!
 //!     V_1 = A_1 x + V_d,   V_2 = A_2 (L - x) + V_d
 //!
-//! V_1 and V_2 volumes [m3], V_d dead volume of each [m3], A_1 and A_2 piston areas [m2], x stroke [m], L full stroke [m]. Geometry; source paper eq. (4).
+//! V_1 and V_2 volumes [m3], V_d dead volume of each [m3], A_1 and A_2 piston areas [m2], x stroke [m], L full stroke [m].
+//! Source: Geometry; source paper eq. (4).
 //!
-//! Signature: chambers fill and vent slower, most where they are smallest: chamber 1 near the retracted end, chamber 2 near the other; the trapped air is a
+//! Signature: Chambers fill and vent slower, most where they are smallest: chamber 1 near the retracted end, chamber 2 near the other; the trapped air is a
 //! softer spring.
-//! Confused with: supply_restriction (the same at every stroke), hose_volume (before the valve: one side at a time), heat_transfer.
+//!
+//! Confused with:
+//! - supply_restriction: the same at every stroke.
+//! - hose_volume: before the valve: of second order, and of the side that is supplied.
+//! - heat_transfer: creeps after the filling.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "extra_dead_volume",
+    text: include_str!("extra_dead_volume.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

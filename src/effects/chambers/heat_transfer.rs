@@ -1,12 +1,18 @@
-//! Air in the chambers warms up as it is compressed and cools as it expands, and exchanges heat with their walls.
+//! Air in the chambers warms up and cools down, and exchanges heat with their walls. Compression warms it, expansion cools it.
 //!
 //!     dE/dt = sum(m_dot_in c_p T_in) - sum(m_dot_out c_p T) - p dV/dt + G (T_w - T),   p V = (k - 1) E
 //!
-//! E internal energy [J], T gas and T_w wall temperature [K], G conductance from gas to wall of each chamber [W/K], p pressure [Pa], V volume [m3],
-//! c_p specific heat [J/(kg K)], k ratio of specific heats [1]. First law for an open volume; Carneiro and Gomes de Almeida 2006 for G in small cylinders.
+//! E internal energy [J], T gas and T_w wall temperature [K], T_in that of what flows in [K], m_dot flows [kg/s], G conductance from gas to wall of each
+//! chamber [W/K], p pressure [Pa absolute], V volume [m3], c_p specific heat at constant pressure [J/(kg K)], k ratio of specific heats [1].
+//! Source: First law for an open volume; Carneiro and Gomes de Almeida 2006 for G in small cylinders.
 //!
-//! Signature: after a fast stroke the pressure overshoots and creeps back within m c_v / G; filling is faster, up to k times.
-//! Confused with: extra_dead_volume and supply_restriction (change the filling time, no creep), hose_volume.
+//! Signature: Filling and venting take another time, up to a factor k; after a fast stroke or filling the pressure overshoots and creeps back within m c_v /
+//! G, m mass of the air and c_v its specific heat at constant volume.
+//!
+//! Confused with:
+//! - extra_dead_volume: changes the time of filling, without a creep after it.
+//! - supply_restriction: changes the time of filling, without a creep after it.
+//! - hose_volume: delays the chamber against the outlet, without an overshoot.
 
 use super::*;
 use crate::physics::gas_process::GasProcess;
@@ -24,6 +30,7 @@ const CONDUCTANCE: Quantity = Quantity {
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "heat_transfer",
+    text: include_str!("heat_transfer.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

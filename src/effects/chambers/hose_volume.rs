@@ -1,15 +1,20 @@
-//! A line that holds air and resists its flow stands between regulator and valve.
+//! A line that holds air and resists its flow stands before the valve. Between regulator and valve.
 //!
 //!     p_i V / n = m_i R T,   dm_i/dt = n (p_(i-1) - p_i) / R_h - n (p_i - p_(i+1)) / R_h      in n segments
 //!
-//! V volume of the line [m3], R_h its resistance, pressure drop over mass flow [Pa s/kg], p_i and m_i pressure [Pa] and air [kg] of a segment, R specific
-//! gas constant [J/(kg K)], T temperature [K]. Lumped line of Richer and Hurmuzlu 2000, in as many segments as fit best: up to four, or eight with the last one
-//! halved, which are a line of evenly spread resistance.
+//! V volume of the line [m3], R_h its resistance, pressure drop over mass flow [Pa s/kg], p_i and m_i pressure [Pa absolute] and air [kg] of a segment, R
+//! specific gas constant [J/(kg K)], T temperature [K], n segments: as many as fit best, up to four, or eight with the last one halved, which are a line of
+//! evenly spread resistance.
+//! Source: Lumped line of Richer and Hurmuzlu 2000.
 //!
-//! Signature: the chamber follows the outlet in second order, with a dead time of its own where the line is long; a valve that switches empties the line
+//! Signature: The chamber follows the outlet in second order, with a dead time of its own where the line is long; a valve that switches empties the line
 //! into the chamber first.
-//! Confused with: extra_dead_volume (behind the valve), supply_restriction (of first order), transport_delay (moves the outlet itself),
-//! solenoid_switching_delay.
+//!
+//! Confused with:
+//! - extra_dead_volume: behind the valve: of first order.
+//! - supply_restriction: of first order: the chamber starts at once.
+//! - transport_delay: moves the outlet itself.
+//! - solenoid_switching_delay: delays what the valve does, not what the set pressure does.
 
 use super::*;
 use crate::physics::hose::Hose;
@@ -53,6 +58,7 @@ fn set_line(p: &mut PlantParameters, (volume, resistance, segments): (f64, f64, 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "hose_volume",
+    text: include_str!("hose_volume.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

@@ -1,12 +1,16 @@
-//! The supply falls when much air is drawn: a small reservoir with a small compressor.
+//! The supply falls when much air is drawn: a small reservoir and compressor.
 //!
 //!     V dp/dt = R T_0 (m_dot_c s(p) - m_dot_drawn),   outlet <= p
 //!
-//! p absolute pressure of the reservoir [Pa], V its volume [m3], m_dot_c flow of the compressor [kg/s], s 1 until the reservoir is full and 0 then,
-//! m_dot_drawn what the regulator lets through [kg/s], R specific gas constant [J/(kg K)], T_0 temperature [K]. Isothermal tank, source paper eq. (4).
+//! p absolute pressure of the reservoir and of the outlet [Pa], V volume of the reservoir [m3], m_dot_c flow of the compressor [kg/s], s 1 until the
+//! reservoir is full and 0 then, m_dot_drawn what the regulator lets through [kg/s], R specific gas constant [J/(kg K)], T_0 temperature [K].
+//! Source: Isothermal tank, source paper eq. (4).
 //!
-//! Signature: the outlet cannot hold high set pressures after much air was drawn, and comes back slowly.
-//! Confused with: regulator_rate_limit (the same rate at every pressure and after any history), regulator_gain_error (always).
+//! Signature: The outlet cannot hold high set pressures after much air was drawn, and comes back slowly.
+//!
+//! Confused with:
+//! - regulator_rate_limit: the same rate at every pressure and after any history.
+//! - regulator_gain_error: always, whatever was drawn before.
 
 use super::*;
 use crate::physics::supply_reservoir::SupplyReservoir;
@@ -44,6 +48,7 @@ const COMPRESSOR: Quantity = Quantity {
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "supply_droop",
+    text: include_str!("supply_droop.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

@@ -1,19 +1,24 @@
-//! Air enters through another orifice than believed: a pinched hose, a half open valve, another fitting.
+//! Air enters through another orifice than believed. A pinched hose, a half open valve, another fitting.
 //!
 //!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
 //!
-//! m_dot flow [kg/s], A area of the orifice [m2], C discharge coefficient [1], p_u and p_d upstream and downstream pressure [Pa], R specific gas constant
-//! [J/(kg K)], T temperature [K], f the choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//! m_dot flow [kg/s], A area of the orifice [m2], C discharge coefficient [1], p_u and p_d upstream and downstream pressure [Pa absolute], R specific gas
+//! constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function.
+//! Source: The source paper's eqs. (9) to (11), an isentropic nozzle.
 //!
-//! Signature: the force follows the regulator's outlet later or earlier, in both directions; nothing at rest.
-//! Confused with: extra_dead_volume (the product of both sets the filling time: told apart where a stroke changes the volume), hose_volume (of second
-//! order), heat_transfer.
+//! Signature: The force follows the regulator's outlet later or earlier, in both directions; nothing at rest.
+//!
+//! Confused with:
+//! - extra_dead_volume: the product of both sets the time of filling: told apart where a stroke changes the volume.
+//! - hose_volume: of second order: the chamber starts flat after a step.
+//! - heat_transfer: creeps after the filling.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "supply_restriction",
+    text: include_str!("supply_restriction.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

@@ -2,16 +2,22 @@
 //!
 //!     F = max(0, k d + c d')
 //!
-//! F contact force [N], k stiffness [N/m], d penetration [m], c damping [N s/m]. Kelvin and Voigt's spring and damper.
+//! F contact force [N], k stiffness [N/m], d penetration [m], d' its rate [m/s], c damping [N s/m].
+//! Source: Spring and damper of Kelvin and Voigt.
 //!
-//! Signature: at a given force the piston stands deeper or less deep, in proportion to the force; contact rings at another frequency.
-//! Confused with: hertzian_contact (the stiffness grows with the force), surface_offset (the same at every force), stroke_sensor_gain_error.
+//! Signature: At a given force the piston stands deeper or less deep, in proportion to the force; contact rings at another frequency.
+//!
+//! Confused with:
+//! - hertzian_contact: the stiffness grows with the force; recordings at one force alone cannot tell.
+//! - surface_offset: the stroke is off by the same at every force.
+//! - stroke_sensor_gain_error: off in the air too, in proportion to the stroke.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "contact_stiffness_error",
+    text: include_str!("contact_stiffness_error.rs"),
     which: Which::Only,
     subsystem: Subsystem::Contact,
     group: Some("contact_law"),

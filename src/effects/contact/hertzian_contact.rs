@@ -2,10 +2,14 @@
 //!
 //!     F = max(0, k d^(3/2) + c d')
 //!
-//! F contact force [N], k stiffness [N/m^1.5], d penetration [m], c damping [N s/m]. Hertz 1882; Johnson, Contact Mechanics, 1985, eq. (4.23).
+//! F contact force [N], k stiffness [N/m^1.5], d penetration [m], d' its rate [m/s], c damping [N s/m].
+//! Source: Hertz 1882; Johnson, Contact Mechanics, 1985, eq. (4.23).
 //!
-//! Signature: soft at first touch, stiffer under load: penetration goes with the 2/3 power of the force.
-//! Confused with: contact_stiffness_error (in proportion: recordings at one force alone cannot tell), surface_offset.
+//! Signature: Soft at first touch, stiffer under load: penetration goes with the 2/3 power of the force.
+//!
+//! Confused with:
+//! - contact_stiffness_error: in proportion to the force; recordings at one force alone cannot tell.
+//! - surface_offset: the stroke is off by the same at every force.
 
 use super::*;
 
@@ -22,6 +26,7 @@ const HERTZ: Quantity = Quantity {
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "hertzian_contact",
+    text: include_str!("hertzian_contact.rs"),
     which: Which::Only,
     subsystem: Subsystem::Contact,
     group: Some("contact_law"),

@@ -1,18 +1,23 @@
-//! The surface goes up and down about where the robot has it, slower than a tool turns.
+//! The surface goes up and down about where the robot has it. Slower than a tool turns.
 //!
 //!     x_s = x_robot + s sin(2 pi f t) + c cos(2 pi f t)
 //!
-//! x_s where the surface is met along the stroke [m], s and c amplitudes of sine and cosine [m], f frequency [Hz], t time since the start of the recording
-//! [s]. Kinematics: a sine of the way at a steady feed.
+//! x_s where the surface is met along the stroke and x_robot where the robot has it [m], s and c amplitudes of sine and cosine [m], f frequency [Hz], t time
+//! since the start of the recording [s].
+//! Source: Kinematics: a sine of the way at a steady feed.
 //!
-//! Signature: stroke and force go up and down together while touching, below 11 Hz; nothing in the air.
-//! Confused with: tool_runout (faster), regulator or supply pulses (in the outlet, touching or not).
+//! Signature: Stroke and force go up and down together while touching, below 11 Hz; nothing in the air.
+//!
+//! Confused with:
+//! - tool_runout: the same above 11 Hz.
+//! - a regulator's or supply's pulses: in the outlet, touching or not.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "surface_waviness",
+    text: include_str!("surface_waviness.rs"),
     which: Which::Only,
     subsystem: Subsystem::Contact,
     group: None,

@@ -1,18 +1,23 @@
-//! The tool turns off its axis, and lifts and presses in turn.
+//! The tool turns off its axis and lifts and presses in turn.
 //!
 //!     x_s = x_robot + s sin(2 pi f t) + c cos(2 pi f t)
 //!
-//! x_s where the surface is met along the stroke [m], s and c amplitudes of sine and cosine [m], f frequency of the spindle [Hz], t time since the start of
-//! the recording [s]. Kinematics of an eccentric.
+//! x_s where the surface is met along the stroke and x_robot where the robot has it [m], s and c amplitudes of sine and cosine [m], f frequency of the
+//! spindle [Hz], t time since the start of the recording [s].
+//! Source: Kinematics of an eccentric.
 //!
-//! Signature: a line in the spectrum of force and acceleration while touching, above 11 Hz; nothing in the air.
-//! Confused with: surface_waviness (the same below 11 Hz), a compressor's or regulator's pulses (in the outlet, touching or not).
+//! Signature: A line in the spectrum of force and acceleration while touching, above 11 Hz; nothing in the air.
+//!
+//! Confused with:
+//! - surface_waviness: the same below 11 Hz.
+//! - a compressor's or regulator's pulses: in the outlet, touching or not.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "tool_runout",
+    text: include_str!("tool_runout.rs"),
     which: Which::Only,
     subsystem: Subsystem::Contact,
     group: None,

@@ -1,18 +1,23 @@
-//! A constant force acts along the axis: a weight that hangs on, a wrong tilt.
+//! A constant force acts along the axis, positive in extension. A weight that hangs on, a wrong tilt.
 //!
 //!     F = F_0
 //!
-//! F force along extension [N], F_0 its value [N]. Statics.
+//! F force along extension [N], F_0 its value [N].
+//! Source: Statics.
 //!
-//! Signature: the pressure at which the piston leaves its stop, and the contact force at any pressure, are off by the same force.
-//! Confused with: force_sensor_bias_drift (shows with nothing touched, and the piston moves as believed), regulator_gain_error (grows with the pressure),
-//! moving_mass_error (its weight, but with inertia: told apart while accelerating).
+//! Signature: The pressure at which the piston leaves its stop, and the contact force at any pressure, are off by the same force.
+//!
+//! Confused with:
+//! - force_sensor_bias_drift: shows with nothing touched, and the piston moves as believed.
+//! - regulator_gain_error: grows with the pressure.
+//! - moving_mass_error: its weight is such a force, but comes with inertia: told apart while accelerating.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "axial_force_offset",
+    text: include_str!("axial_force_offset.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,

@@ -1,20 +1,27 @@
-//! Seals and guides rub: a dry part that only knows the direction of motion, and one that grows with speed.
+//! Seals and guides rub: a dry part and one that grows with speed. Dry friction knows the direction of motion alone.
 //!
 //!     F = -F_c sign(v) - b v
 //!
 //! F force along extension [N], F_c Coulomb friction [N], b viscous coefficient [N s/m], v speed of extension [m/s]. In the simulator the sign is that of
-//! bristles that bend before they slide (Dahl 1968; Canudas de Wit, Olsson, Astrom and Lischinsky 1995), over a displacement that is fitted along.
+//! bristles that bend before they slide, over a presliding displacement that is fitted along.
+//! Source: Coulomb 1785 for dry friction; bristles by Dahl 1968; Canudas de Wit, Olsson, Astrom and Lischinsky 1995.
 //!
-//! Signature: force and acceleration step by 2 F_c wherever the motion turns, whatever the speed; the piston stays put under small changes of pressure;
-//! what is left falls in proportion to the speed.
-//! Confused with: the other frictions (told apart by the first moments of sliding and by pressure), end_cushioning (near the ends alone),
-//! exhaust_restriction (a pressure that brakes, and that a chamber's gas shows).
+//! Signature: Force and acceleration step by 2 F_c wherever the motion turns, whatever the speed, and are off by b v in proportion to the speed; the piston
+//! stays put under small changes of pressure.
+//!
+//! Confused with:
+//! - stribeck_friction: the force overshoots as sliding starts; here it does not.
+//! - presliding_hysteresis: friction builds up over 0.1 mm and more after a reversal; here within micrometres.
+//! - pressure_dependent_friction: the step grows with the set pressure; recordings at one pressure alone cannot tell.
+//! - end_cushioning: brakes near the ends alone, and on the way in alone.
+//! - exhaust_restriction: brakes by a pressure, which the vented chamber shows.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "coulomb_viscous_friction",
+    text: include_str!("coulomb_viscous_friction.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: Some("friction"),

@@ -1,19 +1,23 @@
-//! The piston is damped as it comes near an end of its stroke: a pneumatic cushion traps air that leaves through a needle valve.
+//! The piston is damped as it comes near an end of its stroke. A pneumatic cushion traps air that leaves through a needle valve.
 //!
 //!     F = -c (1 - d / l) v     for d < l and towards the end,     0 otherwise
 //!
-//! F force along extension [N], c damping at the very end [N s/m], l length [m], d distance from the end [m], v speed of extension [m/s]. Cushioned
-//! cylinders of ISO 15552; the linear taper is the simplest that ends at l.
+//! F force along extension [N], c damping at the very end [N s/m], l length [m], d distance from the end [m], v speed of extension [m/s].
+//! Source: Cushioned cylinders of ISO 15552; the linear taper is the simplest that ends at l.
 //!
-//! Signature: strokes to an end slow down over its last millimetres; leaving it is free.
-//! Confused with: end stops of another damping (act within micrometres of the end), exhaust_restriction (brakes all along the stroke),
-//! coulomb_viscous_friction.
+//! Signature: Strokes to an end slow down over its last millimetres; leaving it is free.
+//!
+//! Confused with:
+//! - exhaust_restriction: brakes all along the stroke.
+//! - coulomb_viscous_friction: brakes all along the stroke, and both ways.
+//! - end stops of another damping: act within micrometres of the end.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "end_cushioning",
+    text: include_str!("end_cushioning.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,

@@ -1,17 +1,22 @@
-//! The moving mass is another one than believed: another tool, a part left off, a hose that hangs on.
+//! The moving mass is another one than believed. Another tool, a part left off, a hose that hangs on.
 //!
 //!     m a = F
 //!
-//! m moving mass [kg], a acceleration along extension [m/s2], F sum of the forces, weight included [N]. Newton's second law.
+//! m moving mass [kg], a acceleration along extension [m/s2], F sum of the forces, weight included [N].
+//! Source: Newton's second law.
 //!
-//! Signature: accelerations are off in proportion, and where the axis is not level the weight is too.
-//! Confused with: inertial_crosstalk (the load cell alone sees it), axial_force_offset (weight without inertia).
+//! Signature: Accelerations are off in proportion, and where the axis is not level the weight is too.
+//!
+//! Confused with:
+//! - inertial_crosstalk: the load cell alone sees it; the motion is as believed.
+//! - axial_force_offset: a force without inertia: accelerations in free motion are off by the same, not in proportion.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "moving_mass_error",
+    text: include_str!("moving_mass_error.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,

@@ -1,18 +1,24 @@
-//! Seals bend before they slide, over a displacement that shows: a soft lip, or a soft mount of the piston.
+//! Seals bend before they slide, over a displacement that shows. A soft lip, or a soft mount of the piston.
 //!
 //!     F = -s z - b v,   dz/dx = 1 - sign(v) s z / F_c,   s = F_c / z_p
 //!
-//! F force along extension [N], z deflection [m], s its stiffness [N/m], F_c Coulomb friction [N], z_p presliding displacement [m], b viscous coefficient
-//! [N s/m], v speed of extension [m/s], x stroke [m]. Dahl 1968; Canudas de Wit, Olsson, Astrom and Lischinsky 1995.
+//! F force along extension [N], z deflection [m], s its stiffness [N/m], F_c Coulomb friction [N], z_p presliding displacement [m], b viscous coefficient [N
+//! s/m], v speed of extension [m/s], x stroke [m].
+//! Source: Dahl 1968; Canudas de Wit, Olsson, Astrom and Lischinsky 1995.
 //!
-//! Signature: after a reversal the force follows the displacement in a loop, and is complete only after some z_p; small motions see a spring.
-//! Confused with: coulomb_viscous_friction (complete within micrometres: z_p below 0.1 mm), return_spring_load (no loop), contact_stiffness_error.
+//! Signature: After a reversal the force follows the displacement in a loop, and friction is complete only after some z_p; small motions see a spring.
+//!
+//! Confused with:
+//! - coulomb_viscous_friction: complete within micrometres of a reversal, z_p below 0.1 mm.
+//! - return_spring_load: the force follows the stroke on one line, there and back: no loop.
+//! - contact_stiffness_error: the displacement goes with the contact force, without a loop, and not in the air.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "presliding_hysteresis",
+    text: include_str!("presliding_hysteresis.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: Some("friction"),

@@ -1,13 +1,16 @@
-//! Seals rub the harder, the more the pressures of the two chambers differ: pressure presses the lip against the bore.
+//! Seals rub the harder, the more the two chambers' pressures differ. Pressure presses the lip against the bore.
 //!
 //!     F = -(F_c + c |p_1 - p_2|) sign(v) - b v
 //!
 //! F force along extension [N], c growth of friction with pressure [N/Pa], p_1 and p_2 chamber pressures [Pa], F_c Coulomb friction [N], b viscous
-//! coefficient [N s/m], v speed of extension [m/s]. Raparelli, Manuello Bertetto and Mazza 1997; Belforte, Raparelli and Mazza 1993.
+//! coefficient [N s/m], v speed of extension [m/s].
+//! Source: Raparelli, Manuello Bertetto and Mazza 1997; Belforte, Raparelli and Mazza 1993.
 //!
-//! Signature: steps at reversals, higher at higher set pressures.
-//! Confused with: coulomb_viscous_friction (the same step at every pressure: recordings at one pressure alone cannot tell), force_sensor_gain_error
-//! (no step at reversals).
+//! Signature: The force steps at reversals, by more at higher set pressures.
+//!
+//! Confused with:
+//! - coulomb_viscous_friction: the same step at every pressure; recordings at one pressure alone cannot tell.
+//! - force_sensor_gain_error: grows with the pressure too, but does not change its sign at reversals.
 
 use super::*;
 use crate::plant::Chain;
@@ -18,6 +21,7 @@ const GROWTH: Quantity =
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "pressure_dependent_friction",
+    text: include_str!("pressure_dependent_friction.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: Some("friction"),

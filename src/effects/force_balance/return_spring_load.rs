@@ -1,18 +1,24 @@
-//! Something elastic pulls the piston back: a return spring, a cable, a hose that is dragged along.
+//! Something elastic pulls the piston back, in proportion to its stroke. A return spring, a cable, a hose that is dragged along.
 //!
 //!     F = -k x
 //!
-//! F force along extension [N], k stiffness [N/m], x stroke from the retracted end, where the spring is relaxed [m]. Hooke's law.
+//! F force along extension [N], k stiffness [N/m], x stroke from the retracted end, where the spring is relaxed [m].
+//! Source: Hooke's law.
 //!
-//! Signature: a lack of force that grows with the stroke, standing still or moving.
-//! Confused with: axial_force_offset (the same at every stroke), stroke_sensor_gain_error (moves the stroke, not the force),
-//! contact_stiffness_error (acts in contact alone), surface_offset.
+//! Signature: A lack of force that grows with the stroke, standing still or moving.
+//!
+//! Confused with:
+//! - axial_force_offset: the same at every stroke.
+//! - stroke_sensor_gain_error: the stroke is off, the force is not.
+//! - contact_stiffness_error: acts in contact alone.
+//! - surface_offset: the stroke at which contact begins is off; the force at a pressure is not.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "return_spring_load",
+    text: include_str!("return_spring_load.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,

@@ -1,12 +1,16 @@
-//! Seals stick: breaking loose takes more force than sliding on, for their lubricant film only builds up with speed.
+//! Seals stick: breaking loose takes more force than sliding on. The lubricant film of a lip only builds up with speed.
 //!
 //!     F = -(F_c + (F_s - F_c) exp(-(v / v_s)^2)) sign(v) - b v
 //!
 //! F force along extension [N], F_c Coulomb and F_s static friction [N], v_s Stribeck velocity [m/s], b viscous coefficient [N s/m], v speed of extension
-//! [m/s]. Stribeck 1902 for bearings; the exponential after Bo and Pavelescu 1982; Armstrong-Helouvry, Dupont and Canudas de Wit 1994 for the whole.
+//! [m/s].
+//! Source: Stribeck 1902 for bearings; the exponential after Bo and Pavelescu 1982; Armstrong-Helouvry, Dupont and Canudas de Wit 1994 for the whole.
 //!
-//! Signature: the force overshoots as sliding starts and sags within a few v_s; stick and slip at slow motion.
-//! Confused with: coulomb_viscous_friction (no overshoot at the start of sliding; F_s = F_c), presliding_hysteresis (builds up, does not sag).
+//! Signature: The force overshoots as sliding starts and sags within a few v_s; slow motion sticks and slips.
+//!
+//! Confused with:
+//! - coulomb_viscous_friction: no overshoot at the start of sliding, F_s = F_c.
+//! - presliding_hysteresis: friction builds up and stays, it does not sag with speed.
 
 use super::*;
 
@@ -25,6 +29,7 @@ const STRIBECK: Quantity =
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "stribeck_friction",
+    text: include_str!("stribeck_friction.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: Some("friction"),

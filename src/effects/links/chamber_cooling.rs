@@ -1,12 +1,15 @@
-//! Air that was warmed by filling cools after the chamber is shut.
+//! Air that filling has warmed cools after the chamber is shut.
 //!
 //!     dp/dt = -(D/T_c) e^(-t/T_c)
 //!
-//! D pressure that cooling takes [Pa], T_c its time [s], t since the start of the recording. The last of a filling's heat, to the walls at a constant
-//! coefficient (Carneiro and de Almeida 2006).
+//! p pressure [Pa], D pressure that cooling takes [Pa], T_c its time [s], t since the chamber was shut [s].
+//! Source: The last of the heat of a filling, to the walls at a constant coefficient (Carneiro and Gomes de Almeida 2006).
 //!
-//! Signature: a fall at the start that ends by itself.
-//! Confused with: a leak (goes on), the sensor's warming up.
+//! Signature: A fall at the start that ends by itself.
+//!
+//! Confused with:
+//! - leak_in_proportion: goes on until the chamber is empty.
+//! - a sensor that warms up: shows at no pressure too.
 
 use super::*;
 
@@ -16,6 +19,7 @@ const LONGEST_COOLING: [f64; 2] = [0.1, 20.0];
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "chamber_cooling",
+    text: include_str!("chamber_cooling.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

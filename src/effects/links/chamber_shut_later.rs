@@ -2,16 +2,20 @@
 //!
 //!     dp/dt = 0   for t < t_s
 //!
-//! p pressure [Pa], t_s time after the start of the recording at which it is shut [s].
+//! p pressure [Pa], t time since the start of the recording and t_s that at which it is shut [s].
+//! Source: Definition of the time of shutting.
 //!
-//! Signature: a level at the start, then the decay at once.
-//! Confused with: chamber_cooling (a fast fall at the start).
+//! Signature: A level at the start, then the decay at once.
+//!
+//! Confused with:
+//! - chamber_cooling: a fast fall at the start, in place of none.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "chamber_shut_later",
+    text: include_str!("chamber_shut_later.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: None,

@@ -1,17 +1,23 @@
-//! A leak through a narrow gap, laminar while the air expands on its way.
+//! The chamber leaks as through a narrow gap, laminar while the air expands.
 //!
 //!     dp/dt = -k (p^2 - p_a^2)
 //!
-//! p pressure and p_a the atmosphere's [Pa absolute], k conductance by volume [1/(Pa s)]. Poiseuille's law for a gas at constant temperature; Egli 1937.
+//! p pressure and p_a that of the atmosphere [Pa absolute], k conductance by volume [1/(Pa s)], g excess over the atmosphere [Pa].
+//! Source: Poiseuille's law for a gas at constant temperature; Egli 1937.
 //!
-//! Signature: a decay faster than exponential at high pressures, exponential at low ones: by gauge pressure g, k (2 p_a g + g^2).
-//! Confused with: the other laws of a leak, while the pressure falls by a small share of itself.
+//! Signature: A decay faster than exponential at high pressures, exponential at low ones: by gauge pressure g, k (2 p_a g + g^2).
+//!
+//! Confused with:
+//! - leak_in_proportion: alike while the pressure falls by a small share of itself; exponential throughout.
+//! - orifice_leakage: alike while the pressure falls by a small share of itself; falls to an end in finite time.
+//! - leak_opened_by_pressure: the same law at a growth of 1/(2 p_a); another growth is not a gap of fixed width.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "gap_leakage",
+    text: include_str!("gap_leakage.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: LEAK,

@@ -1,17 +1,23 @@
-//! A leak whose flow grows with the gauge pressure: pores, permeation, a long narrow gap at a small pressure.
+//! The chamber leaks in proportion to its gauge pressure, as through pores. Permeation, or a long narrow gap at a small pressure.
 //!
 //!     dp/dt = -r g
 //!
-//! p pressure, g its excess over the atmosphere [Pa], r conductance by volume, one over the time constant [1/s]. Darcy 1856.
+//! p pressure [Pa], g its excess over the atmosphere [Pa], r conductance by volume, one over the time constant [1/s].
+//! Source: Darcy 1856.
 //!
-//! Signature: an exponential decay.
-//! Confused with: the other laws of a leak, while the pressure falls by a small share of itself; a drift of the sensor.
+//! Signature: An exponential decay.
+//!
+//! Confused with:
+//! - orifice_leakage: alike while the pressure falls by a small share of itself; falls to an end in finite time.
+//! - gap_leakage: alike while the pressure falls by a small share of itself; falls faster at high pressures.
+//! - a drift of the sensor: goes on at no pressure.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "leak_in_proportion",
+    text: include_str!("leak_in_proportion.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: LEAK,

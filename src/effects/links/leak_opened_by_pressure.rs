@@ -1,18 +1,22 @@
-//! A leak that pressure opens: a seam, a lip or a wall that gives way.
+//! The chamber leaks through something that pressure opens. A seam, a lip or a wall that gives way.
 //!
 //!     dp/dt = -r (1 + o g) g
 //!
-//! p pressure, g its excess over the atmosphere [Pa], r conductance by volume at no pressure [1/s], o its growth [1/Pa]. First order of a gap's width in the
-//! pressure. At o = 1/(2 p_a) it is a narrow gap's law (gap_leakage), beyond it the walls give way as well, or the flow is not laminar throughout.
+//! p pressure [Pa], g its excess over the atmosphere [Pa], r conductance by volume at no pressure [1/s], o its growth [1/Pa].
+//! Source: First order of a gap's width in the pressure.
 //!
-//! Signature: a decay far faster than exponential at high pressures that becomes exponential.
-//! Confused with: orifice and gap, while the pressure falls by a small share of itself.
+//! Signature: A decay far faster than exponential at high pressures that becomes exponential.
+//!
+//! Confused with:
+//! - orifice_leakage: alike while the pressure falls by a small share of itself.
+//! - gap_leakage: the same law at o = 1/(2 p_a), p_a the atmosphere; beyond it the walls give way as well, or the flow is not laminar throughout.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "leak_opened_by_pressure",
+    text: include_str!("leak_opened_by_pressure.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: LEAK,

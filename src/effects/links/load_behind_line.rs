@@ -1,18 +1,23 @@
-//! A load behind a line fills and empties more slowly than the outlet: the outlet gives way until it has.
+//! A load behind a line fills and empties more slowly than the outlet moves. The outlet gives way until the load has filled.
 //!
 //!     y = p - w (p - q),   dq/dt = (p - q)/T
 //!
 //! y outlet [Pa gauge], p what the regulator alone would hold [Pa gauge], q the load's pressure [Pa gauge], w share [1], T time in which the load fills [s].
-//! Two volumes with a laminar line between them; Anderson 1967, chapter 4.
+//! Source: Two volumes with a laminar line between them; Anderson 1967, chapter 4.
 //!
-//! Signature: after every step a slow tail, both ways, of the same share.
-//! Confused with: regulator_venting (down alone), regulator_second_order, a longer time constant (no fast part before).
+//! Signature: After every step a slow tail, both ways, of the same share.
+//!
+//! Confused with:
+//! - regulator_venting: down alone.
+//! - regulator_second_order: swings, or starts flat, without a tail.
+//! - a longer time constant: no fast part before the slow one.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "load_behind_line",
+    text: include_str!("load_behind_line.rs"),
     which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,

@@ -1,18 +1,23 @@
-//! A leak through a short hole.
+//! The chamber leaks as through a short hole.
 //!
 //!     dp/dt = -(A C/V) sqrt(R T) p f(p_a/p)
 //!
-//! p pressure and p_a the atmosphere's [Pa absolute], A C/V equivalent area by volume [1/m], R specific gas constant [J/(kg K)], T temperature [K], f the
-//! choked or subsonic flow function: the source paper's eqs. (9) to (11).
+//! p pressure and p_a that of the atmosphere [Pa absolute], A C/V equivalent area by volume [1/m], R specific gas constant [J/(kg K)], T temperature [K], f
+//! the choked or subsonic flow function.
+//! Source: The source paper's eqs. (9) to (11), an isentropic nozzle.
 //!
-//! Signature: a decay in proportion to the absolute pressure down to the critical ratio, then ever slower, to an end in finite time.
-//! Confused with: the other laws of a leak, while the pressure falls by a small share of itself.
+//! Signature: A decay in proportion to the absolute pressure down to the critical ratio, then ever slower, to an end in finite time.
+//!
+//! Confused with:
+//! - gap_leakage: alike while the pressure falls by a small share of itself; becomes exponential at low pressures.
+//! - leak_in_proportion: alike while the pressure falls by a small share of itself; exponential throughout.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "orifice_leakage",
+    text: include_str!("orifice_leakage.rs"),
     which: Which::Only,
     subsystem: Subsystem::Chambers,
     group: LEAK,

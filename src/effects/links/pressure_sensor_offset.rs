@@ -2,16 +2,21 @@
 //!
 //!     p_m = p + b
 //!
-//! p_m reading and p pressure [Pa gauge], b offset [Pa]. ISA-37.
+//! p_m reading and p pressure [Pa gauge], b offset [Pa].
+//! Source: ISA-37.
 //!
-//! Signature: the reading is off by the same at every pressure, at none too.
-//! Confused with: regulator_gain_error (grows with the pressure), a set value that is itself off: a recording of one sensor cannot tell.
+//! Signature: The reading is off by the same at every pressure, at none too.
+//!
+//! Confused with:
+//! - regulator_gain_error: grows with the pressure.
+//! - a set value that is itself off: a recording of one sensor cannot tell.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "pressure_sensor_offset",
+    text: include_str!("pressure_sensor_offset.rs"),
     which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,

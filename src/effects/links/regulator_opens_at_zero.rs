@@ -1,18 +1,21 @@
-//! A regulator that is told nothing opens its exhaust wide instead of metering it.
+//! The regulator opens its exhaust wide where nothing is set. It is not metered then.
 //!
 //!     dp/dt = -p/T_0   while p_set = 0
 //!
-//! p outlet and p_set set pressure [Pa gauge], T_0 time constant of the open exhaust [s]. Makers of proportional regulators state that below a least set value
-//! the supply valve shuts and the exhaust stands open.
+//! p outlet and p_set set pressure [Pa gauge], T_0 time constant of the open exhaust [s].
+//! Source: Makers of proportional regulators state that below a least set value the supply valve shuts and the exhaust stands open.
 //!
-//! Signature: a step to zero falls otherwise than a step to any other low pressure.
-//! Confused with: regulator_venting (every step down alike): recordings with one low set pressure alone cannot tell.
+//! Signature: A step to zero falls otherwise than a step to any other low pressure.
+//!
+//! Confused with:
+//! - regulator_venting: every step down alike: recordings with one low set pressure alone cannot tell.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_opens_at_zero",
+    text: include_str!("regulator_opens_at_zero.rs"),
     which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,

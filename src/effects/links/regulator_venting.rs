@@ -1,18 +1,22 @@
-//! The regulator vents by another valve than it fills by.
+//! The regulator vents at another pace than it fills. Exhaust and inlet are valves of their own.
 //!
 //!     dp/dt = (K p_set - p)/T_v   while it falls
 //!
-//! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], T_v time constant of venting [s]. Zorlu, Ozsoy and Kuzucu 2003: inlet and exhaust of a
-//! proportional regulator's own valve differ, and the exhaust works against the atmosphere.
+//! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], T_v time constant of venting [s].
+//! Source: Zorlu, Ozsoy and Kuzucu 2003: inlet and exhaust of a proportional regulator's own valve differ, and the exhaust works against the atmosphere.
 //!
-//! Signature: after a step down another time constant than after a step up.
-//! Confused with: regulator_rate_limit (ramps), load_behind_line (a slow tail both ways).
+//! Signature: After a step down another time constant than after a step up.
+//!
+//! Confused with:
+//! - regulator_rate_limit: ramps in place of exponentials.
+//! - load_behind_line: a slow tail both ways.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_venting",
+    text: include_str!("regulator_venting.rs"),
     which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,

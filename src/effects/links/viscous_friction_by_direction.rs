@@ -1,18 +1,23 @@
-//! Viscous friction is not the same both ways.
+//! Viscous friction is larger one way than the other. Lips of seals that face one way, a ball screw.
 //!
 //!     F = -(b + B sign(v)) v
 //!
-//! F force along extension [N], b viscous coefficient [N s/m], B half of what it is larger by in extension than in retraction [N s/m], v speed of
-//! extension [m/s]. Janot, Gautier and Brunot 2019 for a ball screw; lips of seals that face one way.
+//! F force along extension [N], b viscous coefficient [N s/m], B half of what it is larger by in extension than in retraction [N s/m], v speed of extension
+//! [m/s].
+//! Source: Janot, Gautier and Brunot 2019 for a ball screw.
 //!
-//! Signature: what is left grows with the size of the speed, with the same sign both ways.
-//! Confused with: axial_force_offset (the same at every speed), regulator or drive gains that differ by direction.
+//! Signature: What is left grows with the size of the speed, with the same sign both ways.
+//!
+//! Confused with:
+//! - axial_force_offset: the same at every speed.
+//! - gains of a regulator or drive that differ by direction: in proportion to the force, at rest too.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "viscous_friction_by_direction",
+    text: include_str!("viscous_friction_by_direction.rs"),
     which: Which::Only,
     subsystem: Subsystem::ForceBalance,
     group: None,

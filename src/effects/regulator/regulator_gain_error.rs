@@ -1,17 +1,23 @@
-//! The regulator holds another share of its set pressure than believed: its set value's scale is off, or it droops.
+//! The regulator holds another share of its set pressure than believed. Its set value's scale is off, or it droops.
 //!
 //!     p = K p_set        at rest
 //!
-//! p outlet and p_set set pressure [Pa gauge], K gain [1]. Definition of a static gain.
+//! p outlet and p_set set pressure [Pa gauge], K gain [1].
+//! Source: Definition of a static gain.
 //!
-//! Signature: the outlet is off in proportion to the set pressure, at rest too.
-//! Confused with: force_sensor_gain_error (the outlet reads as set), regulator_hysteresis (either side of the set pressure), axial_force_offset.
+//! Signature: The outlet is off in proportion to the set pressure, at rest too.
+//!
+//! Confused with:
+//! - force_sensor_gain_error: the outlet reads as set.
+//! - regulator_hysteresis: the outlet is off to either side of the set pressure, by where it came from.
+//! - axial_force_offset: the force is off by the same at every pressure.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_gain_error",
+    text: include_str!("regulator_gain_error.rs"),
     which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,

@@ -1,17 +1,22 @@
-//! The regulator has play: friction of its pilot's spool lets small changes of the set pressure go by.
+//! The regulator has play: small changes of its set pressure do nothing. Friction of its pilot's spool.
 //!
 //!     p_a = min(max(p_a, p_set - r), p_set + r)
 //!
-//! p_a pressure acted on [Pa gauge], p_set set pressure [Pa gauge], r half the width of the play [Pa]. Play operator, Krasnosel'skii and Pokrovskii 1989.
+//! p_a pressure acted on [Pa gauge], p_set set pressure [Pa gauge], r half the width of the play [Pa].
+//! Source: Play operator, Krasnosel'skii and Pokrovskii 1989.
 //!
-//! Signature: coming from below the outlet stands r short, from above r over; the first steps after a reversal do nothing.
-//! Confused with: regulator_gain_error (does not know where it came from), coulomb_viscous_friction (in the force, not in the outlet).
+//! Signature: Coming from below the outlet stands r short, from above r over; the first steps after a reversal do nothing.
+//!
+//! Confused with:
+//! - regulator_gain_error: does not know where it came from.
+//! - coulomb_viscous_friction: in the force, not in the outlet.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_hysteresis",
+    text: include_str!("regulator_hysteresis.rs"),
     which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,

@@ -1,12 +1,16 @@
-//! The regulator's outlet cannot rise or fall faster than so much: its own valve is as small as that.
+//! The regulator's outlet cannot rise or fall faster than so much. Its own valve is small.
 //!
 //!     dp/dt = min(max((K p_set - p) / tau, -fall), rise)
 //!
-//! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], tau time constant [s], rise and fall the largest rates [Pa/s]. Slew limit; Zorlu, Ozsoy
-//! and Kuzucu 2003 for the flow of a proportional regulator's own valve.
+//! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], tau time constant [s], rise and fall the largest rates [Pa/s].
+//! Source: Slew limit; Zorlu, Ozsoy and Kuzucu 2003 for the flow of a proportional regulator's own valve.
 //!
-//! Signature: large steps of the set pressure become ramps, small ones do not.
-//! Confused with: a longer time constant (small steps too), supply_droop (depends on what was drawn before), regulator_second_order.
+//! Signature: Large steps of the set pressure become ramps, small ones do not.
+//!
+//! Confused with:
+//! - a longer time constant: slows small steps too.
+//! - supply_droop: depends on what was drawn before.
+//! - regulator_second_order: starts flat and overshoots, at steps of any size.
 
 use super::*;
 use crate::plant::Chain;
@@ -14,6 +18,7 @@ use crate::plant::Chain;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "regulator_rate_limit",
+    text: include_str!("regulator_rate_limit.rs"),
     which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,

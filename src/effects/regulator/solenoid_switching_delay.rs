@@ -1,17 +1,22 @@
-//! The 5/2 valve switches some time after it is told to: its coil builds up its field, its pilot fills.
+//! The 5/2 valve switches later than it is told to. Its coil builds up its field, its pilot fills.
 //!
 //!     position(t) = command(t - theta)
 //!
-//! theta switching delay [s], the same either way. ISO 12238 for how makers state it: 10 to 30 ms for a pilot-operated valve of this size.
+//! t time [s], theta switching delay [s], the same either way.
+//! Source: ISO 12238 for how makers state it: 10 to 30 ms for a pilot-operated valve of this size.
 //!
-//! Signature: extending and retracting start late by the same time, whatever the regulator does in between.
-//! Confused with: transport_delay (of the set pressure, and in the outlet), hose_volume (delays pressure, not the valve).
+//! Signature: Extending and retracting start late by the same time, whatever the regulator does in between.
+//!
+//! Confused with:
+//! - transport_delay: the outlet is late after a set pressure; the valve is not.
+//! - hose_volume: the pressure is late after a set pressure too; the valve is not.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "solenoid_switching_delay",
+    text: include_str!("solenoid_switching_delay.rs"),
     which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,

@@ -1,17 +1,23 @@
-//! The regulator answers its set pressure only after a dead time: a bus, a PWM filter, its own electronics.
+//! The regulator answers a set pressure only after a dead time. A bus, a PWM filter, its own electronics.
 //!
 //!     p_acted(t) = p_set(t - theta)
 //!
-//! p_set set pressure, p_acted that acted on [Pa gauge], theta dead time [s]. Dead time of process control (Smith 1957).
+//! t time [s], p_set set pressure and p_acted that acted on [Pa gauge], theta dead time [s].
+//! Source: Dead time of process control (Smith 1957).
 //!
-//! Signature: the outlet does nothing for theta after each change, then answers as believed.
-//! Confused with: regulator_second_order (starts flat, but at once), channel_time_offset (of the force alone), solenoid_switching_delay.
+//! Signature: The outlet does nothing for theta after each change, then answers as believed.
+//!
+//! Confused with:
+//! - regulator_second_order: the outlet starts flat, but at once.
+//! - channel_time_offset: the force alone is late.
+//! - solenoid_switching_delay: what the valve does is late; the outlet is not.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "transport_delay",
+    text: include_str!("transport_delay.rs"),
     which: Which::Only,
     subsystem: Subsystem::Regulator,
     group: None,

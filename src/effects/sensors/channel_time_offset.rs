@@ -1,17 +1,22 @@
-//! The load cell's samples are stamped late: another clock, a buffer.
+//! The load cell's samples are stamped late. Another clock, a buffer.
 //!
 //!     F_m(t) = F(t - delta)
 //!
-//! F_m reading and F contact force [N], delta how late it is stamped [s]. Definition of a delay.
+//! t time [s], F_m reading and F contact force [N], delta how late it is stamped [s].
+//! Source: Definition of a delay.
 //!
-//! Signature: every edge of the force comes late by the same time, undistorted, while stroke and acceleration are in time.
-//! Confused with: force_sensor_lag (rounds edges), transport_delay (everything is late).
+//! Signature: Every edge of the force comes late by the same time, undistorted, while stroke and acceleration are in time.
+//!
+//! Confused with:
+//! - force_sensor_lag: rounds the edges.
+//! - transport_delay: everything is late, the outlet first.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "channel_time_offset",
+    text: include_str!("channel_time_offset.rs"),
     which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,

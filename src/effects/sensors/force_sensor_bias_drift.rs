@@ -1,11 +1,15 @@
-//! The load cell does not read zero at no force, and drifts: temperature, creep, a wrong tare.
+//! The load cell does not read zero at no force, and drifts. Temperature, creep, a wrong tare.
 //!
 //!     F_m = F + b + d t
 //!
-//! F_m reading and F contact force [N], b bias at the start of each recording [N], d drift [N/s], t time since then [s]. Doebelin, Measurement Systems.
+//! F_m reading and F contact force [N], b bias at the start of each recording [N], d drift [N/s], t time since then [s].
+//! Source: Doebelin, Measurement Systems.
 //!
-//! Signature: the reading in the air is not zero and moves with time, whatever stroke, pressures and motion do.
-//! Confused with: axial_force_offset (nothing in the air), force_sensor_gain_error (in proportion to the force).
+//! Signature: The reading in the air is not zero and moves with time, whatever stroke, pressures and motion do.
+//!
+//! Confused with:
+//! - axial_force_offset: reads nothing in the air.
+//! - force_sensor_gain_error: in proportion to the force.
 
 use super::*;
 
@@ -15,6 +19,7 @@ const FAR: f64 = 1e3;
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "force_sensor_bias_drift",
+    text: include_str!("force_sensor_bias_drift.rs"),
     which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,

@@ -1,17 +1,23 @@
-//! The load cell reads too much or too little in proportion: wrong calibration, another bridge supply.
+//! The load cell reads too much or too little in proportion. Wrong calibration, another bridge supply.
 //!
 //!     F_m = g F
 //!
-//! F_m reading and F contact force [N], g gain [1]. Doebelin, Measurement Systems.
+//! F_m reading and F contact force [N], g gain [1].
+//! Source: Doebelin, Measurement Systems.
 //!
-//! Signature: the reading is off in proportion to the force, while outlet, stroke and acceleration are as believed.
-//! Confused with: regulator_gain_error (in the outlet), pressure_dependent_friction (turns with the motion), contact_stiffness_error (in the stroke).
+//! Signature: The reading is off in proportion to the force, while outlet, stroke and acceleration are as believed.
+//!
+//! Confused with:
+//! - regulator_gain_error: the outlet is off as well.
+//! - pressure_dependent_friction: changes its sign with the direction of motion.
+//! - contact_stiffness_error: the stroke is off as well.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "force_sensor_gain_error",
+    text: include_str!("force_sensor_gain_error.rs"),
     which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,

@@ -1,17 +1,23 @@
-//! The load cell's signal is smoothed, and late by it: its amplifier's filter.
+//! The load cell's signal is smoothed, and late by it. Its amplifier's filter.
 //!
 //!     T dF_m/dt + F_m = F
 //!
-//! F_m reading and F contact force [N], T time constant [s]. First-order low pass.
+//! F_m reading and F contact force [N], T time constant [s].
+//! Source: First-order low pass.
 //!
-//! Signature: edges of the force are rounded and late by T, those of stroke and acceleration are not.
-//! Confused with: channel_time_offset (late but not rounded), inertial_crosstalk, hose_volume (the piston is late too).
+//! Signature: Edges of the force are rounded and late by T, those of stroke and acceleration are not.
+//!
+//! Confused with:
+//! - channel_time_offset: late but not rounded.
+//! - inertial_crosstalk: follows the acceleration, in the air too.
+//! - hose_volume: the piston is late too.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "force_sensor_lag",
+    text: include_str!("force_sensor_lag.rs"),
     which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,

@@ -1,17 +1,22 @@
-//! The load cell's signal ends at a limit: its amplifier or its converter is at its end.
+//! The load cell's signal ends at a limit. Its amplifier or its converter is at its end.
 //!
 //!     F_m = min(max(F, -l), l)
 //!
 //! F_m reading and F contact force [N], l limit [N].
+//! Source: Limiter; Doebelin, Measurement Systems.
 //!
-//! Signature: peaks are cut flat at the same reading, and everything below it is right.
-//! Confused with: supply_droop (the outlet and the stroke show it), force_sensor_gain_error (small forces too).
+//! Signature: Peaks are cut flat at the same reading, and everything below it is right.
+//!
+//! Confused with:
+//! - supply_droop: outlet and stroke show it too.
+//! - force_sensor_gain_error: small forces are off too.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "force_sensor_saturation",
+    text: include_str!("force_sensor_saturation.rs"),
     which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,

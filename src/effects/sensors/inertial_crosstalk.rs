@@ -2,16 +2,21 @@
 //!
 //!     F_m = F + m_x a
 //!
-//! F_m reading and F contact force [N], m_x mass beyond the load cell [kg], a acceleration along extension [m/s2]. Newton's second law.
+//! F_m reading and F contact force [N], m_x mass beyond the load cell [kg], a acceleration along extension [m/s2].
+//! Source: Newton's second law.
 //!
-//! Signature: the reading in the air is a copy of the accelerometer's.
-//! Confused with: moving_mass_error (the motion itself is another), force_sensor_lag.
+//! Signature: The reading in the air is a copy of the accelerometer's, m_x times it.
+//!
+//! Confused with:
+//! - moving_mass_error: the motion itself is another one.
+//! - force_sensor_lag: nothing in the air.
 
 use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "inertial_crosstalk",
+    text: include_str!("inertial_crosstalk.rs"),
     which: Which::Only,
     subsystem: Subsystem::Sensors,
     group: None,

@@ -1,0 +1,148 @@
+//! `idc effects`: what physics there is that a model may lack, told and shown.
+
+mod gallery;
+mod page;
+mod picture;
+mod scene;
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::error::{AppError, ExitCode};
+use super::files::{Standing, prepare_file};
+use super::output::say;
+use crate::effects::{Effect, kinds};
+use crate::recording::atomic::write_text;
+use crate::scenario::suggestion::nearest;
+use page::{Explained, SUBSYSTEMS, heading};
+use picture::picture;
+use scene::Stage;
+
+/// For the help.
+pub(super) const EXAMPLES: &str = "\
+docs/EFFECTS.md holds all of it, with the pictures. A picture is two runs of a
+short scenario, as believed and with the effect at its usual size: the signals
+that show it most, at the time at which they do.
+
+Exit codes: 0 done, 2 bad input, or a file that stands already (--force).
+
+Examples:
+  # What there is, by where it enters.
+  idc effects
+  # Equation, numbers, what it looks like and what it is confused with.
+  idc effects stribeck_friction
+  # Its picture.
+  idc effects stribeck_friction --out runs/stribeck_friction.svg
+  # The same for a program.
+  idc effects stribeck_friction --json";
+
+#[derive(Debug, Args)]
+pub(super) struct EffectsArguments {
+    /// The effect to explain [default: a list of all].
+    name: Option<String>,
+    /// File for its picture, an SVG.
+    #[arg(long, value_name = "FILE", requires = "name", help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Folder for EFFECTS.md and the pictures of all, as they stand in docs.
+    #[arg(
+        long,
+        value_name = "FOLDER",
+        conflicts_with_all = ["name", "json"],
+        hide = true
+    )]
+    gallery: Option<PathBuf>,
+    /// Put new files in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print what is told as JSON.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
+
+/// Lists effects, explains one, or draws it.
+pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
+    let standing = Standing::of(arguments.force);
+    if let Some(folder) = &arguments.gallery {
+        let told = gallery::write(folder, standing)?;
+        if !arguments.quiet {
+            say(&told)?;
+        }
+        return Ok(ExitCode::Done);
+    }
+    let Some(name) = &arguments.name else {
+        if arguments.json {
+            say(&format!("{:#}\n", listed()))?;
+        } else if !arguments.quiet {
+            say(&list())?;
+        }
+        return Ok(ExitCode::Done);
+    };
+    let effect = named(name)?;
+    let stage = Stage::new(&scene::of(effect).scene)?;
+    if let Some(file) = &arguments.out {
+        prepare_file(file, "--out", standing)?;
+        write_text(file, &picture(effect, &stage)?.svg)?;
+    }
+    let explained = Explained::new(effect, &stage);
+    if arguments.json {
+        say(&format!("{}\n", serde_json::to_string_pretty(&explained)?))?;
+    } else if let (Some(file), false) = (&arguments.out, arguments.quiet) {
+        say(&format!("written to {}\n", file.display()))?;
+    } else if !arguments.quiet {
+        say(&explained.text())?;
+    }
+    Ok(ExitCode::Done)
+}
+
+fn named(name: &str) -> Result<&'static Effect, AppError> {
+    let known: Vec<&str> = kinds().map(|effect| effect.vocabulary().0).collect();
+    let effect = kinds().find(|effect| effect.vocabulary().0 == name);
+    effect.ok_or_else(|| AppError::NoEffect {
+        name: name.to_owned(),
+        advice: nearest(name, &known),
+    })
+}
+
+/// Effects with their subsystem, in the order in which they are told.
+fn by_subsystem() -> impl Iterator<Item = (&'static str, Vec<&'static Effect>)> {
+    SUBSYSTEMS.into_iter().map(|subsystem| {
+        let own = kinds().filter(|effect| effect.subsystem == subsystem);
+        (heading(subsystem), own.collect())
+    })
+}
+
+/// For people.
+fn list() -> String {
+    let wide = kinds().map(|effect| effect.vocabulary().0.len()).max();
+    let wide = wide.unwrap_or(0);
+    let mut text = String::new();
+    for (heading, effects) in by_subsystem() {
+        text += &format!("{heading}\n");
+        for effect in effects {
+            let mark = if scene::is_of_part(effect) { '*' } else { ' ' };
+            let (name, meaning) = (effect.vocabulary().0, &effect.header().meaning);
+            text += &format!("{mark} {name:<wide$}  {meaning}\n");
+        }
+        text.push('\n');
+    }
+    text + "* only in a rig with a part of the device alone, [rig] chain\n\
+            idc effects NAME explains one, idc run SCENARIO --with NAME puts it in\n"
+}
+
+/// For programs.
+fn listed() -> serde_json::Value {
+    let entry = |effect: &Effect| {
+        serde_json::json!({
+            "name": effect.vocabulary().0,
+            "subsystem": effect.subsystem.name(),
+            "meaning": effect.header().meaning,
+            "part_of_device": scene::is_of_part(effect),
+        })
+    };
+    let effects = by_subsystem().flat_map(|(_, effects)| effects);
+    serde_json::json!({ "effects": effects.map(entry).collect::<Vec<_>>() })
+}

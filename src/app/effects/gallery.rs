@@ -1,0 +1,90 @@
+//! docs/EFFECTS.md and its pictures.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::super::error::AppError;
+use super::super::files::{Standing, prepare_file};
+use super::by_subsystem;
+use super::page::Explained;
+use super::picture::picture;
+use super::scene::{self, Stage};
+use crate::diagnosis::words::capital;
+use crate::effects::Effect;
+use crate::recording::atomic::write_text;
+
+/// File of the text, and folder of the pictures beside it.
+const TEXT: &str = "EFFECTS.md";
+const PICTURES: &str = "pictures/effects";
+
+const INTRODUCTION: &str = "\
+# Effects
+
+The physics that a model of a cell or a device may lack, as `idc diagnose` looks for it and `idc run --with` puts it in. `idc effects` lists them, `idc effects NAME` tells what stands here of one.
+
+Each picture is two runs of the simulator, as believed and with the effect, without noise: the signals that show it most, at the time at which they do. The size is in the title; it is the usual
+one where that is seen. Runs are those of the scenarios in [assets/effects](../assets/effects): [steps](../assets/effects/steps.toml) of the set pressure on a load cell, a surface that goes to
+and fro ([sway](../assets/effects/sway.toml)), free [strokes](../assets/effects/strokes.toml) and strokes that [draw](../assets/effects/draw.toml) much air, a stretch of an
+[edge](../assets/effects/edge.toml) with the arm. What only a rig with a part of the device shows (`[rig] chain`; marked \\*) is a slide that is driven to and fro, a chamber that is shut off, or a
+regulator alone.
+
+Numbers are in the units that people read; a key ends in the unit in which a file has it, and `--with NAME:KEY=VALUE` takes any other unit of it. Ranges and usual sizes are those of the device
+of [models/device.toml](../models/device.toml), where they depend on one. \"The source paper\" is that of [docs/PAPER.md](PAPER.md).
+
+";
+
+const END: &str = "\
+---
+
+This page and its pictures are made by `idc effects --gallery docs --force`, of the header comments in `src/effects/`.
+";
+
+/// Writes it all; says what was written.
+pub(super) fn write(folder: &Path, standing: Standing) -> Result<String, AppError> {
+    let mut stages: BTreeMap<String, Stage> = BTreeMap::new();
+    let mut text = INTRODUCTION.to_owned();
+    let groups: Vec<(&str, Vec<&Effect>)> = by_subsystem().collect();
+    for (heading, effects) in &groups {
+        let link = |effect: &&Effect| {
+            let name = effect.vocabulary().0;
+            let mark = if scene::is_of_part(effect) { "\\*" } else { "" };
+            format!("- [{name}](#{name}){mark}: {}\n", effect.header().meaning)
+        };
+        text += &format!("**{}**\n\n", capital(heading));
+        text.extend(effects.iter().map(link));
+        text.push('\n');
+    }
+    let mut told = String::new();
+    let mut pictures = Vec::new();
+    for (heading, effects) in &groups {
+        text += &format!("## {heading}\n\n");
+        for effect in effects {
+            let scene = scene::of(effect).scene;
+            let key = scene.key();
+            if !stages.contains_key(&key) {
+                stages.insert(key.clone(), Stage::new(&scene)?);
+            }
+            let Some(stage) = stages.get(&key) else {
+                continue;
+            };
+            text += &Explained::new(effect, stage).markdown();
+            let name = effect.vocabulary().0;
+            let drawn = picture(effect, stage)?;
+            told += &format!(
+                "{name}: {:.0} % of its range, {} bytes\n",
+                100.0 * drawn.difference,
+                drawn.svg.len()
+            );
+            pictures.push((folder.join(PICTURES).join(format!("{name}.svg")), drawn.svg));
+        }
+    }
+    text += END;
+    pictures.push((folder.join(TEXT), text));
+    for (path, _) in &pictures {
+        prepare_file(path, "--gallery", standing)?;
+    }
+    for (path, content) in &pictures {
+        write_text(path, content)?;
+    }
+    Ok(told)
+}

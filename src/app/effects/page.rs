@@ -1,0 +1,308 @@
+//! What there is to say of an effect, for a terminal, a program and docs/EFFECTS.md.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::scene::{self, Scene, Stage};
+use crate::diagnosis::words::{capital, spoken, wrapped};
+use crate::effects::{Effect, Header, Subsystem, Which};
+use crate::plant::PlantParameters;
+use crate::quantity::significant;
+
+/// Where the pictures stand in the project.
+pub(super) const PICTURES: &str = "docs/pictures/effects";
+/// Digits of a number in a table.
+const DIGITS: usize = 3;
+
+/// An effect, explained.
+#[derive(Debug, Serialize)]
+pub(super) struct Explained {
+    name: &'static str,
+    pub meaning: &'static str,
+    cause: &'static str,
+    subsystem: &'static str,
+    /// Chain of the rig that alone shows it; none of a whole device and its cell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chain: Option<&'static str>,
+    of_joint: bool,
+    equation: &'static [&'static str],
+    legend: &'static str,
+    source: &'static str,
+    parameters: Vec<Number>,
+    signature: &'static str,
+    confused_with: Vec<Rival>,
+    /// A run that shows it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    command: Option<String>,
+    /// What a file says of it.
+    lines: Vec<String>,
+    picture: String,
+}
+
+/// One number of an effect: range and usual size in the unit of its key, as the file takes it.
+#[derive(Debug, Serialize)]
+struct Number {
+    key: &'static str,
+    range: [f64; 2],
+    usual: f64,
+    /// That of the picture.
+    shown: f64,
+    /// Is it a part of a diagnosis's answer?
+    told: bool,
+}
+
+/// What an effect is confused with.
+#[derive(Debug, Serialize)]
+struct Rival {
+    name: &'static str,
+    told_apart: &'static str,
+}
+
+/// A subsystem in words.
+pub(super) fn heading(subsystem: Subsystem) -> &'static str {
+    match subsystem {
+        Subsystem::ForceBalance => "Forces on the piston",
+        Subsystem::Chambers => "Chambers and supply",
+        Subsystem::Regulator => "Regulator and valve",
+        Subsystem::Contact => "Tool on workpiece",
+        Subsystem::Sensors => "Sensors",
+        Subsystem::Arm => "Arm",
+        Subsystem::Workpiece => "Part",
+    }
+}
+
+/// All of them, in the order in which they are told.
+pub(super) const SUBSYSTEMS: [Subsystem; 7] = [
+    Subsystem::ForceBalance,
+    Subsystem::Chambers,
+    Subsystem::Regulator,
+    Subsystem::Contact,
+    Subsystem::Sensors,
+    Subsystem::Arm,
+    Subsystem::Workpiece,
+];
+
+/// Letters that a picture's title has room for.
+const TITLE: usize = 90;
+
+/// An effect with its size, over its picture.
+pub(super) fn title(effect: &Effect, believed: &PlantParameters, joint: usize) -> String {
+    let (name, of_joint) = effect.vocabulary();
+    let which = of_joint.map_or(String::new(), |_| format!(" of joint {joint}"));
+    let mut title = format!("{name}{which}");
+    let mut before = ": ";
+    let parameters = effect.parameters(believed);
+    for (parameter, value) in parameters.iter().zip(scene::sizes(effect, believed)) {
+        let key = parameter.quantity.name;
+        if !parameter.reported && key != "sine_m" {
+            continue;
+        }
+        let (words, unit, factor) = spoken(key);
+        let words = words.replace("sine", "amplitude");
+        let size = format!("{before}{words} {} {unit}", size(factor * value));
+        if title.len() + size.len() <= TITLE {
+            title += size.trim_end();
+        }
+        before = ", ";
+    }
+    title
+}
+
+/// A size as people say it: no more digits than it has.
+fn size(value: f64) -> String {
+    let text = significant(value, DIGITS);
+    match text.contains('.') && !text.contains('·') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+impl Explained {
+    pub(super) fn new(effect: &Effect, stage: &Stage) -> Self {
+        let header: &'static Header = effect.header();
+        let name = effect.vocabulary().0;
+        let of_joint = effect.which != Which::Only;
+        let parameters = effect.parameters(&stage.believed);
+        let usual = effect.usual(&stage.believed);
+        let shown = scene::sizes(effect, &stage.believed);
+        let numbers: Vec<Number> = (parameters.iter().zip(usual).zip(shown))
+            .map(|((parameter, usual), shown)| Number {
+                key: parameter.quantity.name,
+                range: parameter.bounds,
+                usual: rounded(usual),
+                shown: rounded(shown),
+                told: parameter.reported,
+            })
+            .collect();
+        let mut lines = vec!["[[effect]]".to_owned(), format!("name = \"{name}\"")];
+        lines.extend(of_joint.then(|| format!("joint = {}", stage.telling)));
+        lines.extend(numbers.iter().map(|n| format!("{} = {}", n.key, n.shown)));
+        let (chain, command) = match scene::of(effect).scene {
+            Scene::Part(chain) => (Some(chain.name()), None),
+            Scene::Run(run) => {
+                let out = format!("runs/{name}");
+                let asked = scene::asked(effect);
+                let command = format!("idc run {} --with {asked} --out {out}", run.path);
+                (None, Some(command))
+            }
+        };
+        Self {
+            name,
+            meaning: &header.meaning,
+            cause: &header.cause,
+            subsystem: effect.subsystem.name(),
+            chain,
+            of_joint,
+            equation: &header.equation,
+            legend: &header.legend,
+            source: &header.source,
+            parameters: numbers,
+            signature: &header.signature,
+            confused_with: (header.rivals.iter())
+                .map(|(name, told_apart)| Rival { name, told_apart })
+                .collect(),
+            command,
+            lines,
+            picture: format!("{PICTURES}/{name}.svg"),
+        }
+    }
+
+    /// For a terminal.
+    pub(super) fn text(&self) -> String {
+        let mut text = wrapped(
+            &format!("{}: ", self.name),
+            &format!("{}. {}", self.meaning, self.cause),
+        );
+        text = text.trim_end().to_owned() + "\n\n";
+        for line in self.equation {
+            // Writing into a text cannot fail.
+            let _ = writeln!(text, "    {line}");
+        }
+        text.push('\n');
+        text += &wrapped("", self.legend);
+        text += &wrapped("Source: ", self.source);
+        text += "\nNumbers:\n";
+        let rows: Vec<[String; 4]> = self.parameters.iter().map(Number::cells).collect();
+        let wide = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+        let wide = [0, 1, 2].map(|column| wide(column).unwrap_or(0));
+        for [key, words, range, usual] in &rows {
+            let row = format!(
+                "  {key:<0$}  {words:<1$}  {range:<2$}  usual {usual}",
+                wide[0], wide[1], wide[2]
+            );
+            let _ = writeln!(text, "{row}");
+        }
+        text += "\n";
+        text += &wrapped("Shows as: ", &capital(self.signature));
+        text += "\nConfused with:\n";
+        for rival in &self.confused_with {
+            text += &wrapped(&format!("  {}: ", rival.name), rival.told_apart);
+        }
+        match (&self.command, self.chain) {
+            (Some(command), _) => {
+                let _ = writeln!(text, "\nTry it:\n  {command}");
+                text += "In a scenario:\n";
+            }
+            (None, chain) => {
+                let chain = chain.unwrap_or_default();
+                let _ = writeln!(
+                    text,
+                    "\nIn a rig file with chain = \"{chain}\" below [rig]:"
+                );
+            }
+        }
+        for line in &self.lines {
+            let _ = writeln!(text, "  {line}");
+        }
+        let _ = writeln!(
+            text,
+            "\nPicture: {}, or idc effects {} --out FILE.svg",
+            self.picture, self.name
+        );
+        text
+    }
+
+    /// For docs/EFFECTS.md.
+    pub(super) fn markdown(&self) -> String {
+        let mut text = format!("### {}\n\n{}.", self.name, capital(self.meaning));
+        if !self.cause.is_empty() {
+            text = format!("{text} {}", self.cause);
+        }
+        text += "\n\n";
+        for line in self.equation {
+            let _ = writeln!(text, "    {line}");
+        }
+        let _ = writeln!(text, "\n{} Source: {}\n", plain(self.legend), self.source);
+        text += "| number | | range | usual |\n| --- | --- | --- | --- |\n";
+        for [key, words, range, usual] in self.parameters.iter().map(Number::cells) {
+            let _ = writeln!(text, "| `{key}` | {words} | {range} | {usual} |");
+        }
+        let _ = writeln!(
+            text,
+            "\n![{}: as believed and with the effect](pictures/effects/{}.svg)\n",
+            self.name, self.name
+        );
+        let _ = writeln!(text, "**Shows as.** {}\n", plain(&capital(self.signature)));
+        text += "**Confused with**\n\n";
+        for rival in &self.confused_with {
+            let first = rival.name.split(' ').next().unwrap_or_default();
+            let name = match first.contains('_') && first != self.name {
+                true => rival
+                    .name
+                    .replacen(first, &format!("[{first}](#{first})"), 1),
+                false => rival.name.to_owned(),
+            };
+            let _ = writeln!(text, "- {name}: {}", plain(rival.told_apart));
+        }
+        match (&self.command, self.chain) {
+            (Some(command), _) => {
+                let _ = writeln!(
+                    text,
+                    "\n**Try it**, or put it into a scenario:\n\n    {command}\n"
+                );
+            }
+            (None, chain) => {
+                let chain = chain.unwrap_or_default();
+                let words = "of a part of the device alone, in a rig file with";
+                let _ = writeln!(text, "\n**Try it** {words} `chain = \"{chain}\"`:\n");
+            }
+        }
+        for line in &self.lines {
+            let _ = writeln!(text, "    {line}");
+        }
+        text.push('\n');
+        text
+    }
+}
+
+impl Number {
+    /// Key, words with unit, range, usual size.
+    fn cells(&self) -> [String; 4] {
+        let (words, unit, factor) = spoken(self.key);
+        let size = |value: f64| size(factor * value);
+        let [low, high] = self.range.map(size);
+        let unit = match unit {
+            "" => String::new(),
+            unit => format!(", {unit}"),
+        };
+        [
+            self.key.to_owned(),
+            format!("{words}{unit}"),
+            format!("{low} to {high}"),
+            size(self.usual),
+        ]
+    }
+}
+
+/// A size is what people say: three digits of it.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+/// A text in which Markdown sees no signs of its own.
+fn plain(text: &str) -> String {
+    text.replace('*', "\\*")
+        .replace('_', "\\_")
+        .replace('<', "&lt;")
+}

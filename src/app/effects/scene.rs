@@ -1,0 +1,537 @@
+//! Runs in which effects show: short scenarios that come with the program, and parts of a device driven by simple inputs.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use super::super::error::AppError;
+use super::super::run::put_in;
+use crate::cell::Cell;
+use crate::effects::{Effect, LINK_EFFECTS, Subsystem};
+use crate::plant::{Chain, Channel, MeasuredMotion, PlantInputs, PlantParameters, simulate};
+use crate::recording::Recording;
+use crate::recording::schema::{self, JointSignal, joint_quantity};
+use crate::rig::Rig;
+use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate};
+use crate::simulation::{Simulation, SimulationError};
+
+/// A scenario that comes with the program.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Shipped {
+    /// Its path in the project.
+    pub path: &'static str,
+    text: &'static str,
+}
+
+macro_rules! shipped {
+    ($name:literal) => {
+        Shipped {
+            path: concat!("assets/effects/", $name, ".toml"),
+            text: include_str!(concat!("../../../assets/effects/", $name, ".toml")),
+        }
+    };
+}
+
+static STEPS: Shipped = shipped!("steps");
+static SWAY: Shipped = shipped!("sway");
+static STROKES: Shipped = shipped!("strokes");
+static EDGE: Shipped = shipped!("edge");
+static DRAW: Shipped = shipped!("draw");
+
+/// What the scenarios name, with its path in the project.
+const BESIDE: [(&str, &[u8]); 3] = [
+    (
+        "models/arm/arm10.urdf",
+        include_bytes!("../../../models/arm/arm10.urdf"),
+    ),
+    (
+        "models/device.toml",
+        include_bytes!("../../../models/device.toml"),
+    ),
+    (
+        "assets/plate.stl",
+        include_bytes!("../../../assets/plate.stl"),
+    ),
+];
+
+/// Where an effect is shown.
+pub(super) enum Scene {
+    /// In a run of a scenario.
+    Run(&'static Shipped),
+    /// In a part of a device alone.
+    Part(Chain),
+}
+
+impl Scene {
+    /// A name of its own.
+    pub(super) fn key(&self) -> String {
+        match self {
+            Self::Run(shipped) => shipped.path.to_owned(),
+            Self::Part(chain) => chain.name().to_owned(),
+        }
+    }
+}
+
+/// How an effect is shown.
+pub(super) struct Shown {
+    /// Where.
+    pub scene: Scene,
+    /// Between which times [s]; the whole run where there are none.
+    pub window: Option<[f64; 2]>,
+    /// Which signals, by their keys.
+    pub signals: &'static [&'static str],
+    /// One of its numbers where its usual size would not be seen there.
+    pub size: Option<Size>,
+}
+
+/// A number of another size than the usual one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Size {
+    /// As `--with` takes it.
+    pub asked: &'static str,
+    /// Its key in SI.
+    pub key: &'static str,
+    /// In SI.
+    pub value: f64,
+}
+
+const fn size(asked: &'static str, key: &'static str, value: f64) -> Option<Size> {
+    Some(Size { asked, key, value })
+}
+
+/// How an effect is shown: by its row, or as a step is.
+#[rustfmt::skip] // A table: one effect a line.
+pub(super) fn of(effect: &Effect) -> Shown {
+    let whole = [0.0, f64::INFINITY];
+    let (run, window, signals, size): (_, _, &[&str], _) = match effect.vocabulary().0 {
+        "coulomb_viscous_friction" => (&SWAY, [1.0, 5.0], &["force", "stroke"], None),
+        "stribeck_friction" => (&SWAY, [1.0, 5.0], &["force", "stroke"], None),
+        "presliding_hysteresis" => (&SWAY, [1.0, 5.0], &["force", "stroke"], None),
+        "pressure_dependent_friction" => (&SWAY, [1.0, 9.0], &["force", "stroke"], None),
+        "return_spring_load" => (&SWAY, [1.0, 5.0], &["force", "stroke"], None),
+        "axial_force_offset" => (&STEPS, [4.2, 8.0], &["force", "outlet"], None),
+        "end_cushioning" => (&STROKES, [0.2, 0.7], &["stroke", "acceleration"], None),
+        "moving_mass_error" => (&STROKES, [0.2, 0.42], &["acceleration", "stroke"], None),
+        "cross_piston_leakage" => (&STEPS, [1.3, 4.5], &["chamber_2", "chamber_1"],
+            size("orifice_area_mm2=0.8", "orifice_area_m2", 8e-7)),
+        "external_leakage" => (&STEPS, [1.3, 4.5], &["chamber_1", "outlet"],
+            size("orifice_area_mm2=0.8", "orifice_area_m2", 8e-7)),
+        "supply_droop" => (&DRAW, whole, &["outlet", "stroke"], None),
+        "heat_transfer" => (&STROKES, [1.4, 2.3], &["chamber_1", "stroke"], None),
+        "exhaust_restriction" => (&STROKES, [0.2, 2.2], &["chamber_2", "stroke"], None),
+        "supply_restriction" => (&STEPS, [1.4, 2.4], &["chamber_1", "outlet"], None),
+        "extra_dead_volume" => (&STROKES, [1.4, 2.4], &["chamber_2", "chamber_1"], None),
+        "hose_volume" => (&STEPS, [1.4, 2.4], &["chamber_1", "outlet"], None),
+        "regulator_hysteresis" => (&STEPS, [4.2, 8.0], &["outlet", "force"], None),
+        "regulator_rate_limit" => (&STEPS, [1.3, 6.0], &["outlet", "force"], None),
+        "regulator_second_order" => (&STEPS, [1.3, 4.5], &["outlet", "force"], None),
+        "solenoid_switching_delay" => (&STROKES, [1.4, 2.9], &["chamber_2", "stroke"], None),
+        "transport_delay" => (&STEPS, [1.4, 2.4], &["outlet", "force"], None),
+        "regulator_gain_error" => (&STEPS, [1.3, 4.5], &["outlet", "force"], None),
+        "contact_stiffness_error" | "hertzian_contact" => (&STEPS, [1.0, 8.0], &["stroke", "force"], None),
+        "tool_runout" => (&EDGE, [5.0, 5.15], &["force", "stroke"], None),
+        "surface_waviness" => (&EDGE, [4.0, 7.0], &["stroke", "force"], None),
+        "surface_offset" => (&EDGE, [3.0, 7.5], &["stroke"], None),
+        "force_sensor_bias_drift" => (&STEPS, [4.2, 8.0], &["force"], None),
+        "force_sensor_gain_error" => (&STEPS, [1.3, 4.5], &["force", "outlet"], None),
+        "force_sensor_lag" | "channel_time_offset" => (&STEPS, [0.3, 0.5], &["force", "acceleration"], None),
+        "force_sensor_saturation" => (&STEPS, [0.2, 4.5], &["force", "outlet"], None),
+        "inertial_crosstalk" => (&STROKES, [0.2, 0.5], &["force", "acceleration"], None),
+        "stroke_sensor_gain_error" => (&STROKES, [0.35, 0.6], &["stroke"], None),
+        "part_misplaced" => (&EDGE, [3.0, 7.5], &["stroke"], None),
+        "burr" => (&EDGE, [4.5, 6.5], &["stroke", "force"], size("position_mm=40", "position_m", 0.04)),
+        "compliant_joint" => (&EDGE, [3.0, 7.5], &["stroke", "path"], None),
+        "joint_encoder_offset" => (&EDGE, [3.0, 7.5], &["stroke", "path"], None),
+        "joint_backlash" => (&EDGE, whole, &["path", "torque"], None),
+        "joint_friction" => (&EDGE, whole, &["torque", "speed"], None),
+        "servo_lag" => (&EDGE, whole, &["trail", "speed"], None),
+        "load_behind_line" => return part(Chain::Regulator, size("load_time_constant_s=1", "load_time_constant_s", 1.0)),
+        "viscous_friction_by_direction" => return part(Chain::DrivenSlide, None),
+        _ if is_of_part(effect) => match effect.subsystem {
+            Subsystem::Chambers => return part(Chain::ClosedChamber, None),
+            _ => return part(Chain::Regulator, None),
+        },
+        _ => (&STEPS, whole, &["outlet", "force"], None),
+    };
+    Shown { scene: Scene::Run(run), window: (window != whole).then_some(window), signals, size }
+}
+
+fn part(chain: Chain, size: Option<Size>) -> Shown {
+    Shown {
+        scene: Scene::Part(chain),
+        window: None,
+        signals: &["read", "speed"],
+        size,
+    }
+}
+
+/// What `--with` is given for it to be shown.
+pub(super) fn asked(effect: &Effect) -> String {
+    let name = effect.vocabulary().0;
+    let size = of(effect).size;
+    size.map_or(name.to_owned(), |size| format!("{name}:{}", size.asked))
+}
+
+/// Its numbers, as large as they are shown.
+pub(super) fn sizes(effect: &Effect, believed: &PlantParameters) -> Vec<f64> {
+    let usual = effect.usual(believed);
+    let size = of(effect).size;
+    let own = |key: &str, usual: f64| match size {
+        Some(size) if size.key == key => size.value,
+        _ => usual,
+    };
+    let parameters = effect.parameters(believed);
+    let pairs = parameters.iter().zip(usual);
+    pairs
+        .map(|(parameter, usual)| own(parameter.quantity.name, usual))
+        .collect()
+}
+
+/// Does only a rig with a part of the device show it?
+pub(super) fn is_of_part(effect: &Effect) -> bool {
+    LINK_EFFECTS.iter().any(|own| own.name == effect.name)
+}
+
+/// A signal in the unit in which it is drawn.
+#[derive(Debug, Clone)]
+pub(super) struct Signal {
+    /// By which it is chosen.
+    pub key: &'static str,
+    /// What it is.
+    pub title: String,
+    /// The same on an axis.
+    pub axis: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    pub values: Vec<f64>,
+}
+
+/// What a run's sensors read.
+#[derive(Debug, Clone)]
+pub(super) struct Signals {
+    pub time: Vec<f64>,
+    pub signals: Vec<Signal>,
+    /// Set pressure [bar gauge].
+    pub set: Vec<f64>,
+}
+
+/// A scene that is ready to be run.
+pub(super) struct Stage {
+    kind: Kind,
+    /// What is believed there.
+    pub believed: PlantParameters,
+    /// The joint that shows most, from 1.
+    pub telling: usize,
+}
+
+enum Kind {
+    Run {
+        template: ScenarioTemplate,
+        /// Its run as believed, once it is asked for.
+        nominal: OnceLock<Signals>,
+        /// Holds the template's files as long as it may be run.
+        _folder: tempfile::TempDir,
+    },
+    Part,
+}
+
+impl Stage {
+    /// Sets a scene up.
+    pub(super) fn new(scene: &Scene) -> Result<Self, AppError> {
+        match scene {
+            Scene::Run(shipped) => Self::of_run(shipped),
+            Scene::Part(chain) => Ok(Self {
+                believed: believed_part(*chain, &Self::of_run(&STEPS)?.believed),
+                kind: Kind::Part,
+                telling: 1,
+            }),
+        }
+    }
+
+    fn of_run(shipped: &Shipped) -> Result<Self, AppError> {
+        let folder = tempfile::tempdir().map_err(|error| unwritable(Path::new("."), &error))?;
+        let scenario = (shipped.path, shipped.text.as_bytes());
+        for (path, content) in BESIDE.into_iter().chain([scenario]) {
+            let path = folder.path().join(path);
+            let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+            written
+                .and_then(|()| std::fs::write(&path, content))
+                .map_err(|error| unwritable(&path, &error))?;
+        }
+        let path: PathBuf = folder.path().join(shipped.path);
+        let template = ScenarioTemplate::read(&path)?;
+        let (believed, telling) = match template.with(&[])? {
+            AnyScenario::Bench(bench) => (bench.believed(), 1),
+            AnyScenario::Cell(cell) => {
+                let cell = Cell::new(*cell)?;
+                (cell.plant.clone(), cell.telling_joint())
+            }
+        };
+        Ok(Self {
+            kind: Kind::Run {
+                template,
+                nominal: OnceLock::new(),
+                _folder: folder,
+            },
+            believed,
+            telling,
+        })
+    }
+
+    /// Its run as believed, and with an effect of usual size.
+    pub(super) fn runs(&self, effect: &Effect) -> Result<[Signals; 2], AppError> {
+        match &self.kind {
+            Kind::Part => Ok([false, true].map(|has| run_part(&self.believed, effect, has))),
+            Kind::Run {
+                template, nominal, ..
+            } => {
+                let nominal = match nominal.get() {
+                    Some(nominal) => nominal,
+                    None => {
+                        let own = self.signals(template.with(&[])?)?;
+                        nominal.get_or_init(|| own)
+                    }
+                };
+                let asked = EffectRequest::parse(&asked(effect));
+                let asked = asked.map_err(|reason| AppError::With { reason })?;
+                let edits: Vec<KeyValue> = put_in(&[asked], template)?;
+                Ok([nominal.clone(), self.signals(template.with(&edits)?)?])
+            }
+        }
+    }
+
+    fn signals(&self, scenario: AnyScenario) -> Result<Signals, AppError> {
+        let atmosphere = self.believed.device.gas.atmosphere;
+        match scenario {
+            AnyScenario::Bench(bench) => {
+                let (recording, _) = Rig::new(*bench)?.run(&mut |_, _| ())?;
+                Ok(of_recording(&recording, atmosphere))
+            }
+            AnyScenario::Cell(cell) => {
+                let cell = Cell::new(*cell)?;
+                let recording = simulated(&cell)?;
+                let mut signals = of_recording(&recording, atmosphere);
+                signals.signals.extend(of_joint(&recording, self.telling));
+                Ok(signals)
+            }
+        }
+    }
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> AppError {
+    AppError::OutputFolder {
+        folder: path.display().to_string(),
+        reason: error.to_string(),
+    }
+}
+
+fn simulated(cell: &Cell) -> Result<Recording, AppError> {
+    let mut simulation = Simulation::new(cell);
+    let mut stop: Option<SimulationError> = None;
+    while !simulation.done() && stop.is_none() {
+        stop = simulation.step().err();
+    }
+    Ok(simulation.into_logs().0.into_recording()?)
+}
+
+/// A signal of a recording: quantity, key, name, name on an axis, unit, and what a value in SI is multiplied by.
+type Read = (
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+    f64,
+);
+
+const GAUGE: &str = "bar gauge";
+
+#[rustfmt::skip] // A table: one signal a line.
+const READ: [Read; 7] = [
+    (schema::MEASURED_REGULATOR_PRESSURE, "outlet", "Regulator, read", "pressure", GAUGE, 1e-5),
+    (schema::MEASURED_FORCE, "force", "Force, read", "force", "N", 1.0),
+    (schema::MEASURED_STROKE, "stroke", "Stroke, read", "stroke", "mm", 1e3),
+    (schema::CHAMBER_1_PRESSURE, "chamber_1", "Chamber 1", "pressure", GAUGE, 1e-5),
+    (schema::CHAMBER_2_PRESSURE, "chamber_2", "Chamber 2", "pressure", GAUGE, 1e-5),
+    (schema::MEASURED_ACCELERATION, "acceleration", "Acceleration, read", "acceleration", "m/s2", 1.0),
+    (schema::PATH_ERROR_AXIAL, "path", "Path error, axial", "error", "µm", 1e6),
+];
+
+fn of_recording(recording: &Recording, atmosphere: f64) -> Signals {
+    let scaled = |quantity: &str, factor: f64, zero: f64| -> Option<Vec<f64>> {
+        let values = &recording.channel(quantity)?.values;
+        Some(values.iter().map(|value| factor * (value - zero)).collect())
+    };
+    let signal = |&(quantity, key, title, axis, unit, factor): &Read| {
+        let zero = if unit == GAUGE { atmosphere } else { 0.0 };
+        Some(Signal {
+            key,
+            title: title.to_owned(),
+            axis,
+            unit,
+            values: scaled(quantity, factor, zero)?,
+        })
+    };
+    Signals {
+        time: recording.time().to_vec(),
+        signals: READ.iter().filter_map(signal).collect(),
+        set: scaled(schema::SET_PRESSURE, 1e-5, atmosphere).unwrap_or_default(),
+    }
+}
+
+/// What a joint's drive and encoder tell.
+fn of_joint(recording: &Recording, joint: usize) -> Vec<Signal> {
+    let values = |signal| {
+        let channel = recording.channel(&joint_quantity(joint, signal));
+        channel.map(|channel| channel.values.clone())
+    };
+    let signal = |key, title, axis, unit, values| Signal {
+        key,
+        title: format!("{title}, joint {joint}"),
+        axis,
+        unit,
+        values,
+    };
+    let torque = values(JointSignal::Torque);
+    let scaled = |values: Vec<f64>| values.iter().map(|value| 1e3 * value).collect();
+    let speed = values(JointSignal::Velocity).map(scaled);
+    let pair = values(JointSignal::Encoder).zip(values(JointSignal::Reference));
+    let trail = pair.map(|(read, told)| {
+        let pairs = read.iter().zip(&told);
+        pairs.map(|(read, told)| 1e3 * (read - told)).collect()
+    });
+    [
+        torque.map(|values| signal("torque", "Torque", "torque", "N m", values)),
+        speed.map(|values| signal("speed", "Speed", "speed", "mrad/s", values)),
+        trail.map(|values| signal("trail", "Encoder error", "angle", "mrad", values)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// A part of a device as it is believed.
+fn believed_part(chain: Chain, device: &PlantParameters) -> PlantParameters {
+    let mut part = PlantParameters {
+        chain,
+        ..device.clone()
+    };
+    // Slow enough for what is put in to be seen beside it.
+    part.device.regulator.time_constant = 0.3;
+    part.device.regulator.dead_time = 0.0;
+    if chain == Chain::DrivenSlide {
+        part.device.seal_friction.viscous = 60.0;
+    }
+    part
+}
+
+/// What drives it.
+fn inputs_of(chain: Chain, name: &str) -> PlantInputs {
+    let times = |duration: f64| -> Vec<f64> {
+        let count = (duration / 0.01).round() as usize;
+        (0..=count).map(|index| 0.01 * index as f64).collect()
+    };
+    let (time, set): (Vec<f64>, fn(f64) -> f64) = match (chain, name) {
+        (_, "pressure_sensor_offset") => (times(3.5), |t| match t {
+            t if t < 1.0 => 0.0,
+            _ => 5e3,
+        }),
+        (Chain::Regulator, _) => (times(8.0), |t| match t {
+            t if t < 0.5 => 1e5,
+            t if t < 2.5 => 3e5,
+            t if t < 5.0 => 1e5,
+            _ => 0.0,
+        }),
+        (Chain::ClosedChamber, "chamber_shut_later") => (times(5.0), |_| 3e5),
+        (Chain::ClosedChamber, "chamber_cooling") => (times(30.0), |_| 3e5),
+        (Chain::ClosedChamber, _) => (times(300.0), |_| 3e5),
+        _ => (times(6.0), |_| 0.0),
+    };
+    // To and fro at rising speeds.
+    let motion = (chain == Chain::DrivenSlide).then(|| {
+        let phase = |t: f64| 0.5 * std::f64::consts::PI * t * t / 3.0;
+        let rate = |t: f64| std::f64::consts::PI * t / 3.0;
+        const SWING: f64 = 0.02;
+        Arc::new(MeasuredMotion {
+            stroke: time
+                .iter()
+                .map(|t| SWING * (1.0 - phase(*t).cos()))
+                .collect(),
+            speed: (time.iter())
+                .map(|t| SWING * rate(*t) * phase(*t).sin())
+                .collect(),
+            acceleration: (time.iter())
+                .map(|t| {
+                    let swing = rate(*t).powi(2) * phase(*t).cos();
+                    SWING * (swing + std::f64::consts::PI / 3.0 * phase(*t).sin())
+                })
+                .collect(),
+        })
+    });
+    PlantInputs {
+        set_pressure: time.iter().map(|t| set(*t)).collect(),
+        extends: vec![true; time.len()],
+        surface: vec![f64::NAN; time.len()],
+        cell: None,
+        motion,
+        time,
+    }
+}
+
+/// The run of a part on the inputs that show an effect, with the effect or without.
+fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
+    let inputs = inputs_of(believed.chain, effect.name);
+    let mut plant = believed.clone();
+    if effect.name == "chamber_shut_later" {
+        // On a chamber that holds nothing would show it.
+        plant.links.leak.proportional = 0.1;
+    }
+    if has {
+        let sizes = sizes(effect, &plant);
+        for (parameter, value) in effect.parameters(&plant).iter().zip(sizes) {
+            parameter.quantity.set(&mut plant, value);
+        }
+    }
+    let course = simulate(&plant, &inputs);
+    let (channel, title, axis, unit, factor) = match believed.chain {
+        Chain::ClosedChamber => (
+            Channel::RegulatorPressure,
+            "Chamber, read",
+            "pressure",
+            GAUGE,
+            1e-5,
+        ),
+        Chain::Regulator => (
+            Channel::RegulatorPressure,
+            "Regulator, read",
+            "pressure",
+            GAUGE,
+            1e-5,
+        ),
+        _ => (Channel::Force, "Drive, read", "force", "N", 1.0),
+    };
+    let scaled = |values: &[f64], factor: f64| values.iter().map(|value| factor * value).collect();
+    let mut signals = vec![Signal {
+        key: "read",
+        title: title.to_owned(),
+        axis,
+        unit,
+        values: scaled(&course.readings[channel as usize], factor),
+    }];
+    if let Some(motion) = &inputs.motion {
+        signals.push(Signal {
+            key: "speed",
+            title: "Speed".to_owned(),
+            axis: "speed",
+            unit: "mm/s",
+            values: scaled(&motion.speed, 1e3),
+        });
+    }
+    Signals {
+        signals,
+        set: match believed.chain {
+            Chain::Regulator => inputs.set_pressure.iter().map(|p| 1e-5 * p).collect(),
+            _ => Vec::new(),
+        },
+        time: inputs.time,
+    }
+}

@@ -1,0 +1,161 @@
+//! `idc effects`: every effect is listed and explained, and docs/EFFECTS.md with its pictures is what the program makes of them.
+
+use std::collections::BTreeSet;
+
+use idc_cell::effects::{Effect, kinds};
+
+use crate::common::project;
+use crate::help::place;
+use crate::program::Bench;
+
+fn name(effect: &Effect) -> &'static str {
+    effect.vocabulary().0
+}
+
+#[test]
+fn every_effect_is_listed_and_explained() {
+    let bench = Bench::new("paper_step");
+    let list = bench.idc(&["effects"], &[]);
+    assert_eq!((list.code, list.err.as_str()), (0, ""));
+    let json: serde_json::Value =
+        serde_json::from_str(&bench.idc(&["effects", "--json"], &[]).out).unwrap();
+    assert_eq!(json["effects"].as_array().unwrap().len(), kinds().count());
+    for effect in kinds() {
+        let meaning = &effect.header().meaning;
+        let listed = |line: &str| line.contains(name(effect)) && line.ends_with(meaning.as_str());
+        assert!(list.out.lines().any(listed), "{effect:?} is not listed");
+    }
+    // One of each kind: of the device, of a joint, of a part of a device.
+    for (name, parts) in [
+        (
+            "stribeck_friction",
+            [
+                "idc run assets/effects/sway.toml --with",
+                "static_force_n = 16",
+            ],
+        ),
+        (
+            "joint_backlash",
+            ["idc run assets/effects/edge.toml --with", "joint = 2"],
+        ),
+        (
+            "gap_leakage",
+            ["chain = \"closed_chamber\"", "name = \"gap_leakage\""],
+        ),
+    ] {
+        let page = bench.idc(&["effects", name], &[]);
+        assert_eq!((page.code, page.err.as_str()), (0, ""), "{name}");
+        let all = [
+            "Source: ",
+            "Numbers:",
+            " usual ",
+            "Shows as: ",
+            "Confused with:",
+            "Picture: ",
+        ];
+        for part in all.iter().chain(&parts) {
+            assert!(
+                page.out.contains(part),
+                "{name} lacks {part:?}:\n{}",
+                page.out
+            );
+        }
+        let wide = page.out.lines().find(|line| line.chars().count() > 120);
+        assert_eq!(wide, None, "{name}");
+    }
+}
+
+#[test]
+fn a_name_that_is_none_is_refused_with_the_nearest() {
+    let bench = Bench::new("paper_step");
+    for (wrong, right) in [
+        ("stribek_friction", "did you mean `stribeck_friction`?"),
+        ("gap_leakge", "did you mean `gap_leakage`?"),
+    ] {
+        let refused = bench.idc(&["effects", wrong, "--out", "picture.svg"], &[]);
+        assert_eq!((refused.code, refused.out.as_str()), (2, ""), "{wrong}");
+        assert!(
+            refused.only_line("error: ").contains(right),
+            "{}",
+            refused.err
+        );
+        assert!(!bench.path("picture.svg").exists());
+    }
+    bench.write("picture.svg", "mine");
+    let standing = bench.idc(&["effects", "burr", "--out", "picture.svg"], &[]);
+    assert_eq!(standing.code, 2);
+    assert!(standing.err.contains("--force"), "{}", standing.err);
+}
+
+/// What a page says to write into a file is what a file takes.
+#[test]
+fn the_lines_of_every_page_are_those_of_a_file() {
+    let folder = place();
+    let near = folder.path().join("runs/mine");
+    std::fs::create_dir_all(&near).unwrap();
+    let bench = Bench::new("paper_step");
+    for effect in kinds() {
+        let told = bench.idc(&["effects", name(effect), "--json"], &[]).out;
+        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+        let lines = told["lines"].as_array().unwrap().iter();
+        let lines: Vec<&str> = lines.map(|line| line.as_str().unwrap()).collect();
+        let whole = told["command"].as_str();
+        let shipped = match (whole, told["chain"].as_str()) {
+            (Some(command), _) => command.split(' ').nth(2).unwrap(),
+            (None, Some("closed_chamber")) => "assets/rigs/chamber_leak.toml",
+            (None, Some("driven_slide")) => "assets/rigs/emps.toml",
+            (None, chain) => {
+                assert_eq!(chain, Some("regulator"));
+                "assets/rigs/regulator_steps.toml"
+            }
+        };
+        let text = std::fs::read_to_string(project(shipped)).unwrap();
+        let text = text.replace("../plate.stl", "../../assets/plate.stl");
+        let file = near.join("file.toml");
+        std::fs::write(&file, format!("{text}\n{}\n", lines.join("\n"))).unwrap();
+        let refused = match whole {
+            Some(_) => idc_cell::scenario::load_any(&file).err(),
+            None => idc_cell::scenario::rig_file::load_rig(&file).err(),
+        };
+        assert!(refused.is_none(), "{}: {}", name(effect), refused.unwrap());
+    }
+}
+
+/// `idc effects --gallery docs --force` makes it again.
+#[test]
+fn the_gallery_is_what_the_program_makes() {
+    let bench = Bench::new("paper_step");
+    let made = bench.idc(&["effects", "--gallery", "docs"], &[]);
+    assert_eq!((made.code, made.err.as_str()), (0, ""));
+    let read = |path: std::path::PathBuf| {
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"))
+    };
+    let again = "is another one now: idc effects --gallery docs --force";
+    let same = |file: &str| read(bench.path(file)) == read(project(file));
+    assert!(same("docs/EFFECTS.md"), "docs/EFFECTS.md {again}");
+    let mut pictures = BTreeSet::new();
+    for effect in kinds() {
+        let file = format!("docs/pictures/effects/{}.svg", name(effect));
+        assert!(same(&file), "{file} {again}");
+        let size = read(project(&file)).len();
+        assert!(size < 25_000, "{file}: {size} bytes");
+        pictures.insert(format!("{}.svg", name(effect)));
+    }
+    let standing: BTreeSet<String> = std::fs::read_dir(project("docs/pictures/effects"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(standing, pictures);
+    // The eye sees what each is about.
+    let mut told = 0;
+    for line in made.out.lines() {
+        let share: f64 = (line
+            .split_once(": ")
+            .and_then(|(_, rest)| rest.split_once(" %")))
+        .and_then(|(share, _)| share.parse().ok())
+        .unwrap_or_else(|| panic!("{line}"));
+        assert!(share >= 3.0, "{line}");
+        told += 1;
+    }
+    assert_eq!(told, pictures.len());
+}
