@@ -231,7 +231,7 @@ fn drive(section: &Section<'_>, keys: &file::DriveKeys, joint: String) -> Result
         joint,
         friction: friction.map(|value| section.number("friction_n_m", value, 0.0..=10_000.0)).transpose()?,
         stiffness: section.number("stiffness_n_m_per_rad", keys.stiffness_n_m_per_rad.unwrap_or(f64::INFINITY), 1000.0..=f64::INFINITY)?,
-        damping_time: section.number("damping_time_ms", keys.damping_time_ms.unwrap_or(2.5), 0.1..=50.0)?,
+        damping_time: section.number("damping_time_ms", keys.damping_time_ms.unwrap_or(1e3 * CellParameters::RIGID.joint_damping), 0.1..=50.0)?,
         backlash: section.number("backlash_deg", keys.backlash_deg.unwrap_or(0.0), 0.0..=5.0)?,
     })
 }

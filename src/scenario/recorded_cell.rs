@@ -16,6 +16,7 @@ use super::sections::recorded_cell_sections;
 use super::workpiece::workpiece;
 use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, WorkpieceScenario};
 use crate::effects::PresentEffect;
+use crate::plant::CellParameters;
 
 mod own;
 
@@ -180,7 +181,9 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         joint_damping: [
             joints.number(
                 "damping_time_ms",
-                drives.damping_time_ms.unwrap_or(2.5),
+                drives
+                    .damping_time_ms
+                    .unwrap_or(1e3 * CellParameters::RIGID.joint_damping),
                 0.1..=50.0,
             )?,
             joints.number(
