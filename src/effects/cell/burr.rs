@@ -6,47 +6,18 @@
 //! Confused with: nothing that is spread along the path; a disturbance at one time is at another place in another recording.
 
 use super::*;
-use Coordinate::{Linear, Logarithmic};
 
 pub(super) const EFFECT: Effect = Effect {
-    name: "burr",
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Workpiece,
     group: None,
     parameters: |_, _| {
         vec![
             reported(
-                Quantity {
-                    name: "position_m",
-                    index: 0,
-                    get: |p, _| p.cell.burr.position,
-                    set: |p, _, v| p.cell.burr.position = v,
-                },
+                BURR_POSITION.named("position_m"),
                 Linear(1e-3),
                 [0.0, 100.0],
             ),
-            reported(
-                Quantity {
-                    name: "height_m",
-                    index: 0,
-                    get: |p, _| p.cell.burr.height,
-                    set: |p, _, v| p.cell.burr.height = v,
-                },
-                Linear(1e-4),
-                [0.0, 0.02],
-            ),
-            Parameter {
-                quantity: Quantity {
-                    name: "width_m",
-                    index: 0,
-                    get: |p, _| p.cell.burr.width,
-                    set: |p, _, v| p.cell.burr.width = v,
-                },
-                coordinate: Logarithmic,
-                bounds: [2e-4, 0.02],
-                reported: false,
-                choices: &[],
-            },
+            reported(BURR_HEIGHT.named("height_m"), Linear(1e-4), [0.0, 0.02]),
+            hidden(BURR_WIDTH.named("width_m"), Logarithmic, [2e-4, 0.02]),
         ]
     },
     usual: |_, _| vec![0.1, 3e-4, 2e-3],
@@ -54,4 +25,5 @@ pub(super) const EFFECT: Effect = Effect {
         let places = clues.bumps.iter();
         places.map(|place| vec![*place, 1e-4, 2e-3]).collect()
     },
+    ..effect("burr", Subsystem::Workpiece)
 };

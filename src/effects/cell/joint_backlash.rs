@@ -7,39 +7,24 @@
 //! Confused with: joint_encoder_offset, where the torque never changes its sign; a soft joint, whose part grows with the force.
 
 use super::*;
-use Coordinate::Logarithmic;
 
 /// Of which joint is to be said.
 pub(super) const EFFECT: Effect = Effect {
-    name: "joint_backlash",
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Arm,
     group: None,
     parameters: |_, joint| {
         vec![
             reported(
-                Quantity {
-                    name: "play_rad",
-                    index: joint,
-                    get: |p, joint| p.cell.joint_play[joint],
-                    set: |p, joint, v| p.cell.joint_play[joint] = v,
-                },
+                JOINT_PLAY.named("play_rad").of(joint),
                 Logarithmic,
                 [1e-6, 0.05],
             ),
-            Parameter {
-                reported: false,
-                ..reported(
-                    Quantity {
-                        name: "teeth_stiffness_n_m_per_rad",
-                        index: joint,
-                        get: |p, joint| p.cell.joint_stiffness[joint],
-                        set: |p, joint, v| p.cell.joint_stiffness[joint] = v,
-                    },
-                    Logarithmic,
-                    [1e3, 1e8],
-                )
-            },
+            hidden(
+                JOINT_STIFFNESS
+                    .named("teeth_stiffness_n_m_per_rad")
+                    .of(joint),
+                Logarithmic,
+                [1e3, 1e8],
+            ),
         ]
     },
     usual: |p, joint| vec![7e-4, p.cell.joint_stiffness[joint].min(1e6)],
@@ -50,4 +35,5 @@ pub(super) const EFFECT: Effect = Effect {
             .map(|play| vec![*play, teeth])
             .collect()
     },
+    ..effect("joint_backlash", Subsystem::Arm)
 };

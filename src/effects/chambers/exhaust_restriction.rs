@@ -13,14 +13,11 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "exhaust_restriction",
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: None,
     parameters: |p, _| {
         let a = p.device.exhaust_orifice;
         vec![reported(
-            quantity!("orifice_area_m2", p => p.device.exhaust_orifice),
+            EXHAUST_ORIFICE.named("orifice_area_m2"),
             Logarithmic,
             [0.05 * a, 20.0 * a],
         )]
@@ -32,4 +29,5 @@ pub const EFFECT: Effect = Effect {
             c.plant.device.exhaust_orifice,
         )
     },
+    ..effect("exhaust_restriction", Subsystem::Chambers)
 };

@@ -12,17 +12,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "external_leakage",
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("orifice_area_m2", p => p.device.leakage.external),
+            EXTERNAL_LEAK.named("orifice_area_m2"),
             Logarithmic,
             [1e-10, 1e-4],
         )]
     },
     usual: |p, _| vec![0.02 * p.device.supply_orifice],
     starts: |c, _| shares(&[0.01, 0.05, 0.2], c.plant.device.supply_orifice),
+    ..effect("external_leakage", Subsystem::Chambers)
 };

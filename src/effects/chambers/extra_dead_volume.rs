@@ -12,14 +12,11 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "extra_dead_volume",
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: None,
     parameters: |p, _| {
         let a = p.device.dead_volume;
         vec![reported(
-            quantity!("dead_volume_m3", p => p.device.dead_volume),
+            DEAD_VOLUME.named("dead_volume_m3"),
             Logarithmic,
             [0.1 * a, 20.0 * a],
         )]
@@ -31,4 +28,5 @@ pub const EFFECT: Effect = Effect {
             c.plant.device.dead_volume,
         )
     },
+    ..effect("extra_dead_volume", Subsystem::Chambers)
 };

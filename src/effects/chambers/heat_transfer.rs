@@ -9,25 +9,18 @@
 //! Confused with: extra_dead_volume and supply_restriction (change the filling time, no creep), hose_volume.
 
 use super::*;
-use crate::physics::gas_process::GasProcess;
-
-const CONDUCTANCE: Quantity = Quantity {
-    name: "wall_conductance_w_per_k",
-    index: 0,
-    get: |p, _| match p.device.gas_process {
-        GasProcess::WallHeat { conductance } => conductance,
-        GasProcess::Isothermal => f64::INFINITY,
-    },
-    set: |p, _, v| p.device.gas_process = GasProcess::WallHeat { conductance: v },
-};
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "heat_transfer",
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: None,
-    parameters: |_, _| vec![reported(CONDUCTANCE, Logarithmic, [1e-3, 10.0])],
+    parameters: |_, _| {
+        vec![reported(
+            WALL_CONDUCTANCE.named("wall_conductance_w_per_k"),
+            Logarithmic,
+            [1e-3, 10.0],
+        )]
+    },
     usual: |_, _| vec![0.1],
     starts: |_, _| each(&[0.01, 0.05, 0.2, 0.8]),
+    ..effect("heat_transfer", Subsystem::Chambers)
 };

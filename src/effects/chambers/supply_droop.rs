@@ -9,48 +9,22 @@
 //! Confused with: regulator_rate_limit (the same rate at every pressure and after any history), regulator_gain_error (always).
 
 use super::*;
-use crate::physics::supply_reservoir::SupplyReservoir;
-use crate::plant::PlantParameters;
-
-fn reservoir(p: &PlantParameters) -> SupplyReservoir {
-    p.device
-        .supply_reservoir
-        .unwrap_or_else(|| SupplyReservoir::new(1e-3, 1e-3))
-}
-
-const RESERVOIR: Quantity = Quantity {
-    name: "reservoir_volume_m3",
-    index: 0,
-    get: |p, _| reservoir(p).volume,
-    set: |p, _, v| {
-        p.device.supply_reservoir = Some(SupplyReservoir {
-            volume: v,
-            ..reservoir(p)
-        })
-    },
-};
-const COMPRESSOR: Quantity = Quantity {
-    name: "compressor_flow_kg_per_s",
-    index: 0,
-    get: |p, _| reservoir(p).compressor_flow,
-    set: |p, _, v| {
-        p.device.supply_reservoir = Some(SupplyReservoir {
-            compressor_flow: v,
-            ..reservoir(p)
-        })
-    },
-};
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "supply_droop",
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: None,
     parameters: |_, _| {
         vec![
-            reported(RESERVOIR, Logarithmic, [1e-5, 0.1]),
-            reported(COMPRESSOR, Logarithmic, [1e-6, 0.1]),
+            reported(
+                RESERVOIR_VOLUME.named("reservoir_volume_m3"),
+                Logarithmic,
+                [1e-5, 0.1],
+            ),
+            reported(
+                COMPRESSOR_FLOW.named("compressor_flow_kg_per_s"),
+                Logarithmic,
+                [1e-6, 0.1],
+            ),
         ]
     },
     usual: |_, _| vec![1e-3, 5e-4],
@@ -63,4 +37,5 @@ pub const EFFECT: Effect = Effect {
             vec![1.5e-3, 1e-4],
         ]
     },
+    ..effect("supply_droop", Subsystem::Chambers)
 };

@@ -13,14 +13,11 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "supply_restriction",
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: None,
     parameters: |p, _| {
         let a = p.device.supply_orifice;
         vec![reported(
-            quantity!("orifice_area_m2", p => p.device.supply_orifice),
+            SUPPLY_ORIFICE.named("orifice_area_m2"),
             Logarithmic,
             [0.05 * a, 20.0 * a],
         )]
@@ -32,4 +29,5 @@ pub const EFFECT: Effect = Effect {
             c.plant.device.supply_orifice,
         )
     },
+    ..effect("supply_restriction", Subsystem::Chambers)
 };

@@ -11,9 +11,6 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "contact_stiffness_error",
-    which: Which::Only,
-    subsystem: Subsystem::Contact,
     group: Some("contact_law"),
     parameters: |p, _| {
         let k = STIFFNESS.get(p);
@@ -24,4 +21,5 @@ pub const EFFECT: Effect = Effect {
         let k = STIFFNESS.get(c.plant);
         shares(&[0.1, 0.25, 0.5, 0.8, 1.25, 2.5], k)
     },
+    ..effect("contact_stiffness_error", Subsystem::Contact)
 };

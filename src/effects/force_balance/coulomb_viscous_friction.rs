@@ -14,9 +14,6 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "coulomb_viscous_friction",
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
     parameters: |_, _| {
         vec![
@@ -33,4 +30,5 @@ pub const EFFECT: Effect = Effect {
             vec![30.0, 100.0, 5e-5],
         ]
     },
+    ..effect("coulomb_viscous_friction", Subsystem::ForceBalance)
 };

@@ -13,22 +13,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "end_cushioning",
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: None,
     parameters: |_, _| {
         vec![
             reported(
-                quantity!("damping_n_s_per_m", p => p.device.end_cushioning.damping),
+                CUSHION_DAMPING.named("damping_n_s_per_m"),
                 Logarithmic,
                 [5.0, 1e5],
             ),
-            reported(
-                quantity!("length_m", p => p.device.end_cushioning.length),
-                Logarithmic,
-                [2e-4, 0.025],
-            ),
+            reported(CUSHION_LENGTH.named("length_m"), Logarithmic, [2e-4, 0.025]),
         ]
     },
     usual: |_, _| vec![800.0, 8e-3],
@@ -40,4 +33,5 @@ pub const EFFECT: Effect = Effect {
             vec![1500.0, 0.01],
         ]
     },
+    ..effect("end_cushioning", Subsystem::ForceBalance)
 };

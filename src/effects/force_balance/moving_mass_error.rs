@@ -11,14 +11,11 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "moving_mass_error",
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: None,
     parameters: |p, _| {
         let m = p.device.moving_mass;
         vec![reported(
-            quantity!("mass_kg", p => p.device.moving_mass),
+            MOVING_MASS.named("mass_kg"),
             Logarithmic,
             [0.2 * m, 5.0 * m],
         )]
@@ -30,4 +27,5 @@ pub const EFFECT: Effect = Effect {
             c.plant.device.moving_mass,
         )
     },
+    ..effect("moving_mass_error", Subsystem::ForceBalance)
 };

@@ -12,9 +12,6 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "presliding_hysteresis",
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
     parameters: |_, _| {
         vec![
@@ -32,4 +29,5 @@ pub const EFFECT: Effect = Effect {
             vec![20.0, 2e-3, 40.0],
         ]
     },
+    ..effect("presliding_hysteresis", Subsystem::ForceBalance)
 };

@@ -12,18 +12,16 @@
 use super::*;
 use crate::plant::Chain;
 
-const GROWTH: Quantity =
-    quantity!("friction_per_pressure_n_per_pa", p => p.device.seal_friction.pressure_coefficient);
-
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "pressure_dependent_friction",
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
     parameters: |_, _| {
         vec![
-            reported(GROWTH, Logarithmic, [1e-7, 1e-2]),
+            reported(
+                SEAL_PRESSURE.named("friction_per_pressure_n_per_pa"),
+                Logarithmic,
+                [1e-7, 1e-2],
+            ),
             hidden(COULOMB, Linear(3.0), [0.0, 500.0]),
             hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
             hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
@@ -38,4 +36,5 @@ pub const EFFECT: Effect = Effect {
         }
         starts
     },
+    ..effect("pressure_dependent_friction", Subsystem::ForceBalance)
 };

@@ -10,29 +10,22 @@
 
 use super::*;
 
-const STATIC: Quantity = Quantity {
-    name: "static_force_n",
-    index: 0,
-    get: |p, _| p.device.seal_friction.static_force,
-    set: |p, _, v| {
-        let s = &mut p.device.seal_friction;
-        s.static_force = v.max(s.coulomb);
-    },
-};
-const STRIBECK: Quantity =
-    quantity!("stribeck_velocity_m_per_s", p => p.device.seal_friction.stribeck_velocity);
-
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "stribeck_friction",
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
     parameters: |_, _| {
         vec![
             reported(COULOMB, Logarithmic, [0.05, 500.0]),
-            reported(STATIC, Linear(5.0), [0.05, 1000.0]),
-            reported(STRIBECK, Logarithmic, [5e-4, 0.2]),
+            reported(
+                SEAL_STATIC.named("static_force_n"),
+                Linear(5.0),
+                [0.05, 1000.0],
+            ),
+            reported(
+                SEAL_STRIBECK.named("stribeck_velocity_m_per_s"),
+                Logarithmic,
+                [5e-4, 0.2],
+            ),
             hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
             hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
         ]
@@ -45,4 +38,5 @@ pub const EFFECT: Effect = Effect {
             vec![8.0, 16.0, 0.03, 40.0, 5e-5],
         ]
     },
+    ..effect("stribeck_friction", Subsystem::ForceBalance)
 };

@@ -15,19 +15,16 @@ const LONGEST_COOLING: [f64; 2] = [0.1, 20.0];
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "chamber_cooling",
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: None,
     parameters: |_, _| {
         vec![
             reported(
-                quantity!("pressure_lost_pa", p => p.links.cooling),
+                COOLING.named("pressure_lost_pa"),
                 Linear(500.0),
                 [-1e5, 1e5],
             ),
             reported(
-                quantity!("cooling_time_constant_s", p => p.links.cooling_time),
+                COOLING_TIME.named("cooling_time_constant_s"),
                 Logarithmic,
                 LONGEST_COOLING,
             ),
@@ -35,4 +32,5 @@ pub const EFFECT: Effect = Effect {
     },
     usual: |_, _| vec![2e3, 5.0],
     starts: |_, _| vec![vec![300.0, 2.0], vec![300.0, 10.0]],
+    ..effect("chamber_cooling", Subsystem::Chambers)
 };

@@ -12,19 +12,16 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "leak_opened_by_pressure",
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: LEAK,
     parameters: |_, _| {
         vec![
             reported(
-                quantity!("conductance_per_volume_1_per_s", p => p.links.leak.proportional),
+                PROPORTIONAL_LEAK.named("conductance_per_volume_1_per_s"),
                 Logarithmic,
                 [1e-8, 10.0],
             ),
             reported(
-                quantity!("growth_per_pressure_1_per_pa", p => p.links.leak.opening),
+                LEAK_OPENING.named("growth_per_pressure_1_per_pa"),
                 Linear(1e-6),
                 [-1e-6, 1e-3],
             ),
@@ -37,4 +34,5 @@ pub const EFFECT: Effect = Effect {
             .flat_map(|rate| [vec![rate, 2e-6], vec![rate, 1e-5]])
             .collect()
     },
+    ..effect("leak_opened_by_pressure", Subsystem::Chambers)
 };

@@ -12,19 +12,12 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "load_behind_line",
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
     group: None,
     parameters: |_, _| {
         vec![
+            reported(LOAD_SHARE.named("share_1"), Linear(0.1), [0.0, 0.95]),
             reported(
-                quantity!("share_1", p => p.links.load_share),
-                Linear(0.1),
-                [0.0, 0.95],
-            ),
-            reported(
-                quantity!("load_time_constant_s", p => p.links.load_time),
+                LOAD_TIME.named("load_time_constant_s"),
                 Logarithmic,
                 [1e-2, 100.0],
             ),
@@ -32,4 +25,5 @@ pub const EFFECT: Effect = Effect {
     },
     usual: |_, _| vec![0.5, 0.1],
     starts: |_, _| vec![vec![0.2, 0.5], vec![0.2, 2.0]],
+    ..effect("load_behind_line", Subsystem::Regulator)
 };

@@ -11,17 +11,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "pressure_sensor_offset",
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("offset_pa", p => p.sensors.pressure_offset),
+            PRESSURE_OFFSET.named("offset_pa"),
             Linear(1000.0),
             [-2e5, 2e5],
         )]
     },
     usual: |_, _| vec![500.0],
     starts: |_, _| vec![vec![0.0]],
+    ..effect("pressure_sensor_offset", Subsystem::Sensors)
 };

@@ -12,17 +12,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "viscous_friction_by_direction",
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("viscous_asymmetry_n_s_per_m", p => p.links.viscous_asymmetry),
+            VISCOUS_ASYMMETRY.named("viscous_asymmetry_n_s_per_m"),
             Linear(20.0),
             [-5000.0, 5000.0],
         )]
     },
     usual: |_, _| vec![20.0],
     starts: |_, _| vec![vec![0.0]],
+    ..effect("viscous_friction_by_direction", Subsystem::ForceBalance)
 };

@@ -11,17 +11,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "regulator_hysteresis",
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("half_width_pa", p => p.device.regulator.hysteresis),
+            REGULATOR_HYSTERESIS.named("half_width_pa"),
             Logarithmic,
             [10.0, 2e5],
         )]
     },
     usual: |_, _| vec![3e3],
     starts: |_, _| each(&[2e3, 6e3, 15e3]),
+    ..effect("regulator_hysteresis", Subsystem::Regulator)
 };

@@ -9,49 +9,22 @@
 //! Confused with: transport_delay (the outlet starts at once after it), regulator_rate_limit (for large steps alone).
 
 use super::*;
-use crate::physics::regulator::SecondOrder;
-use crate::plant::PlantParameters;
-
-fn oscillator(p: &PlantParameters) -> SecondOrder {
-    p.device.regulator.second_order.unwrap_or(SecondOrder {
-        natural_frequency: 1.0 / p.device.regulator.time_constant,
-        damping_ratio: 1.0,
-    })
-}
-
-const FREQUENCY: Quantity = Quantity {
-    name: "natural_frequency_rad_per_s",
-    index: 0,
-    get: |p, _| oscillator(p).natural_frequency,
-    set: |p, _, v| {
-        p.device.regulator.second_order = Some(SecondOrder {
-            natural_frequency: v,
-            ..oscillator(p)
-        })
-    },
-};
-const DAMPING_RATIO: Quantity = Quantity {
-    name: "damping_ratio",
-    index: 0,
-    get: |p, _| oscillator(p).damping_ratio,
-    set: |p, _, v| {
-        p.device.regulator.second_order = Some(SecondOrder {
-            damping_ratio: v,
-            ..oscillator(p)
-        })
-    },
-};
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "regulator_second_order",
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
     group: None,
     parameters: |_, _| {
         vec![
-            reported(FREQUENCY, Logarithmic, [0.5, 500.0]),
-            reported(DAMPING_RATIO, Logarithmic, [0.02, 5.0]),
+            reported(
+                NATURAL_FREQUENCY.named("natural_frequency_rad_per_s"),
+                Logarithmic,
+                [0.5, 500.0],
+            ),
+            reported(
+                DAMPING_RATIO.named("damping_ratio"),
+                Logarithmic,
+                [0.02, 5.0],
+            ),
         ]
     },
     usual: |_, _| vec![25.0, 0.35],
@@ -59,4 +32,5 @@ pub const EFFECT: Effect = Effect {
         let w = 1.0 / c.plant.device.regulator.time_constant;
         vec![vec![1.5 * w, 0.6], vec![1.5 * w, 0.3], vec![4.0 * w, 0.4]]
     },
+    ..effect("regulator_second_order", Subsystem::Regulator)
 };

@@ -11,17 +11,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "solenoid_switching_delay",
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("delay_s", p => p.device.switching_delay),
+            SWITCHING_DELAY.named("delay_s"),
             Logarithmic,
             [1e-3, 1.0],
         )]
     },
     usual: |_, _| vec![0.03],
     starts: |_, _| each(&[0.01, 0.03, 0.08]),
+    ..effect("solenoid_switching_delay", Subsystem::Regulator)
 };

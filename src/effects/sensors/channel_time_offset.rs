@@ -11,17 +11,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "channel_time_offset",
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("offset_s", p => p.sensors.force_delay),
+            FORCE_DELAY.named("offset_s"),
             Linear(0.005),
             [-0.5, 0.5],
         )]
     },
     usual: |_, _| vec![0.015],
     starts: |_, _| each(&[4e-3, 0.015, 0.04, -0.01]),
+    ..effect("channel_time_offset", Subsystem::Sensors)
 };

@@ -11,17 +11,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "force_sensor_lag",
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("time_constant_s", p => p.sensors.force_lag),
+            FORCE_LAG.named("time_constant_s"),
             Logarithmic,
             [1e-4, 2.0],
         )]
     },
     usual: |_, _| vec![0.02],
     starts: |_, _| each(&[3e-3, 0.01, 0.03, 0.1]),
+    ..effect("force_sensor_lag", Subsystem::Sensors)
 };

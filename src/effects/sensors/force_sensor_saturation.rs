@@ -11,17 +11,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "force_sensor_saturation",
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("limit_n", p => p.sensors.force_limit),
+            FORCE_LIMIT.named("limit_n"),
             Linear(2.0),
             [5.0, 5000.0],
         )]
     },
     usual: |_, _| vec![120.0],
     starts: |c, _| vec![vec![c.largest_force]],
+    ..effect("force_sensor_saturation", Subsystem::Sensors)
 };

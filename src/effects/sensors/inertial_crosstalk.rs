@@ -11,17 +11,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "inertial_crosstalk",
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("mass_kg", p => p.sensors.crosstalk_mass),
+            CROSSTALK_MASS.named("mass_kg"),
             Linear(0.1),
             [-20.0, 20.0],
         )]
     },
     usual: |_, _| vec![0.5],
     starts: |_, _| vec![vec![0.0]],
+    ..effect("inertial_crosstalk", Subsystem::Sensors)
 };

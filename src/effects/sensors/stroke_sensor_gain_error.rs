@@ -11,17 +11,15 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "stroke_sensor_gain_error",
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
     group: None,
     parameters: |_, _| {
         vec![reported(
-            quantity!("gain", p => p.sensors.stroke_gain),
+            STROKE_GAIN.named("gain"),
             Linear(0.01),
             [0.2, 5.0],
         )]
     },
     usual: |_, _| vec![1.02],
     starts: |_, _| vec![vec![1.0]],
+    ..effect("stroke_sensor_gain_error", Subsystem::Sensors)
 };
