@@ -20,7 +20,7 @@ use super::{DeviceScenario, Expectation};
 use crate::effects::{Effect, Subsystem};
 use crate::estimation::ContactForceEstimator;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{ContactLaw, ContactParameters, PlantParameters, SensorErrors};
+use crate::plant::{ContactLaw, ContactParameters, PlantParameters, SensorErrors, registry};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
@@ -208,12 +208,14 @@ pub(super) fn from_document(
     }
     let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
     let sensing = sensing(document, &file.sensing, step)?;
-    let gravity_along_extension = bench.number(
+    let (key, given) = (
         "gravity_along_extension_m_per_s2",
-        file.bench
-            .gravity_along_extension_m_per_s2
-            .unwrap_or(gravity_along_extension),
-        -30.0..=30.0,
+        file.bench.gravity_along_extension_m_per_s2,
+    );
+    let gravity_along_extension = bench.known(
+        &registry::GRAVITY,
+        key,
+        given.unwrap_or(gravity_along_extension),
     )?;
     let parameters = &device.parameters;
     let check_force = |section: &Section<'_>, force: f64| {
@@ -326,11 +328,13 @@ fn load(
         return Err(section.refuse_number("position_mm", given, expected));
     }
     if let Some(stiffness) = keys.stiffness_n_per_m {
-        let stiffness = section.number("stiffness_n_per_m", stiffness, 100.0..=1e9)?;
+        let stiffness =
+            section.known(&registry::CONTACT_STIFFNESS, "stiffness_n_per_m", stiffness)?;
         contact.law = ContactLaw::Linear { stiffness };
     }
     if let Some(damping) = keys.damping_n_s_per_m {
-        contact.damping = section.number("damping_n_s_per_m", damping, 0.0..=1e6)?;
+        contact.damping =
+            section.known(&registry::CONTACT_DAMPING, "damping_n_s_per_m", damping)?;
     }
     let motion = if keys.kind == LoadKind::Surface {
         let peak_to_peak = required("peak_to_peak_mm", keys.peak_to_peak_mm)?;

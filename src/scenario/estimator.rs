@@ -10,6 +10,7 @@ use super::error::ScenarioError;
 use super::sensing::white;
 use crate::device::DeviceParameters;
 use crate::estimation::{ContactForceEstimator, EstimatorParameters, SensorNoise, Tolerances};
+use crate::plant::registry;
 use crate::sensing::{Channel, SensingParameters};
 
 /// Name of the table.
@@ -99,11 +100,14 @@ fn believed_device(
     device: &DeviceParameters,
 ) -> Result<DeviceParameters, ScenarioError> {
     let mut believed = device.clone();
-    let (key, given) = ("moving_mass_kg", keys.moving_mass_kg);
-    believed.moving_mass = section.number_or(key, given, device.moving_mass, 0.1..=100.0)?;
+    if let Some(mass) = keys.moving_mass_kg {
+        believed.moving_mass = section.known(&registry::MOVING_MASS, "moving_mass_kg", mass)?;
+    }
     let seals = &mut believed.seal_friction;
-    let (key, given) = ("seal_coulomb_force_n", keys.seal_coulomb_force_n);
-    let coulomb = section.number_or(key, given, seals.coulomb, 0.0..=1000.0)?;
+    let coulomb = match keys.seal_coulomb_force_n {
+        Some(force) => section.known(&registry::SEAL_COULOMB, "seal_coulomb_force_n", force)?,
+        None => seals.coulomb,
+    };
     seals.static_force = if seals.coulomb > 0.0 {
         seals.static_force * coulomb / seals.coulomb
     } else {

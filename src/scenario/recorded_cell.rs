@@ -16,6 +16,7 @@ use super::sections::recorded_cell_sections;
 use super::workpiece::workpiece;
 use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, WorkpieceScenario};
 use crate::effects::Effect;
+use crate::plant::registry;
 
 mod effects;
 mod own;
@@ -167,21 +168,21 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         device,
         own: false,
         sample_rate: f64::INFINITY,
-        servo_bandwidth: joints.number(
+        servo_bandwidth: joints.known(
+            &registry::SERVO_BANDWIDTH,
             "servo_bandwidth_hz",
             drives.servo_bandwidth_hz,
-            0.5..=500.0,
         )?,
-        joint_stiffness: joints.numbers(
+        joint_stiffness: joints.known_numbers(
+            &registry::JOINT_STIFFNESS,
             "stiffness_n_m_per_rad",
             &drives.stiffness_n_m_per_rad,
-            1e2..=1e9,
         )?,
         joint_damping: [
-            joints.number(
+            joints.known_or_default(
+                &registry::JOINT_DAMPING,
                 "damping_time_ms",
-                drives.damping_time_ms.unwrap_or(2.5),
-                0.1..=50.0,
+                drives.damping_time_ms,
             )?,
             joints.number(
                 "damping_time_tolerance_ms",

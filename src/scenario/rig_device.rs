@@ -9,7 +9,9 @@ use super::error::ScenarioError;
 use super::file::{DeviceKeys, SCHEMA};
 use super::load::device;
 use super::rig_file::load_rig;
-use crate::plant::{ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors};
+use crate::plant::{
+    ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors, registry,
+};
 
 /// What a device brings to a bench.
 pub(super) struct BenchDevice {
@@ -22,9 +24,11 @@ pub(super) struct BenchDevice {
 }
 
 /// The contact of a load that says nothing of it.
-pub(super) const USUAL_CONTACT: ContactParameters = ContactParameters {
-    law: ContactLaw::Linear { stiffness: 1.5e5 },
-    damping: 4e2,
+pub(super) static USUAL_CONTACT: ContactParameters = ContactParameters {
+    law: ContactLaw::Linear {
+        stiffness: registry::CONTACT_STIFFNESS.default,
+    },
+    damping: registry::CONTACT_DAMPING.default,
     surface_offset: 0.0,
     runout: Periodic::NONE,
     waviness: Periodic::NONE,

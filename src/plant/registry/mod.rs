@@ -1,7 +1,7 @@
 //! Every number of a rig's or a cell's description, once: what it is, the range in which it is plausible, where it stands. Files, effects and diagnoses refer
 //! to these. What a fit may say of a number that no file gives stands at its effect.
 
-use super::quantity::Number;
+use super::PlantParameters;
 
 mod air;
 mod cell;
@@ -23,6 +23,73 @@ pub use parts::*;
 pub use regulator::*;
 pub use sensors::*;
 
+/// A number of the description. Only this module makes one.
+#[derive(Debug)]
+pub struct Number {
+    /// Name with its SI unit; of a number of the rig file its dotted key there.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub meaning: &'static str,
+    /// Key of the device model file, which ends with the unit there.
+    pub device_key: Option<&'static str>,
+    /// Least and largest plausible value; infinite where none is known.
+    pub range: [f64; 2],
+    /// Value where a file gives none; not a number where it must.
+    pub default: f64,
+    get: fn(&PlantParameters, usize) -> f64,
+    set: fn(&mut PlantParameters, usize, f64),
+}
+
+impl Number {
+    /// By a name of its own, as an answer has it.
+    pub const fn named(&'static self, name: &'static str) -> Quantity {
+        Quantity {
+            name,
+            index: 0,
+            number: self,
+        }
+    }
+
+    /// By its own name.
+    pub const fn quantity(&'static self) -> Quantity {
+        self.named(self.name)
+    }
+}
+
+/// A number of the description under a name: how to read it, how to change it.
+#[derive(Clone, Copy)]
+pub struct Quantity {
+    /// Name with its unit, as in an answer: `coulomb_force_n`.
+    pub name: &'static str,
+    /// Which of several alike: joint, coefficient; from 0.
+    pub index: usize,
+    /// Which.
+    pub number: &'static Number,
+}
+
+impl std::fmt::Debug for Quantity {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(self.name)
+    }
+}
+
+impl Quantity {
+    /// The one of several alike.
+    pub const fn of(self, index: usize) -> Self {
+        Self { index, ..self }
+    }
+
+    /// Its value.
+    pub fn get(&self, plant: &PlantParameters) -> f64 {
+        (self.number.get)(plant, self.index)
+    }
+
+    /// Changes it.
+    pub fn set(&self, plant: &mut PlantParameters, value: f64) {
+        (self.number.set)(plant, self.index, value);
+    }
+}
+
 /// The range of what may be anything.
 const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
@@ -40,7 +107,7 @@ macro_rules! numbers {
                 meaning: $meaning.trim_ascii(),
                 device_key: [$(Some($device_key),)? None][0],
                 range: $range,
-                default: [$(Some($default),)? None][0],
+                default: [$($default,)? f64::NAN][0],
                 get: numbers!(@get $access),
                 set: numbers!(@set $access),
             };
@@ -64,11 +131,6 @@ pub fn all() -> impl Iterator<Item = &'static Number> {
     parts.into_iter().flatten().copied()
 }
 
-/// The one of the device model file with this key.
-pub fn of_device_key(key: &str) -> Option<&'static Number> {
-    all().find(|number| number.device_key == Some(key))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,11 +147,8 @@ mod tests {
                 number.device_key.is_none_or(|key| names.insert(key)),
                 "{number:?}"
             );
-            assert!(
-                number
-                    .default
-                    .is_none_or(|value| low <= value && value <= high)
-            );
+            let default = number.default;
+            assert!(default.is_nan() || (low <= default && default <= high));
         }
     }
 }

@@ -7,12 +7,13 @@ use super::super::sensing::white;
 use super::super::{BurrScenario, Misplacement, Scenario};
 use super::{EffectKeys, RecordedCell, effects};
 use crate::effects::Effect;
+use crate::plant::registry;
 use crate::sensing::{Channel, FilterParameters};
 
 /// Relative tolerance of a number that a scenario states: none of a data sheet is truer.
 const TOLERANCE: f64 = 0.005;
 /// Damping of springs that are not there over their stiffness, and its tolerance [s].
-const DAMPING_TIME: [f64; 2] = [2.5e-3, 1e-3];
+static DAMPING_TIME: [f64; 2] = [registry::JOINT_DAMPING.default, 1e-3];
 /// Noise of encoders that a scenario says have none [rad].
 const ENCODER_NOISE: f64 = 2e-6;
 
