@@ -7,19 +7,13 @@
 
 use super::*;
 
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                BURR_POSITION.named("position_m"),
-                Linear(1e-3),
-                [0.0, 100.0],
-            ),
-            reported(BURR_HEIGHT.named("height_m"), Linear(1e-4), [0.0, 0.02]),
-            hidden(BURR_WIDTH.named("width_m"), Logarithmic, [2e-4, 0.02]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(BURR_POSITION.named("position_m"), Linear(1e-3), [0.0, 100.0]),
+        reported(BURR_HEIGHT.named("height_m"), Linear(1e-4), [0.0, 0.02]),
+        hidden(BURR_WIDTH.named("width_m"), Logarithmic, [2e-4, 0.02]),
+    ],
     usual: |_, _| vec![0.1, 3e-4, 2e-3],
     starts: |clues: &Clues<'_>, _| {
         let places = clues.bumps.iter();

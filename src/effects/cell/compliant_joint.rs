@@ -12,7 +12,6 @@ const RIGID: [f64; 2] = [1e3, 1e8];
 
 /// Of which joint is to be said.
 pub(super) const EFFECT: Effect = Effect {
-    group: None,
     parameters: |p, joint| {
         let believed = p.cell.joint_stiffness[joint];
         vec![reported(

@@ -9,24 +9,12 @@
 use super::*;
 
 /// Of which joint is to be said.
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, joint| {
-        vec![
-            reported(
-                JOINT_PLAY.named("play_rad").of(joint),
-                Logarithmic,
-                [1e-6, 0.05],
-            ),
-            hidden(
-                JOINT_STIFFNESS
-                    .named("teeth_stiffness_n_m_per_rad")
-                    .of(joint),
-                Logarithmic,
-                [1e3, 1e8],
-            ),
-        ]
-    },
+    parameters: |_, joint| vec![
+        reported(JOINT_PLAY.named("play_rad").of(joint), Logarithmic, [1e-6, 0.05]),
+        hidden(JOINT_STIFFNESS.named("teeth_stiffness_n_m_per_rad").of(joint), Logarithmic, [1e3, 1e8]),
+    ],
     usual: |p, joint| vec![7e-4, p.cell.joint_stiffness[joint].min(1e6)],
     starts: |clues, joint| {
         let teeth = clues.plant.cell.joint_stiffness[joint].min(1e6);

@@ -11,15 +11,9 @@
 use super::*;
 
 /// Of which joint is to be said.
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, joint| {
-        vec![reported(
-            ENCODER_OFFSET.named("offset_rad").of(joint),
-            Linear(5e-4),
-            [-0.1, 0.1],
-        )]
-    },
+    parameters: |_, joint| vec![reported(ENCODER_OFFSET.named("offset_rad").of(joint), Linear(5e-4), [-0.1, 0.1])],
     usual: |_, _| vec![1e-3],
     starts: |_, _| vec![vec![0.0], vec![2e-3], vec![-2e-3]],
     ..effect("joint_encoder_offset", Subsystem::Arm)

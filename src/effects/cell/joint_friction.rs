@@ -8,15 +8,9 @@
 use super::*;
 
 /// Of which joint is to be said.
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, joint| {
-        vec![reported(
-            DRIVE_FRICTION.named("friction_n_m").of(joint),
-            Linear(1.0),
-            [0.0, 1e4],
-        )]
-    },
+    parameters: |_, joint| vec![reported(DRIVE_FRICTION.named("friction_n_m").of(joint), Linear(1.0), [0.0, 1e4])],
     usual: |p, joint| vec![p.cell.joint_friction[joint] + 20.0],
     starts: |clues, joint| vec![vec![clues.plant.cell.joint_friction[joint]]],
     ..effect("joint_friction", Subsystem::Arm)

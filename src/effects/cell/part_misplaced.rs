@@ -11,14 +11,12 @@
 
 use super::*;
 
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(PART_SHIFT.named("shift_m"), Linear(2e-4), [-0.02, 0.02]),
-            reported(PART_TILT.named("tilt_m_per_m"), Linear(2e-3), [-0.2, 0.2]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(PART_SHIFT.named("shift_m"), Linear(2e-4), [-0.02, 0.02]),
+        reported(PART_TILT.named("tilt_m_per_m"), Linear(2e-3), [-0.2, 0.2]),
+    ],
     usual: |_, _| vec![8e-4, 4e-3],
     starts: |_, _| vec![vec![0.0, 0.0], vec![1e-3, 0.0], vec![-1e-3, 0.0]],
     ..effect("part_misplaced", Subsystem::Workpiece)

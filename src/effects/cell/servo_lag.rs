@@ -8,15 +8,9 @@
 use super::*;
 
 /// The effect; it is fitted on the encoders alone.
+#[rustfmt::skip] // A table: one number a line.
 pub static SERVO_LAG: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            SERVO_BANDWIDTH.named("bandwidth_hz"),
-            Logarithmic,
-            [0.1, 1e3],
-        )]
-    },
+    parameters: |_, _| vec![reported(SERVO_BANDWIDTH.named("bandwidth_hz"), Logarithmic, [0.1, 1e3])],
     usual: |_, _| vec![25.0],
     starts: |clues: &Clues<'_>, _| vec![vec![clues.plant.cell.servo_bandwidth]],
     ..effect("servo_lag", Subsystem::Arm)

@@ -11,15 +11,9 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            WALL_CONDUCTANCE.named("wall_conductance_w_per_k"),
-            Logarithmic,
-            [1e-3, 10.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(WALL_CONDUCTANCE.named("wall_conductance_w_per_k"), Logarithmic, [1e-3, 10.0])],
     usual: |_, _| vec![0.1],
     starts: |_, _| each(&[0.01, 0.05, 0.2, 0.8]),
     ..effect("heat_transfer", Subsystem::Chambers)

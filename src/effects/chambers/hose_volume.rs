@@ -14,32 +14,21 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(HOSE_VOLUME.named("volume_m3"), Logarithmic, [1e-6, 2e-3]),
-            reported(
-                HOSE_RESISTANCE.named("resistance_pa_s_per_kg"),
-                Logarithmic,
-                [1e6, 5e9],
-            ),
-            Parameter {
-                choices: &[1.0, 2.0, 3.0, 4.0, 8.0],
-                ..hidden(HOSE_SEGMENTS.named("segments"), Linear(1.0), [1.0, 8.0])
-            },
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(HOSE_VOLUME.named("volume_m3"), Logarithmic, [1e-6, 2e-3]),
+        reported(HOSE_RESISTANCE.named("resistance_pa_s_per_kg"), Logarithmic, [1e6, 5e9]),
+        Parameter { choices: &[1.0, 2.0, 3.0, 4.0, 8.0], ..hidden(HOSE_SEGMENTS.named("segments"), Linear(1.0), [1.0, 8.0]) },
+    ],
     usual: |_, _| vec![5e-5, 5e7, 1.0],
-    starts: |_, _| {
-        vec![
-            vec![2e-5, 3e7, 2.0],
-            vec![5e-5, 5e7, 2.0],
-            vec![5e-5, 3e8, 2.0],
-            vec![1.5e-4, 5e7, 2.0],
-            vec![1.5e-4, 3e8, 2.0],
-            vec![4e-4, 1e8, 2.0],
-        ]
-    },
+    starts: |_, _| vec![
+        vec![2e-5, 3e7, 2.0],
+        vec![5e-5, 5e7, 2.0],
+        vec![5e-5, 3e8, 2.0],
+        vec![1.5e-4, 5e7, 2.0],
+        vec![1.5e-4, 3e8, 2.0],
+        vec![4e-4, 1e8, 2.0],
+    ],
     ..effect("hose_volume", Subsystem::Chambers)
 };

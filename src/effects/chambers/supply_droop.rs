@@ -11,31 +11,13 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                RESERVOIR_VOLUME.named("reservoir_volume_m3"),
-                Logarithmic,
-                [1e-5, 0.1],
-            ),
-            reported(
-                COMPRESSOR_FLOW.named("compressor_flow_kg_per_s"),
-                Logarithmic,
-                [1e-6, 0.1],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(RESERVOIR_VOLUME.named("reservoir_volume_m3"), Logarithmic, [1e-5, 0.1]),
+        reported(COMPRESSOR_FLOW.named("compressor_flow_kg_per_s"), Logarithmic, [1e-6, 0.1]),
+    ],
     usual: |_, _| vec![1e-3, 5e-4],
-    starts: |_, _| {
-        vec![
-            vec![1e-4, 5e-5],
-            vec![1e-4, 2e-4],
-            vec![4e-4, 5e-5],
-            vec![4e-4, 2e-4],
-            vec![1.5e-3, 1e-4],
-        ]
-    },
+    starts: |_, _| vec![vec![1e-4, 5e-5], vec![1e-4, 2e-4], vec![4e-4, 5e-5], vec![4e-4, 2e-4], vec![1.5e-3, 1e-4]],
     ..effect("supply_droop", Subsystem::Chambers)
 };

@@ -10,15 +10,10 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
     group: Some("contact_law"),
-    parameters: |_, _| {
-        vec![reported(
-            HERTZ_STIFFNESS.named("stiffness_n_per_m15"),
-            Logarithmic,
-            [1e5, 1e10],
-        )]
-    },
+    parameters: |_, _| vec![reported(HERTZ_STIFFNESS.named("stiffness_n_per_m15"), Logarithmic, [1e5, 1e10])],
     usual: |p, _| vec![p.contact.stiffness_at(USUAL_FORCE).powf(1.5) / USUAL_FORCE.sqrt()],
     starts: |c, _| {
         // As stiff as what is believed at a force that such a device is used at [N].

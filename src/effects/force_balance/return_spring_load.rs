@@ -11,15 +11,9 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            RETURN_STIFFNESS.named("stiffness_n_per_m"),
-            Linear(100.0),
-            [-5e4, 5e4],
-        )]
-    },
+    parameters: |_, _| vec![reported(RETURN_STIFFNESS.named("stiffness_n_per_m"), Linear(100.0), [-5e4, 5e4])],
     usual: |_, _| vec![400.0],
     starts: |_, _| vec![vec![0.0]],
     ..effect("return_spring_load", Subsystem::ForceBalance)

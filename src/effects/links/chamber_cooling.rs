@@ -14,22 +14,12 @@ use super::*;
 const LONGEST_COOLING: [f64; 2] = [0.1, 20.0];
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                COOLING.named("pressure_lost_pa"),
-                Linear(500.0),
-                [-1e5, 1e5],
-            ),
-            reported(
-                COOLING_TIME.named("cooling_time_constant_s"),
-                Logarithmic,
-                LONGEST_COOLING,
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(COOLING.named("pressure_lost_pa"), Linear(500.0), [-1e5, 1e5]),
+        reported(COOLING_TIME.named("cooling_time_constant_s"), Logarithmic, LONGEST_COOLING),
+    ],
     usual: |_, _| vec![2e3, 5.0],
     starts: |_, _| vec![vec![300.0, 2.0], vec![300.0, 10.0]],
     ..effect("chamber_cooling", Subsystem::Chambers)

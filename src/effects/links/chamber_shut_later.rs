@@ -10,15 +10,9 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            SHUT_TIME.named("shut_time_s"),
-            Linear(1.0),
-            [0.0, 1e3],
-        )]
-    },
+    parameters: |_, _| vec![reported(SHUT_TIME.named("shut_time_s"), Linear(1.0), [0.0, 1e3])],
     usual: |_, _| vec![0.5],
     starts: |_, _| each(&[0.5, 2.0, 5.0, 10.0, 30.0]),
     ..effect("chamber_shut_later", Subsystem::Chambers)

@@ -11,15 +11,10 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
     group: LEAK,
-    parameters: |_, _| {
-        vec![reported(
-            ORIFICE_LEAK.named("orifice_area_per_volume_1_per_m"),
-            Logarithmic,
-            [1e-11, 1e-1],
-        )]
-    },
+    parameters: |_, _| vec![reported(ORIFICE_LEAK.named("orifice_area_per_volume_1_per_m"), Logarithmic, [1e-11, 1e-1])],
     usual: |_, _| vec![1e-5],
     starts: |_, _| each(&[5e-8, 5e-7, 5e-6, 5e-5, 5e-4]),
     ..effect("orifice_leakage", Subsystem::Chambers)

@@ -11,15 +11,9 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            SHUT_TIME_CONSTANT.named("open_time_constant_s"),
-            Logarithmic,
-            [1e-3, 30.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(SHUT_TIME_CONSTANT.named("open_time_constant_s"), Logarithmic, [1e-3, 30.0])],
     usual: |_, _| vec![0.05],
     starts: |c, _| shares(&[0.1, 0.4, 3.0], c.plant.device.regulator.time_constant),
     ..effect("regulator_opens_at_zero", Subsystem::Regulator)

@@ -11,15 +11,9 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            VENTING_TIME_CONSTANT.named("venting_time_constant_s"),
-            Logarithmic,
-            [1e-3, 30.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(VENTING_TIME_CONSTANT.named("venting_time_constant_s"), Logarithmic, [1e-3, 30.0])],
     usual: |_, _| vec![0.1],
     starts: |c, _| shares(&[0.3, 1.5, 4.0], c.plant.device.regulator.time_constant),
     ..effect("regulator_venting", Subsystem::Regulator)

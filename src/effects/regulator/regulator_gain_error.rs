@@ -11,7 +11,6 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    group: None,
     parameters: |p, _| {
         let g = p.device.regulator.gain;
         vec![reported(

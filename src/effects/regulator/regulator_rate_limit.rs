@@ -12,14 +12,12 @@ use super::*;
 use crate::plant::Chain;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(RISE_LIMIT.named("rise_pa_per_s"), Logarithmic, [1e3, 1e8]),
-            reported(FALL_LIMIT.named("fall_pa_per_s"), Logarithmic, [1e3, 1e8]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(RISE_LIMIT.named("rise_pa_per_s"), Logarithmic, [1e3, 1e8]),
+        reported(FALL_LIMIT.named("fall_pa_per_s"), Logarithmic, [1e3, 1e8]),
+    ],
     // A small valve on a large load is far slower than one on a device.
     usual: |_, _| vec![1.5e5, 1.5e5],
     starts: |c, _| match c.plant.chain {

@@ -11,22 +11,12 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                NATURAL_FREQUENCY.named("natural_frequency_rad_per_s"),
-                Logarithmic,
-                [0.5, 500.0],
-            ),
-            reported(
-                DAMPING_RATIO.named("damping_ratio"),
-                Logarithmic,
-                [0.02, 5.0],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(NATURAL_FREQUENCY.named("natural_frequency_rad_per_s"), Logarithmic, [0.5, 500.0]),
+        reported(DAMPING_RATIO.named("damping_ratio"), Logarithmic, [0.02, 5.0]),
+    ],
     usual: |_, _| vec![25.0, 0.35],
     starts: |c, _| {
         let w = 1.0 / c.plant.device.regulator.time_constant;

@@ -10,15 +10,9 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            SWITCHING_DELAY.named("delay_s"),
-            Logarithmic,
-            [1e-3, 1.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(SWITCHING_DELAY.named("delay_s"), Logarithmic, [1e-3, 1.0])],
     usual: |_, _| vec![0.03],
     starts: |_, _| each(&[0.01, 0.03, 0.08]),
     ..effect("solenoid_switching_delay", Subsystem::Regulator)

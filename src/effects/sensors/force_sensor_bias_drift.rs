@@ -13,14 +13,12 @@ use super::*;
 const FAR: f64 = 1e3;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(FORCE_BIAS.named("bias_n"), Linear(1.0), [-FAR, FAR]),
-            reported(FORCE_DRIFT.named("drift_n_per_s"), Linear(0.1), [-FAR, FAR]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(FORCE_BIAS.named("bias_n"), Linear(1.0), [-FAR, FAR]),
+        reported(FORCE_DRIFT.named("drift_n_per_s"), Linear(0.1), [-FAR, FAR]),
+    ],
     usual: |_, _| vec![3.0, 0.3],
     starts: |_, _| vec![vec![0.0, 0.0]],
     ..effect("force_sensor_bias_drift", Subsystem::Sensors)

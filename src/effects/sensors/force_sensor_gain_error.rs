@@ -11,7 +11,6 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    group: None,
     parameters: |_, _| vec![reported(FORCE_GAIN.named("gain"), Linear(0.02), [0.2, 5.0])],
     usual: |_, _| vec![1.05],
     starts: |_, _| vec![vec![1.0]],

@@ -10,15 +10,9 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            FORCE_LIMIT.named("limit_n"),
-            Linear(2.0),
-            [5.0, 5000.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(FORCE_LIMIT.named("limit_n"), Linear(2.0), [5.0, 5000.0])],
     usual: |_, _| vec![120.0],
     starts: |c, _| vec![vec![c.largest_force]],
     ..effect("force_sensor_saturation", Subsystem::Sensors)

@@ -10,15 +10,9 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            CROSSTALK_MASS.named("mass_kg"),
-            Linear(0.1),
-            [-20.0, 20.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(CROSSTALK_MASS.named("mass_kg"), Linear(0.1), [-20.0, 20.0])],
     usual: |_, _| vec![0.5],
     starts: |_, _| vec![vec![0.0]],
     ..effect("inertial_crosstalk", Subsystem::Sensors)
