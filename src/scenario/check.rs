@@ -70,6 +70,17 @@ impl<'a> Section<'a> {
         self.number(key, value, Unit::of_key(key).range(number.range))
     }
 
+    /// As `known`, or another value [SI] if the file gives none.
+    pub fn known_or(
+        &self,
+        number: &Number,
+        key: &str,
+        given: Option<f64>,
+        default: f64,
+    ) -> Result<f64, ScenarioError> {
+        given.map_or(Ok(default), |value| self.known(number, key, value))
+    }
+
     /// As `known`, or its default if the file gives none.
     pub fn known_or_default(
         &self,
@@ -77,7 +88,7 @@ impl<'a> Section<'a> {
         key: &str,
         given: Option<f64>,
     ) -> Result<f64, ScenarioError> {
-        given.map_or(Ok(number.default), |value| self.known(number, key, value))
+        self.known_or(number, key, given, number.default)
     }
 
     /// As `number`, or the default [SI] if the file gives none.

@@ -100,14 +100,12 @@ fn believed_device(
     device: &DeviceParameters,
 ) -> Result<DeviceParameters, ScenarioError> {
     let mut believed = device.clone();
-    if let Some(mass) = keys.moving_mass_kg {
-        believed.moving_mass = section.known(&registry::MOVING_MASS, "moving_mass_kg", mass)?;
-    }
+    let known_or = |number, key, given, default| section.known_or(number, key, given, default);
+    let (mass, given) = (&registry::MOVING_MASS, keys.moving_mass_kg);
+    believed.moving_mass = known_or(mass, "moving_mass_kg", given, device.moving_mass)?;
     let seals = &mut believed.seal_friction;
-    let coulomb = match keys.seal_coulomb_force_n {
-        Some(force) => section.known(&registry::SEAL_COULOMB, "seal_coulomb_force_n", force)?,
-        None => seals.coulomb,
-    };
+    let (force, given) = (&registry::SEAL_COULOMB, keys.seal_coulomb_force_n);
+    let coulomb = known_or(force, "seal_coulomb_force_n", given, seals.coulomb)?;
     seals.static_force = if seals.coulomb > 0.0 {
         seals.static_force * coulomb / seals.coulomb
     } else {
