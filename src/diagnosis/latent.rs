@@ -357,17 +357,20 @@ impl Search<'_> {
     ) -> Hypothesis {
         let mut plant = base.fit.prediction.plant.clone();
         plant.latent = Some(latent.clone());
-        let mut free: Vec<Free> = base
-            .fit
-            .free
-            .iter()
-            .zip(&base.fit.values)
-            .map(|(f, value)| Free {
-                start: *value,
-                ..*f
-            })
-            .collect();
+        let mut free = base.fit.free_from_here();
         free.extend(free_of_latent(latent));
+        self.refitted(base, &plant, &free, stages, iterations)
+    }
+
+    /// A hypothesis with other things free, its steps as long as a curve may need.
+    fn refitted(
+        &self,
+        base: &Hypothesis,
+        plant: &PlantParameters,
+        free: &[Free],
+        stages: &[super::fit::Stage],
+        iterations: usize,
+    ) -> Hypothesis {
         let effort = Effort {
             iterations,
             stages,
@@ -376,7 +379,7 @@ impl Search<'_> {
         };
         Hypothesis {
             effects: base.effects.clone(),
-            fit: fit(self.evidence, &plant, &free, effort, None),
+            fit: fit(self.evidence, plant, free, effort, None),
             depends_on: Vec::new(),
         }
     }
@@ -418,25 +421,13 @@ impl Search<'_> {
         iterations: usize,
     ) -> Hypothesis {
         let from = &hypothesis.fit;
-        let free: Vec<Free> = from
-            .free
-            .iter()
-            .zip(&from.values)
-            .map(|(f, value)| Free {
-                start: *value,
-                ..*f
-            })
-            .collect();
-        let effort = Effort {
-            iterations,
+        let plant = &from.prediction.plant;
+        self.refitted(
+            hypothesis,
+            plant,
+            &from.free_from_here(),
             stages,
-            frozen: &[],
-            longest_step: 30.0,
-        };
-        Hypothesis {
-            effects: hypothesis.effects.clone(),
-            fit: fit(self.evidence, &from.prediction.plant, &free, effort, None),
-            depends_on: Vec::new(),
-        }
+            iterations,
+        )
     }
 }

@@ -112,15 +112,7 @@ impl Search<'_> {
         fitted
             // What an effect frees is no longer held to its tolerance.
             .filter(|((f, _), _)| !new.iter().any(|n| same(n, f, &self.believed)))
-            .map(|((f, value), column)| {
-                (
-                    Free {
-                        start: *value,
-                        ..*f
-                    },
-                    column.clone(),
-                )
-            })
+            .map(|((f, value), column)| (f.from(*value), column.clone()))
             .unzip()
     }
 
