@@ -14,7 +14,7 @@ use super::load::expectations;
 use super::recorded_cell::{EffectKeys, apply, effects_of};
 use super::rig_device::{BenchDevice, USUAL_CONTACT, bench_device};
 use super::rig_file::blank;
-use super::sections::bench_sections;
+use super::sections::{bench_sections, keys as keys_of};
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
 use crate::effects::{Effect, Subsystem};
@@ -295,24 +295,16 @@ fn load(
     mut contact: ContactParameters,
     full_stroke: f64,
 ) -> Result<LoadScenario, ScenarioError> {
-    let given = [
-        ("position_mm", keys.position_mm.is_some()),
-        ("stiffness_n_per_m", keys.stiffness_n_per_m.is_some()),
-        ("damping_n_s_per_m", keys.damping_n_s_per_m.is_some()),
-        ("peak_to_peak_mm", keys.peak_to_peak_mm.is_some()),
-        ("frequency_hz", keys.frequency_hz.is_some()),
-        ("start_s", keys.start_s.is_some()),
-    ];
-    let allowed = match keys.kind {
-        LoadKind::Free => 0,
-        LoadKind::LoadCell => 3,
-        LoadKind::Surface => 6,
+    let (allowed, reason): (&[&str], _) = match keys.kind {
+        LoadKind::Free => (&[], "nothing is met when kind = \"free\""),
+        LoadKind::LoadCell => (
+            &["position_mm", "stiffness_n_per_m", "damping_n_s_per_m"],
+            "a load cell stands still; kind = \"surface\" moves",
+        ),
+        LoadKind::Surface => (keys_of::<LoadKeys>(), ""),
     };
-    if let Some((key, _)) = given.iter().skip(allowed).find(|(_, given)| *given) {
-        let reason = match keys.kind {
-            LoadKind::Free => "nothing is met when kind = \"free\"",
-            _ => "a load cell stands still; kind = \"surface\" moves",
-        };
+    let is_other = |key: &&str| *key != "kind" && !allowed.contains(key);
+    if let Some(key) = section.given().find(is_other) {
         return Err(section.misplaced(key, reason.to_owned()));
     }
     if keys.kind == LoadKind::Free {

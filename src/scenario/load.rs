@@ -168,11 +168,7 @@ fn limit_overrides(
     let mut limits = Vec::with_capacity(overrides.len());
     for (index, keys) in overrides.iter().enumerate() {
         let section = Section::new(document, format!("arm.limit_overrides[{index}]"));
-        let joint = section.text("joint", &keys.joint)?;
-        if !joints.insert(&keys.joint) {
-            let expected = "each joint once".to_owned();
-            return Err(section.refuse("joint", format!("\"{joint}\" again"), expected));
-        }
+        let joint = once(&section, &keys.joint, &mut joints)?;
         if keys.effort_n_m.is_none() && keys.velocity_deg_per_s.is_none() {
             return Err(section.missing("effort_n_m", "it or velocity_deg_per_s to be given"));
         }
@@ -191,6 +187,20 @@ fn limit_overrides(
     Ok(limits)
 }
 
+/// A joint that no table before has named.
+fn once(
+    section: &Section<'_>,
+    joint: &str,
+    before: &mut BTreeSet<String>,
+) -> Result<String, ScenarioError> {
+    let joint = section.text("joint", joint)?;
+    if before.insert(joint.clone()) {
+        return Ok(joint);
+    }
+    let expected = "each joint once".to_owned();
+    Err(section.refuse("joint", format!("\"{joint}\" again"), expected))
+}
+
 fn drives(
     document: &Document<'_>,
     drives: &[file::DriveKeys],
@@ -199,11 +209,7 @@ fn drives(
     let mut checked = Vec::with_capacity(drives.len());
     for (index, keys) in drives.iter().enumerate() {
         let section = Section::new(document, format!("arm.drives[{index}]"));
-        let joint = section.text("joint", &keys.joint)?;
-        if !joints.insert(&keys.joint) {
-            let expected = "each joint once".to_owned();
-            return Err(section.refuse("joint", format!("\"{joint}\" again"), expected));
-        }
+        let joint = once(&section, &keys.joint, &mut joints)?;
         let drive = drive(&section, keys, joint)?;
         if drive.backlash > 0.0 && drive.stiffness.is_infinite() {
             let expected = "the stiffness of the teeth beside a backlash";

@@ -3,6 +3,7 @@
 use super::check::Section;
 use super::error::ScenarioError;
 use super::file::{self, BurrKind, MeshUnit};
+use super::sensing::stages::only;
 use super::{BurrScenario, EdgeChoice, EdgeSelection, Misplacement, WorkpieceScenario};
 
 /// `[workpiece]` and the tables in it.
@@ -97,30 +98,7 @@ fn keys_of(kind: BurrKind) -> (&'static str, &'static [&'static str]) {
 
 fn burr(section: &Section<'_>, keys: &file::BurrKeys) -> Result<BurrScenario, ScenarioError> {
     let (kind, allowed) = keys_of(keys.kind);
-    for (key, given) in [
-        ("height_mm", keys.height_mm.is_some()),
-        ("mean_height_mm", keys.mean_height_mm.is_some()),
-        (
-            "standard_deviation_mm",
-            keys.standard_deviation_mm.is_some(),
-        ),
-        (
-            "correlation_length_mm",
-            keys.correlation_length_mm.is_some(),
-        ),
-        ("seed", keys.seed.is_some()),
-        ("position_mm", keys.position_mm.is_some()),
-        ("width_mm", keys.width_mm.is_some()),
-        ("path", keys.path.is_some()),
-    ] {
-        if given && !allowed.contains(&key) {
-            let others = match allowed {
-                [] => "no other key".to_owned(),
-                _ => allowed.join(", "),
-            };
-            return Err(section.misplaced(key, format!("kind = \"{kind}\" has {others}")));
-        }
-    }
+    only(section, kind, false, allowed)?;
     let needed = |key: &str, value: Option<f64>, range| match value {
         Some(value) => section.number(key, value, range),
         None => Err(section.missing(key, &format!("it to be given with kind = \"{kind}\""))),
