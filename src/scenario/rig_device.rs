@@ -9,9 +9,7 @@ use super::error::ScenarioError;
 use super::file::{DeviceKeys, SCHEMA};
 use super::load::device;
 use super::rig_file::load_rig;
-use crate::plant::{
-    ContactLaw, ContactParameters, Periodic, PlantParameters, SensorErrors, registry,
-};
+use crate::plant::{ContactParameters, PlantParameters, SensorErrors, registry};
 
 /// What a device brings to a bench.
 pub(super) struct BenchDevice {
@@ -24,15 +22,10 @@ pub(super) struct BenchDevice {
 }
 
 /// The contact of a load that says nothing of it.
-pub(super) static USUAL_CONTACT: ContactParameters = ContactParameters {
-    law: ContactLaw::Linear {
-        stiffness: registry::CONTACT_STIFFNESS.default,
-    },
-    damping: registry::CONTACT_DAMPING.default,
-    surface_offset: 0.0,
-    runout: Periodic::NONE,
-    waviness: Periodic::NONE,
-};
+pub(super) static USUAL_CONTACT: ContactParameters = ContactParameters::linear(
+    registry::CONTACT_STIFFNESS.default,
+    registry::CONTACT_DAMPING.default,
+);
 
 /// Is it a rig file? Whatever is wrong with it is said when it is read as what it is.
 pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {

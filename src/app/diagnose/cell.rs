@@ -10,7 +10,7 @@ use crate::diagnosis::case::{Case, NamedRecording, tolerated};
 use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::free::{Free, Prior};
 use crate::diagnosis::joint_friction::{DriveLoad, JointFriction, joint_friction};
-use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, hold};
+use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, check, hold};
 use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
 use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS};
 use crate::plant::{CHANNELS, PlantInputs, PlantParameters, Quantity, registry};
@@ -267,10 +267,7 @@ fn recorded(
         motion: None,
         time,
     };
-    inputs.check().map_err(|source| RecordedError::Inputs {
-        file: file.to_owned(),
-        source,
-    })?;
+    check(file, &inputs)?;
     let nothing = vec![f64::NAN; inputs.time.len()];
     let mut readings = QUANTITIES.map(|quantity| {
         let found = readings.iter().find(|(name, _)| *name == quantity);

@@ -4,10 +4,7 @@ use super::super::units::Unit;
 use super::values::plain;
 use crate::device::DeviceParameters;
 use crate::physics::regulator::RegulatorParameters;
-use crate::plant::{
-    CellParameters, Chain, ContactLaw, ContactParameters, LinkParameters, Number, Periodic,
-    PlantParameters, SensorErrors, registry,
-};
+use crate::plant::{CellParameters, Chain, Number, PlantParameters, registry};
 
 /// The numbers of the rig, in the order of the format; each stands under its dotted name.
 pub(super) static NUMBERS: [&Number; 20] = [
@@ -107,29 +104,15 @@ const AMPLE_SUPPLY: f64 = 16e5;
 
 /// The believed model with all that a file does not say: no friction, no leaks, isothermal chambers, ideal sensors. Its numbers are for the file to set.
 pub(in super::super) fn blank() -> PlantParameters {
-    PlantParameters {
-        device: DeviceParameters {
-            regulator: RegulatorParameters {
-                dead_time: 0.0,
-                supply: AMPLE_SUPPLY,
-                ..RegulatorParameters::default()
-            },
-            ..DeviceParameters::default()
+    let device = DeviceParameters {
+        regulator: RegulatorParameters {
+            dead_time: 0.0,
+            supply: AMPLE_SUPPLY,
+            ..RegulatorParameters::default()
         },
-        gravity_along_extension: 0.0,
-        contact: ContactParameters {
-            law: ContactLaw::Linear { stiffness: 0.0 },
-            damping: 0.0,
-            surface_offset: 0.0,
-            runout: Periodic::NONE,
-            waviness: Periodic::NONE,
-        },
-        cell: CellParameters::RIGID,
-        sensors: SensorErrors::NONE,
-        latent: None,
-        chain: Chain::Whole,
-        links: LinkParameters::NONE,
-    }
+        ..DeviceParameters::default()
+    };
+    PlantParameters::of_cell(device, (0.0, 0.0), CellParameters::RIGID)
 }
 
 #[cfg(test)]
