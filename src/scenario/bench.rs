@@ -273,17 +273,14 @@ pub(super) fn from_document(
     })
 }
 
+#[rustfmt::skip] // A table: one key a line.
 fn simulation(
     section: &Section<'_>,
     keys: &BenchSimulationKeys,
 ) -> Result<(f64, usize, u64), ScenarioError> {
     Ok((
         section.number("step_ms", keys.step_ms.unwrap_or(1.0), 0.01..=20.0)?,
-        section.count(
-            "device_substeps",
-            keys.device_substeps.unwrap_or(2),
-            1..=1000,
-        )?,
+        section.count("device_substeps", keys.device_substeps.unwrap_or(2), 1..=1000)?,
         keys.seed.unwrap_or(1),
     ))
 }

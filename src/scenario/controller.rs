@@ -205,6 +205,7 @@ fn law(section: &Section<'_>, keys: &ControllerKeys, seals: &SealFriction) -> Re
 }
 
 /// The device's seals with what the file believes otherwise; none if it says nothing of them.
+#[rustfmt::skip] // A table: one key a line.
 fn believed_seals(
     section: &Section<'_>,
     keys: &ControllerKeys,
@@ -233,18 +234,8 @@ fn believed_seals(
         coulomb,
         static_force,
         stribeck_velocity: own.stribeck_velocity,
-        viscous: known_or(
-            &registry::SEAL_VISCOUS,
-            "viscous_n_s_per_m",
-            viscous,
-            own.viscous,
-        )?,
-        presliding_displacement: known_or(
-            &registry::SEAL_PRESLIDING,
-            "presliding_um",
-            presliding,
-            own.presliding_displacement,
-        )?,
+        viscous: known_or(&registry::SEAL_VISCOUS, "viscous_n_s_per_m", viscous, own.viscous)?,
+        presliding_displacement: known_or(&registry::SEAL_PRESLIDING, "presliding_um", presliding, own.presliding_displacement)?,
         pressure_coefficient: own.pressure_coefficient,
     }))
 }

@@ -117,6 +117,7 @@ fn believed_device(
 
 /// Standard deviations of the sensors as the file gives them, else as `[sensing]` makes them; rounding to a step is an error even within it
 /// (JCGM 100:2008, F.2.2.1).
+#[rustfmt::skip] // A table: one key a line.
 fn noise(
     section: &Section<'_>,
     keys: &EstimatorKeys,
@@ -135,18 +136,8 @@ fn noise(
     let number = |key, given, default, range| section.number_or(key, given, default, range);
     Ok(SensorNoise {
         stroke: number("stroke_noise_mm", keys.stroke_noise_mm, stroke, 1e-6..=10.0)?,
-        acceleration: number(
-            "acceleration_noise_m_per_s2",
-            keys.acceleration_noise_m_per_s2,
-            acceleration,
-            1e-6..=1000.0,
-        )?,
-        regulator_pressure: number(
-            "regulator_pressure_noise_pa",
-            keys.regulator_pressure_noise_pa,
-            pressure,
-            1e-3..=1e6,
-        )?,
+        acceleration: number("acceleration_noise_m_per_s2", keys.acceleration_noise_m_per_s2, acceleration, 1e-6..=1000.0)?,
+        regulator_pressure: number("regulator_pressure_noise_pa", keys.regulator_pressure_noise_pa, pressure, 1e-3..=1e6)?,
     })
 }
 

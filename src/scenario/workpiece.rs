@@ -32,6 +32,7 @@ pub(super) fn workpiece(
     })
 }
 
+#[rustfmt::skip] // A table: one key a line.
 fn edge(section: &Section<'_>, keys: &file::EdgeKeys) -> Result<EdgeChoice, ScenarioError> {
     let selection = match (keys.edge, keys.closed_loop) {
         (Some(edge), None) => EdgeSelection::Edge(edge),
@@ -59,11 +60,7 @@ fn edge(section: &Section<'_>, keys: &file::EdgeKeys) -> Result<EdgeChoice, Scen
         start,
         end,
         reversed: keys.reversed.unwrap_or(false),
-        sharp_angle: section.number(
-            "sharp_angle_deg",
-            keys.sharp_angle_deg.unwrap_or(30.0),
-            1.0..=170.0,
-        )?,
+        sharp_angle: section.number("sharp_angle_deg", keys.sharp_angle_deg.unwrap_or(30.0), 1.0..=170.0)?,
     })
 }
 
@@ -96,6 +93,7 @@ fn keys_of(kind: BurrKind) -> (&'static str, &'static [&'static str]) {
     }
 }
 
+#[rustfmt::skip] // A table: one key a line.
 fn burr(section: &Section<'_>, keys: &file::BurrKeys) -> Result<BurrScenario, ScenarioError> {
     let (kind, allowed) = keys_of(keys.kind);
     only(section, kind, false, allowed)?;
@@ -117,11 +115,7 @@ fn burr(section: &Section<'_>, keys: &file::BurrKeys) -> Result<BurrScenario, Sc
                 height_deviation: deviation
                     .map(|value| section.number("standard_deviation_mm", value, 0.0..=10.0))
                     .unwrap_or(Ok(mean_height / 3.0))?,
-                correlation_length: needed(
-                    "correlation_length_mm",
-                    keys.correlation_length_mm,
-                    0.1..=1000.0,
-                )?,
+                correlation_length: needed("correlation_length_mm", keys.correlation_length_mm, 0.1..=1000.0)?,
             }
         }
         BurrKind::Bump => BurrScenario::Bump {
