@@ -100,7 +100,7 @@ fn scenario_files() {
             |b| b.replace("device.toml", "bore_mm = 32", "bore_mm = 320"),
             &[
                 "device.toml:",
-                "`device.bore_mm` is 320 mm, expected 4 to 200 mm",
+                "`device.bore_mm` is 320 mm, expected 2 to 300 mm",
             ],
         ),
         refusal(

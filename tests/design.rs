@@ -242,7 +242,7 @@ fn bad_studies_are_refused_by_place() {
         (
             "min = 20\nmax = 60\nstart = 40",
             "min = 20\nmax = 60000\nstart = 40000",
-            "study.toml:6:12: `variables.dead_volume_cm3` does not fit a scenario of the study: shaken.toml: `device.override.dead_volume_cm3` is 40000 cm3, expected 0.1 to 5000 cm3",
+            "study.toml:6:12: `variables.dead_volume_cm3` does not fit a scenario of the study: shaken.toml: `device.override.dead_volume_cm3` is 40000 cm3, expected 0.01 to 5000 cm3",
         ),
         (
             "dead_volume_cm3",

@@ -6,8 +6,8 @@ use super::free::{Free, Prior};
 use super::recorded::{COLUMNS, Recorded, RecordedError};
 use super::search::Shown;
 use crate::effects::{Coordinate, Effect};
-use crate::plant::Quantity;
-use crate::plant::{CHANNELS, Chain, Channel, PlantParameters};
+use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
+use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, Quantity};
 
 /// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
 const OTHER_NOISE: f64 = 1.5;
@@ -75,26 +75,16 @@ pub fn of_link(chain: Chain, noise: f64, drift: f64) -> Vec<Free> {
     };
     let mut found = Vec::new();
     if chain == Chain::ClosedChamber {
-        found.push(free(START_ERROR, noise));
+        found.push(free(START_ERROR.named("start_error_pa"), noise));
     }
     if drift > 0.0 && chain.output() == Some(Channel::RegulatorPressure) {
-        found.push(free(PRESSURE_DRIFT, drift));
+        found.push(free(
+            PRESSURE_DRIFT.named("pressure_sensor_drift_pa_per_s"),
+            drift,
+        ));
     }
     found
 }
-
-const START_ERROR: Quantity = Quantity {
-    name: "start_error_pa",
-    index: 0,
-    get: |p, _| p.links.start_error,
-    set: |p, _, v| p.links.start_error = v,
-};
-const PRESSURE_DRIFT: Quantity = Quantity {
-    name: "pressure_sensor_drift_pa_per_s",
-    index: 0,
-    get: |p, _| p.sensors.pressure_drift,
-    set: |p, _, v| p.sensors.pressure_drift = v,
-};
 
 /// Recordings made fit to be believed.
 #[derive(Debug)]

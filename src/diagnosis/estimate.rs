@@ -192,19 +192,12 @@ mod tests {
     use super::*;
     use crate::diagnosis::case::tolerated;
     use crate::diagnosis::free::Prior;
-    use crate::plant::Quantity;
-
-    const MASS: Quantity = Quantity {
-        name: "cylinder.moving_mass_kg",
-        index: 0,
-        get: |p, _| p.device.moving_mass,
-        set: |p, _, v| p.device.moving_mass = v,
-    };
+    use crate::plant::registry;
 
     #[test]
     fn a_number_at_the_end_of_its_range_is_told_from_one_between() {
         // 5 kg to 10 %: a parameter once stood at its tolerance's limit without a word.
-        let mass = tolerated(MASS, 5.0, 0.1);
+        let mass = tolerated(registry::MOVING_MASS.quantity(), 5.0, 0.1);
         let at = |value: f64| Limit::of(&mass, value);
         assert_eq!([at(4.5), at(5.5)], [Some(Limit::Lower), Some(Limit::Upper)]);
         // A prior keeps it a little short of the end.

@@ -46,6 +46,12 @@ impl Fit {
     pub fn cost(&self) -> f64 {
         self.misfit + self.prior
     }
+
+    /// What was free, to go on from where the fit is.
+    pub fn free_from_here(&self) -> Vec<Free> {
+        let values = self.free.iter().zip(&self.values);
+        values.map(|(f, value)| f.from(*value)).collect()
+    }
 }
 
 /// Robust sum of squares.

@@ -34,6 +34,16 @@ pub struct Free {
 }
 
 impl Free {
+    /// The same from another start.
+    pub fn from(self, start: f64) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The same from where it stands in a description.
+    pub fn from_where(self, plant: &PlantParameters) -> Self {
+        self.from(self.clamp(self.quantity.get(plant)))
+    }
+
     /// The nearest value within the bounds.
     pub fn clamp(&self, value: f64) -> f64 {
         value.clamp(self.bounds[0], self.bounds[1])

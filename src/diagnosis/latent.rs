@@ -15,8 +15,9 @@ use super::search::Search;
 use super::spectrum;
 use super::unlisted::elsewhere::Elsewhere;
 use crate::effects::Coordinate;
-use crate::plant::Quantity;
-use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, PlantParameters, Port, Variable};
+use crate::plant::{
+    Basis, Latent, MOST_COEFFICIENTS, PlantParameters, Port, Quantity, Variable, registry,
+};
 use rayon::prelude::*;
 
 /// Terms that get a second look after their first step: where the piston meets a stop a term over the stroke needs more than one.
@@ -86,48 +87,6 @@ pub fn scale(port: Port) -> f64 {
         .map_or(1.0, |(_, scale, _)| *scale)
 }
 
-/// A coefficient of the latent term.
-const fn coefficient_quantity(index: usize) -> Quantity {
-    Quantity {
-        name: "latent_coefficient",
-        index,
-        get: coefficient,
-        set: |p, index, value| {
-            let coefficients = p.latent.as_mut().map(|l| &mut l.coefficients);
-            if let Some(c) = coefficients.and_then(|c| c.get_mut(index)) {
-                *c = value;
-            }
-        },
-    }
-}
-
-/// By how much a coefficient of the latent term is above the one before it.
-const fn rise_quantity(index: usize) -> Quantity {
-    Quantity {
-        name: "latent_rise",
-        index,
-        get: rise,
-        set: |p, index, value| {
-            let further = value - rise(p, index);
-            let coefficients = p.latent.iter_mut().flat_map(|l| &mut l.coefficients);
-            coefficients.skip(index).for_each(|c| *c += further);
-        },
-    }
-}
-
-fn coefficient(plant: &PlantParameters, index: usize) -> f64 {
-    let latent = plant.latent.as_ref();
-    latent
-        .and_then(|l| l.coefficients.get(index))
-        .copied()
-        .unwrap_or(0.0)
-}
-
-fn rise(plant: &PlantParameters, index: usize) -> f64 {
-    let before = index.checked_sub(1);
-    coefficient(plant, index) - before.map_or(0.0, |before| coefficient(plant, before))
-}
-
 /// What a unit of the free quantity of an index adds to a term at a value of its variable.
 #[must_use]
 pub fn response(latent: &Latent, index: usize, at: f64) -> f64 {
@@ -139,21 +98,6 @@ pub fn response(latent: &Latent, index: usize, at: f64) -> f64 {
     }
     unit.shape(at)
 }
-
-/// The frequency of a periodic term.
-const FREQUENCY: Quantity = Quantity {
-    name: "latent_frequency",
-    index: 0,
-    get: |p, _| match p.latent.as_ref().map(|l| l.basis) {
-        Some(Basis::Waves { frequency }) => frequency,
-        _ => 0.0,
-    },
-    set: |p, _, value| {
-        if let Some(Basis::Waves { frequency }) = p.latent.as_mut().map(|l| &mut l.basis) {
-            *frequency = value;
-        }
-    },
-};
 
 /// What is free of a latent term: of hats the level and the rises, for a curve's neighbouring values are alike until the recordings say otherwise, and
 /// what is not passed through stays as beside it.
@@ -176,18 +120,23 @@ fn free_of_latent(latent: &Latent) -> Vec<Free> {
             let before = std::iter::once(0.0).chain(c.clone());
             let rises = c.zip(before).map(|(c, before)| c - before);
             let believed = std::iter::once(BELIEVED).chain(std::iter::repeat(RISES_BY));
-            let rises = (0..count).map(rise_quantity).zip(rises).zip(believed);
+            let rises = (0..count)
+                .map(|i| registry::LATENT_RISE.quantity().of(i))
+                .zip(rises)
+                .zip(believed);
             rises.map(|(rise, by)| free(rise, by)).collect()
         }
         Basis::Waves { .. } => {
-            let waves = (0..count).map(coefficient_quantity).zip(c);
+            let waves = (0..count)
+                .map(|i| registry::LATENT_COEFFICIENT.quantity().of(i))
+                .zip(c);
             waves.map(|wave| free(wave, BELIEVED)).collect()
         }
     };
     if let Basis::Waves { frequency } = latent.basis {
         // One turn of phase over the longest recording is a step of about a tenth of a hertz.
         free.push(Free {
-            quantity: FREQUENCY,
+            quantity: registry::LATENT_FREQUENCY.quantity(),
             start: frequency,
             coordinate: Coordinate::Linear(0.02),
             bounds: [0.5 * frequency, 2.0 * frequency],
@@ -408,17 +357,20 @@ impl Search<'_> {
     ) -> Hypothesis {
         let mut plant = base.fit.prediction.plant.clone();
         plant.latent = Some(latent.clone());
-        let mut free: Vec<Free> = base
-            .fit
-            .free
-            .iter()
-            .zip(&base.fit.values)
-            .map(|(f, value)| Free {
-                start: *value,
-                ..*f
-            })
-            .collect();
+        let mut free = base.fit.free_from_here();
         free.extend(free_of_latent(latent));
+        self.refitted(base, &plant, &free, stages, iterations)
+    }
+
+    /// A hypothesis with other things free, its steps as long as a curve may need.
+    fn refitted(
+        &self,
+        base: &Hypothesis,
+        plant: &PlantParameters,
+        free: &[Free],
+        stages: &[super::fit::Stage],
+        iterations: usize,
+    ) -> Hypothesis {
         let effort = Effort {
             iterations,
             stages,
@@ -427,7 +379,7 @@ impl Search<'_> {
         };
         Hypothesis {
             effects: base.effects.clone(),
-            fit: fit(self.evidence, &plant, &free, effort, None),
+            fit: fit(self.evidence, plant, free, effort, None),
             depends_on: Vec::new(),
         }
     }
@@ -469,25 +421,13 @@ impl Search<'_> {
         iterations: usize,
     ) -> Hypothesis {
         let from = &hypothesis.fit;
-        let free: Vec<Free> = from
-            .free
-            .iter()
-            .zip(&from.values)
-            .map(|(f, value)| Free {
-                start: *value,
-                ..*f
-            })
-            .collect();
-        let effort = Effort {
-            iterations,
+        let plant = &from.prediction.plant;
+        self.refitted(
+            hypothesis,
+            plant,
+            &from.free_from_here(),
             stages,
-            frozen: &[],
-            longest_step: 30.0,
-        };
-        Hypothesis {
-            effects: hypothesis.effects.clone(),
-            fit: fit(self.evidence, &from.prediction.plant, &free, effort, None),
-            depends_on: Vec::new(),
-        }
+            iterations,
+        )
     }
 }

@@ -108,9 +108,8 @@ mod tests {
     use super::super::free::{Free, Prior};
     use super::*;
     use crate::effects::Coordinate;
-    use crate::plant::Quantity;
     use crate::plant::{
-        Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, SensorErrors,
+        Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, SensorErrors, registry,
     };
 
     fn plant() -> PlantParameters {
@@ -184,14 +183,8 @@ mod tests {
 
     #[test]
     fn what_a_free_number_could_do_as_well_tells_nothing() {
-        const GAIN: Quantity = Quantity {
-            name: "gain",
-            index: 0,
-            get: |p, _| p.sensors.force_gain,
-            set: |p, _, v| p.sensors.force_gain = v,
-        };
         let free = Free {
-            quantity: GAIN,
+            quantity: registry::FORCE_GAIN.named("gain"),
             start: 1.0,
             coordinate: Coordinate::Linear(0.01),
             bounds: [0.5, 2.0],

@@ -98,6 +98,14 @@ fn values_of(file: &str, recording: &Recording, quantity: &str) -> Result<Vec<f6
     })
 }
 
+/// Refuses inputs that cannot drive a rig.
+pub fn check(file: &str, inputs: &PlantInputs) -> Result<(), RecordedError> {
+    inputs.check().map_err(|source| RecordedError::Inputs {
+        file: file.to_owned(),
+        source,
+    })
+}
+
 /// Takes a recording apart. Commands that were lost are held, a surface that is lost for a moment is filled in.
 ///
 /// # Errors
@@ -117,10 +125,7 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
         cell: None,
         motion: None,
     };
-    inputs.check().map_err(|source| RecordedError::Inputs {
-        file: file.to_owned(),
-        source,
-    })?;
+    check(file, &inputs)?;
     let nothing = || vec![f64::NAN; recording.sample_count()];
     let readings = QUANTITIES.map(|quantity| {
         recording
@@ -168,10 +173,7 @@ pub fn recorded_of(
         cell: None,
         motion: None,
     };
-    inputs.check().map_err(|source| RecordedError::Inputs {
-        file: file.to_owned(),
-        source,
-    })?;
+    check(file, &inputs)?;
     if chain.takes_motion() {
         let stroke = values(schema::MEASURED_STROKE)?;
         let mut motion = MeasuredMotion::of(&inputs.time, &stroke);

@@ -348,10 +348,7 @@ impl Search<'_> {
                 .filter(|choice| **choice != present)
                 .map(|choice| {
                     let fit = &hypothesis.fit;
-                    let mut free = fit.free.clone();
-                    for (f, value) in free.iter_mut().zip(&fit.values) {
-                        f.start = *value;
-                    }
+                    let mut free = fit.free_from_here();
                     free[own + index].start = *choice;
                     let (plant, effects) = (&fit.prediction.plant, hypothesis.effects.clone());
                     self.fitted(effects, plant, &free, ROUGH, 6, Some(&fit.prediction))
@@ -375,18 +372,12 @@ impl Search<'_> {
         iterations: usize,
     ) -> Hypothesis {
         let fitted = &hypothesis.fit;
-        let free: Vec<Free> = fitted
-            .free
-            .iter()
-            .zip(&fitted.values)
-            .map(|(f, value)| match f.prior {
-                Prior::Normal { mean, .. } => Free { start: mean, ..*f },
-                Prior::Flat => Free {
-                    start: *value,
-                    ..*f
-                },
-            })
-            .collect();
+        let mut free = fitted.free_from_here();
+        for f in &mut free {
+            if let Prior::Normal { mean, .. } = f.prior {
+                f.start = mean;
+            }
+        }
         self.fitted(
             hypothesis.effects.clone(),
             &fitted.prediction.plant,

@@ -65,6 +65,29 @@ pub fn vocabulary(name: &str) -> (&str, Option<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::device::DeviceParameters;
+    use crate::effects::{LINK_EFFECTS, Parameter};
+    use crate::plant::registry::{CONTACT_DAMPING, CONTACT_STIFFNESS};
+    use crate::plant::{CellParameters, PlantParameters};
+
+    #[test]
+    fn a_fit_looks_where_its_number_is_plausible() {
+        let plant = PlantParameters::of_cell(
+            DeviceParameters::default(),
+            (CONTACT_STIFFNESS.default, CONTACT_DAMPING.default),
+            CellParameters::RIGID,
+        );
+        for effect in every().chain(LINK_EFFECTS) {
+            for Parameter {
+                quantity, bounds, ..
+            } in effect.parameters(&plant)
+            {
+                let [low, high] = quantity.number.range;
+                let within = low <= bounds[0] && bounds[1] <= high;
+                assert!(within, "{effect:?}: {quantity:?}, {low} to {high}");
+            }
+        }
+    }
 
     #[test]
     fn a_joint_s_effect_says_which_joint() {

@@ -104,6 +104,20 @@ pub struct Effect {
     pub group: Option<&'static str>,
 }
 
+/// An effect of a name and a part of the chain, without numbers yet: the only one of its kind, beside which all others can stand.
+pub const fn effect(name: &'static str, subsystem: Subsystem) -> Effect {
+    Effect {
+        name,
+        text: "",
+        which: Which::Only,
+        subsystem,
+        parameters: |_, _| Vec::new(),
+        usual: |_, _| Vec::new(),
+        starts: |_, _| Vec::new(),
+        group: None,
+    }
+}
+
 impl std::fmt::Debug for Effect {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str(self.name)

@@ -4,7 +4,8 @@ use std::sync::{Arc, Mutex};
 
 use super::effect::{Clues, Effect, Parameter, Subsystem, Which};
 use super::quantity::Coordinate;
-use crate::plant::{Constant, LawText, MOST_CONSTANTS, OwnLaw, PlantParameters, Port, Quantity};
+use crate::plant::registry::OWN_CONSTANT;
+use crate::plant::{Constant, LawText, MOST_CONSTANTS, OwnLaw, PlantParameters, Port};
 
 /// An effect that a model has, with all its numbers.
 #[derive(Debug, Clone)]
@@ -92,12 +93,7 @@ fn parameters(plant: &PlantParameters, place: usize) -> Vec<Parameter> {
     let parameter = |(index, constant): (usize, &Constant)| {
         let bounds = constant.range?;
         Some(Parameter {
-            quantity: Quantity {
-                name: constant.name,
-                index,
-                get: value,
-                set,
-            },
+            quantity: OWN_CONSTANT.named(constant.name).of(index),
             coordinate: coordinate(bounds),
             bounds,
             reported: true,
@@ -105,18 +101,6 @@ fn parameters(plant: &PlantParameters, place: usize) -> Vec<Parameter> {
         })
     };
     free_of(plant, place).filter_map(parameter).collect()
-}
-
-fn value(plant: &PlantParameters, index: usize) -> f64 {
-    let law = plant.own.get(index / MOST_CONSTANTS);
-    law.map_or(0.0, |law| law.values[index % MOST_CONSTANTS])
-}
-
-fn set(plant: &mut PlantParameters, index: usize, value: f64) {
-    if let Some(law) = plant.own.get_mut(index / MOST_CONSTANTS) {
-        law.acts = true;
-        law.values[index % MOST_CONSTANTS] = value;
-    }
 }
 
 /// Range over which a number of one sign is sought by its size [1].

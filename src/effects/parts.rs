@@ -1,16 +1,9 @@
 //! What an effect is written with.
 
-pub use super::effect::{Clues, Effect, Parameter, Subsystem, Which};
+pub use super::effect::{Clues, Effect, Parameter, Subsystem, effect};
 pub use super::quantity::Coordinate::{self, Linear, Logarithmic};
 pub use crate::plant::Quantity;
-
-/// A quantity that is one place of the description: `quantity!("name_unit", p => p.device.bore)`.
-macro_rules! quantity {
-    ($name:literal, $p:ident => $($place:tt)+) => {
-        Quantity { name: $name, index: 0, get: |$p, _| $($place)+, set: |$p, _, value| $($place)+ = value }
-    };
-}
-pub(super) use quantity;
+pub use crate::plant::registry::*;
 
 /// A number that is a part of the answer.
 pub fn reported(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Parameter {

@@ -74,6 +74,17 @@ pub struct ContactParameters {
 }
 
 impl ContactParameters {
+    /// A smooth surface where the robot has it, of a stiffness [N/m] and a damping [N s/m].
+    pub const fn linear(stiffness: f64, damping: f64) -> Self {
+        Self {
+            law: ContactLaw::Linear { stiffness },
+            damping,
+            surface_offset: 0.0,
+            runout: Periodic::NONE,
+            waviness: Periodic::NONE,
+        }
+    }
+
     /// How far the surface stands beyond where the robot says [m] at a time [s], and the rate of that [m/s].
     pub fn deviation(&self, time: f64) -> (f64, f64) {
         let (mut deviation, mut rate) = (self.surface_offset, 0.0);

@@ -19,7 +19,7 @@ mod latent;
 mod measured_motion;
 mod own_law;
 mod parameters;
-mod quantity;
+pub mod registry;
 mod riding;
 mod running_sensors;
 mod sensors;
@@ -41,7 +41,7 @@ pub use own_law::{
     kept_name,
 };
 pub use parameters::PlantParameters;
-pub use quantity::Quantity;
+pub use registry::{Number, Quantity};
 pub use running_sensors::{RunningSensors, SensorReadings};
 pub use sensors::SensorErrors;
 pub use servo::{Followed, follow, shown};

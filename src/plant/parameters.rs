@@ -2,7 +2,7 @@
 
 use super::cell_parameters::CellParameters;
 use super::chain::{Chain, LinkParameters};
-use super::contact::{ContactLaw, ContactParameters, Periodic};
+use super::contact::ContactParameters;
 use super::latent::Latent;
 use super::own_law::OwnLaw;
 use super::sensors::SensorErrors;
@@ -44,13 +44,7 @@ impl PlantParameters {
             device,
             // The arm says it, moment by moment.
             gravity_along_extension: 0.0,
-            contact: ContactParameters {
-                law: ContactLaw::Linear { stiffness },
-                damping,
-                surface_offset: 0.0,
-                runout: Periodic::NONE,
-                waviness: Periodic::NONE,
-            },
+            contact: ContactParameters::linear(stiffness, damping),
             cell,
             sensors: SensorErrors::NONE,
             latent: None,

@@ -13,11 +13,12 @@ use ::parquet::errors::ParquetError;
 use ::parquet::file::properties::WriterProperties;
 use ::parquet::schema::types::ColumnPath;
 use arrow::array::{ArrayRef, AsArray, DictionaryArray, Float64Array, RecordBatch};
-use arrow::compute::{cast, concat_batches};
+use arrow::compute::cast;
 use arrow::datatypes::{DataType, Float64Type, Int32Type};
 
 use super::RecordingError;
 use super::atomic::write_atomic;
+use super::parquet::whole;
 
 /// A column.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,12 +81,7 @@ pub fn read_long(path: &Path) -> Result<Vec<(String, LongColumn)>, RecordingErro
     let file = File::open(path).map_err(|e| fail(&e))?;
     let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fail(&e))?;
     let schema = builder.schema().clone();
-    let batches: Vec<RecordBatch> = builder
-        .build()
-        .map_err(|e| fail(&e))?
-        .collect::<Result<_, _>>()
-        .map_err(|e| fail(&e))?;
-    let table = concat_batches(&schema, &batches).map_err(|e| fail(&e))?;
+    let table = whole(path, builder)?;
     let column = |(index, field): (usize, &Arc<arrow::datatypes::Field>)| {
         let array = table.column(index);
         let column = if field.data_type().is_numeric() {

@@ -88,17 +88,23 @@ pub fn read_parquet(path: &Path) -> Result<StoredRecording, RecordingError> {
             "its layout has version {version}, expected {LAYOUT_VERSION}"
         )));
     }
-    let table_schema = builder.schema().clone();
-    let batches: Vec<RecordBatch> = builder
-        .build()
-        .map_err(|e| fail(&e))?
-        .collect::<Result<_, _>>()
-        .map_err(|e| fail(&e))?;
-    let table = concat_batches(&table_schema, &batches).map_err(|e| fail(&e))?;
+    let table = whole(path, builder)?;
     Ok(StoredRecording {
         recording: recording_of(path, &table)?,
         metadata,
     })
+}
+
+/// All rows of a file.
+pub(super) fn whole(
+    path: &Path,
+    builder: ParquetRecordBatchReaderBuilder<File>,
+) -> Result<RecordBatch, RecordingError> {
+    let fail = |cause: &dyn std::fmt::Display| RecordingError::read(path, cause);
+    let schema = builder.schema().clone();
+    let reader = builder.build().map_err(|e| fail(&e))?;
+    let batches = reader.collect::<Result<Vec<RecordBatch>, _>>();
+    concat_batches(&schema, &batches.map_err(|e| fail(&e))?).map_err(|e| fail(&e))
 }
 
 fn writer_properties(

@@ -14,13 +14,15 @@ use super::estimator::{EstimatorBase, estimator as set_up_estimator};
 use super::load::expectations;
 use super::rig_device::{BenchDevice, USUAL_CONTACT, bench_device};
 use super::rig_file::blank;
-use super::sections::bench_sections;
+use super::sections::{bench_sections, keys as keys_of};
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
 use crate::effects::{Effect, PresentEffect, Subsystem, every};
 use crate::estimation::ContactForceEstimator;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{ContactLaw, ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors};
+use crate::plant::{
+    ContactLaw, ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors, registry,
+};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
@@ -228,12 +230,14 @@ pub(super) fn from_document(
     }
     let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
     let sensing = sensing(document, &file.sensing, step)?;
-    let gravity_along_extension = bench.number(
+    let (key, given) = (
         "gravity_along_extension_m_per_s2",
-        file.bench
-            .gravity_along_extension_m_per_s2
-            .unwrap_or(gravity_along_extension),
-        -30.0..=30.0,
+        file.bench.gravity_along_extension_m_per_s2,
+    );
+    let gravity_along_extension = bench.known(
+        &registry::GRAVITY,
+        key,
+        given.unwrap_or(gravity_along_extension),
     )?;
     let parameters = &device.parameters;
     let check_force = |section: &Section<'_>, force: f64| {
@@ -295,17 +299,14 @@ pub(super) fn from_document(
     Ok(scenario)
 }
 
+#[rustfmt::skip] // A table: one key a line.
 fn simulation(
     section: &Section<'_>,
     keys: &BenchSimulationKeys,
 ) -> Result<(f64, usize, u64), ScenarioError> {
     Ok((
         section.number("step_ms", keys.step_ms.unwrap_or(1.0), 0.01..=20.0)?,
-        section.count(
-            "device_substeps",
-            keys.device_substeps.unwrap_or(2),
-            1..=1000,
-        )?,
+        section.count("device_substeps", keys.device_substeps.unwrap_or(2), 1..=1000)?,
         keys.seed.unwrap_or(1),
     ))
 }
@@ -317,24 +318,16 @@ fn load(
     mut contact: ContactParameters,
     full_stroke: f64,
 ) -> Result<LoadScenario, ScenarioError> {
-    let given = [
-        ("position_mm", keys.position_mm.is_some()),
-        ("stiffness_n_per_m", keys.stiffness_n_per_m.is_some()),
-        ("damping_n_s_per_m", keys.damping_n_s_per_m.is_some()),
-        ("peak_to_peak_mm", keys.peak_to_peak_mm.is_some()),
-        ("frequency_hz", keys.frequency_hz.is_some()),
-        ("start_s", keys.start_s.is_some()),
-    ];
-    let allowed = match keys.kind {
-        LoadKind::Free => 0,
-        LoadKind::LoadCell => 3,
-        LoadKind::Surface => 6,
+    let (allowed, reason): (&[&str], _) = match keys.kind {
+        LoadKind::Free => (&[], "nothing is met when kind = \"free\""),
+        LoadKind::LoadCell => (
+            &["position_mm", "stiffness_n_per_m", "damping_n_s_per_m"],
+            "a load cell stands still; kind = \"surface\" moves",
+        ),
+        LoadKind::Surface => (keys_of::<LoadKeys>(), ""),
     };
-    if let Some((key, _)) = given.iter().skip(allowed).find(|(_, given)| *given) {
-        let reason = match keys.kind {
-            LoadKind::Free => "nothing is met when kind = \"free\"",
-            _ => "a load cell stands still; kind = \"surface\" moves",
-        };
+    let is_other = |key: &&str| *key != "kind" && !allowed.contains(key);
+    if let Some(key) = section.given().find(is_other) {
         return Err(section.misplaced(key, reason.to_owned()));
     }
     if keys.kind == LoadKind::Free {
@@ -350,11 +343,13 @@ fn load(
         return Err(section.refuse_number("position_mm", given, expected));
     }
     if let Some(stiffness) = keys.stiffness_n_per_m {
-        let stiffness = section.number("stiffness_n_per_m", stiffness, 100.0..=1e9)?;
+        let stiffness =
+            section.known(&registry::CONTACT_STIFFNESS, "stiffness_n_per_m", stiffness)?;
         contact.law = ContactLaw::Linear { stiffness };
     }
     if let Some(damping) = keys.damping_n_s_per_m {
-        contact.damping = section.number("damping_n_s_per_m", damping, 0.0..=1e6)?;
+        contact.damping =
+            section.known(&registry::CONTACT_DAMPING, "damping_n_s_per_m", damping)?;
     }
     let motion = if keys.kind == LoadKind::Surface {
         let peak_to_peak = required("peak_to_peak_mm", keys.peak_to_peak_mm)?;

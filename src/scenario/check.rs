@@ -9,6 +9,7 @@ use glamx::DPose3;
 use super::document::{Document, join};
 use super::error::ScenarioError;
 use super::units::Unit;
+use crate::plant::Number;
 
 /// A table of a file, whose values are checked key by key.
 #[derive(Debug, Clone)]
@@ -69,6 +70,32 @@ impl<'a> Section<'a> {
         Err(self.refuse(key, unit.show(value), expected))
     }
 
+    /// A number of the description within its range, in SI.
+    pub fn known(&self, number: &Number, key: &str, value: f64) -> Result<f64, ScenarioError> {
+        self.number(key, value, Unit::of_key(key).range(number.range))
+    }
+
+    /// As `known`, or another value [SI] if the file gives none.
+    pub fn known_or(
+        &self,
+        number: &Number,
+        key: &str,
+        given: Option<f64>,
+        default: f64,
+    ) -> Result<f64, ScenarioError> {
+        given.map_or(Ok(default), |value| self.known(number, key, value))
+    }
+
+    /// As `known`, or its default if the file gives none.
+    pub fn known_or_default(
+        &self,
+        number: &Number,
+        key: &str,
+        given: Option<f64>,
+    ) -> Result<f64, ScenarioError> {
+        self.known_or(number, key, given, number.default)
+    }
+
     /// As `number`, or the default [SI] if the file gives none.
     pub fn number_or(
         &self,
@@ -106,6 +133,16 @@ impl<'a> Section<'a> {
             self.number_of(unit, &format!("{key}[{index}]"), *value, range.clone())
         };
         values.iter().enumerate().map(element).collect()
+    }
+
+    /// Several of a number of the description, each within its range, in SI.
+    pub fn known_numbers(
+        &self,
+        number: &Number,
+        key: &str,
+        values: &[f64],
+    ) -> Result<Vec<f64>, ScenarioError> {
+        self.numbers(key, values, Unit::of_key(key).range(number.range))
     }
 
     /// Three numbers, x, y and z, or the default if there are none.

@@ -13,6 +13,7 @@ use super::error::{Place, ScenarioError};
 use super::sensing::stages::only;
 use crate::device::{DeviceParameters, PressureMap};
 use crate::physics::seal_friction::SealFriction;
+use crate::plant::registry;
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// The table's name.
@@ -204,6 +205,7 @@ fn law(section: &Section<'_>, keys: &ControllerKeys, seals: &SealFriction) -> Re
 }
 
 /// The device's seals with what the file believes otherwise; none if it says nothing of them.
+#[rustfmt::skip] // A table: one key a line.
 fn believed_seals(
     section: &Section<'_>,
     keys: &ControllerKeys,
@@ -219,10 +221,11 @@ fn believed_seals(
         return Ok(None);
     }
     let [friction, static_friction, viscous, presliding] = given;
-    let coulomb = section.number_or("friction_n", friction, own.coulomb, 0.0..=1000.0)?;
+    let known_or = |number, key, given, default| section.known_or(number, key, given, default);
+    let coulomb = known_or(&registry::SEAL_COULOMB, "friction_n", friction, own.coulomb)?;
     let least = own.static_force.max(coulomb);
     let key = "static_friction_n";
-    let static_force = section.number_or(key, static_friction, least, 0.0..=1000.0)?;
+    let static_force = known_or(&registry::SEAL_STATIC, key, static_friction, least)?;
     if static_force < coulomb {
         let expected = format!("at least the sliding friction that is believed, {coulomb} N");
         return Err(section.refuse_number(key, static_force, expected));
@@ -231,13 +234,8 @@ fn believed_seals(
         coulomb,
         static_force,
         stribeck_velocity: own.stribeck_velocity,
-        viscous: section.number_or("viscous_n_s_per_m", viscous, own.viscous, 0.0..=1e5)?,
-        presliding_displacement: section.number_or(
-            "presliding_um",
-            presliding,
-            own.presliding_displacement,
-            1.0..=5000.0,
-        )?,
+        viscous: known_or(&registry::SEAL_VISCOUS, "viscous_n_s_per_m", viscous, own.viscous)?,
+        presliding_displacement: known_or(&registry::SEAL_PRESLIDING, "presliding_um", presliding, own.presliding_displacement)?,
         pressure_coefficient: own.pressure_coefficient,
     }))
 }

@@ -10,6 +10,7 @@ use super::error::ScenarioError;
 use super::sensing::white;
 use crate::device::DeviceParameters;
 use crate::estimation::{ContactForceEstimator, EstimatorParameters, SensorNoise, Tolerances};
+use crate::plant::registry;
 use crate::sensing::{Channel, SensingParameters};
 
 /// Name of the table.
@@ -99,11 +100,12 @@ fn believed_device(
     device: &DeviceParameters,
 ) -> Result<DeviceParameters, ScenarioError> {
     let mut believed = device.clone();
-    let (key, given) = ("moving_mass_kg", keys.moving_mass_kg);
-    believed.moving_mass = section.number_or(key, given, device.moving_mass, 0.1..=100.0)?;
+    let known_or = |number, key, given, default| section.known_or(number, key, given, default);
+    let (mass, given) = (&registry::MOVING_MASS, keys.moving_mass_kg);
+    believed.moving_mass = known_or(mass, "moving_mass_kg", given, device.moving_mass)?;
     let seals = &mut believed.seal_friction;
-    let (key, given) = ("seal_coulomb_force_n", keys.seal_coulomb_force_n);
-    let coulomb = section.number_or(key, given, seals.coulomb, 0.0..=1000.0)?;
+    let (force, given) = (&registry::SEAL_COULOMB, keys.seal_coulomb_force_n);
+    let coulomb = known_or(force, "seal_coulomb_force_n", given, seals.coulomb)?;
     seals.static_force = if seals.coulomb > 0.0 {
         seals.static_force * coulomb / seals.coulomb
     } else {
@@ -115,6 +117,7 @@ fn believed_device(
 
 /// Standard deviations of the sensors as the file gives them, else as `[sensing]` makes them; rounding to a step is an error even within it
 /// (JCGM 100:2008, F.2.2.1).
+#[rustfmt::skip] // A table: one key a line.
 fn noise(
     section: &Section<'_>,
     keys: &EstimatorKeys,
@@ -133,18 +136,8 @@ fn noise(
     let number = |key, given, default, range| section.number_or(key, given, default, range);
     Ok(SensorNoise {
         stroke: number("stroke_noise_mm", keys.stroke_noise_mm, stroke, 1e-6..=10.0)?,
-        acceleration: number(
-            "acceleration_noise_m_per_s2",
-            keys.acceleration_noise_m_per_s2,
-            acceleration,
-            1e-6..=1000.0,
-        )?,
-        regulator_pressure: number(
-            "regulator_pressure_noise_pa",
-            keys.regulator_pressure_noise_pa,
-            pressure,
-            1e-3..=1e6,
-        )?,
+        acceleration: number("acceleration_noise_m_per_s2", keys.acceleration_noise_m_per_s2, acceleration, 1e-6..=1000.0)?,
+        regulator_pressure: number("regulator_pressure_noise_pa", keys.regulator_pressure_noise_pa, pressure, 1e-3..=1e6)?,
     })
 }
 

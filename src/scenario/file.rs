@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use serde::Deserialize;
 
 use super::controller::ControllerKeys;
+use super::device::ModelKeys;
 use super::sensing::keys::SensingKeys;
 
 /// Version of both formats.
@@ -109,73 +110,6 @@ pub(super) struct ModelFile {
     #[expect(dead_code, reason = "checked by Document::new")]
     pub schema: u32,
     pub device: ModelKeys,
-}
-
-/// `[device]` of a device model file, and `[device.override]` of a scenario.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ModelKeys {
-    pub cylinder_count: Option<u32>,
-    pub bore_mm: Option<f64>,
-    pub rod_mm: Option<f64>,
-    pub stroke_mm: Option<f64>,
-    pub dead_volume_cm3: Option<f64>,
-    pub moving_mass_kg: Option<f64>,
-    pub supply_orifice_mm2: Option<f64>,
-    pub exhaust_orifice_mm2: Option<f64>,
-    pub discharge_coefficient: Option<f64>,
-    pub valve_switching_delay_ms: Option<f64>,
-    pub cross_piston_leak_mm2: Option<f64>,
-    pub external_leak_mm2: Option<f64>,
-    pub regulator_gain: Option<f64>,
-    pub regulator_time_constant_s: Option<f64>,
-    pub regulator_dead_time_ms: Option<f64>,
-    pub regulator_hysteresis_pa: Option<f64>,
-    pub regulator_rise_limit_pa_per_s: Option<f64>,
-    pub regulator_fall_limit_pa_per_s: Option<f64>,
-    pub regulator_natural_frequency_rad_per_s: Option<f64>,
-    pub regulator_damping_ratio: Option<f64>,
-    pub supply_pressure_bar_gauge: Option<f64>,
-    pub supply_reservoir_volume_cm3: Option<f64>,
-    pub supply_reservoir_pressure_pa_absolute: Option<f64>,
-    pub compressor_flow_kg_per_s: Option<f64>,
-    pub end_stop_stiffness_n_per_m: Option<f64>,
-    pub end_stop_damping_n_s_per_m: Option<f64>,
-    pub end_cushioning_damping_n_s_per_m: Option<f64>,
-    pub end_cushioning_length_mm: Option<f64>,
-    pub axial_load_n: Option<f64>,
-    pub return_stiffness_n_per_m: Option<f64>,
-    pub seal_coulomb_force_n: Option<f64>,
-    pub seal_static_force_n: Option<f64>,
-    pub seal_stribeck_velocity_mm_per_s: Option<f64>,
-    pub seal_viscous_coefficient_n_s_per_m: Option<f64>,
-    pub seal_presliding_displacement_um: Option<f64>,
-    pub seal_pressure_coefficient_n_per_pa: Option<f64>,
-    pub gas_process: Option<GasProcessKind>,
-    pub wall_conductance_w_per_k: Option<f64>,
-    pub hose_length_m: Option<f64>,
-    pub hose_diameter_mm: Option<f64>,
-    pub hose_volume_cm3: Option<f64>,
-    pub hose_resistance_pa_s_per_kg: Option<f64>,
-    pub gas_constant_j_per_kg_k: Option<f64>,
-    pub gas_heat_capacity_ratio: Option<f64>,
-    pub gas_temperature_k: Option<f64>,
-    pub atmosphere_pa_absolute: Option<f64>,
-    pub lock_stiffness_n_per_m: Option<f64>,
-    pub tool_ball_radius_mm: Option<f64>,
-    pub tool_centre_mm: Option<f64>,
-    pub moving_centre_of_mass_mm: Option<f64>,
-    pub moving_radius_of_gyration_mm: Option<f64>,
-}
-
-/// What the gas does as it is compressed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum GasProcessKind {
-    /// Constant temperature.
-    Isothermal,
-    /// Heats up, exchanges heat with the wall.
-    WallHeat,
 }
 
 /// `[workpiece]`.

@@ -24,7 +24,7 @@ use super::{
     LimitOverride, ProcessScenario, Scenario, ServoScenario, SimulationScenario,
 };
 use crate::effects::{Effect, PresentEffect, every};
-use crate::plant::{CellParameters, PlantParameters};
+use crate::plant::{CellParameters, PlantParameters, registry};
 
 /// Reads and checks a scenario file of either kind and the device model file that it names.
 pub fn load_any(path: &Path) -> Result<AnyScenario, ScenarioError> {
@@ -178,11 +178,7 @@ fn limit_overrides(
     let mut limits = Vec::with_capacity(overrides.len());
     for (index, keys) in overrides.iter().enumerate() {
         let section = Section::new(document, format!("arm.limit_overrides[{index}]"));
-        let joint = section.text("joint", &keys.joint)?;
-        if !joints.insert(&keys.joint) {
-            let expected = "each joint once".to_owned();
-            return Err(section.refuse("joint", format!("\"{joint}\" again"), expected));
-        }
+        let joint = once(&section, &keys.joint, &mut joints)?;
         if keys.effort_n_m.is_none() && keys.velocity_deg_per_s.is_none() {
             return Err(section.missing("effort_n_m", "it or velocity_deg_per_s to be given"));
         }
@@ -201,6 +197,20 @@ fn limit_overrides(
     Ok(limits)
 }
 
+/// A joint that no table before has named.
+fn once(
+    section: &Section<'_>,
+    joint: &str,
+    before: &mut BTreeSet<String>,
+) -> Result<String, ScenarioError> {
+    let joint = section.text("joint", joint)?;
+    if before.insert(joint.clone()) {
+        return Ok(joint);
+    }
+    let expected = "each joint once".to_owned();
+    Err(section.refuse("joint", format!("\"{joint}\" again"), expected))
+}
+
 fn drives(
     document: &Document<'_>,
     drives: &[file::DriveKeys],
@@ -209,11 +219,7 @@ fn drives(
     let mut checked = Vec::with_capacity(drives.len());
     for (index, keys) in drives.iter().enumerate() {
         let section = Section::new(document, format!("arm.drives[{index}]"));
-        let joint = section.text("joint", &keys.joint)?;
-        if !joints.insert(&keys.joint) {
-            let expected = "each joint once".to_owned();
-            return Err(section.refuse("joint", format!("\"{joint}\" again"), expected));
-        }
+        let joint = once(&section, &keys.joint, &mut joints)?;
         let drive = drive(&section, keys, joint)?;
         if drive.backlash > 0.0 && drive.stiffness.is_infinite() {
             let expected = "the stiffness of the teeth beside a backlash";
@@ -229,10 +235,10 @@ fn drive(section: &Section<'_>, keys: &file::DriveKeys, joint: String) -> Result
     let friction = keys.friction_n_m;
     Ok(DriveScenario {
         joint,
-        friction: friction.map(|value| section.number("friction_n_m", value, 0.0..=10_000.0)).transpose()?,
-        stiffness: section.number("stiffness_n_m_per_rad", keys.stiffness_n_m_per_rad.unwrap_or(f64::INFINITY), 1000.0..=f64::INFINITY)?,
-        damping_time: section.number("damping_time_ms", keys.damping_time_ms.unwrap_or(1e3 * CellParameters::RIGID.joint_damping), 0.1..=50.0)?,
-        backlash: section.number("backlash_deg", keys.backlash_deg.unwrap_or(0.0), 0.0..=5.0)?,
+        friction: friction.map(|value| section.known(&registry::DRIVE_FRICTION, "friction_n_m", value)).transpose()?,
+        stiffness: section.known_or_default(&registry::JOINT_STIFFNESS, "stiffness_n_m_per_rad", keys.stiffness_n_m_per_rad)?,
+        damping_time: section.known_or_default(&registry::JOINT_DAMPING, "damping_time_ms", keys.damping_time_ms)?,
+        backlash: section.known_or_default(&registry::JOINT_PLAY, "backlash_deg", keys.backlash_deg)?,
     })
 }
 
@@ -243,7 +249,7 @@ fn servo(section: &Section<'_>, keys: &file::ServoKeys) -> Result<ServoScenario,
         damping_ratio: section.number("damping_ratio", keys.damping_ratio.unwrap_or(1.0), 0.1..=10.0)?,
         integral_time: section.number("integral_time_s", keys.integral_time_s.unwrap_or(0.1), 0.001..=f64::INFINITY)?,
         contact_feed_forward: keys.contact_feed_forward.unwrap_or(true),
-        lag_bandwidth: section.number("lag_bandwidth_hz", keys.lag_bandwidth_hz.unwrap_or(f64::INFINITY), 0.5..=f64::INFINITY)?,
+        lag_bandwidth: section.known_or_default(&registry::SERVO_BANDWIDTH, "lag_bandwidth_hz", keys.lag_bandwidth_hz)?,
         encoder_noise: section.number("encoder_noise_rad", keys.encoder_noise_rad.unwrap_or(0.0), 0.0..=0.01)?,
     })
 }
@@ -268,11 +274,11 @@ pub(super) fn device(
 #[rustfmt::skip] // A table: one key a line.
 pub(super) fn contact(section: &Section<'_>, keys: &file::ContactKeys) -> Result<ContactScenario, ScenarioError> {
     Ok(ContactScenario {
-        stiffness: section.number("stiffness_n_per_m", keys.stiffness_n_per_m.unwrap_or(1.5e5), 1e3..=1e8)?,
-        damping: section.number("damping_n_s_per_m", keys.damping_n_s_per_m.unwrap_or(4e2), 0.0..=1e6)?,
-        friction: section.number("friction_coefficient", keys.friction_coefficient.unwrap_or(0.15), 0.0..=2.0)?,
+        stiffness: section.known_or_default(&registry::CONTACT_STIFFNESS, "stiffness_n_per_m", keys.stiffness_n_per_m)?,
+        damping: section.known_or_default(&registry::CONTACT_DAMPING, "damping_n_s_per_m", keys.damping_n_s_per_m)?,
+        friction: section.known_or_default(&registry::EDGE_FRICTION, "friction_coefficient", keys.friction_coefficient)?,
         runout_amplitude: section.number("runout_um", keys.runout_um.unwrap_or(0.0), 0.0..=1000.0)?,
-        runout_frequency: section.number("runout_frequency_hz", keys.runout_frequency_hz.unwrap_or(30.0), 0.1..=200.0)?,
+        runout_frequency: section.known_or_default(&registry::RUNOUT_FREQUENCY, "runout_frequency_hz", keys.runout_frequency_hz)?,
     })
 }
 

@@ -16,7 +16,7 @@ use super::sections::recorded_cell_sections;
 use super::workpiece::workpiece;
 use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, WorkpieceScenario};
 use crate::effects::PresentEffect;
-use crate::plant::CellParameters;
+use crate::plant::registry;
 
 mod own;
 
@@ -120,6 +120,7 @@ pub struct RecordedCell {
 ///
 /// # Errors
 /// File, line, column and key of what is wrong, what was found and what was expected.
+#[rustfmt::skip] // A table: one key a line.
 pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, file::SCHEMA)?;
@@ -160,45 +161,19 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         contact,
         gravity: belief.vector("gravity_m_per_s2", gravity, standard, -30.0..=30.0)?,
         tolerance: belief.number("tolerance", keys.tolerance.unwrap_or(0.005), 0.0..=0.5)?,
-        start_stroke_tolerance: belief.number(
-            "start_stroke_tolerance_mm",
-            keys.start_stroke_tolerance_mm.unwrap_or(0.2),
-            0.0..=10.0,
-        )?,
+        start_stroke_tolerance: belief.number("start_stroke_tolerance_mm", keys.start_stroke_tolerance_mm.unwrap_or(0.2), 0.0..=10.0)?,
         device,
         own: false,
         sample_rate: f64::INFINITY,
-        servo_bandwidth: joints.number(
-            "servo_bandwidth_hz",
-            drives.servo_bandwidth_hz,
-            0.5..=500.0,
-        )?,
-        joint_stiffness: joints.numbers(
-            "stiffness_n_m_per_rad",
-            &drives.stiffness_n_m_per_rad,
-            1e2..=1e9,
-        )?,
+        servo_bandwidth: joints.known(&registry::SERVO_BANDWIDTH, "servo_bandwidth_hz", drives.servo_bandwidth_hz)?,
+        joint_stiffness: joints.known_numbers(&registry::JOINT_STIFFNESS, "stiffness_n_m_per_rad", &drives.stiffness_n_m_per_rad)?,
         joint_damping: [
-            joints.number(
-                "damping_time_ms",
-                drives
-                    .damping_time_ms
-                    .unwrap_or(1e3 * CellParameters::RIGID.joint_damping),
-                0.1..=50.0,
-            )?,
-            joints.number(
-                "damping_time_tolerance_ms",
-                drives.damping_time_tolerance_ms.unwrap_or(1.0),
-                0.0..=50.0,
-            )?,
+            joints.known_or_default(&registry::JOINT_DAMPING, "damping_time_ms", drives.damping_time_ms)?,
+            joints.number("damping_time_tolerance_ms", drives.damping_time_tolerance_ms.unwrap_or(1.0), 0.0..=50.0)?,
         ],
         joint_noise: sensors.number("joints_rad", noise.joints_rad, 1e-9..=0.01)?,
         noise: [
-            sensors.number(
-                "regulator_pressure_pa",
-                noise.regulator_pressure_pa,
-                1.0..=1e5,
-            )?,
+            sensors.number("regulator_pressure_pa", noise.regulator_pressure_pa, 1.0..=1e5)?,
             sensors.number("stroke_um", noise.stroke_um, 0.01..=5e3)?,
             sensors.number("force_n", noise.force_n, 1e-4..=1e3)?,
         ],

@@ -9,9 +9,7 @@ use super::error::ScenarioError;
 use super::file::{DeviceKeys, SCHEMA};
 use super::load::device;
 use super::rig_file::load_rig;
-use crate::plant::{
-    ContactLaw, ContactParameters, Latent, OwnLaw, Periodic, PlantParameters, SensorErrors,
-};
+use crate::plant::{ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors, registry};
 
 /// What a device brings to a bench.
 pub(super) struct BenchDevice {
@@ -28,13 +26,10 @@ pub(super) struct BenchDevice {
 }
 
 /// The contact of a load that says nothing of it.
-pub(super) const USUAL_CONTACT: ContactParameters = ContactParameters {
-    law: ContactLaw::Linear { stiffness: 1.5e5 },
-    damping: 4e2,
-    surface_offset: 0.0,
-    runout: Periodic::NONE,
-    waviness: Periodic::NONE,
-};
+pub(super) static USUAL_CONTACT: ContactParameters = ContactParameters::linear(
+    registry::CONTACT_STIFFNESS.default,
+    registry::CONTACT_DAMPING.default,
+);
 
 /// Is it a rig file? Whatever is wrong with it is said when it is read as what it is.
 pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {

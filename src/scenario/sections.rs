@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
 use super::sensing::keys as sensing;
-use super::{bench_file, controller, estimator, file, recorded_cell};
+use super::{bench_file, controller, device, estimator, file, recorded_cell};
 
 /// A table and its keys.
 type Table = (&'static str, &'static [&'static str]);
@@ -18,7 +18,7 @@ pub(crate) fn scenario_sections() -> Vec<Table> {
         ("arm.drives", keys::<file::DriveKeys>()),
         ("arm.servo", keys::<file::ServoKeys>()),
         ("device", keys::<file::DeviceKeys>()),
-        ("device.override", keys::<file::ModelKeys>()),
+        ("device.override", keys::<device::ModelKeys>()),
         ("workpiece", keys::<file::WorkpieceKeys>()),
         ("workpiece.edge", keys::<file::EdgeKeys>()),
         ("workpiece.misplacement", keys::<file::MisplacementKeys>()),
@@ -61,7 +61,7 @@ pub(crate) fn bench_sections() -> Vec<Table> {
     let mut sections = vec![
         ("", keys::<bench_file::BenchFile>()),
         ("device", keys::<file::DeviceKeys>()),
-        ("device.override", keys::<file::ModelKeys>()),
+        ("device.override", keys::<device::ModelKeys>()),
         ("bench", keys::<bench_file::BenchKeys>()),
         ("load", keys::<bench_file::LoadKeys>()),
         ("hand", keys::<bench_file::HandKeys>()),
@@ -97,7 +97,7 @@ fn sensing_sections() -> [Table; 8] {
 pub(crate) fn model_sections() -> Vec<Table> {
     vec![
         ("", keys::<file::ModelFile>()),
-        ("device", keys::<file::ModelKeys>()),
+        ("device", keys::<device::ModelKeys>()),
     ]
 }
 

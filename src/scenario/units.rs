@@ -1,6 +1,7 @@
 //! Units of the numbers in a file: a key's suffix says its unit, and only here are units turned into SI.
 
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 /// A unit that a key can carry.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,6 +125,18 @@ impl Unit {
             Divide(divisor) => value / divisor,
             Multiply(factor) => value * factor,
         }
+    }
+
+    /// A range in SI, in this unit, to twelve digits: the decimals that were meant.
+    pub fn range(self, range: [f64; 2]) -> RangeInclusive<f64> {
+        let [low, high] = range.map(|value| {
+            let own = match self.conversion {
+                Divide(divisor) => value * divisor,
+                Multiply(factor) => value / factor,
+            };
+            format!("{own:.11e}").parse().unwrap_or(own)
+        });
+        low..=high
     }
 
     /// The value with its symbol.

@@ -224,10 +224,10 @@ mod tests {
     #[test]
     fn what_cannot_be_is_refused_by_its_key() {
         let template = ScenarioTemplate::read(&shipped("hand_push")).unwrap();
-        let message = refused(&template, "device.override.bore_mm", 300.0);
+        let message = refused(&template, "device.override.bore_mm", 400.0);
         assert!(
             message.ends_with(
-                "hand_push.toml: `device.override.bore_mm` is 300 mm, expected 4 to 200 mm"
+                "hand_push.toml: `device.override.bore_mm` is 400 mm, expected 2 to 300 mm"
             ),
             "{message}"
         );

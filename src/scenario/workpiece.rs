@@ -3,6 +3,7 @@
 use super::check::Section;
 use super::error::ScenarioError;
 use super::file::{self, BurrKind, MeshUnit};
+use super::sensing::stages::only;
 use super::{BurrScenario, EdgeChoice, EdgeSelection, Misplacement, WorkpieceScenario};
 
 /// `[workpiece]` and the tables in it.
@@ -31,6 +32,7 @@ pub(super) fn workpiece(
     })
 }
 
+#[rustfmt::skip] // A table: one key a line.
 fn edge(section: &Section<'_>, keys: &file::EdgeKeys) -> Result<EdgeChoice, ScenarioError> {
     let selection = match (keys.edge, keys.closed_loop) {
         (Some(edge), None) => EdgeSelection::Edge(edge),
@@ -58,11 +60,7 @@ fn edge(section: &Section<'_>, keys: &file::EdgeKeys) -> Result<EdgeChoice, Scen
         start,
         end,
         reversed: keys.reversed.unwrap_or(false),
-        sharp_angle: section.number(
-            "sharp_angle_deg",
-            keys.sharp_angle_deg.unwrap_or(30.0),
-            1.0..=170.0,
-        )?,
+        sharp_angle: section.number("sharp_angle_deg", keys.sharp_angle_deg.unwrap_or(30.0), 1.0..=170.0)?,
     })
 }
 
@@ -95,32 +93,10 @@ fn keys_of(kind: BurrKind) -> (&'static str, &'static [&'static str]) {
     }
 }
 
+#[rustfmt::skip] // A table: one key a line.
 fn burr(section: &Section<'_>, keys: &file::BurrKeys) -> Result<BurrScenario, ScenarioError> {
     let (kind, allowed) = keys_of(keys.kind);
-    for (key, given) in [
-        ("height_mm", keys.height_mm.is_some()),
-        ("mean_height_mm", keys.mean_height_mm.is_some()),
-        (
-            "standard_deviation_mm",
-            keys.standard_deviation_mm.is_some(),
-        ),
-        (
-            "correlation_length_mm",
-            keys.correlation_length_mm.is_some(),
-        ),
-        ("seed", keys.seed.is_some()),
-        ("position_mm", keys.position_mm.is_some()),
-        ("width_mm", keys.width_mm.is_some()),
-        ("path", keys.path.is_some()),
-    ] {
-        if given && !allowed.contains(&key) {
-            let others = match allowed {
-                [] => "no other key".to_owned(),
-                _ => allowed.join(", "),
-            };
-            return Err(section.misplaced(key, format!("kind = \"{kind}\" has {others}")));
-        }
-    }
+    only(section, kind, false, allowed)?;
     let needed = |key: &str, value: Option<f64>, range| match value {
         Some(value) => section.number(key, value, range),
         None => Err(section.missing(key, &format!("it to be given with kind = \"{kind}\""))),
@@ -139,11 +115,7 @@ fn burr(section: &Section<'_>, keys: &file::BurrKeys) -> Result<BurrScenario, Sc
                 height_deviation: deviation
                     .map(|value| section.number("standard_deviation_mm", value, 0.0..=10.0))
                     .unwrap_or(Ok(mean_height / 3.0))?,
-                correlation_length: needed(
-                    "correlation_length_mm",
-                    keys.correlation_length_mm,
-                    0.1..=1000.0,
-                )?,
+                correlation_length: needed("correlation_length_mm", keys.correlation_length_mm, 0.1..=1000.0)?,
             }
         }
         BurrKind::Bump => BurrScenario::Bump {

@@ -41,18 +41,18 @@ fn devices_that_cannot_be() {
         refusal(
             |b| device(b, "dead_volume_cm3 = 0"),
             &[
-                "scenario.toml:14:1: `device.override.dead_volume_cm3` is 0 cm3, expected 0.1 to 5000 cm3",
+                "scenario.toml:14:1: `device.override.dead_volume_cm3` is 0 cm3, expected 0.01 to 5000 cm3",
             ],
         ),
         refusal(
             |b| device(b, "dead_volume_cm3 = -20"),
             &[
-                "scenario.toml:14:1: `device.override.dead_volume_cm3` is -20 cm3, expected 0.1 to 5000 cm3",
+                "scenario.toml:14:1: `device.override.dead_volume_cm3` is -20 cm3, expected 0.01 to 5000 cm3",
             ],
         ),
         refusal(
             |b| device(b, "bore_mm = 0"),
-            &["scenario.toml:14:1: `device.override.bore_mm` is 0 mm, expected 4 to 200 mm"],
+            &["scenario.toml:14:1: `device.override.bore_mm` is 0 mm, expected 2 to 300 mm"],
         ),
         refusal(
             |b| device(b, "bore_mm = 11"),
@@ -61,19 +61,19 @@ fn devices_that_cannot_be() {
         refusal(
             |b| device(b, "supply_orifice_mm2 = -2.5"),
             &[
-                "scenario.toml:14:1: `device.override.supply_orifice_mm2` is -2.5 mm2, expected 0.01 to 100 mm2",
+                "scenario.toml:14:1: `device.override.supply_orifice_mm2` is -2.5 mm2, expected 0.01 to 200 mm2",
             ],
         ),
         refusal(
             |b| device(b, "exhaust_orifice_mm2 = 0"),
             &[
-                "scenario.toml:14:1: `device.override.exhaust_orifice_mm2` is 0 mm2, expected 0.01 to 100 mm2",
+                "scenario.toml:14:1: `device.override.exhaust_orifice_mm2` is 0 mm2, expected 0.01 to 200 mm2",
             ],
         ),
         refusal(
             |b| device(b, "moving_mass_kg = nan"),
             &[
-                "scenario.toml:14:1: `device.override.moving_mass_kg` is NaN kg, expected 0.1 to 100 kg",
+                "scenario.toml:14:1: `device.override.moving_mass_kg` is NaN kg, expected 0.05 to 200 kg",
             ],
         ),
         refusal(

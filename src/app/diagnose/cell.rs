@@ -10,10 +10,10 @@ use crate::diagnosis::case::{Case, NamedRecording, tolerated};
 use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::free::{Free, Prior};
 use crate::diagnosis::joint_friction::{DriveLoad, JointFriction, joint_friction};
-use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, hold};
+use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, check, hold};
 use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
 use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, sought};
-use crate::plant::{CHANNELS, ContactLaw, PlantInputs, PlantParameters, Quantity};
+use crate::plant::{CHANNELS, PlantInputs, PlantParameters, Quantity, registry};
 use crate::recording::csv::{CellRecording, read_cell_csv};
 use crate::recording::parquet::read_parquet;
 use crate::recording::samples::cell_recording;
@@ -268,10 +268,7 @@ fn recorded(
         motion: None,
         time,
     };
-    inputs.check().map_err(|source| RecordedError::Inputs {
-        file: file.to_owned(),
-        source,
-    })?;
+    check(file, &inputs)?;
     let nothing = vec![f64::NAN; inputs.time.len()];
     let mut readings = QUANTITIES.map(|quantity| {
         let found = readings.iter().find(|(name, _)| *name == quantity);
@@ -327,35 +324,22 @@ fn candidates(cell: &LoadedCell) -> Vec<&'static Effect> {
         .collect()
 }
 
-/// A number of the device or the contact that is believed within the file's tolerance.
-macro_rules! number {
-    ($name:literal, $p:ident => $($place:tt)+) => { Quantity { name: $name, index: 0, get: |$p, _| $($place)+, set: |$p, _, value| $($place)+ = value } };
-}
-
 fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free> {
     let scenario = &cell.scenario;
-    let stiffness = Quantity {
-        name: "contact.stiffness_n_per_m",
-        index: 0,
-        get: |p, _| match p.contact.law {
-            ContactLaw::Linear { stiffness } | ContactLaw::Hertz { stiffness } => stiffness,
-        },
-        set: |p, _, stiffness| p.contact.law = ContactLaw::Linear { stiffness },
-    };
-    let quantities = [
-        number!("cylinder.moving_mass_kg", p => p.device.moving_mass),
-        number!("cylinder.dead_volume_m3", p => p.device.dead_volume),
-        number!("valve.supply_orifice_m2", p => p.device.supply_orifice),
-        number!("valve.exhaust_orifice_m2", p => p.device.exhaust_orifice),
-        number!("regulator.gain", p => p.device.regulator.gain),
-        number!("regulator.time_constant_s", p => p.device.regulator.time_constant),
-        stiffness,
-        number!("contact.damping_n_s_per_m", p => p.contact.damping),
+    let numbers = [
+        &registry::MOVING_MASS,
+        &registry::DEAD_VOLUME,
+        &registry::SUPPLY_ORIFICE,
+        &registry::EXHAUST_ORIFICE,
+        &registry::REGULATOR_GAIN,
+        &registry::REGULATOR_TIME_CONSTANT,
+        &registry::CONTACT_STIFFNESS,
+        &registry::CONTACT_DAMPING,
     ];
     let mut free: Vec<Free> = if scenario.tolerance > 0.0 {
         let of =
             |quantity: Quantity| tolerated(quantity, quantity.get(believed), scenario.tolerance);
-        quantities.map(of).to_vec()
+        numbers.map(|number| of(number.quantity())).to_vec()
     } else {
         Vec::new()
     };
@@ -369,13 +353,13 @@ fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free>
     let off = scenario.start_stroke_tolerance;
     if off > 0.0 {
         // Anywhere between the stop and as far from it.
-        let start = number!("slide.start_stroke_m", p => p.cell.start_stroke);
+        let start = registry::START_STROKE.quantity();
         free.push(about(start, 0.5 * off, 0.5 * off / 3f64.sqrt(), [0.0, off]));
     }
     let [time, deviation] = scenario.joint_damping;
     // Joints that do not give have no damping to speak of.
     if deviation > 0.0 && !scenario.own {
-        let damping = number!("joints.damping_time_s", p => p.cell.joint_damping);
+        let damping = registry::JOINT_DAMPING.quantity();
         let bounds = [0.1 * time, time + 4.0 * deviation];
         free.push(about(damping, time, deviation, bounds));
     }

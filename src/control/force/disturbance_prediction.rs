@@ -21,8 +21,8 @@
 
 use super::chamber_model::ChamberModel;
 use super::disturbance_level::DisturbanceLevel;
+use super::followed::Followed;
 use super::motion_tracker::MotionTracker;
-use super::regulator_model::RegulatorModel;
 use super::seal_model::SealModel;
 use super::{DisturbancePredictionParameters, ForceObservation, contact_gate};
 use crate::device::DeviceParameters;
@@ -37,9 +37,7 @@ const TOUCH_TIME: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub struct DisturbancePrediction {
     parameters: DisturbancePredictionParameters,
-    regulator: RegulatorModel,
-    chambers: ChamberModel,
-    motion: MotionTracker,
+    followed: Followed,
     /// The surface's motion, which the force does not change.
     surface: MotionTracker,
     pressed: bool,
@@ -52,8 +50,6 @@ pub struct DisturbancePrediction {
     area: f64,
     time_constant: f64,
     period: f64,
-    /// Outlet pressure at the last call [Pa gauge].
-    outlet: Option<f64>,
 }
 
 impl DisturbancePrediction {
@@ -66,9 +62,7 @@ impl DisturbancePrediction {
         let believed = parameters.seals;
         Self {
             parameters: *parameters,
-            regulator: RegulatorModel::new(device.regulator, period),
-            chambers: ChamberModel::new(device),
-            motion: MotionTracker::new(parameters.tracking_frequency, period),
+            followed: Followed::new(device, parameters.tracking_frequency, period),
             surface: MotionTracker::new(parameters.tracking_frequency, period),
             pressed: false,
             pressed_for: 0.0,
@@ -84,7 +78,6 @@ impl DisturbancePrediction {
             area: device.areas().extending,
             time_constant: device.regulator.time_constant,
             period,
-            outlet: None,
         }
     }
 
@@ -93,31 +86,25 @@ impl DisturbancePrediction {
             observation.measured_axial_force,
             observation.desired_axial_force,
         );
-        self.follow(observation);
+        self.followed.follow(observation);
         self.follow_surface(observation, presses);
         self.estimate(observation, presses);
-        let (stroke, speed) = (self.motion.stroke, self.surface.speed);
-        let mut ahead = self.chambers.clone();
-        let mut time = 0.0;
-        let outlet =
-            self.regulator
-                .through_dead_time(observation.regulator_pressure, |duration, outlet| {
-                    ahead.advance(outlet, stroke + speed * time, speed, duration);
-                    time += duration;
-                });
+        let speed = self.surface.speed;
+        let ahead = self.followed.ahead(observation, speed);
         let response = self.parameters.response_time;
-        let horizon = time + 0.5 * self.period;
+        let horizon = ahead.time + 0.5 * self.period;
         let now = self.wanted_gas_force(observation, horizon);
         let soon = self.wanted_gas_force(observation, horizon + response);
         let slope = (soon - now) / (response * self.area);
         let then = Foretold {
-            stroke: stroke + speed * time,
+            stroke: ahead.stroke,
             speed: speed + self.surface.acceleration * horizon,
         };
-        let goal = self.outlet_goal(&ahead, ahead.pressure_for(now), slope, then);
-        let set_pressure = self.regulator.lead(outlet, goal, slope, response);
-        self.regulator
-            .send(set_pressure, observation.regulator_pressure)
+        let chambers = &ahead.chambers;
+        let goal = self.outlet_goal(chambers, chambers.pressure_for(now), slope, then);
+        let regulator = &mut self.followed.regulator;
+        let set_pressure = regulator.lead(ahead.outlet, goal, slope, response);
+        regulator.send(set_pressure, observation.regulator_pressure)
     }
 
     /// Outlet pressure [Pa gauge] for chamber 1 to go to `goal` [Pa absolute], which itself changes at `slope` [Pa/s].
@@ -133,24 +120,6 @@ impl DisturbancePrediction {
         } else {
             reach.clamp(hold - below, hold)
         }
-    }
-
-    /// Takes the measurements into the models.
-    fn follow(&mut self, observation: &ForceObservation) {
-        self.motion
-            .update(observation.stroke, observation.acceleration);
-        let outlet = observation.regulator_pressure;
-        self.regulator.observe(outlet);
-        match self.outlet {
-            None => self.chambers.settle(outlet),
-            Some(before) => self.chambers.advance(
-                0.5 * (before + outlet),
-                self.motion.stroke,
-                self.motion.speed,
-                self.period,
-            ),
-        }
-        self.outlet = Some(outlet);
     }
 
     /// Follows the surface: the stroke less what the contact gives way.
@@ -176,8 +145,10 @@ impl DisturbancePrediction {
             return;
         }
         self.pressed_for += self.period;
-        let weight = self.moving_mass * (observation.gravity_along_axis - self.motion.acceleration);
-        let explained = self.chambers.gas_force() + weight - self.seals.viscous(self.motion.speed);
+        let weight =
+            self.moving_mass * (observation.gravity_along_axis - self.followed.motion.acceleration);
+        let explained = self.followed.chambers.gas_force() + weight
+            - self.seals.viscous(self.followed.motion.speed);
         let unexplained = observation.measured_axial_force - explained;
         if self.pressed_for > TOUCH_TIME {
             self.level.update(unexplained, self.seals.dry());

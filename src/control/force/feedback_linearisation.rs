@@ -17,8 +17,7 @@
 use std::collections::VecDeque;
 
 use super::chamber_model::ChamberModel;
-use super::motion_tracker::MotionTracker;
-use super::regulator_model::RegulatorModel;
+use super::followed::{Ahead, Followed};
 use super::{FeedbackLinearisationParameters, ForceObservation, contact_gate};
 use crate::device::DeviceParameters;
 
@@ -31,9 +30,7 @@ const TRACKING: f64 = 0.3;
 #[derive(Debug, Clone)]
 pub struct FeedbackLinearisation {
     gains: FeedbackLinearisationParameters,
-    regulator: RegulatorModel,
-    chambers: ChamberModel,
-    motion: MotionTracker,
+    followed: Followed,
     law: Law,
     moving_mass: f64,
     area: f64,
@@ -41,8 +38,6 @@ pub struct FeedbackLinearisation {
     /// Periods of the dead time.
     delay: usize,
     period: f64,
-    /// Outlet pressure at the last call [Pa gauge].
-    outlet: Option<f64>,
     /// Forces foreseen during the dead time without the integral's part [N], oldest first.
     foreseen: VecDeque<f64>,
     integral: f64,
@@ -56,64 +51,42 @@ impl FeedbackLinearisation {
     ) -> Self {
         Self {
             gains: *gains,
-            regulator: RegulatorModel::new(device.regulator, period),
-            chambers: ChamberModel::new(device),
-            motion: MotionTracker::new(TRACKING * gains.rate, period),
+            followed: Followed::new(device, TRACKING * gains.rate, period),
             law: Law::new(gains.rate, device.regulator.time_constant, period),
             area: device.areas().extending,
             largest_force: device.areas().extending * device.regulator.supply,
             moving_mass: device.moving_mass,
             delay: (device.regulator.dead_time / period).round() as usize,
             period,
-            outlet: None,
             foreseen: VecDeque::new(),
             integral: 0.0,
         }
     }
 
     pub(super) fn set_pressure(&mut self, observation: &ForceObservation) -> f64 {
-        self.follow(observation);
+        self.followed.follow(observation);
         let desired = observation.desired_axial_force;
-        let (stroke, speed) = (self.motion.stroke, self.motion.speed);
-        let mut ahead = self.chambers.clone();
-        let mut time = 0.0;
-        let outlet =
-            self.regulator
-                .through_dead_time(observation.regulator_pressure, |duration, outlet| {
-                    ahead.advance(outlet, stroke + speed * time, speed, duration);
-                    time += duration;
-                });
+        let speed = self.followed.motion.speed;
+        let Ahead {
+            chambers: ahead,
+            outlet,
+            stroke,
+            ..
+        } = self.followed.ahead(observation, speed);
         let wanted = desired + self.integral - self.moving_mass * observation.gravity_along_axis;
         let motion = PistonState {
-            stroke: stroke + speed * time,
+            stroke,
             speed,
-            acceleration: self.motion.acceleration,
+            acceleration: self.followed.motion.acceleration,
         };
         let goal = ahead.pressure_for(wanted);
         let change = self.law.outlet_change(&ahead, outlet, goal, motion);
-        let set_pressure = self.regulator.set_for_change(outlet, change);
+        let regulator = &mut self.followed.regulator;
+        let set_pressure = regulator.set_for_change(outlet, change);
         let missing = self.area * (goal - ahead.pressures[0]);
         self.integrate(observation, desired - missing);
-        self.regulator
-            .send(set_pressure, observation.regulator_pressure)
-    }
-
-    /// Takes the measurements into the models.
-    fn follow(&mut self, observation: &ForceObservation) {
-        self.motion
-            .update(observation.stroke, observation.acceleration);
-        let outlet = observation.regulator_pressure;
-        self.regulator.observe(outlet);
-        match self.outlet {
-            None => self.chambers.settle(outlet),
-            Some(before) => self.chambers.advance(
-                0.5 * (before + outlet),
-                self.motion.stroke,
-                self.motion.speed,
-                self.period,
-            ),
-        }
-        self.outlet = Some(outlet);
+        let regulator = &mut self.followed.regulator;
+        regulator.send(set_pressure, observation.regulator_pressure)
     }
 
     /// Integrates the load cell's error against the force that was foreseen [N]; takes what is foreseen now for the dead time's end.

@@ -19,6 +19,7 @@ mod disturbance_level;
 mod disturbance_prediction;
 mod error;
 mod feedback_linearisation;
+mod followed;
 mod from_scenario;
 pub mod limit;
 mod loop_response;

@@ -187,19 +187,13 @@ impl Search<'_> {
         let kept = fit.free.iter().zip(&fit.values).enumerate();
         let others: Vec<Free> = kept
             .filter(|(i, _)| *i >= own && !(start..start + counts[index]).contains(i))
-            .map(|(_, (f, value))| Free {
-                start: *value,
-                ..*f
-            })
+            .map(|(_, (f, value))| f.from(*value))
             .collect();
         let mut free: Vec<Free> = self
             .tolerated
             .iter()
             .filter(|f| !others.iter().any(|o| same(o, f, &self.believed)))
-            .map(|f| Free {
-                start: f.clamp(f.quantity.get(plant)),
-                ..*f
-            })
+            .map(|f| f.from_where(plant))
             .collect();
         free.extend(others);
         let mut effects = hypothesis.effects.clone();
@@ -226,10 +220,7 @@ impl Search<'_> {
     fn fitted_where(&self, hypothesis: &Hypothesis, richer: &Hypothesis) -> Hypothesis {
         let there = &richer.fit.prediction.plant;
         let free: Vec<Free> = (hypothesis.fit.free.iter())
-            .map(|f| Free {
-                start: f.clamp(f.quantity.get(there)),
-                ..*f
-            })
+            .map(|f| f.from_where(there))
             .collect();
         let plant = &hypothesis.fit.prediction.plant;
         let stages = &FULL[FULL.len() - 2..];

@@ -7,7 +7,7 @@ use super::super::hypothesis::Hypothesis;
 use super::super::{bumps, spectrum};
 use super::{Search, same};
 use crate::effects::{Clues, Coordinate, Effect, Subsystem};
-use crate::plant::Quantity;
+use crate::plant::registry;
 use rayon::prelude::*;
 
 /// Effects whose starts are looked at with all their derivatives, beside those that have no secant.
@@ -22,12 +22,7 @@ const UNCHANGED: f64 = 1e-6;
 const PHASE: &str = "sine_m";
 /// The way from no effect to a start: 1 there.
 const WAY: Free = Free {
-    quantity: Quantity {
-        name: "way",
-        index: 0,
-        get: |_, _| 0.0,
-        set: |_, _, _| {},
-    },
+    quantity: registry::WAY.quantity(),
     start: 0.0,
     coordinate: Coordinate::Linear(1.0),
     bounds: [-3.0, 3.0],
@@ -117,15 +112,7 @@ impl Search<'_> {
         fitted
             // What an effect frees is no longer held to its tolerance.
             .filter(|((f, _), _)| !new.iter().any(|n| same(n, f, &self.believed)))
-            .map(|((f, value), column)| {
-                (
-                    Free {
-                        start: *value,
-                        ..*f
-                    },
-                    column.clone(),
-                )
-            })
+            .map(|((f, value), column)| (f.from(*value), column.clone()))
             .unzip()
     }
 

@@ -4,7 +4,6 @@
 
 use super::super::evidence::Evidence;
 use super::super::fit::{Effort, Fit, ROUGH, fit, robust_sum};
-use super::super::free::Free;
 
 /// Iterations of a fit to the others, from where the fit to all is.
 const ITERATIONS: usize = 5;
@@ -38,13 +37,7 @@ impl Elsewhere {
     /// Cost of each recording as foretold by a rough fit to the others [1].
     #[must_use]
     pub fn cost(&self, whole: &Fit) -> f64 {
-        let free = whole.free.iter().zip(&whole.values);
-        let free: Vec<Free> = free
-            .map(|(f, value)| Free {
-                start: *value,
-                ..*f
-            })
-            .collect();
+        let free = whole.free_from_here();
         let effort = Effort {
             iterations: ITERATIONS,
             stages: ROUGH,

@@ -13,53 +13,19 @@
 //! - a disturbance at one time: is at another place of the path in another recording.
 
 use super::*;
-use Coordinate::{Linear, Logarithmic};
 
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    name: "burr",
     text: include_str!("burr.rs"),
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Workpiece,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                Quantity {
-                    name: "position_m",
-                    index: 0,
-                    get: |p, _| p.cell.burr.position,
-                    set: |p, _, v| p.cell.burr.position = v,
-                },
-                Linear(1e-3),
-                [0.0, 100.0],
-            ),
-            reported(
-                Quantity {
-                    name: "height_m",
-                    index: 0,
-                    get: |p, _| p.cell.burr.height,
-                    set: |p, _, v| p.cell.burr.height = v,
-                },
-                Linear(1e-4),
-                [0.0, 0.02],
-            ),
-            Parameter {
-                quantity: Quantity {
-                    name: "width_m",
-                    index: 0,
-                    get: |p, _| p.cell.burr.width,
-                    set: |p, _, v| p.cell.burr.width = v,
-                },
-                coordinate: Logarithmic,
-                bounds: [2e-4, 0.02],
-                reported: false,
-                choices: &[],
-            },
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(BURR_POSITION.named("position_m"), Linear(1e-3), [0.0, 100.0]),
+        reported(BURR_HEIGHT.named("height_m"), Linear(1e-4), [0.0, 0.02]),
+        hidden(BURR_WIDTH.named("width_m"), Logarithmic, [2e-4, 0.02]),
+    ],
     usual: |_, _| vec![0.1, 3e-4, 2e-3],
     starts: |clues: &Clues<'_>, _| {
         let places = clues.bumps.iter();
         places.map(|place| vec![*place, 1e-4, 2e-3]).collect()
     },
+    ..effect("burr", Subsystem::Workpiece)
 };

@@ -14,27 +14,17 @@
 //! - compliant_joint of another joint: told apart by their levers: those of several leans and places.
 
 use super::*;
-use Coordinate::Logarithmic;
 
 /// What a joint that is believed rigid may be [N m/rad].
 const RIGID: [f64; 2] = [1e3, 1e8];
 
 /// Of which joint is to be said.
 pub(super) const EFFECT: Effect = Effect {
-    name: "compliant_joint",
     text: include_str!("compliant_joint.rs"),
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Arm,
-    group: None,
     parameters: |p, joint| {
         let believed = p.cell.joint_stiffness[joint];
         vec![reported(
-            Quantity {
-                name: "stiffness_n_m_per_rad",
-                index: joint,
-                get: |p, joint| p.cell.joint_stiffness[joint],
-                set: |p, joint, v| p.cell.joint_stiffness[joint] = v,
-            },
+            JOINT_STIFFNESS.named("stiffness_n_m_per_rad").of(joint),
             Logarithmic,
             if believed.is_finite() {
                 [1e-4 * believed, 100.0 * believed]
@@ -52,4 +42,5 @@ pub(super) const EFFECT: Effect = Effect {
         let shares = [0.02, 0.1, 0.4].iter();
         shares.map(|share| vec![share * believed]).collect()
     },
+    ..effect("compliant_joint", Subsystem::Arm)
 };

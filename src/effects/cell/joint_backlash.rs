@@ -14,42 +14,15 @@
 //! - compliant_joint: its part grows with the force.
 
 use super::*;
-use Coordinate::Logarithmic;
 
 /// Of which joint is to be said.
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    name: "joint_backlash",
     text: include_str!("joint_backlash.rs"),
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Arm,
-    group: None,
-    parameters: |_, joint| {
-        vec![
-            reported(
-                Quantity {
-                    name: "play_rad",
-                    index: joint,
-                    get: |p, joint| p.cell.joint_play[joint],
-                    set: |p, joint, v| p.cell.joint_play[joint] = v,
-                },
-                Logarithmic,
-                [1e-6, 0.05],
-            ),
-            Parameter {
-                reported: false,
-                ..reported(
-                    Quantity {
-                        name: "teeth_stiffness_n_m_per_rad",
-                        index: joint,
-                        get: |p, joint| p.cell.joint_stiffness[joint],
-                        set: |p, joint, v| p.cell.joint_stiffness[joint] = v,
-                    },
-                    Logarithmic,
-                    [1e3, 1e8],
-                )
-            },
-        ]
-    },
+    parameters: |_, joint| vec![
+        reported(JOINT_PLAY.named("play_rad").of(joint), Logarithmic, [1e-6, 0.05]),
+        hidden(JOINT_STIFFNESS.named("teeth_stiffness_n_m_per_rad").of(joint), Logarithmic, [1e3, 1e8]),
+    ],
     usual: |p, joint| vec![7e-4, p.cell.joint_stiffness[joint].min(1e6)],
     starts: |clues, joint| {
         let teeth = clues.plant.cell.joint_stiffness[joint].min(1e6);
@@ -58,4 +31,5 @@ pub(super) const EFFECT: Effect = Effect {
             .map(|play| vec![*play, teeth])
             .collect()
     },
+    ..effect("joint_backlash", Subsystem::Arm)
 };

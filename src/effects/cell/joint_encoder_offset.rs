@@ -14,27 +14,13 @@
 //!   bisector, moves nothing.
 
 use super::*;
-use Coordinate::Linear;
 
 /// Of which joint is to be said.
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    name: "joint_encoder_offset",
     text: include_str!("joint_encoder_offset.rs"),
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Arm,
-    group: None,
-    parameters: |_, joint| {
-        vec![reported(
-            Quantity {
-                name: "offset_rad",
-                index: joint,
-                get: |p, joint| p.cell.encoder_offset[joint],
-                set: |p, joint, v| p.cell.encoder_offset[joint] = v,
-            },
-            Linear(5e-4),
-            [-0.1, 0.1],
-        )]
-    },
+    parameters: |_, joint| vec![reported(ENCODER_OFFSET.named("offset_rad").of(joint), Linear(5e-4), [-0.1, 0.1])],
     usual: |_, _| vec![1e-3],
     starts: |_, _| vec![vec![0.0], vec![2e-3], vec![-2e-3]],
+    ..effect("joint_encoder_offset", Subsystem::Arm)
 };

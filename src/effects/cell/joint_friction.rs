@@ -12,27 +12,13 @@
 //! - nothing: it is seen in a link of its own, from the motion to the torques of the drives, beside which the device is looked at.
 
 use super::*;
-use Coordinate::Linear;
 
 /// Of which joint is to be said.
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    name: "joint_friction",
     text: include_str!("joint_friction.rs"),
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Arm,
-    group: None,
-    parameters: |_, joint| {
-        vec![reported(
-            Quantity {
-                name: "friction_n_m",
-                index: joint,
-                get: |p, joint| p.cell.joint_friction[joint],
-                set: |p, joint, v| p.cell.joint_friction[joint] = v,
-            },
-            Linear(1.0),
-            [0.0, 1e4],
-        )]
-    },
+    parameters: |_, joint| vec![reported(DRIVE_FRICTION.named("friction_n_m").of(joint), Linear(1.0), [0.0, 1e4])],
     usual: |p, joint| vec![p.cell.joint_friction[joint] + 20.0],
     starts: |clues, joint| vec![vec![clues.plant.cell.joint_friction[joint]]],
+    ..effect("joint_friction", Subsystem::Arm)
 };

@@ -12,9 +12,8 @@ pub use servo_lag::SERVO_LAG;
 
 use std::sync::LazyLock;
 
-use super::effect::{Clues, Effect, Parameter, Which};
-use super::quantity::Coordinate;
-use crate::plant::{MOST_JOINTS, Quantity};
+use super::parts::*;
+use crate::plant::MOST_JOINTS;
 
 /// Effects that the recordings of the device show, whatever its arm.
 pub static CELL_EFFECTS: [Effect; 2] = [part_misplaced::EFFECT, burr::EFFECT];
@@ -38,13 +37,3 @@ pub static JOINT_FRICTION: LazyLock<Vec<Effect>> = LazyLock::new(|| {
         .map(|joint| joint_friction::EFFECT.of_joint(joint))
         .collect()
 });
-
-fn reported(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Parameter {
-    Parameter {
-        quantity,
-        coordinate,
-        bounds,
-        reported: true,
-        choices: &[],
-    }
-}

@@ -15,38 +15,15 @@
 //! - stroke_sensor_gain_error: off where nothing touches, too.
 
 use super::*;
-use Coordinate::Linear;
 
+#[rustfmt::skip] // A table: one number a line.
 pub(super) const EFFECT: Effect = Effect {
-    name: "part_misplaced",
     text: include_str!("part_misplaced.rs"),
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Workpiece,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                Quantity {
-                    name: "shift_m",
-                    index: 0,
-                    get: |p, _| p.cell.part_shift,
-                    set: |p, _, v| p.cell.part_shift = v,
-                },
-                Linear(2e-4),
-                [-0.02, 0.02],
-            ),
-            reported(
-                Quantity {
-                    name: "tilt_m_per_m",
-                    index: 0,
-                    get: |p, _| p.cell.part_tilt,
-                    set: |p, _, v| p.cell.part_tilt = v,
-                },
-                Linear(2e-3),
-                [-0.2, 0.2],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(PART_SHIFT.named("shift_m"), Linear(2e-4), [-0.02, 0.02]),
+        reported(PART_TILT.named("tilt_m_per_m"), Linear(2e-3), [-0.2, 0.2]),
+    ],
     usual: |_, _| vec![8e-4, 4e-3],
     starts: |_, _| vec![vec![0.0, 0.0], vec![1e-3, 0.0], vec![-1e-3, 0.0]],
+    ..effect("part_misplaced", Subsystem::Workpiece)
 };

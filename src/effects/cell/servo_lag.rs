@@ -11,27 +11,13 @@
 //! - nothing: it is seen in a link of its own, from the commands to the encoders, before the device is looked at.
 
 use super::*;
-use Coordinate::Logarithmic;
 
 /// The effect; it is fitted on the encoders alone.
+#[rustfmt::skip] // A table: one number a line.
 pub static SERVO_LAG: Effect = Effect {
-    name: "servo_lag",
     text: include_str!("servo_lag.rs"),
-    which: Which::Only,
-    subsystem: super::super::Subsystem::Arm,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            Quantity {
-                name: "bandwidth_hz",
-                index: 0,
-                get: |p, _| p.cell.servo_bandwidth,
-                set: |p, _, v| p.cell.servo_bandwidth = v,
-            },
-            Logarithmic,
-            [0.1, 1e3],
-        )]
-    },
+    parameters: |_, _| vec![reported(SERVO_BANDWIDTH.named("bandwidth_hz"), Logarithmic, [0.1, 1e3])],
     usual: |_, _| vec![25.0],
     starts: |clues: &Clues<'_>, _| vec![vec![clues.plant.cell.servo_bandwidth]],
+    ..effect("servo_lag", Subsystem::Arm)
 };

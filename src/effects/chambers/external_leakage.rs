@@ -16,19 +16,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "external_leakage",
     text: include_str!("external_leakage.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("orifice_area_m2", p => p.device.leakage.external),
-            Logarithmic,
-            [1e-10, 1e-4],
-        )]
-    },
+    parameters: |_, _| vec![reported(EXTERNAL_LEAK.named("orifice_area_m2"), Logarithmic, [1e-10, 1e-4])],
     usual: |p, _| vec![0.02 * p.device.supply_orifice],
     starts: |c, _| shares(&[0.01, 0.05, 0.2], c.plant.device.supply_orifice),
+    ..effect("external_leakage", Subsystem::Chambers)
 };

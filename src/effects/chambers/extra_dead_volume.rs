@@ -16,25 +16,14 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "extra_dead_volume",
     text: include_str!("extra_dead_volume.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
-    group: None,
     parameters: |p, _| {
         let a = p.device.dead_volume;
-        vec![reported(
-            quantity!("dead_volume_m3", p => p.device.dead_volume),
-            Logarithmic,
-            [0.1 * a, 20.0 * a],
-        )]
+        vec![reported(DEAD_VOLUME.named("dead_volume_m3"), Logarithmic, [0.1 * a, 20.0 * a])]
     },
     usual: |p, _| vec![1.5 * p.device.dead_volume],
-    starts: |c, _| {
-        shares(
-            &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],
-            c.plant.device.dead_volume,
-        )
-    },
+    starts: |c, _| shares(&[0.35, 0.55, 0.8, 1.25, 1.8, 3.0], c.plant.device.dead_volume),
+    ..effect("extra_dead_volume", Subsystem::Chambers)
 };

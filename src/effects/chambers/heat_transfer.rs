@@ -15,26 +15,13 @@
 //! - hose_volume: delays the chamber against the outlet, without an overshoot.
 
 use super::*;
-use crate::physics::gas_process::GasProcess;
-
-const CONDUCTANCE: Quantity = Quantity {
-    name: "wall_conductance_w_per_k",
-    index: 0,
-    get: |p, _| match p.device.gas_process {
-        GasProcess::WallHeat { conductance } => conductance,
-        GasProcess::Isothermal => f64::INFINITY,
-    },
-    set: |p, _, v| p.device.gas_process = GasProcess::WallHeat { conductance: v },
-};
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "heat_transfer",
     text: include_str!("heat_transfer.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
-    group: None,
-    parameters: |_, _| vec![reported(CONDUCTANCE, Logarithmic, [1e-3, 10.0])],
+    parameters: |_, _| vec![reported(WALL_CONDUCTANCE.named("wall_conductance_w_per_k"), Logarithmic, [1e-3, 10.0])],
     usual: |_, _| vec![0.1],
     starts: |_, _| each(&[0.01, 0.05, 0.2, 0.8]),
+    ..effect("heat_transfer", Subsystem::Chambers)
 };

@@ -17,70 +17,24 @@
 //! - solenoid_switching_delay: delays what the valve does, not what the set pressure does.
 
 use super::*;
-use crate::physics::hose::Hose;
-use crate::physics::line_chain::MOST_SEGMENTS;
-use crate::plant::PlantParameters;
-
-const VOLUME: Quantity = Quantity {
-    name: "volume_m3",
-    index: 0,
-    get: |p, _| p.device.hose.map_or(0.0, |h| h.volume),
-    set: |p, _, v| set_line(p, (v, line(p).1, line(p).2)),
-};
-const RESISTANCE: Quantity = Quantity {
-    name: "resistance_pa_s_per_kg",
-    index: 0,
-    get: |p, _| p.device.hose.map_or(0.0, |_| line(p).1),
-    set: |p, _, v| set_line(p, (line(p).0, v, line(p).2)),
-};
-const SEGMENTS: Quantity = Quantity {
-    name: "segments",
-    index: 0,
-    get: |p, _| p.device.hose.map_or(0.0, |h| h.segments() as f64),
-    set: |p, _, v| set_line(p, (line(p).0, line(p).1, v.round() as usize)),
-};
-
-/// Volume [m3], resistance [Pa s/kg] at its smallest flows, and segments of the line; where there is none, of one to begin with.
-fn line(p: &PlantParameters) -> (f64, f64, usize) {
-    p.device.hose.map_or((1e-5, 1e8, 2), |h| {
-        let resistance = h.resistance_at_rest(p.device.gas.atmosphere);
-        (h.volume, resistance, h.segments())
-    })
-}
-
-fn set_line(p: &mut PlantParameters, (volume, resistance, segments): (f64, f64, usize)) {
-    p.device.hose = Some(match segments {
-        MOST_SEGMENTS => Hose::evenly_spread(volume, resistance),
-        _ => Hose::in_segments(volume, resistance, segments),
-    });
-}
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "hose_volume",
     text: include_str!("hose_volume.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(VOLUME, Logarithmic, [1e-6, 2e-3]),
-            reported(RESISTANCE, Logarithmic, [1e6, 5e9]),
-            Parameter {
-                choices: &[1.0, 2.0, 3.0, 4.0, 8.0],
-                ..hidden(SEGMENTS, Linear(1.0), [1.0, 8.0])
-            },
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(HOSE_VOLUME.named("volume_m3"), Logarithmic, [1e-6, 2e-3]),
+        reported(HOSE_RESISTANCE.named("resistance_pa_s_per_kg"), Logarithmic, [1e6, 5e9]),
+        Parameter { choices: &[1.0, 2.0, 3.0, 4.0, 8.0], ..hidden(HOSE_SEGMENTS.named("segments"), Linear(1.0), [1.0, 8.0]) },
+    ],
     usual: |_, _| vec![5e-5, 5e7, 1.0],
-    starts: |_, _| {
-        vec![
-            vec![2e-5, 3e7, 2.0],
-            vec![5e-5, 5e7, 2.0],
-            vec![5e-5, 3e8, 2.0],
-            vec![1.5e-4, 5e7, 2.0],
-            vec![1.5e-4, 3e8, 2.0],
-            vec![4e-4, 1e8, 2.0],
-        ]
-    },
+    starts: |_, _| vec![
+        vec![2e-5, 3e7, 2.0],
+        vec![5e-5, 5e7, 2.0],
+        vec![5e-5, 3e8, 2.0],
+        vec![1.5e-4, 5e7, 2.0],
+        vec![1.5e-4, 3e8, 2.0],
+        vec![4e-4, 1e8, 2.0],
+    ],
+    ..effect("hose_volume", Subsystem::Chambers)
 };

@@ -13,59 +13,16 @@
 //! - regulator_gain_error: always, whatever was drawn before.
 
 use super::*;
-use crate::physics::supply_reservoir::SupplyReservoir;
-use crate::plant::PlantParameters;
-
-fn reservoir(p: &PlantParameters) -> SupplyReservoir {
-    p.device
-        .supply_reservoir
-        .unwrap_or_else(|| SupplyReservoir::new(1e-3, 1e-3))
-}
-
-const RESERVOIR: Quantity = Quantity {
-    name: "reservoir_volume_m3",
-    index: 0,
-    get: |p, _| reservoir(p).volume,
-    set: |p, _, v| {
-        p.device.supply_reservoir = Some(SupplyReservoir {
-            volume: v,
-            ..reservoir(p)
-        })
-    },
-};
-const COMPRESSOR: Quantity = Quantity {
-    name: "compressor_flow_kg_per_s",
-    index: 0,
-    get: |p, _| reservoir(p).compressor_flow,
-    set: |p, _, v| {
-        p.device.supply_reservoir = Some(SupplyReservoir {
-            compressor_flow: v,
-            ..reservoir(p)
-        })
-    },
-};
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "supply_droop",
     text: include_str!("supply_droop.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(RESERVOIR, Logarithmic, [1e-5, 0.1]),
-            reported(COMPRESSOR, Logarithmic, [1e-6, 0.1]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(RESERVOIR_VOLUME.named("reservoir_volume_m3"), Logarithmic, [1e-5, 0.1]),
+        reported(COMPRESSOR_FLOW.named("compressor_flow_kg_per_s"), Logarithmic, [1e-6, 0.1]),
+    ],
     usual: |_, _| vec![1e-3, 5e-4],
-    starts: |_, _| {
-        vec![
-            vec![1e-4, 5e-5],
-            vec![1e-4, 2e-4],
-            vec![4e-4, 5e-5],
-            vec![4e-4, 2e-4],
-            vec![1.5e-3, 1e-4],
-        ]
-    },
+    starts: |_, _| vec![vec![1e-4, 5e-5], vec![1e-4, 2e-4], vec![4e-4, 5e-5], vec![4e-4, 2e-4], vec![1.5e-3, 1e-4]],
+    ..effect("supply_droop", Subsystem::Chambers)
 };

@@ -16,25 +16,14 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "supply_restriction",
     text: include_str!("supply_restriction.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
-    group: None,
     parameters: |p, _| {
         let a = p.device.supply_orifice;
-        vec![reported(
-            quantity!("orifice_area_m2", p => p.device.supply_orifice),
-            Logarithmic,
-            [0.05 * a, 20.0 * a],
-        )]
+        vec![reported(SUPPLY_ORIFICE.named("orifice_area_m2"), Logarithmic, [0.05 * a, 20.0 * a])]
     },
     usual: |p, _| vec![0.5 * p.device.supply_orifice],
-    starts: |c, _| {
-        shares(
-            &[0.35, 0.55, 0.8, 1.25, 1.8, 3.0],
-            c.plant.device.supply_orifice,
-        )
-    },
+    starts: |c, _| shares(&[0.35, 0.55, 0.8, 1.25, 1.8, 3.0], c.plant.device.supply_orifice),
+    ..effect("supply_restriction", Subsystem::Chambers)
 };

@@ -16,10 +16,7 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "contact_stiffness_error",
     text: include_str!("contact_stiffness_error.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Contact,
     group: Some("contact_law"),
     parameters: |p, _| {
         let k = STIFFNESS.get(p);
@@ -30,4 +27,5 @@ pub const EFFECT: Effect = Effect {
         let k = STIFFNESS.get(c.plant);
         shares(&[0.1, 0.25, 0.5, 0.8, 1.25, 2.5], k)
     },
+    ..effect("contact_stiffness_error", Subsystem::Contact)
 };

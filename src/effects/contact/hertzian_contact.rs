@@ -13,24 +13,12 @@
 
 use super::*;
 
-const HERTZ: Quantity = Quantity {
-    name: "stiffness_n_per_m15",
-    index: 0,
-    get: |p, _| match p.contact.law {
-        ContactLaw::Hertz { stiffness } => stiffness,
-        ContactLaw::Linear { .. } => 0.0,
-    },
-    set: |p, _, v| p.contact.law = ContactLaw::Hertz { stiffness: v },
-};
-
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "hertzian_contact",
     text: include_str!("hertzian_contact.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Contact,
     group: Some("contact_law"),
-    parameters: |_, _| vec![reported(HERTZ, Logarithmic, [1e5, 1e10])],
+    parameters: |_, _| vec![reported(HERTZ_STIFFNESS.named("stiffness_n_per_m15"), Logarithmic, [1e5, 1e10])],
     usual: |p, _| vec![p.contact.stiffness_at(USUAL_FORCE).powf(1.5) / USUAL_FORCE.sqrt()],
     starts: |c, _| {
         // As stiff as what is believed at a force that such a device is used at [N].
@@ -39,4 +27,5 @@ pub const EFFECT: Effect = Effect {
         let a = 120.0 / d.powf(1.5);
         shares(&[0.2, 0.5, 1.0, 2.5], a)
     },
+    ..effect("hertzian_contact", Subsystem::Contact)
 };

@@ -8,27 +8,13 @@ pub mod tool_runout;
 
 use super::parts::*;
 
-use crate::plant::ContactLaw;
-
 /// Slower than this no tool turns, faster no surface waves [Hz].
 const SLOWEST_TOOL: f64 = 11.0;
 /// A wave that a fit can start from [m].
 const SMALL_WAVE: f64 = 1e-5;
 
 /// Stiffness of either law.
-const STIFFNESS: Quantity = Quantity {
-    name: "stiffness_n_per_m",
-    index: 0,
-    get: |p, _| match p.contact.law {
-        ContactLaw::Linear { stiffness } | ContactLaw::Hertz { stiffness } => stiffness,
-    },
-    set: |p, _, v| {
-        p.contact.law = match p.contact.law {
-            ContactLaw::Linear { .. } => ContactLaw::Linear { stiffness: v },
-            ContactLaw::Hertz { .. } => ContactLaw::Hertz { stiffness: v },
-        }
-    },
-};
+const STIFFNESS: Quantity = LAW_STIFFNESS.named("stiffness_n_per_m");
 
 /// A small sine or cosine at each of the two strongest frequencies in question.
 fn waves(clues: &Clues<'_>, in_question: fn(f64) -> bool) -> Vec<Vec<f64>> {

@@ -14,19 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "surface_offset",
     text: include_str!("surface_offset.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Contact,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("offset_m", p => p.contact.surface_offset),
-            Linear(5e-4),
-            [-0.02, 0.02],
-        )]
-    },
+    parameters: |_, _| vec![reported(SURFACE_OFFSET.named("offset_m"), Linear(5e-4), [-0.02, 0.02])],
     usual: |_, _| vec![5e-4],
     starts: |_, _| each(&[-2e-3, -6e-4, 6e-4, 2e-3]),
+    ..effect("surface_offset", Subsystem::Contact)
 };

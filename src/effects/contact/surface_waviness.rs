@@ -15,31 +15,15 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "surface_waviness",
     text: include_str!("surface_waviness.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Contact,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                quantity!("frequency_hz", p => p.contact.waviness.frequency),
-                Linear(0.02),
-                [0.3, SLOWEST_TOOL],
-            ),
-            hidden(
-                quantity!("sine_m", p => p.contact.waviness.sine),
-                Linear(2e-5),
-                [-0.02, 0.02],
-            ),
-            hidden(
-                quantity!("cosine_m", p => p.contact.waviness.cosine),
-                Linear(2e-5),
-                [-0.02, 0.02],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(WAVINESS_FREQUENCY.named("frequency_hz"), Linear(0.02), [0.3, SLOWEST_TOOL]),
+        hidden(WAVINESS_SINE.named("sine_m"), Linear(2e-5), [-0.02, 0.02]),
+        hidden(WAVINESS_COSINE.named("cosine_m"), Linear(2e-5), [-0.02, 0.02]),
+    ],
     usual: |_, _| vec![2.0, 2e-4, 0.0],
     starts: |c, _| waves(c, |f| f < SLOWEST_TOOL),
+    ..effect("surface_waviness", Subsystem::Contact)
 };

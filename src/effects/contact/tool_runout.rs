@@ -15,31 +15,15 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "tool_runout",
     text: include_str!("tool_runout.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Contact,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                quantity!("frequency_hz", p => p.contact.runout.frequency),
-                Linear(0.02),
-                [SLOWEST_TOOL, 200.0],
-            ),
-            hidden(
-                quantity!("sine_m", p => p.contact.runout.sine),
-                Linear(2e-5),
-                [-0.01, 0.01],
-            ),
-            hidden(
-                quantity!("cosine_m", p => p.contact.runout.cosine),
-                Linear(2e-5),
-                [-0.01, 0.01],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(RUNOUT_FREQUENCY.named("frequency_hz"), Linear(0.02), [SLOWEST_TOOL, 200.0]),
+        hidden(RUNOUT_SINE.named("sine_m"), Linear(2e-5), [-0.01, 0.01]),
+        hidden(RUNOUT_COSINE.named("cosine_m"), Linear(2e-5), [-0.01, 0.01]),
+    ],
     usual: |_, _| vec![83.0, 5e-5, 0.0],
     starts: |c, _| waves(c, |f| f >= SLOWEST_TOOL),
+    ..effect("tool_runout", Subsystem::Contact)
 };

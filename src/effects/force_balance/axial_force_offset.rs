@@ -15,19 +15,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "axial_force_offset",
     text: include_str!("axial_force_offset.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("force_n", p => p.device.axial_load.force),
-            Linear(2.0),
-            [-500.0, 500.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(AXIAL_LOAD.named("force_n"), Linear(2.0), [-500.0, 500.0])],
     usual: |_, _| vec![12.0],
     starts: |_, _| vec![vec![0.0]],
+    ..effect("axial_force_offset", Subsystem::ForceBalance)
 };

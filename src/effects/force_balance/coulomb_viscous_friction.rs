@@ -19,25 +19,16 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "coulomb_viscous_friction",
     text: include_str!("coulomb_viscous_friction.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
-    parameters: |_, _| {
-        vec![
-            reported(COULOMB, Logarithmic, [0.05, 500.0]),
-            reported(VISCOUS, Linear(20.0), [0.0, 5000.0]),
-            hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(COULOMB, Logarithmic, [0.05, 500.0]),
+        reported(VISCOUS, Linear(20.0), [0.0, 5000.0]),
+        hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
+    ],
     usual: |_, _| vec![10.0, 60.0, 3e-5],
-    starts: |_, _| {
-        vec![
-            vec![3.0, 20.0, 5e-5],
-            vec![10.0, 60.0, 5e-5],
-            vec![30.0, 100.0, 5e-5],
-        ]
-    },
+    starts: |_, _| vec![vec![3.0, 20.0, 5e-5], vec![10.0, 60.0, 5e-5], vec![30.0, 100.0, 5e-5]],
+    ..effect("coulomb_viscous_friction", Subsystem::ForceBalance)
 };

@@ -15,33 +15,14 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "end_cushioning",
     text: include_str!("end_cushioning.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                quantity!("damping_n_s_per_m", p => p.device.end_cushioning.damping),
-                Logarithmic,
-                [5.0, 1e5],
-            ),
-            reported(
-                quantity!("length_m", p => p.device.end_cushioning.length),
-                Logarithmic,
-                [2e-4, 0.025],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(CUSHION_DAMPING.named("damping_n_s_per_m"), Logarithmic, [5.0, 1e5]),
+        reported(CUSHION_LENGTH.named("length_m"), Logarithmic, [2e-4, 0.025]),
+    ],
     usual: |_, _| vec![800.0, 8e-3],
-    starts: |_, _| {
-        vec![
-            vec![300.0, 0.004],
-            vec![300.0, 0.01],
-            vec![1500.0, 0.004],
-            vec![1500.0, 0.01],
-        ]
-    },
+    starts: |_, _| vec![vec![300.0, 0.004], vec![300.0, 0.01], vec![1500.0, 0.004], vec![1500.0, 0.01]],
+    ..effect("end_cushioning", Subsystem::ForceBalance)
 };

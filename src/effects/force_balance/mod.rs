@@ -11,19 +11,6 @@ pub mod stribeck_friction;
 
 use super::parts::*;
 
-/// Coulomb friction; static friction stays above it by as much as it did.
-const COULOMB: Quantity = Quantity {
-    name: "coulomb_force_n",
-    index: 0,
-    get: |p, _| p.device.seal_friction.coulomb,
-    set: |p, _, v| {
-        let s = &mut p.device.seal_friction;
-        let extra = s.static_force - s.coulomb;
-        s.coulomb = v;
-        s.static_force = v + extra;
-    },
-};
-const VISCOUS: Quantity =
-    quantity!("viscous_coefficient_n_s_per_m", p => p.device.seal_friction.viscous);
-const PRESLIDING: Quantity =
-    quantity!("presliding_displacement_m", p => p.device.seal_friction.presliding_displacement);
+const COULOMB: Quantity = SEAL_COULOMB.named("coulomb_force_n");
+const VISCOUS: Quantity = SEAL_VISCOUS.named("viscous_coefficient_n_s_per_m");
+const PRESLIDING: Quantity = SEAL_PRESLIDING.named("presliding_displacement_m");

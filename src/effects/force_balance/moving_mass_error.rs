@@ -14,25 +14,14 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "moving_mass_error",
     text: include_str!("moving_mass_error.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
-    group: None,
     parameters: |p, _| {
         let m = p.device.moving_mass;
-        vec![reported(
-            quantity!("mass_kg", p => p.device.moving_mass),
-            Logarithmic,
-            [0.2 * m, 5.0 * m],
-        )]
+        vec![reported(MOVING_MASS.named("mass_kg"), Logarithmic, [0.2 * m, 5.0 * m])]
     },
     usual: |p, _| vec![1.2 * p.device.moving_mass],
-    starts: |c, _| {
-        shares(
-            &[0.6, 0.8, 0.92, 1.08, 1.25, 1.7],
-            c.plant.device.moving_mass,
-        )
-    },
+    starts: |c, _| shares(&[0.6, 0.8, 0.92, 1.08, 1.25, 1.7], c.plant.device.moving_mass),
+    ..effect("moving_mass_error", Subsystem::ForceBalance)
 };

@@ -16,26 +16,16 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "presliding_hysteresis",
     text: include_str!("presliding_hysteresis.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
-    parameters: |_, _| {
-        vec![
-            reported(COULOMB, Logarithmic, [0.05, 500.0]),
-            reported(PRESLIDING, Logarithmic, [1e-4, 1e-2]),
-            hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(COULOMB, Logarithmic, [0.05, 500.0]),
+        reported(PRESLIDING, Logarithmic, [1e-4, 1e-2]),
+        hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
+    ],
     usual: |_, _| vec![12.0, 8e-4, 40.0],
-    starts: |_, _| {
-        vec![
-            vec![8.0, 5e-4, 30.0],
-            vec![20.0, 5e-4, 40.0],
-            vec![8.0, 2e-3, 30.0],
-            vec![20.0, 2e-3, 40.0],
-        ]
-    },
+    starts: |_, _| vec![vec![8.0, 5e-4, 30.0], vec![20.0, 5e-4, 40.0], vec![8.0, 2e-3, 30.0], vec![20.0, 2e-3, 40.0]],
+    ..effect("presliding_hysteresis", Subsystem::ForceBalance)
 };

@@ -15,24 +15,17 @@
 use super::*;
 use crate::plant::Chain;
 
-const GROWTH: Quantity =
-    quantity!("friction_per_pressure_n_per_pa", p => p.device.seal_friction.pressure_coefficient);
-
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "pressure_dependent_friction",
     text: include_str!("pressure_dependent_friction.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
-    parameters: |_, _| {
-        vec![
-            reported(GROWTH, Logarithmic, [1e-7, 1e-2]),
-            hidden(COULOMB, Linear(3.0), [0.0, 500.0]),
-            hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
-            hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(SEAL_PRESSURE.named("friction_per_pressure_n_per_pa"), Logarithmic, [1e-7, 1e-2]),
+        hidden(COULOMB, Linear(3.0), [0.0, 500.0]),
+        hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
+        hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
+    ],
     usual: |_, _| vec![5e-5, 3.0, 40.0, 3e-5],
     starts: |c, _| {
         let mut starts = vec![vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]];
@@ -42,4 +35,5 @@ pub const EFFECT: Effect = Effect {
         }
         starts
     },
+    ..effect("pressure_dependent_friction", Subsystem::ForceBalance)
 };

@@ -16,19 +16,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "return_spring_load",
     text: include_str!("return_spring_load.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("stiffness_n_per_m", p => p.device.axial_load.return_stiffness),
-            Linear(100.0),
-            [-5e4, 5e4],
-        )]
-    },
+    parameters: |_, _| vec![reported(RETURN_STIFFNESS.named("stiffness_n_per_m"), Linear(100.0), [-5e4, 5e4])],
     usual: |_, _| vec![400.0],
     starts: |_, _| vec![vec![0.0]],
+    ..effect("return_spring_load", Subsystem::ForceBalance)
 };

@@ -14,40 +14,19 @@
 
 use super::*;
 
-const STATIC: Quantity = Quantity {
-    name: "static_force_n",
-    index: 0,
-    get: |p, _| p.device.seal_friction.static_force,
-    set: |p, _, v| {
-        let s = &mut p.device.seal_friction;
-        s.static_force = v.max(s.coulomb);
-    },
-};
-const STRIBECK: Quantity =
-    quantity!("stribeck_velocity_m_per_s", p => p.device.seal_friction.stribeck_velocity);
-
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "stribeck_friction",
     text: include_str!("stribeck_friction.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
     group: Some("friction"),
-    parameters: |_, _| {
-        vec![
-            reported(COULOMB, Logarithmic, [0.05, 500.0]),
-            reported(STATIC, Linear(5.0), [0.05, 1000.0]),
-            reported(STRIBECK, Logarithmic, [5e-4, 0.2]),
-            hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
-            hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(COULOMB, Logarithmic, [0.05, 500.0]),
+        reported(SEAL_STATIC.named("static_force_n"), Linear(5.0), [0.05, 1000.0]),
+        reported(SEAL_STRIBECK.named("stribeck_velocity_m_per_s"), Logarithmic, [5e-4, 0.2]),
+        hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
+        hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
+    ],
     usual: |_, _| vec![10.0, 16.0, 0.01, 60.0, 3e-5],
-    starts: |_, _| {
-        vec![
-            vec![4.0, 8.0, 0.008, 30.0, 5e-5],
-            vec![8.0, 16.0, 0.008, 40.0, 5e-5],
-            vec![8.0, 16.0, 0.03, 40.0, 5e-5],
-        ]
-    },
+    starts: |_, _| vec![vec![4.0, 8.0, 0.008, 30.0, 5e-5], vec![8.0, 16.0, 0.008, 40.0, 5e-5], vec![8.0, 16.0, 0.03, 40.0, 5e-5]],
+    ..effect("stribeck_friction", Subsystem::ForceBalance)
 };

@@ -17,26 +17,14 @@ use super::*;
 const LONGEST_COOLING: [f64; 2] = [0.1, 20.0];
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "chamber_cooling",
     text: include_str!("chamber_cooling.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                quantity!("pressure_lost_pa", p => p.links.cooling),
-                Linear(500.0),
-                [-1e5, 1e5],
-            ),
-            reported(
-                quantity!("cooling_time_constant_s", p => p.links.cooling_time),
-                Logarithmic,
-                LONGEST_COOLING,
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(COOLING.named("pressure_lost_pa"), Linear(500.0), [-1e5, 1e5]),
+        reported(COOLING_TIME.named("cooling_time_constant_s"), Logarithmic, LONGEST_COOLING),
+    ],
     usual: |_, _| vec![2e3, 5.0],
     starts: |_, _| vec![vec![300.0, 2.0], vec![300.0, 10.0]],
+    ..effect("chamber_cooling", Subsystem::Chambers)
 };

@@ -13,19 +13,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "chamber_shut_later",
     text: include_str!("chamber_shut_later.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("shut_time_s", p => p.links.shut_time),
-            Linear(1.0),
-            [0.0, 1e3],
-        )]
-    },
+    parameters: |_, _| vec![reported(SHUT_TIME.named("shut_time_s"), Linear(1.0), [0.0, 1e3])],
     usual: |_, _| vec![0.5],
     starts: |_, _| each(&[0.5, 2.0, 5.0, 10.0, 30.0]),
+    ..effect("chamber_shut_later", Subsystem::Chambers)
 };

@@ -15,19 +15,12 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "gap_leakage",
     text: include_str!("gap_leakage.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: LEAK,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("gap_conductance_per_volume_1_per_pa_s", p => p.links.leak.laminar),
-            Logarithmic,
-            [1e-15, 1e-3],
-        )]
-    },
+    parameters: |_, _| vec![reported(GAP_LEAK.named("gap_conductance_per_volume_1_per_pa_s"), Logarithmic, [1e-15, 1e-3])],
     usual: |_, _| vec![1e-9],
     starts: |_, _| each(&[1e-11, 1e-10, 1e-9, 1e-8, 1e-7]),
+    ..effect("gap_leakage", Subsystem::Chambers)
 };

@@ -15,19 +15,12 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "leak_in_proportion",
     text: include_str!("leak_in_proportion.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: LEAK,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("conductance_per_volume_1_per_s", p => p.links.leak.proportional),
-            Logarithmic,
-            [1e-8, 10.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(PROPORTIONAL_LEAK.named("conductance_per_volume_1_per_s"), Logarithmic, [1e-8, 10.0])],
     usual: |_, _| vec![1e-3],
     starts: |_, _| each(&[1e-5, 1e-4, 1e-3, 1e-2, 0.1]),
+    ..effect("leak_in_proportion", Subsystem::Chambers)
 };

@@ -14,31 +14,15 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "leak_opened_by_pressure",
     text: include_str!("leak_opened_by_pressure.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: LEAK,
-    parameters: |_, _| {
-        vec![
-            reported(
-                quantity!("conductance_per_volume_1_per_s", p => p.links.leak.proportional),
-                Logarithmic,
-                [1e-8, 10.0],
-            ),
-            reported(
-                quantity!("growth_per_pressure_1_per_pa", p => p.links.leak.opening),
-                Linear(1e-6),
-                [-1e-6, 1e-3],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(PROPORTIONAL_LEAK.named("conductance_per_volume_1_per_s"), Logarithmic, [1e-8, 10.0]),
+        reported(LEAK_OPENING.named("growth_per_pressure_1_per_pa"), Linear(1e-6), [-1e-6, 1e-3]),
+    ],
     usual: |_, _| vec![1e-3, 1e-6],
-    starts: |_, _| {
-        [1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1]
-            .into_iter()
-            .flat_map(|rate| [vec![rate, 2e-6], vec![rate, 1e-5]])
-            .collect()
-    },
+    starts: |_, _| [1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1].into_iter().flat_map(|rate| [vec![rate, 2e-6], vec![rate, 1e-5]]).collect(),
+    ..effect("leak_opened_by_pressure", Subsystem::Chambers)
 };

@@ -15,26 +15,14 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "load_behind_line",
     text: include_str!("load_behind_line.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                quantity!("share_1", p => p.links.load_share),
-                Linear(0.1),
-                [0.0, 0.95],
-            ),
-            reported(
-                quantity!("load_time_constant_s", p => p.links.load_time),
-                Logarithmic,
-                [1e-2, 100.0],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(LOAD_SHARE.named("share_1"), Linear(0.1), [0.0, 0.95]),
+        reported(LOAD_TIME.named("load_time_constant_s"), Logarithmic, [1e-2, 100.0]),
+    ],
     usual: |_, _| vec![0.5, 0.1],
     starts: |_, _| vec![vec![0.2, 0.5], vec![0.2, 2.0]],
+    ..effect("load_behind_line", Subsystem::Regulator)
 };

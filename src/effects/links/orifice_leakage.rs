@@ -15,19 +15,12 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "orifice_leakage",
     text: include_str!("orifice_leakage.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Chambers,
     group: LEAK,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("orifice_area_per_volume_1_per_m", p => p.links.leak.orifice),
-            Logarithmic,
-            [1e-11, 1e-1],
-        )]
-    },
+    parameters: |_, _| vec![reported(ORIFICE_LEAK.named("orifice_area_per_volume_1_per_m"), Logarithmic, [1e-11, 1e-1])],
     usual: |_, _| vec![1e-5],
     starts: |_, _| each(&[5e-8, 5e-7, 5e-6, 5e-5, 5e-4]),
+    ..effect("orifice_leakage", Subsystem::Chambers)
 };

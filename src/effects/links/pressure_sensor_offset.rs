@@ -14,19 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "pressure_sensor_offset",
     text: include_str!("pressure_sensor_offset.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("offset_pa", p => p.sensors.pressure_offset),
-            Linear(1000.0),
-            [-2e5, 2e5],
-        )]
-    },
+    parameters: |_, _| vec![reported(PRESSURE_OFFSET.named("offset_pa"), Linear(1000.0), [-2e5, 2e5])],
     usual: |_, _| vec![500.0],
     starts: |_, _| vec![vec![0.0]],
+    ..effect("pressure_sensor_offset", Subsystem::Sensors)
 };

@@ -13,28 +13,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "regulator_opens_at_zero",
     text: include_str!("regulator_opens_at_zero.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            Quantity {
-                name: "open_time_constant_s",
-                index: 0,
-                get: |p, _| {
-                    let links = &p.links;
-                    let own = links.shut_time_constant.or(links.venting_time_constant);
-                    own.unwrap_or(p.device.regulator.time_constant)
-                },
-                set: |p, _, v| p.links.shut_time_constant = Some(v),
-            },
-            Logarithmic,
-            [1e-3, 30.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(SHUT_TIME_CONSTANT.named("open_time_constant_s"), Logarithmic, [1e-3, 30.0])],
     usual: |_, _| vec![0.05],
     starts: |c, _| shares(&[0.1, 0.4, 3.0], c.plant.device.regulator.time_constant),
+    ..effect("regulator_opens_at_zero", Subsystem::Regulator)
 };

@@ -14,27 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "regulator_venting",
     text: include_str!("regulator_venting.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            Quantity {
-                name: "venting_time_constant_s",
-                index: 0,
-                get: |p, _| {
-                    let own = p.links.venting_time_constant;
-                    own.unwrap_or(p.device.regulator.time_constant)
-                },
-                set: |p, _, v| p.links.venting_time_constant = Some(v),
-            },
-            Logarithmic,
-            [1e-3, 30.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(VENTING_TIME_CONSTANT.named("venting_time_constant_s"), Logarithmic, [1e-3, 30.0])],
     usual: |_, _| vec![0.1],
     starts: |c, _| shares(&[0.3, 1.5, 4.0], c.plant.device.regulator.time_constant),
+    ..effect("regulator_venting", Subsystem::Regulator)
 };

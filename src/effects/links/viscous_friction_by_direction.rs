@@ -15,19 +15,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "viscous_friction_by_direction",
     text: include_str!("viscous_friction_by_direction.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::ForceBalance,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("viscous_asymmetry_n_s_per_m", p => p.links.viscous_asymmetry),
-            Linear(20.0),
-            [-5000.0, 5000.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(VISCOUS_ASYMMETRY.named("viscous_asymmetry_n_s_per_m"), Linear(20.0), [-5000.0, 5000.0])],
     usual: |_, _| vec![20.0],
     starts: |_, _| vec![vec![0.0]],
+    ..effect("viscous_friction_by_direction", Subsystem::ForceBalance)
 };

@@ -16,15 +16,11 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "regulator_gain_error",
     text: include_str!("regulator_gain_error.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
     parameters: |p, _| {
         let g = p.device.regulator.gain;
         vec![reported(
-            quantity!("gain", p => p.device.regulator.gain),
+            REGULATOR_GAIN.named("gain"),
             Logarithmic,
             [0.3 * g, 3.0 * g],
         )]
@@ -34,4 +30,5 @@ pub const EFFECT: Effect = Effect {
         let g = c.plant.device.regulator.gain;
         vec![vec![0.97 * g], vec![1.03 * g]]
     },
+    ..effect("regulator_gain_error", Subsystem::Regulator)
 };

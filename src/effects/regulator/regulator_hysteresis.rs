@@ -14,19 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "regulator_hysteresis",
     text: include_str!("regulator_hysteresis.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("half_width_pa", p => p.device.regulator.hysteresis),
-            Logarithmic,
-            [10.0, 2e5],
-        )]
-    },
+    parameters: |_, _| vec![reported(REGULATOR_HYSTERESIS.named("half_width_pa"), Logarithmic, [10.0, 2e5])],
     usual: |_, _| vec![3e3],
     starts: |_, _| each(&[2e3, 6e3, 15e3]),
+    ..effect("regulator_hysteresis", Subsystem::Regulator)
 };

@@ -16,26 +16,13 @@ use super::*;
 use crate::plant::Chain;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "regulator_rate_limit",
     text: include_str!("regulator_rate_limit.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                quantity!("rise_pa_per_s", p => p.device.regulator.rate_limit.rise),
-                Logarithmic,
-                [1e3, 1e8],
-            ),
-            reported(
-                quantity!("fall_pa_per_s", p => p.device.regulator.rate_limit.fall),
-                Logarithmic,
-                [1e3, 1e8],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(RISE_LIMIT.named("rise_pa_per_s"), Logarithmic, [1e3, 1e8]),
+        reported(FALL_LIMIT.named("fall_pa_per_s"), Logarithmic, [1e3, 1e8]),
+    ],
     // A small valve on a large load is far slower than one on a device.
     usual: |_, _| vec![1.5e5, 1.5e5],
     starts: |c, _| match c.plant.chain {
@@ -45,4 +32,5 @@ pub const EFFECT: Effect = Effect {
             .collect(),
         _ => vec![vec![4e5, 4e5], vec![1.2e6, 4e5], vec![4e5, 1.2e6]],
     },
+    ..effect("regulator_rate_limit", Subsystem::Regulator)
 };

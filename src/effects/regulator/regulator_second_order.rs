@@ -12,55 +12,19 @@
 //! - regulator_rate_limit: shows at large steps alone.
 
 use super::*;
-use crate::physics::regulator::SecondOrder;
-use crate::plant::PlantParameters;
-
-fn oscillator(p: &PlantParameters) -> SecondOrder {
-    p.device.regulator.second_order.unwrap_or(SecondOrder {
-        natural_frequency: 1.0 / p.device.regulator.time_constant,
-        damping_ratio: 1.0,
-    })
-}
-
-const FREQUENCY: Quantity = Quantity {
-    name: "natural_frequency_rad_per_s",
-    index: 0,
-    get: |p, _| oscillator(p).natural_frequency,
-    set: |p, _, v| {
-        p.device.regulator.second_order = Some(SecondOrder {
-            natural_frequency: v,
-            ..oscillator(p)
-        })
-    },
-};
-const DAMPING_RATIO: Quantity = Quantity {
-    name: "damping_ratio",
-    index: 0,
-    get: |p, _| oscillator(p).damping_ratio,
-    set: |p, _, v| {
-        p.device.regulator.second_order = Some(SecondOrder {
-            damping_ratio: v,
-            ..oscillator(p)
-        })
-    },
-};
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "regulator_second_order",
     text: include_str!("regulator_second_order.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(FREQUENCY, Logarithmic, [0.5, 500.0]),
-            reported(DAMPING_RATIO, Logarithmic, [0.02, 5.0]),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(NATURAL_FREQUENCY.named("natural_frequency_rad_per_s"), Logarithmic, [0.5, 500.0]),
+        reported(DAMPING_RATIO.named("damping_ratio"), Logarithmic, [0.02, 5.0]),
+    ],
     usual: |_, _| vec![25.0, 0.35],
     starts: |c, _| {
         let w = 1.0 / c.plant.device.regulator.time_constant;
         vec![vec![1.5 * w, 0.6], vec![1.5 * w, 0.3], vec![4.0 * w, 0.4]]
     },
+    ..effect("regulator_second_order", Subsystem::Regulator)
 };

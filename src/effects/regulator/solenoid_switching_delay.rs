@@ -14,19 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "solenoid_switching_delay",
     text: include_str!("solenoid_switching_delay.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("delay_s", p => p.device.switching_delay),
-            Logarithmic,
-            [1e-3, 1.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(SWITCHING_DELAY.named("delay_s"), Logarithmic, [1e-3, 1.0])],
     usual: |_, _| vec![0.03],
     starts: |_, _| each(&[0.01, 0.03, 0.08]),
+    ..effect("solenoid_switching_delay", Subsystem::Regulator)
 };

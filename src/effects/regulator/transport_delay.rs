@@ -15,19 +15,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "transport_delay",
     text: include_str!("transport_delay.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Regulator,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("delay_s", p => p.device.regulator.dead_time),
-            Logarithmic,
-            [5e-4, 2.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(REGULATOR_DEAD_TIME.named("delay_s"), Logarithmic, [5e-4, 2.0])],
     usual: |_, _| vec![0.05],
     starts: |_, _| each(&[0.01, 0.03, 0.1, 0.25]),
+    ..effect("transport_delay", Subsystem::Regulator)
 };

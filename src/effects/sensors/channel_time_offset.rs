@@ -14,19 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "channel_time_offset",
     text: include_str!("channel_time_offset.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("offset_s", p => p.sensors.force_delay),
-            Linear(0.005),
-            [-0.5, 0.5],
-        )]
-    },
+    parameters: |_, _| vec![reported(FORCE_DELAY.named("offset_s"), Linear(0.005), [-0.5, 0.5])],
     usual: |_, _| vec![0.015],
     starts: |_, _| each(&[4e-3, 0.015, 0.04, -0.01]),
+    ..effect("channel_time_offset", Subsystem::Sensors)
 };

@@ -17,26 +17,14 @@ use super::*;
 const FAR: f64 = 1e3;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "force_sensor_bias_drift",
     text: include_str!("force_sensor_bias_drift.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
-    group: None,
-    parameters: |_, _| {
-        vec![
-            reported(
-                quantity!("bias_n", p => p.sensors.force_bias),
-                Linear(1.0),
-                [-FAR, FAR],
-            ),
-            reported(
-                quantity!("drift_n_per_s", p => p.sensors.force_drift),
-                Linear(0.1),
-                [-FAR, FAR],
-            ),
-        ]
-    },
+    parameters: |_, _| vec![
+        reported(FORCE_BIAS.named("bias_n"), Linear(1.0), [-FAR, FAR]),
+        reported(FORCE_DRIFT.named("drift_n_per_s"), Linear(0.1), [-FAR, FAR]),
+    ],
     usual: |_, _| vec![3.0, 0.3],
     starts: |_, _| vec![vec![0.0, 0.0]],
+    ..effect("force_sensor_bias_drift", Subsystem::Sensors)
 };

@@ -16,18 +16,9 @@ use super::*;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
-    name: "force_sensor_gain_error",
     text: include_str!("force_sensor_gain_error.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("gain", p => p.sensors.force_gain),
-            Linear(0.02),
-            [0.2, 5.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(FORCE_GAIN.named("gain"), Linear(0.02), [0.2, 5.0])],
     usual: |_, _| vec![1.05],
     starts: |_, _| vec![vec![1.0]],
+    ..effect("force_sensor_gain_error", Subsystem::Sensors)
 };

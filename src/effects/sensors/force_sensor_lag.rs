@@ -15,19 +15,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "force_sensor_lag",
     text: include_str!("force_sensor_lag.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("time_constant_s", p => p.sensors.force_lag),
-            Logarithmic,
-            [1e-4, 2.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(FORCE_LAG.named("time_constant_s"), Logarithmic, [1e-4, 2.0])],
     usual: |_, _| vec![0.02],
     starts: |_, _| each(&[3e-3, 0.01, 0.03, 0.1]),
+    ..effect("force_sensor_lag", Subsystem::Sensors)
 };

@@ -14,19 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "force_sensor_saturation",
     text: include_str!("force_sensor_saturation.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("limit_n", p => p.sensors.force_limit),
-            Linear(2.0),
-            [5.0, 5000.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(FORCE_LIMIT.named("limit_n"), Linear(2.0), [5.0, 5000.0])],
     usual: |_, _| vec![120.0],
     starts: |c, _| vec![vec![c.largest_force]],
+    ..effect("force_sensor_saturation", Subsystem::Sensors)
 };

@@ -14,19 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "inertial_crosstalk",
     text: include_str!("inertial_crosstalk.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("mass_kg", p => p.sensors.crosstalk_mass),
-            Linear(0.1),
-            [-20.0, 20.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(CROSSTALK_MASS.named("mass_kg"), Linear(0.1), [-20.0, 20.0])],
     usual: |_, _| vec![0.5],
     starts: |_, _| vec![vec![0.0]],
+    ..effect("inertial_crosstalk", Subsystem::Sensors)
 };

@@ -14,19 +14,11 @@
 use super::*;
 
 /// The effect.
+#[rustfmt::skip] // A table: one number a line.
 pub const EFFECT: Effect = Effect {
-    name: "stroke_sensor_gain_error",
     text: include_str!("stroke_sensor_gain_error.rs"),
-    which: Which::Only,
-    subsystem: Subsystem::Sensors,
-    group: None,
-    parameters: |_, _| {
-        vec![reported(
-            quantity!("gain", p => p.sensors.stroke_gain),
-            Linear(0.01),
-            [0.2, 5.0],
-        )]
-    },
+    parameters: |_, _| vec![reported(STROKE_GAIN.named("gain"), Linear(0.01), [0.2, 5.0])],
     usual: |_, _| vec![1.02],
     starts: |_, _| vec![vec![1.0]],
+    ..effect("stroke_sensor_gain_error", Subsystem::Sensors)
 };

@@ -6,13 +6,13 @@ use super::super::error::ScenarioError;
 use super::super::sensing::white;
 use super::super::{BurrScenario, Misplacement, Scenario};
 use super::RecordedCell;
-use crate::plant::CellParameters;
+use crate::plant::registry;
 use crate::sensing::{Channel, FilterParameters};
 
 /// Relative tolerance of a number that a scenario states: none of a data sheet is truer.
 const TOLERANCE: f64 = 0.005;
-/// Tolerance of the damping of springs that are not there over their stiffness [s].
-const DAMPING_TOLERANCE: f64 = 1e-3;
+/// Damping of springs that are not there over their stiffness, and its tolerance [s].
+static DAMPING_TIME: [f64; 2] = [registry::JOINT_DAMPING.default, 1e-3];
 /// Noise of encoders that a scenario says have none [rad].
 const ENCODER_NOISE: f64 = 2e-6;
 
@@ -67,7 +67,7 @@ pub(super) fn of_scenario(
         gravity: scenario.simulation.gravity,
         servo_bandwidth: scenario.arm.servo.lag_bandwidth,
         joint_stiffness: Vec::new(),
-        joint_damping: [CellParameters::RIGID.joint_damping, DAMPING_TOLERANCE],
+        joint_damping: DAMPING_TIME,
         joint_noise: if encoders > 0.0 {
             encoders
         } else {

@@ -1,12 +1,14 @@
 //! The TOML of a rig file, table by table. The numbers of a table are `quantities`' business.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use serde::Deserialize;
 
 use super::super::sections::keys;
 use super::entry::Entry;
 use super::number::{Number, NumberKeys};
+use super::quantities::{Described, described_numbers};
 
 /// Numbers of a table, by key.
 pub(super) type Numbers = BTreeMap<String, Number>;
@@ -71,23 +73,34 @@ impl RigKeys {
     }
 }
 
-/// Tables of a rig file with their keys; those of numbers as `quantities` has them.
-#[rustfmt::skip] // A table: one table of the file a line.
+/// Keys of the tables of numbers, in the order of the format.
+static TABLES: LazyLock<Vec<(&str, Vec<&str>)>> = LazyLock::new(|| {
+    let mut tables: Vec<(&str, Vec<&str>)> = Vec::new();
+    for Described { table, key, .. } in described_numbers() {
+        match tables.last_mut() {
+            Some((last, keys)) if *last == table => keys.push(key),
+            _ => tables.push((table, vec![key])),
+        }
+    }
+    tables
+});
+
+/// Tables of a rig file with their keys.
 pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
-    let mut sections: Vec<(&'static str, &'static [&'static str])> = vec![
+    let mut sections = vec![
         ("", keys::<RigKeys>()),
         ("rig", keys::<PartKeys>()),
         ("recordings", keys::<RecordingsKeys>()),
-        ("cylinder", &["count", "bore_m", "rod_m", "stroke_m", "dead_volume_m3", "moving_mass_kg", "gravity_along_axis_m_per_s2"]),
-        ("end_stop", &["stiffness_n_per_m", "damping_n_s_per_m"]),
-        ("regulator", &["gain", "time_constant_s"]),
-        ("valve", &["supply_orifice_m2", "exhaust_orifice_m2", "discharge_coefficient"]),
-        ("gas", &["specific_gas_constant_j_per_kg_k", "heat_capacity_ratio", "temperature_k", "atmosphere_pa"]),
-        ("contact", &["stiffness_n_per_m", "damping_n_s_per_m"]),
-        ("sensors", &["rate_hz", "force_n", "stroke_m", "regulator_pressure_pa", "acceleration_m_per_s2", "regulator_pressure_drift_pa_per_s"]),
     ];
+    sections.extend(TABLES.iter().map(|(table, keys)| (*table, &keys[..])));
     let with_accuracy = [
-        "cylinder.*", "end_stop.*", "regulator.*", "valve.*", "gas.*", "contact.*", "sensors.*",
+        "cylinder.*",
+        "end_stop.*",
+        "regulator.*",
+        "valve.*",
+        "gas.*",
+        "contact.*",
+        "sensors.*",
     ];
     sections.extend(with_accuracy.map(|tables| (tables, keys::<NumberKeys>())));
     sections

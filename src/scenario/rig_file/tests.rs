@@ -117,12 +117,8 @@ fn a_believed_rig_is_what_its_file_says_and_nothing_besides() {
     assert_eq!(rig.fit, ["stairs.csv", "ride.csv"]);
     assert_eq!(rig.predict.as_deref(), Some("predict.csv"));
     assert!(rig.effects.is_empty());
-    for row in &quantities::QUANTITIES {
-        assert!(
-            row.quantity.get(&rig.plant).is_finite(),
-            "{:?}",
-            row.quantity
-        );
+    for number in quantities::NUMBERS {
+        assert!(number.quantity().get(&rig.plant).is_finite(), "{number:?}");
     }
 }
 
@@ -192,28 +188,6 @@ fn the_practice_like_file_without_recordings_is_a_rig_too() {
     let text = RIG.split("[recordings]").next().unwrap();
     let rig = read(text);
     assert!(rig.fit.is_empty() && rig.predict.is_none());
-}
-
-#[test]
-fn the_lists_of_keys_agree() {
-    let by_table: BTreeSet<String> = keys::sections()
-        .iter()
-        .filter(|(table, _)| {
-            !table.is_empty() && !table.contains('*') && !["recordings", "rig"].contains(table)
-        })
-        .flat_map(|(table, keys)| keys.iter().map(move |key| format!("{table}.{key}")))
-        .collect();
-    let numbers = quantities::QUANTITIES.iter().map(|row| row.quantity.name);
-    let sensors = quantities::SENSOR_KEYS.iter().map(|row| row.0);
-    let by_number: BTreeSet<String> = numbers
-        .chain(sensors)
-        .chain([
-            "cylinder.count",
-            "sensors.regulator_pressure_drift_pa_per_s",
-        ])
-        .map(str::to_owned)
-        .collect();
-    assert_eq!(by_table, by_number);
 }
 
 #[test]

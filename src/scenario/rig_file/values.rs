@@ -8,8 +8,8 @@ use super::super::units::{Unit, look_alike};
 use super::Tolerance;
 use super::keys::{Numbers, RecordingsKeys, RigKeys, sections};
 use super::number::Number;
-use super::quantities::{COUNT, DRIFT, QUANTITIES, Row, SENSOR_KEYS, needs};
-use crate::plant::{Chain, PlantParameters};
+use super::quantities::{DRIFT, NUMBERS, SENSOR_KEYS, needs, split};
+use crate::plant::{Chain, PlantParameters, registry};
 
 /// Sets the rig's numbers and returns those that are not exactly known.
 pub(super) fn base(
@@ -30,47 +30,36 @@ pub(super) fn base(
         let numbers = tables.iter().find(|(name, _)| *name == table);
         numbers.is_some_and(|(_, numbers)| numbers.contains_key(key))
     };
+    let chain = plant.chain;
     let asked = |dotted: &str| {
         let (table, key) = dotted.split_once('.').unwrap_or(("", dotted));
-        needs(plant.chain, dotted) || stands(table, key)
+        needs(chain, dotted) || stands(table, key)
     };
-    let (table, key, range) = COUNT;
-    let section = Section::new(document, table);
-    if asked("cylinder.count") {
-        let count = exact(&section, key, find(&section, keys, table, key)?, range)?;
-        if count.fract() != 0.0 {
-            return Err(section.refuse(key, plain(count), "a whole number".to_owned()));
-        }
-        plant.device.cylinder_count = count as u32;
-    }
-    let rows: Vec<&Row> = (QUANTITIES.iter())
-        .filter(|row| asked(row.quantity.name))
-        .collect();
     let mut tolerances = Vec::new();
-    for row in rows {
-        let (table, key) = split(row.quantity.name);
+    for known in NUMBERS.iter().filter(|known| asked(known.name)) {
+        let (table, key) = split(known.name);
         let section = Section::new(document, table);
         let number = find(&section, keys, table, key)?;
-        let value = checked(&section, key, number.value, row.range)?;
-        row.quantity.set(plant, value);
-        let tolerance = tolerance(&Section::new(document, row.quantity.name), number)?;
+        let is_count = known.name == registry::CYLINDER_COUNT.name;
+        let value = match is_count {
+            true => exact(&section, key, number, known.range)?,
+            false => checked(&section, key, number.value, known.range)?,
+        };
+        if is_count && value.fract() != 0.0 {
+            return Err(section.refuse(key, plain(value), "a whole number".to_owned()));
+        }
+        known.quantity().set(plant, value);
+        let tolerance = tolerance(&Section::new(document, known.name), number)?;
         if tolerance > 0.0 {
             tolerances.push(Tolerance {
-                key: row.quantity.name,
-                quantity: row.quantity,
+                key: known.name,
+                quantity: known.quantity(),
                 value,
                 tolerance,
             });
         }
     }
     Ok(tolerances)
-}
-
-/// Table and key of a dotted key.
-fn split(dotted: &'static str) -> (&'static str, &'static str) {
-    dotted
-        .split_once('.')
-        .expect("every number of the rig stands in a table")
 }
 
 /// A mass that makes no force [kg].
@@ -270,7 +259,8 @@ pub(super) fn pressure_drift(
     document: &Document<'_>,
     keys: &RigKeys,
 ) -> Result<f64, ScenarioError> {
-    let (table, key, range) = DRIFT;
+    let (dotted, range) = DRIFT;
+    let (table, key) = split(dotted);
     let section = Section::new(document, table);
     match keys.sensors.get(key) {
         None => Ok(0.0),

@@ -11,10 +11,10 @@ use crate::plant::Chain;
 #[must_use]
 pub fn schema() -> Value {
     let mut tables: Map<String, Value> = Map::new();
-    for (table, key, text, [low, high]) in described_numbers() {
-        let number = number(&text, Some([low, high]));
-        let entry = tables.entry(table).or_insert_with(|| table_of(Map::new()));
-        entry["properties"][key] = number;
+    for described in described_numbers() {
+        let table = tables.entry(described.table);
+        let table = table.or_insert_with(|| table_of(Map::new()));
+        table["properties"][described.key] = number(&described.text, Some(described.range));
     }
     let chains = Chain::ALL.map(Chain::name);
     tables.insert(

@@ -214,16 +214,12 @@ pub fn acceleration(
 }
 
 /// The ADC of regulator pressure and force.
+#[rustfmt::skip] // A table: one key a line.
 pub fn adc(section: &Section<'_>, keys: &AdcKeys) -> Result<AdcParameters> {
     let paper = AdcParameters::ARDUINO;
     Ok(AdcParameters {
         bits: section.count("bits", keys.bits.unwrap_or(paper.bits), 1..=24)?,
-        reference: section.number_or(
-            "reference_v",
-            keys.reference_v,
-            paper.reference,
-            0.1..=50.0,
-        )?,
+        reference: section.number_or("reference_v", keys.reference_v, paper.reference, 0.1..=50.0)?,
         noise: section.number_or("noise_steps", keys.noise_steps, paper.noise, 0.0..=1000.0)?,
     })
 }

@@ -8,6 +8,7 @@ use super::super::document::join;
 use super::super::sections::{bench_sections, model_sections, scenario_sections};
 use super::super::units::Unit;
 use super::{MINIMAL, MINIMAL_BENCH, read_any, scenarios};
+use crate::plant::{Number, registry};
 
 /// Which of the two formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +24,7 @@ struct Row {
     unit: String,
     default: String,
     range: String,
+    meaning: String,
 }
 
 /// Does a key of a chapter of the README belong to a format?
@@ -56,11 +58,12 @@ fn rows(format: Format) -> BTreeMap<String, Row> {
             continue;
         }
         let cell = |index: usize| cells[index].to_owned();
-        let (unit, default, range) = (cell(2), cell(3), cell(4));
+        let (unit, default, range, meaning) = (cell(2), cell(3), cell(4), cell(5));
         let row = Row {
             unit,
             default,
             range,
+            meaning,
         };
         assert!(
             rows.insert(key, row).is_none(),
@@ -312,4 +315,51 @@ fn range_is_kept(format: Format, key: &str, row: &Row) -> bool {
         assert!(refused(above), "{key} above {high}: {:?}", outcome(above));
     }
     true
+}
+
+/// Keys other than those of the device model file that give a number of the description, with it.
+#[rustfmt::skip] // A table: one number a line.
+const GIVEN: [(&str, &Number); 14] = [
+    ("contact.stiffness_n_per_m", &registry::CONTACT_STIFFNESS), ("load.stiffness_n_per_m", &registry::CONTACT_STIFFNESS),
+    ("contact.damping_n_s_per_m", &registry::CONTACT_DAMPING), ("load.damping_n_s_per_m", &registry::CONTACT_DAMPING),
+    ("contact.friction_coefficient", &registry::EDGE_FRICTION), ("contact.runout_frequency_hz", &registry::RUNOUT_FREQUENCY),
+    ("arm.servo.lag_bandwidth_hz", &registry::SERVO_BANDWIDTH), ("arm.drives.stiffness_n_m_per_rad", &registry::JOINT_STIFFNESS),
+    ("arm.drives.damping_time_ms", &registry::JOINT_DAMPING), ("arm.drives.backlash_deg", &registry::JOINT_PLAY),
+    ("arm.drives.friction_n_m", &registry::DRIVE_FRICTION), ("bench.gravity_along_extension_m_per_s2", &registry::GRAVITY),
+    ("estimator.moving_mass_kg", &registry::MOVING_MASS), ("estimator.seal_coulomb_force_n", &registry::SEAL_COULOMB),
+];
+
+#[test]
+fn what_gives_a_number_of_the_description_has_its_range_and_that_of_the_device_its_meaning() {
+    let mut of_device = 0;
+    for (key, row) in [Cell, Bench].into_iter().flat_map(rows) {
+        let device_key = key.strip_prefix("device.override.");
+        let of_file = device_key.filter(|key| *key != "gas_process");
+        let known = of_file.map(|key| {
+            let found = registry::all().find(|number| number.device_key == Some(key));
+            found.unwrap_or_else(|| panic!("{key} is not registered"))
+        });
+        if let Some(number) = known {
+            assert_eq!(row.meaning, number.meaning, "{key}");
+            of_device += 1;
+        }
+        let given = GIVEN.iter().find(|(given, _)| *given == key);
+        let others = ["contact.runout_um", "arm.drives.joint"];
+        let of_plant = key.starts_with("contact.") || key.starts_with("arm.drives.");
+        assert!(
+            given.is_some() || !of_plant || others.contains(&&*key),
+            "{key}"
+        );
+        let Some(number) = known.or(given.map(|(_, number)| *number)) else {
+            continue;
+        };
+        let range = Unit::of_key(&key).range(number.range);
+        let words = match range.end().is_finite() {
+            true => format!("{} to {}", range.start(), range.end()),
+            false => format!("at least {}", range.start()),
+        };
+        assert_eq!(row.range, words, "{key}");
+    }
+    let numbers = registry::all().filter(|number| number.device_key.is_some());
+    assert_eq!(of_device, 2 * numbers.count());
 }

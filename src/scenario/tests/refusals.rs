@@ -296,7 +296,7 @@ fn a_fault_in_the_device_model_is_placed_in_that_file() {
         (
             "bore_mm = 32",
             "bore_mm = 320",
-            "`device.bore_mm` is 320 mm, expected 4 to 200 mm",
+            "`device.bore_mm` is 320 mm, expected 2 to 300 mm",
         ),
         (
             "bore_mm = 32",
