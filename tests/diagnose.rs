@@ -1,6 +1,6 @@
 //! `idc diagnose`: planted physics is found, nothing is found in nothing, dirt does no harm, and what is wrong with a case is one line.
 
-mod planted;
+pub mod planted;
 mod unlisted;
 
 use std::path::Path;

@@ -22,6 +22,7 @@ mod laboratory;
 mod layers;
 mod manual;
 mod own_cell;
+mod own_law;
 mod paper_deviation;
 mod paper_page;
 mod parts;

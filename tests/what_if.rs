@@ -60,7 +60,7 @@ fn an_effect_of_a_cell_by_its_name_is_what_the_cell_s_keys_say() {
         ),
         (
             "joint_backlash:joint=2,play_deg=0.04",
-            "[[arm.drives]]\njoint = \"shoulder_lift\"\nstiffness_n_m_per_rad = 1e6\nbacklash_deg = 0.04\ndamping_time_ms = 3\n",
+            "[[arm.drives]]\njoint = \"shoulder_lift\"\nstiffness_n_m_per_rad = 1e6\nbacklash_deg = 0.04\ndamping_time_ms = 2.5\n",
         ),
         ("servo_lag", "[arm.servo]\nlag_bandwidth_hz = 25\n"),
         (

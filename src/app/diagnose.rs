@@ -18,7 +18,7 @@ use std::path::Path;
 pub(super) use all::natural;
 pub(super) use comparison_files::{BALANCE, COMPARISON, read_comparison};
 pub(super) use one::{rig_of, to_fit};
-pub(super) use outputs::{BOARD, DIAGNOSIS};
+pub(super) use outputs::{BOARD, DIAGNOSIS, HOW_TO_RUN};
 
 use super::cli::{DiagnoseArguments, output_folder};
 use super::error::{AppError, ExitCode};

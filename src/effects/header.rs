@@ -150,7 +150,7 @@ mod tests {
         for effect in kinds() {
             let name = effect.vocabulary().0;
             assert!(
-                effect.text.contains(&format!("    name: \"{name}\",\n")),
+                effect.text.contains(&format!("effect(\"{name}\", ")),
                 "the text of {name} is another effect's"
             );
             let header = effect.header();

@@ -1,9 +1,10 @@
-//! A recorded cell in space: the arm as its encoders read, pale, beside that of the improved model, and the edge coloured by where the believed model's
-//! force is off.
+//! A recorded cell in space: the arm as its encoders read, pale, beside that of the improved model and that of the believed one, and the edge coloured by
+//! where the believed model's force is off.
 //!
-//!     q = q_s + k (q_r - q_s)                 k = 1, 2, 5, 10 .. 100
+//!     q = q_s + k (q_o - q_s)                 k = 1, 2, 5, 10 .. 100
 //!
-//! q drawn, q_s simulated, q_r recorded joint angles and stroke. What an arm gives is less than a millimetre, and nobody would see it: k makes it some 30 mm.
+//! q drawn, q_s joint angles and stroke of the improved model, q_o recorded or believed ones. What an arm gives is less than a millimetre, and nobody would
+//! see it: k makes the recorded arm's departure some 30 mm.
 
 use glam::DVec3;
 use glamx::DPose3;
@@ -26,6 +27,8 @@ use crate::workpiece::load_mesh;
 const FRAME_INTERVAL: f64 = 0.02;
 /// The recorded arm.
 const PALE: Colour = [225, 230, 240, 90];
+/// The arm of the believed model.
+const AMBER: Colour = [235, 165, 60, 90];
 /// How far the recorded tool is drawn from the simulated one, at most about [m].
 const SEEN: f64 = 0.03;
 /// Departures are drawn this many times as large [1], the largest that keeps within that.
@@ -50,7 +53,7 @@ pub(super) struct Drawn<'a> {
 pub(super) fn cell_scene(
     cell: &LoadedCell,
     drawn: &Drawn<'_>,
-    improved: &PlantParameters,
+    [believed, improved]: [&PlantParameters; 2],
 ) -> Result<Scene, AppError> {
     let scenario = &cell.scenario;
     let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm)).map_err(CellError::from)?;
@@ -58,16 +61,15 @@ pub(super) fn cell_scene(
     let frames = frames(time);
     let recorded = recorded_angles(drawn.axes);
     let simulated = simulated_angles(drawn.axes, improved);
-    let stroke = |measured: bool| {
-        let channels = drawn.compared.channels.iter();
-        let mut own = channels.filter(|c| c.channel == Channel::Stroke);
-        let values = own.next().map(|c| match measured {
-            true => c.measured.clone(),
-            false => c.improved.clone(),
-        });
-        held(values.unwrap_or_default(), time.len())
-    };
-    let [out, measured_out] = [stroke(false), stroke(true)];
+    let believed = simulated_angles(drawn.axes, believed);
+    let channels = drawn.compared.channels.iter();
+    let mut strokes = channels.filter(|c| c.channel == Channel::Stroke);
+    let strokes = strokes.next().map(|c| {
+        let each = [&c.improved, &c.measured, &c.believed];
+        each.map(|values| held(values.clone(), time.len()))
+    });
+    let [out, measured_out, believed_out] =
+        strokes.unwrap_or_else(|| [(); 3].map(|()| vec![0.0; time.len()]));
     let apart = largest_departure(
         &poses(cell, &simulated, &frames),
         &poses(cell, &recorded, &frames),
@@ -77,21 +79,27 @@ pub(super) fn cell_scene(
         let pairs = from.iter().zip(to);
         pairs.map(|(from, to)| from + scale * (to - from)).collect()
     };
-    let joints = simulated.iter().zip(&recorded);
-    let recorded: Vec<Vec<f64>> = joints.map(|(from, to)| drawn_apart(from, to)).collect();
-    let measured_out = drawn_apart(&out, &measured_out);
+    let arm_apart = |other: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let joints = simulated.iter().zip(other);
+        joints.map(|(from, to)| drawn_apart(from, to)).collect()
+    };
+    let [recorded, believed] = [arm_apart(&recorded), arm_apart(&believed)];
+    let [measured_out, believed_out] =
+        [&measured_out, &believed_out].map(|other| drawn_apart(&out, other));
     let mut bodies = Vec::new();
-    for (name, angles, stroke, pale) in [
-        ("simulated", &simulated, out, false),
-        ("recorded", &recorded, measured_out, true),
+    for (name, angles, stroke, colour) in [
+        ("simulated", &simulated, out, None),
+        ("recorded", &recorded, measured_out, Some(PALE)),
+        ("believed", &believed, believed_out, Some(AMBER)),
     ] {
         let poses = poses(cell, angles, &frames);
         let mut own = arm_bodies(cell, &arm, &poses);
         own.extend(of_device(cell, &poses, &frames, &stroke));
         for body in &mut own {
             body.entity = format!("{name}/{}", body.entity);
-            if pale {
-                body.shapes.iter_mut().for_each(|shape| shape.colour = PALE);
+            if let Some(colour) = colour {
+                let shapes = body.shapes.iter_mut();
+                shapes.for_each(|shape| shape.colour = colour);
             }
         }
         bodies.extend(own);
@@ -124,8 +132,10 @@ fn scale(apart: f64) -> f64 {
 
 fn title(recording: &str, scale: f64) -> String {
     match scale {
-        1.0 => format!("{recording}, recorded arm pale"),
-        scale => format!("{recording}, recorded arm pale, its departures x{scale}"),
+        1.0 => format!("{recording}: improved arm, recorded pale, believed amber"),
+        scale => format!(
+            "{recording}: improved arm, recorded pale, believed amber, their departures x{scale}"
+        ),
     }
 }
 
@@ -299,7 +309,10 @@ mod tests {
         assert_eq!(scale(0.0), 100.0);
         // An arm that is far off is drawn where it is.
         assert_eq!(scale(0.2), 1.0);
-        assert_eq!(title("a.csv", 1.0), "a.csv, recorded arm pale");
+        assert_eq!(
+            title("a.csv", 1.0),
+            "a.csv: improved arm, recorded pale, believed amber"
+        );
         assert!(title("a.csv", scale(1e-3)).ends_with("departures x20"));
     }
 }

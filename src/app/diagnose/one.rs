@@ -10,7 +10,7 @@ use super::cell;
 use super::cell_account::add_cell;
 use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
-use super::outputs::{DIAGNOSIS, IMPROVED, NAMES, Outputs, stands_complete};
+use super::outputs::{DIAGNOSIS, HOW_TO_RUN, IMPROVED, NAMES, Outputs, stands_complete};
 use super::unlisted_picture::picture;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::case::{self, Case, NamedRecording, tolerated};
@@ -188,6 +188,11 @@ impl Prepared {
                 account.add("What improved.toml leaves out", vec![place.to_owned()]);
             }
         }
+        if !diagnosis.best().finds_nothing() {
+            let improved = self.folder.path().join(IMPROVED);
+            let how = how_to_run(&model, &improved.display().to_string());
+            answer.details.account.add(HOW_TO_RUN, vec![how]);
+        }
         let comparison = diagnosis.comparison(&case, &plant);
         let outputs = Outputs {
             answer,
@@ -195,10 +200,25 @@ impl Prepared {
             prediction: prediction.as_deref(),
             picture: picture.as_deref(),
             fit_picture: fit_picture.as_deref(),
-            scene: scene(&model, &case, &comparison, &plant)?,
+            scene: scene(&model, &case, &comparison, [&case.believed, &plant])?,
             comparison: &comparison,
         };
         outputs.write(&self.folder)
+    }
+}
+
+/// What there is to do with the improved file.
+fn how_to_run(model: &Model, improved: &str) -> String {
+    match model {
+        Model::Cell { cell, .. } if cell.scenario.own => format!(
+            "`idc run {improved}` runs the cell with what was found, on the job of the scenario file; `idc compare` tells its run from others."
+        ),
+        Model::Cell { .. } => format!(
+            "`idc diagnose RUNS --scenario {improved}` takes what was found as believed. The file has no job, so `idc run` does not take it."
+        ),
+        Model::Rig(_) => format!(
+            "`idc predict {improved} INPUTS.csv` predicts a recording with what was found; a bench runs it as its device, with `device.model = \"{improved}\"`."
+        ),
     }
 }
 
@@ -207,7 +227,7 @@ fn scene(
     model: &Model,
     case: &Case,
     comparison: &Comparison,
-    plant: &PlantParameters,
+    plants: [&PlantParameters; 2],
 ) -> Result<Option<Scene>, AppError> {
     let Model::Cell { cell, axes, .. } = model else {
         return Ok(None);
@@ -223,7 +243,7 @@ fn scene(
         compared,
         course,
     };
-    cell_scene(cell, &drawn, plant).map(Some)
+    cell_scene(cell, &drawn, plants).map(Some)
 }
 
 /// The files that a case is read from.

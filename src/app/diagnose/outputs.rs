@@ -16,6 +16,8 @@ use crate::recording::scene::Scene;
 
 const ACCOUNT: &str = "account.txt";
 pub(super) const IMPROVED: &str = "improved.toml";
+/// Part of the account that says what to do with it.
+pub(in super::super) const HOW_TO_RUN: &str = "How to run what was found";
 const PREDICTION: &str = "prediction.csv";
 /// Shape of physics without a name, where there is such.
 const PICTURE: &str = "unlisted.svg";

@@ -1,5 +1,6 @@
 //! The page of a diagnosis.
 
+use super::super::diagnose::HOW_TO_RUN;
 use super::charts::{balance, channel, origin, unlisted};
 use super::provenance;
 use super::tables::{how_well, own_numbers, ruled_out};
@@ -327,6 +328,7 @@ fn account<'a>(answer: &Answer) -> Option<Section<'a>> {
         "The arm",
         "Where on the path",
         "What improved.toml leaves out",
+        HOW_TO_RUN,
     ];
     for told in others.into_iter().filter_map(|title| part(answer, title)) {
         blocks.push(Block::Heading(told.title.clone()));
