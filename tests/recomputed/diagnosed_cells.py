@@ -3,8 +3,8 @@
     python tests/recomputed/diagnosed_cells.py FOLDER [CASE ..]       IDC names the program (default target/release/idc)
 
 For each cell fourteen effects and nothing at all. A case is named where the first effect of the answer is the one put in, of the same joint, and alone where
-there is no other. The improved cell runs without noise of its own; beside the recording of the same job the worst channel is the largest 90th percentile
-of the difference over the noise that the sensors have.
+there is no other. The improved cell runs twice, without noise of its own and with the recording's; beside the recording of the same job the worst channel is
+the largest 90th percentile of the difference over the noise that the sensors have (1.64 where the recording's noise alone is left).
 """
 
 import json
@@ -162,29 +162,35 @@ def case(folder, cell, effect):
         table = varied.split("[[effect]]")[1]
         joint = [line.split("=")[1] for line in table.splitlines() if line.startswith("joint ")]
         planted = (effect.split(":")[0], float(joint[0]) if joint else None)
+    recorded = pd.read_parquet(runs / "a" / "samples.parquet")
+    # With the recording's seed, so that the sensors' noise is the same and what is left is the model's.
+    same = folder / "same" / name
+    idc("run", folder / "out" / name / "improved.toml", "--out", same, "--quiet", "--force")
     improved = folder / "improved" / name
     idc(
         "run", folder / "out" / name / "improved.toml", "--out", improved, "--quiet", "--force",
         "--set", "arm.servo.encoder_noise_rad=0", "--set", "sensing.force.standard_deviation_n=0",
         "--set", "sensing.stroke.standard_deviation_mm=0", "--set", "sensing.regulator_pressure.standard_deviation_pa=0",
     )
-    channel, size = worst(
-        pd.read_parquet(runs / "a" / "samples.parquet"), pd.read_parquet(improved / "samples.parquet")
+    return (
+        planted,
+        found,
+        worst(recorded, pd.read_parquet(improved / "samples.parquet")),
+        worst(recorded, pd.read_parquet(same / "samples.parquet")),
     )
-    return planted, found, channel, size
 
 
 def main():
     folder = Path(sys.argv[1]).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     wanted = sys.argv[2:]
-    named = alone = near = count = clean = nothing = 0
+    named = alone = near = close = count = clean = nothing = 0
     for cell in CELLS:
         for effect in effects(CELLS[cell][2]):
             name = f"{cell}.{(effect or 'nothing').split(':')[0]}"
             if wanted and name not in wanted:
                 continue
-            planted, found, channel, size = case(folder, cell, effect)
+            planted, found, (channel, size), (other, model) = case(folder, cell, effect)
             if planted is None:
                 nothing += 1
                 clean += not found
@@ -195,9 +201,10 @@ def main():
                 named += is_named
                 alone += found == [planted]
                 near += size <= 2.0
+                close += model <= 2.0
                 verdict = "named" if is_named else "NOT NAMED"
-            print(f"{name}: {verdict} {found}; {channel} {size:.2f} sigma", flush=True)
-    print(f"named {named} of {count}, alone {alone}; improved cell within 2.0 sigma {near} of {count}; nothing found {clean} of {nothing}")
+            print(f"{name}: {verdict} {found}; {channel} {size:.2f} sigma, with the same noise {other} {model:.2f} sigma", flush=True)
+    print(f"named {named} of {count}, alone {alone}; improved cell within 2.0 sigma {near} of {count}, with the same noise {close}; nothing found {clean} of {nothing}")
 
 
 if __name__ == "__main__":
