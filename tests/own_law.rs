@@ -151,7 +151,7 @@ fn in_a_running_cell_a_law_does_what_the_effect_does_that_says_the_same() {
         |name: &str, numbers: &str| format!("\n[[effect]]\nname = \"{name}\"\n{numbers}\n");
     for (by_law, by_name, within) in [
         (
-            law("piston_force", "-20 - 300 * x"),
+            law("piston_force", "-20 - k * x") + "k = 300\n",
             effect("axial_force_offset", "force_n = -20")
                 + &effect("return_spring_load", "stiffness_n_per_m = 300"),
             1e-6,
