@@ -86,14 +86,12 @@ pub enum CellError {
         source: WorkpieceError,
     },
     /// An effect that a running cell cannot have.
-    #[error("{}: `{key}` ({effect}) cannot stand here: {reason}", file.display())]
+    #[error("{}: `{key}` cannot stand here: {reason}", file.display())]
     Effect {
         /// Scenario file.
         file: PathBuf,
         /// Its table in the file.
         key: String,
-        /// The effect.
-        effect: &'static str,
         /// Why not.
         reason: String,
     },

@@ -40,28 +40,27 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
     for effect in &scenario.effects {
         effect.put_into(&mut plant);
     }
-    let refuse = |present: &PresentEffect, reason: String| CellError::Effect {
+    let refuse = |present: &PresentEffect, reason: &str| CellError::Effect {
         file: scenario.path.clone(),
         key: present.key.clone(),
-        effect: present.effect.vocabulary().0,
-        reason,
+        reason: format!("{}: {reason}", present.effect.vocabulary().0),
     };
     let joints = chain.joints.len();
     for present in &scenario.effects {
         let is_delay = present.effect.name == "channel_time_offset";
         match present.effect.vocabulary() {
             (_, Some(joint)) if joint > joints => {
-                return Err(refuse(present, format!("the arm has {joints} joints")));
+                return Err(refuse(present, &format!("the arm has {joints} joints")));
             }
             ("joint_backlash", Some(joint))
                 if plant.cell.joint_stiffness[joint - 1].is_infinite() =>
             {
                 let reason = "its teeth_stiffness_n_m_per_rad must be finite";
-                return Err(refuse(present, reason.to_owned()));
+                return Err(refuse(present, reason));
             }
             _ if is_delay && plant.sensors.force_delay < 0.0 => {
                 let reason = "its offset_s is negative, and a cell that runs reads no force before it is there";
-                return Err(refuse(present, reason.to_owned()));
+                return Err(refuse(present, reason));
             }
             _ => {}
         }
@@ -69,7 +68,7 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
             |law: &OwnLaw| Some(&law.text) == present.law.as_ref() && law.uses_surface();
         if plant.own.iter().any(of_surface) {
             let reason = "its expression has x_s, and in a running cell the tool does not know where the surface is before it touches";
-            return Err(refuse(present, reason.to_owned()));
+            return Err(refuse(present, reason));
         }
     }
     Ok(plant)

@@ -113,15 +113,13 @@ pub enum ScenarioError {
         expected: String,
     },
     /// A law of a user's own that cannot be.
-    #[error("{place}: `{key}`, at `{part}`: {reason}")]
+    #[error("{place}: `{key}`, {reason}")]
     Expression {
         /// Where.
         place: Place,
         /// The key.
         key: String,
-        /// The part of the expression.
-        part: String,
-        /// What is wrong with it.
+        /// What is wrong with which part of it.
         reason: String,
     },
     /// A key that only has a meaning together with another one.

@@ -57,8 +57,7 @@ pub(super) fn law(
                 .document()
                 .place_in_text(&section.dotted(IS), &error.span),
             key: section.dotted(IS),
-            part: part.to_owned(),
-            reason: error.reason,
+            reason: format!("at `{part}`: {}", error.reason),
         }
     };
     let law = LawText {
