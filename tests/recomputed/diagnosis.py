@@ -297,6 +297,8 @@ class Examination:
 
     def shares(self, where, text, next_one):
         """Probabilities, shares, odds: those of diagnosis.json."""
+        if "How to run" in where:
+            return  # Commands and paths.
         of = self.of
         considered = {" and ".join(c["effects"]): c for c in of.json["considered"]}
         share = of.json["explained_share"]

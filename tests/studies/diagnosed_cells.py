@@ -1,6 +1,6 @@
 """What is diagnosed runs: effects put into two cells by --with, recorded with noise, diagnosed, and the improved cell run beside the recording.
 
-    python tests/recomputed/diagnosed_cells.py FOLDER [CASE ..]       IDC names the program (default target/release/idc)
+    python tests/studies/diagnosed_cells.py FOLDER [CASE ..]       IDC names the program (default target/release/idc)
 
 For each cell fourteen effects and nothing at all. A case is named where the first effect of the answer is the one put in, of the same joint, and alone where
 there is no other. The improved cell runs twice, without noise of its own and with the recording's; beside the recording of the same job the worst channel is
