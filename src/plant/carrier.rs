@@ -3,6 +3,7 @@
 //!     M dv/dt = F_device + M g_a - c F_contact,   c the share of the contact's direction that lies along the stroke
 
 use super::contact::ContactParameters;
+use super::contact_friction::AxialFriction;
 use super::flexing::Swung;
 use super::terms::ForceTerms;
 use crate::device::{Carrier, FINE_SWING, PistonMotion};
@@ -36,6 +37,8 @@ pub(super) struct ReplayCarrier<'a> {
     pub hold: Option<Hold>,
     /// Further forces.
     pub terms: ForceTerms<'a>,
+    /// Friction of the ball on the part.
+    pub friction: AxialFriction,
 }
 
 /// A motion over one step that the piston is held to.
@@ -129,6 +132,7 @@ impl Carrier for ReplayCarrier<'_> {
         if touching {
             let (penetration, rate) = self.penetration(time, motion);
             force -= self.axial_share() * self.contact.pushing(penetration, rate);
+            force -= self.friction.at(motion.stroke);
         }
         force
     }

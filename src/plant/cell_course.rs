@@ -13,6 +13,7 @@
 //! e_0, t_0, n_0 middle of the edge, its direction and bisector there.
 
 use super::cell_parameters::{CellParameters, MOST_JOINTS};
+use super::observation::Observation;
 use super::servo::follow;
 use super::sharp_edge::SharpEdge;
 use glam::{DQuat, DVec3};
@@ -66,10 +67,8 @@ pub struct CellCourse {
     pub edge: Vec<EdgeStation>,
     /// The edge as the ball meets it; none where it is met along its bisector.
     pub sharp: Option<Arc<SharpEdge>>,
-    /// Does the load cell measure along the slide, not along the bisector?
-    pub force_along_slide: bool,
-    /// Does a recording start with the slide out on its stop, at the pressure set, not retracted without pressure?
-    pub starts_pressing: bool,
+    /// How it was observed.
+    pub observed: Observation,
     /// Its middle, about which a part that does not lie where it should is turned.
     pub middle: EdgeStation,
     /// Radius of the ball [m].

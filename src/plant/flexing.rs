@@ -1,13 +1,13 @@
 //! Links that swing on the springs of their joints.
 //!
-//!     M d'' + D d' + K d = J_n F + J_t T + J_a (c F - G) - tau           links against motors
+//!     M d'' + D d' + K d = J_n F + J_t T + J . S + J_a (c F - a . S - G) - tau           links against motors
 //!     T = -mu F sat(v / v_s),   v = v_motors + J_t . d'
 //!
 //! With play p the spring rests at the flank, K (d - sign(d) p/2), and does nothing between the flanks.
 //!
 //! d deflections [rad], M mass matrix without the moving mass's along the slide, which there goes its own way [kg m2], D = b K (Kelvin and Voigt), J_n, J_t,
 //! J_a levers of the ball along bisector, edge and slide [m], F contact force, c its share along the slide, G what the device pushes the moving mass with, T
-//! friction along the edge, regularised so that there is none at rest, tau what the motors' acceleration takes. (Spong, J. Dyn. Syst. Meas. Control 109,
+//! friction along the edge, regularised so that there is none at rest, S friction across it (`contact_friction`), a the slide's direction, tau what the motors' acceleration takes. (Spong, J. Dyn. Syst. Meas. Control 109,
 //! 1987; gravity and Coriolis torques are taken to be compensated.)
 //!
 //! Trapezoidal in springs and contact, implicit in friction, all in the speeds at the end of a step.
@@ -56,6 +56,8 @@ pub(super) struct Bending {
     pub stiffness: f64,
     /// Its damping [N s/m].
     pub damping: f64,
+    /// Friction on the ball [N], of which what acts across the edge is taken.
+    pub friction: DVec3,
     /// What the device pushes the moving mass with, its weight included [N].
     pub push: f64,
     /// Stroke [m].
@@ -118,11 +120,26 @@ impl<'a> Flexing<'a> {
 
     /// How far the swing takes the ball at a stroke [m].
     pub fn away(&self, i: usize, stroke: f64) -> DVec3 {
-        let tip = self.course.ball[i] + self.course.slide[i] * stroke;
-        let joints = self.course.joints.iter().zip(&self.deflection);
-        joints
-            .map(|(joint, angle)| joint.axis[i].cross(tip - joint.origin[i]) * *angle)
+        (0..self.count)
+            .map(|j| self.swing(i, j, stroke) * self.deflection[j])
             .sum()
+    }
+
+    /// Where a turn of a joint takes the ball at a stroke [m].
+    fn swing(&self, i: usize, joint: usize, stroke: f64) -> DVec3 {
+        let tip = self.course.ball[i] + self.course.slide[i] * stroke;
+        let joint = &self.course.joints[joint];
+        joint.axis[i].cross(tip - joint.origin[i])
+    }
+
+    /// Speed that a force across the edge on the ball gives it over a step as long as the last one, at a stroke [m] and on a normal [m/(s N)].
+    pub fn mobility(&self, i: usize, stroke: f64, normal: DVec3) -> f64 {
+        let across = self.course.edge[i].tangent.cross(normal);
+        let mut levers = [0.0; MOST_JOINTS];
+        for (j, lever) in levers.iter_mut().enumerate().take(self.count) {
+            *lever = self.swing(i, j, stroke).dot(across);
+        }
+        dot(&levers, &self.solve(&levers))
     }
 
     /// Levers along the normal at a stroke [m].
@@ -185,12 +202,15 @@ impl<'a> Flexing<'a> {
         let lifting = dot(&lift, &self.speed);
         let contact = forces.contact + 0.5 * h * spring * share * forces.speed
             - (0.25 * h * spring - 0.5 * damper) * lifting;
+        let tangent = self.course.edge[i].tangent;
+        let across_edge = forces.friction - tangent * forces.friction.dot(tangent);
         let mut right = [0.0; MOST_JOINTS];
         for j in 0..self.count {
             let motor = self.course.joints[j].torque[i] - axial[j] * felt.carried[i];
+            let across = self.swing(i, j, forces.stroke).dot(across_edge);
             let bent = lift[j] + share * axial[j];
-            right[j] = bent * contact
-                - axial[j] * forces.push
+            right[j] = bent * contact + across
+                - axial[j] * (across_edge.dot(self.course.slide[i]) + forces.push)
                 - motor
                 - halved[j] * self.speed[j]
                 - stiffness[j] * (self.deflection[j] - rest[j]);

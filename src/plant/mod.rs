@@ -12,11 +12,13 @@ mod cell_course;
 mod cell_parameters;
 mod chain;
 mod contact;
+mod contact_friction;
 mod flexing;
 mod guide;
 mod inputs;
 mod latent;
 mod measured_motion;
+mod observation;
 mod own_law;
 mod parameters;
 pub mod registry;
@@ -36,6 +38,7 @@ pub use guide::Guide;
 pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
 pub use measured_motion::MeasuredMotion;
+pub use observation::Observation;
 pub use own_law::{
     Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, OwnLaw, SYMBOLS, Symbol, Unit,
     kept_name,

@@ -3,6 +3,7 @@
 use super::carrier::{Hold, ReplayCarrier, hermite};
 use super::cell_course::Felt;
 use super::chain;
+use super::contact_friction::{AxialFriction, ContactFriction};
 use super::flexing::{Bending, Flexing, Swung};
 use super::guide::Guide;
 use super::inputs::PlantInputs;
@@ -80,7 +81,10 @@ pub fn readings(
     truth: &Trajectory,
 ) -> [Vec<f64>; 4] {
     let sensors = &plant.sensors;
-    let along_slide = inputs.cell.as_ref().is_some_and(|c| c.force_along_slide);
+    let along_slide = inputs
+        .cell
+        .as_ref()
+        .is_some_and(|c| c.observed.force_along_slide);
     let axial: Vec<f64>;
     let force = if along_slide {
         let pairs = truth.contact_force.iter().zip(&truth.share);
@@ -133,7 +137,10 @@ pub fn trajectory(
         let felt = felt.as_ref().map(|felt| felt.pull[i]);
         mass * felt.unwrap_or(plant.gravity_along_extension)
     };
-    let pressing = inputs.cell.as_ref().is_some_and(|c| c.starts_pressing);
+    let pressing = inputs
+        .cell
+        .as_ref()
+        .is_some_and(|c| c.observed.starts_pressing);
     let (mut motion, mut state) = at_rest(plant, &device, inputs, pressing, pull(0));
     let mut flexing = inputs
         .cell
@@ -152,6 +159,7 @@ pub fn trajectory(
     let mut entered = 0.0;
     let rate = plant.contact.rate(mass);
     let usual = usual_step(&inputs.time);
+    let mut contact_friction = ContactFriction::default();
     for i in 0..count {
         state.valve = if inputs.extends[i] {
             ValvePosition::Extend
@@ -179,6 +187,7 @@ pub fn trajectory(
             rate: if present { rate } else { 0.0 },
             hold: None,
             terms: ForceTerms::default(),
+            friction: AxialFriction::default(),
         };
         if let Some(felt) = &felt {
             carrier.share = felt.share[i];
@@ -211,6 +220,18 @@ pub fn trajectory(
             carrier.share = riding.share;
             carrier.surface = riding.surface;
             normal = Some(riding.normal);
+            let centre = felt.balls[i] + felt.slides[i] * motion.stroke - felt.aside[i] + away;
+            let force = carrier.contact_force(0.0, motion);
+            let give = flexing.as_ref().map_or(0.0, |flexing| {
+                h * flexing.mobility(i, motion.stroke, riding.normal)
+            });
+            carrier.friction = contact_friction.advance(
+                centre,
+                (riding.normal, force),
+                (plant.cell.friction, plant.contact.stiffness_at(force)),
+                give,
+                (felt.slides[i], motion.stroke),
+            );
         }
         if plant.has_terms() {
             let pressures = device.pressures(&state, motion.stroke);
@@ -257,6 +278,7 @@ pub fn trajectory(
                     contact,
                     stiffness: plant.contact.stiffness_at(contact),
                     damping: plant.contact.damping,
+                    friction: leg.friction.force,
                     push: device.piston_force(&state, motion) + leg.weight[0] + felt.carried[i],
                     stroke: motion.stroke,
                     speed: motion.speed,
@@ -337,7 +359,8 @@ impl Trajectory {
         let hold_force = carrier.hold_force(0.0, motion);
         let term_force = carrier.term_force(0.0, motion);
         let outside = carrier.weight_at(0.0) + hold_force + term_force
-            - carrier.axial_share() * contact_force;
+            - carrier.axial_share() * contact_force
+            - carrier.friction.at(motion.stroke);
         let force = device.piston_force(state, motion) + outside;
         self.outlet
             .push(state.regulator.outlet + state.disturbance.outlet);

@@ -35,10 +35,12 @@ impl LoadedCell {
         let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         let joints: Vec<String> = arm.chain.joints.iter().map(|j| j.name.clone()).collect();
         let axes = arm.chain.len();
-        if !scenario.own && scenario.joint_stiffness.len() != axes {
+        if let Some(each) = &scenario.joint_stiffness
+            && each.len() != axes
+        {
             return Err(CellError::JointStiffness {
                 file: scenario.path.clone(),
-                found: scenario.joint_stiffness.len(),
+                found: each.len(),
                 axes,
             });
         }
@@ -53,11 +55,12 @@ impl LoadedCell {
         let edge = choose_edge(&scenario.path, &scenario.workpiece, &mesh)?;
         let device = &scenario.device;
         let sharp = scenario
-            .own
+            .observed
+            .sharp_edge
             .then(|| Arc::new(sharp_edge(&edge, scenario.workpiece.world_from_part)));
         let cell = ReplayCell {
             sharp,
-            own: scenario.own,
+            observed: scenario.observed,
             encoder_noise: scenario.joint_noise,
             chain: arm.chain,
             world_from_base: scenario.arm.world_from_base,
@@ -81,7 +84,9 @@ impl LoadedCell {
     pub fn plant(&self) -> PlantParameters {
         let scenario = &self.scenario;
         let mut joint_stiffness = [f64::INFINITY; MOST_JOINTS];
-        for (own, stiffness) in joint_stiffness.iter_mut().zip(&scenario.joint_stiffness) {
+        for (own, stiffness) in
+            (joint_stiffness.iter_mut()).zip(scenario.joint_stiffness.iter().flatten())
+        {
             *own = *stiffness;
         }
         let contact = &scenario.contact;
@@ -138,7 +143,7 @@ impl LoadedCell {
             time,
             joints,
             edge: &edge,
-            encoders: encoders.filter(|_| self.scenario.own),
+            encoders: encoders.filter(|_| self.scenario.observed.motors_by_encoders),
         };
         self.cell.course(commands, bandwidth)
     }

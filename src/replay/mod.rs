@@ -10,7 +10,8 @@ use crate::arm::chain::{BodyInertia, Chain, MAX_JOINTS};
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::link_poses;
 use crate::plant::{
-    CellCourse, EdgeStation, INERTIA_EVERY, JointCourse, MOST_JOINTS, SharpEdge, follow, shown,
+    CellCourse, EdgeStation, INERTIA_EVERY, JointCourse, MOST_JOINTS, Observation, SharpEdge,
+    follow, shown,
 };
 use glam::{DMat3, DVec3};
 use glamx::DPose3;
@@ -44,8 +45,8 @@ pub struct ReplayCell {
     pub encoder_noise: f64,
     /// The edge as the ball meets it; none where it is met along its bisector.
     pub sharp: Option<Arc<SharpEdge>>,
-    /// Is it one of this project's own: gravity bends its joints, its load cell measures along the slide, a recording starts with the slide out?
-    pub own: bool,
+    /// How it is observed.
+    pub observed: Observation,
 }
 
 /// Commands of one recording.
@@ -96,8 +97,7 @@ impl ReplayCell {
             slide: Vec::with_capacity(count),
             edge: commands.edge.to_vec(),
             sharp: self.sharp.clone(),
-            force_along_slide: self.own,
-            starts_pressing: self.own,
+            observed: self.observed,
             middle: self.middle,
             ball_radius: self.ball_radius,
             levers: Vec::with_capacity(count),
@@ -120,7 +120,11 @@ impl ReplayCell {
             }
             link_poses(&self.chain, self.world_from_base, &q, &mut poses);
             // Where gravity and Coriolis torques are compensated, only what accelerates bends the springs.
-            let gravity = if self.own { self.gravity } else { DVec3::ZERO };
+            let gravity = if self.observed.gravity_on_joints {
+                self.gravity
+            } else {
+                DVec3::ZERO
+            };
             inverse_dynamics(
                 &loaded,
                 self.world_from_base.rotation,

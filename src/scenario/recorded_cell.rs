@@ -16,7 +16,7 @@ use super::sections::recorded_cell_sections;
 use super::workpiece::workpiece;
 use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, WorkpieceScenario};
 use crate::effects::PresentEffect;
-use crate::plant::registry;
+use crate::plant::{Observation, registry};
 
 mod own;
 
@@ -97,8 +97,8 @@ pub struct RecordedCell {
     pub gravity: DVec3,
     /// Bandwidth of the joints' servos, critically damped [Hz].
     pub servo_bandwidth: f64,
-    /// Stiffness of the spring between motor and link of each joint, base first [N m/rad].
-    pub joint_stiffness: Vec<f64>,
+    /// Stiffness of the spring between motor and link of each joint, base first [N m/rad]; none where the joints do not give.
+    pub joint_stiffness: Option<Vec<f64>>,
     /// Damping over stiffness of each joint [s] and the standard deviation of what is believed of it [s].
     pub joint_damping: [f64; 2],
     /// Standard deviation of the encoders' noise [rad].
@@ -109,9 +109,10 @@ pub struct RecordedCell {
     pub tolerance: f64,
     /// How far off its retracted stop the slide may start [m].
     pub start_stroke_tolerance: f64,
-    /// Is it a cell that this project runs? Its joints do not give, gravity is theirs to carry, its encoders say where its motors went; its ball meets the
-    /// edge as the mesh has it, its load cell measures along the slide, and a recording starts with the slide out on its stop.
-    pub own: bool,
+    /// How it is observed.
+    pub observed: Observation,
+    /// Does its file tell a job, so that it can be run?
+    pub has_job: bool,
     /// Samples per second of its sensors, if they are fewer than the recording's rows [Hz].
     pub sample_rate: f64,
 }
@@ -163,10 +164,11 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         tolerance: belief.number("tolerance", keys.tolerance.unwrap_or(0.005), 0.0..=0.5)?,
         start_stroke_tolerance: belief.number("start_stroke_tolerance_mm", keys.start_stroke_tolerance_mm.unwrap_or(0.2), 0.0..=10.0)?,
         device,
-        own: false,
+        observed: Observation::COMPENSATED,
+        has_job: false,
         sample_rate: f64::INFINITY,
         servo_bandwidth: joints.known(&registry::SERVO_BANDWIDTH, "servo_bandwidth_hz", drives.servo_bandwidth_hz)?,
-        joint_stiffness: joints.known_numbers(&registry::JOINT_STIFFNESS, "stiffness_n_m_per_rad", &drives.stiffness_n_m_per_rad)?,
+        joint_stiffness: Some(joints.known_numbers(&registry::JOINT_STIFFNESS, "stiffness_n_m_per_rad", &drives.stiffness_n_m_per_rad)?),
         joint_damping: [
             joints.known_or_default(&registry::JOINT_DAMPING, "damping_time_ms", drives.damping_time_ms)?,
             joints.number("damping_time_tolerance_ms", drives.damping_time_tolerance_ms.unwrap_or(1.0), 0.0..=50.0)?,

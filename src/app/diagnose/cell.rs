@@ -130,7 +130,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppErro
         .map(|(_, _, recording)| axes(recording))
         .collect();
     let (noise, bandwidth) = (scenario.joint_noise, scenario.servo_bandwidth);
-    let servo = if scenario.own {
+    let servo = if scenario.observed.motors_by_encoders {
         let own = scenario.arm.servo.natural_frequency;
         pushed_servo_link(&axes, noise, bandwidth, own)
     } else {
@@ -274,7 +274,7 @@ fn recorded(
         let found = readings.iter().find(|(name, _)| *name == quantity);
         found.map_or_else(|| nothing.clone(), |(_, values)| values.clone())
     });
-    if scenario.own {
+    if scenario.observed.sharp_edge {
         forget_what_friction_holds(&mut readings, &inputs, scenario);
     }
     Ok(Recorded {
@@ -320,7 +320,9 @@ fn candidates(cell: &LoadedCell) -> Vec<&'static Effect> {
         .chain(&CELL_EFFECTS)
         .chain(JOINT_EFFECTS[..joints].iter().flatten())
         // Joints whose gravity is compensated are described by their springs alone.
-        .filter(|e| cell.scenario.own || e.vocabulary().0 != "joint_backlash")
+        .filter(|e| {
+            cell.scenario.observed.gravity_on_joints || e.vocabulary().0 != "joint_backlash"
+        })
         .collect()
 }
 
@@ -358,7 +360,7 @@ fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free>
     }
     let [time, deviation] = scenario.joint_damping;
     // Joints that do not give have no damping to speak of.
-    if deviation > 0.0 && !scenario.own {
+    if deviation > 0.0 && scenario.joint_stiffness.is_some() {
         let damping = registry::JOINT_DAMPING.quantity();
         let bounds = [0.1 * time, time + 4.0 * deviation];
         free.push(about(damping, time, deviation, bounds));

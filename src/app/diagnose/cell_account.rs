@@ -32,7 +32,7 @@ pub(super) fn add_cell(
         }
     }
     match servo {
-        Some(servo) if cell.scenario.own && !servo.differs() => {
+        Some(servo) if cell.scenario.observed.motors_by_encoders && !servo.differs() => {
             let left: Vec<String> = servo.left.iter().map(|l| format!("{l:.1}")).collect();
             arm.push(format!(
                 "From their commands to their encoders the joints answer without a lag beyond that of their servos; what loads push them aside by is {} times the encoders' noise of joints 1 to {}.",

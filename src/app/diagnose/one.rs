@@ -210,7 +210,7 @@ impl Prepared {
 /// What there is to do with the improved file.
 fn how_to_run(model: &Model, improved: &str) -> String {
     match model {
-        Model::Cell { cell, .. } if cell.scenario.own => format!(
+        Model::Cell { cell, .. } if cell.scenario.has_job => format!(
             "`idc run {improved}` runs the cell with what was found, on the job of the scenario file; `idc compare` tells its run from others."
         ),
         Model::Cell { .. } => format!(

@@ -6,7 +6,7 @@ use super::super::error::ScenarioError;
 use super::super::sensing::white;
 use super::super::{BurrScenario, Misplacement, Scenario};
 use super::RecordedCell;
-use crate::plant::registry;
+use crate::plant::{Observation, registry};
 use crate::sensing::{Channel, FilterParameters};
 
 /// Relative tolerance of a number that a scenario states: none of a data sheet is truer.
@@ -66,7 +66,7 @@ pub(super) fn of_scenario(
         contact: scenario.contact,
         gravity: scenario.simulation.gravity,
         servo_bandwidth: scenario.arm.servo.lag_bandwidth,
-        joint_stiffness: Vec::new(),
+        joint_stiffness: None,
         joint_damping: DAMPING_TIME,
         joint_noise: if encoders > 0.0 {
             encoders
@@ -76,7 +76,8 @@ pub(super) fn of_scenario(
         noise,
         tolerance: TOLERANCE,
         start_stroke_tolerance: 0.0,
-        own: true,
+        observed: Observation::RUN,
+        has_job: true,
         sample_rate: sensing.sample_rate,
     })
 }
