@@ -26,6 +26,7 @@ use super::files::Standing;
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress::StagedLine;
+use crate::diagnosis::progress::Progress;
 use crate::replay::LoadedCell;
 use crate::scenario::load_recorded_cell;
 use stages::Stages;
@@ -59,15 +60,15 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
     }
     let silent = arguments.quiet || arguments.json || arguments.verbose;
     let _interruptible = Interruptible::of_one("diagnosis", &out);
-    let line = StagedLine::new(&Stages::first(), silent);
+    let line = StagedLine::new(&stages::first(), silent);
     let prepared = one::Prepared::new(&arguments.case, cell, &out, standing)?;
     let mut stages = Stages::default();
-    line.tell(stages.begun(), None);
-    let finished = prepared.run(&mut |text| {
-        let behind = stages.behind(text);
-        line.tell(stages.told(text), behind);
+    line.tell(Stages::begun(), None);
+    let finished = prepared.run(&mut |progress: &Progress<'_>| {
+        let (words, behind) = stages.shown(progress);
+        line.tell(words, behind);
         if arguments.verbose {
-            eprintln!("{text}");
+            eprintln!("{progress}");
         }
     });
     line.end();

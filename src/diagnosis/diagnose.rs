@@ -13,6 +13,7 @@ use super::links::{LinkResidual, links};
 use super::localise::{Parting, partings, robust_rms, root_mean_square};
 use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
+use super::progress::{Observer, Step};
 use super::regime::{Regime, regimes};
 use super::remaining::Remaining;
 use super::ruled_out::{RuledOut, ruled_out};
@@ -133,29 +134,29 @@ pub struct Diagnosis {
     pub experiments: Vec<Separation>,
 }
 
-/// Diagnoses a case from its recordings as prepared; `say` is told how far it is.
+/// Diagnoses a case from its recordings as prepared; `observer` is told of its progress.
 #[must_use]
-pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> Diagnosis {
+pub fn diagnose(case: &Case, prepared: Prepared, observer: &mut Observer<'_>) -> Diagnosis {
     let Prepared {
         evidence,
         cleanings,
         notes,
     } = prepared;
     let remaining = (case.believed.chain.output())
-        .map(|channel| Remaining::of(&search_of(case, &evidence), channel, say))
+        .map(|channel| Remaining::of(&search_of(case, &evidence), channel, observer))
         .filter(|(remaining, _)| !remaining.is_noise());
     let mut roughly = Vec::new();
     let (ranked, evidence, remaining) = match remaining {
         None => {
             let search = search_of(case, &evidence);
-            let (found, rough) = search.run_and_tell(say);
+            let (found, rough) = search.run_with_rough(observer);
             roughly = rough;
             (rank(&search, found), evidence, None)
         }
         Some((mut remaining, mut seed)) => {
             let mut rounds = 0;
             loop {
-                let (mut ranked, whole) = against(case, &remaining, &seed, &evidence, say);
+                let (mut ranked, whole) = against(case, &remaining, &seed, &evidence, observer);
                 let best = &ranked[0].hypothesis.fit.prediction;
                 let left = Remaining::left_by(best, &evidence, remaining.channel);
                 rounds += 1;
@@ -170,13 +171,13 @@ pub fn diagnose(case: &Case, prepared: Prepared, say: &mut dyn FnMut(&str)) -> D
     };
     let search = search_of(case, &evidence);
     let best = &ranked[0].hypothesis;
-    say("locating the mismatch");
+    observer(&Step::Localisation.begins());
     let baseline = baseline(&search, best);
     let unseen = case.unseen.as_ref().and_then(|unseen| {
         let errors = unseen_errors(case, &evidence, unseen, &baseline.plant, best)?;
         Some((unseen.name.clone(), errors))
     });
-    say("comparing experiments");
+    observer(&Step::Experiments.begins());
     // The experiments known are those of a bench: what an arm can do is in its programs.
     let of_bench = case.believed.chain == Chain::Whole
         && evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
@@ -214,16 +215,16 @@ fn against(
     remaining: &Remaining,
     seed: &Hypothesis,
     evidence: &Evidence,
-    say: &mut dyn FnMut(&str),
+    observer: &mut Observer<'_>,
 ) -> (Vec<Ranked>, Evidence) {
     let independent = remaining.independent(evidence);
     let search = search_of(case, &independent);
-    let mut found = search.run(say);
+    let mut found = search.run(observer);
     // What the first look came to may be out of the search's sight: laws that do nothing but together.
     let seeded = search.refine(seed, FULL, 40);
     if !found.iter().any(|h| h.names() == seeded.names()) {
         let mut seeded = vec![seeded];
-        search.eliminate(&mut seeded, say);
+        search.eliminate(&mut seeded, observer);
         found.append(&mut seeded);
         found.sort_by(|a, b| search.score(a).total_cmp(&search.score(b)));
     }

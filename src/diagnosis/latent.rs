@@ -11,6 +11,7 @@ use super::evidence::{Evidence, Prediction};
 use super::fit::{Effort, FULL, Fit, ROUGH, fit};
 use super::free::{Free, Prior};
 use super::hypothesis::Hypothesis;
+use super::progress::{Observer, Step};
 use super::search::Search;
 use super::spectrum;
 use super::unlisted::elsewhere::Elsewhere;
@@ -259,7 +260,7 @@ fn window(fit: &Fit, share: f64) -> Option<[f64; 2]> {
 
 impl Search<'_> {
     /// The latent term that explains most beside a hypothesis.
-    pub fn latent(&self, base: &Hypothesis, say: &mut dyn FnMut(&str)) -> Option<Hypothesis> {
+    pub fn latent(&self, base: &Hypothesis, observer: &mut Observer<'_>) -> Option<Hypothesis> {
         // Of a full fit the held prediction is wanted.
         let base = &self.refine_from_here(base, ROUGH, 2);
         let terms = terms(self.evidence, &base.fit.prediction);
@@ -275,11 +276,8 @@ impl Search<'_> {
             .collect();
         ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
         for h in &ranked {
-            say(&format!(
-                "  {} promises {:.0}",
-                described(h),
-                self.latent_score(h)
-            ));
+            let detail = format!("{} promises {:.0}", described(h), self.latent_score(h));
+            observer(&Step::Variation.of(h, detail));
         }
         let fitted = ranked.iter().take(FITTED).map(|promising| {
             let fitted = self.refine_from_here(promising, ROUGH, ROUGH_ITERATIONS);
@@ -290,10 +288,8 @@ impl Search<'_> {
             .map(|h| {
                 let own = self.latent_score(&h);
                 let elsewhere = turns.as_ref().map_or(own, |turns| turns.cost(&h.fit));
-                say(&format!(
-                    "  {} rough {own:.0}, elsewhere {elsewhere:.0}",
-                    described(&h)
-                ));
+                let detail = format!("{} {own:.0}, elsewhere {elsewhere:.0}", described(&h));
+                observer(&Step::Variation.of(&h, detail));
                 (0.5 * (own + elsewhere), h)
             })
             .collect();

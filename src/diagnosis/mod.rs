@@ -25,6 +25,7 @@ pub mod links;
 pub mod localise;
 pub mod mismatch;
 pub mod next_experiment;
+pub mod progress;
 pub mod recorded;
 pub mod regime;
 pub mod remaining;

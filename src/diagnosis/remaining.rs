@@ -9,6 +9,7 @@
 
 use super::evidence::{Evidence, Measured, Prediction};
 use super::hypothesis::Hypothesis;
+use super::progress::{Observer, Step};
 use super::ruled_out::{exchanges, variant};
 use super::search::Search;
 use crate::plant::{CHANNELS, Channel};
@@ -42,7 +43,7 @@ impl Remaining {
     pub fn of(
         search: &Search<'_>,
         channel: Channel,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) -> (Self, Hypothesis) {
         let evidence = search.evidence;
         let every = evidence.count().div_ceil(FIRST_LOOK);
@@ -52,7 +53,7 @@ impl Remaining {
                 evidence: &first,
                 ..search.clone()
             },
-            say,
+            observer,
         );
         let prediction = evidence.predict(&best.fit.prediction.plant, true, None);
         (Self::left_by(&prediction, evidence, channel), best)
@@ -162,7 +163,7 @@ fn alike(left: &[f64]) -> f64 {
 }
 
 /// Effect after effect, as long as one more explains a part of what is left.
-fn greedy(search: &Search<'_>, say: &mut dyn FnMut(&str)) -> Hypothesis {
+fn greedy(search: &Search<'_>, observer: &mut Observer<'_>) -> Hypothesis {
     /// Share of what is left that one more must explain [1].
     const WORTH: f64 = 0.06;
     /// Candidates that are fitted with everything free.
@@ -172,10 +173,8 @@ fn greedy(search: &Search<'_>, say: &mut dyn FnMut(&str)) -> Hypothesis {
     loop {
         let exchanged = exchanged(search, &best);
         if let Some(other) = exchanged.filter(|h| h.fit.rough < (1.0 - WORTH) * best.fit.rough) {
-            say(&format!(
-                "  exchanged: {:?} {:.0}",
-                other.effects, other.fit.rough
-            ));
+            let detail = format!("exchanged {:.0}", other.fit.rough);
+            observer(&Step::RoughFit.of(&other, detail));
             best = other;
         }
         if best.effects.len() == search.most_effects {
@@ -189,10 +188,8 @@ fn greedy(search: &Search<'_>, say: &mut dyn FnMut(&str)) -> Hypothesis {
         let Some(more) = refined.into_iter().next() else {
             break;
         };
-        say(&format!(
-            "  let loose: {:?} {:.0} -> {:.0}",
-            more.effects, best.fit.rough, more.fit.rough
-        ));
+        let detail = format!("forward selection {:.0} -> {:.0}", best.fit.rough, more.fit.rough);
+        observer(&Step::RoughFit.of(&more, detail));
         if more.fit.rough > (1.0 - WORTH) * best.fit.rough {
             break;
         }

@@ -7,6 +7,7 @@ use super::evidence::{Evidence, Prediction};
 use super::fit::{Effort, FULL, ROUGH, Stage, fit, rough_noise};
 use super::free::{Free, Prior};
 use super::hypothesis::{Hypothesis, stands_for};
+use super::progress::{Observer, Step};
 use super::scale::Scale;
 use crate::effects::Effect;
 use crate::plant::PlantParameters;
@@ -122,18 +123,16 @@ impl Search<'_> {
     ///
     /// Forward, one effect after the other, as long as one more explains what it must; backward, whatever the rest does as well without; at last
     /// once more forward with the finest measure, for effects too small to be seen roughly.
-    pub fn run(&self, say: &mut dyn FnMut(&str)) -> Vec<Hypothesis> {
-        self.run_and_tell(say).0
+    pub fn run(&self, observer: &mut Observer<'_>) -> Vec<Hypothesis> {
+        self.run_with_rough(observer).0
     }
 
     /// The same, with what was fitted roughly on the way.
-    pub fn run_and_tell(&self, say: &mut dyn FnMut(&str)) -> (Vec<Hypothesis>, Vec<RoughFit>) {
+    pub fn run_with_rough(&self, observer: &mut Observer<'_>) -> (Vec<Hypothesis>, Vec<RoughFit>) {
         let noise = rough_noise(self.evidence);
         let baseline = self.baseline();
-        say(&format!(
-            "baseline {:.0}, noise {noise:.0}",
-            baseline.fit.rough
-        ));
+        let detail = format!("cost {:.0}, noise {noise:.0}", baseline.fit.rough);
+        observer(&Step::Baseline.of(&baseline, detail));
         let unexplained = baseline.clone();
         let scale = Scale::of(self.evidence, &baseline, noise);
         let mut levels = vec![vec![baseline]];
@@ -155,7 +154,7 @@ impl Search<'_> {
                 .take(carried)
                 .filter(|h| self.rough_score(h) <= near)
                 .collect();
-            let children = self.children(&carried, &mut tried, say);
+            let children = self.children(&carried, &mut tried, observer);
             let Some(best) = children.first() else { break };
             if self.rough_score(best) >= self.rough_score(&parents[0]) {
                 break;
@@ -163,13 +162,13 @@ impl Search<'_> {
             let after = best.fit.rough - noise;
             let stuck = levels.len() > 1 && after > STAGNATION * before;
             if after < scale.rough_spread() {
-                full = self.in_full(&children, &scale, &mut done, say);
+                full = self.in_full(&children, &scale, &mut done, observer);
                 full.retain(|h| scale.is_adequate(h));
             } else if stuck {
                 // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
-                full = self.in_full(parents, &scale, &mut done, say);
+                full = self.in_full(parents, &scale, &mut done, observer);
                 if !full.iter().any(|h| scale.is_adequate(h)) {
-                    full = self.anew(parents, &scale, say);
+                    full = self.anew(parents, &scale, observer);
                 }
                 full.retain(|h| scale.is_adequate(h));
             }
@@ -178,15 +177,15 @@ impl Search<'_> {
         let mut all: Vec<Hypothesis> = levels.into_iter().flatten().collect();
         all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         if full.is_empty() {
-            full = self.in_full(&all, &scale, &mut done, say);
+            full = self.in_full(&all, &scale, &mut done, observer);
         }
-        self.eliminate(&mut full, say);
-        self.add_plainer(&mut full, &all, say);
-        self.add_small(&mut full, &scale, say);
+        self.eliminate(&mut full, observer);
+        self.add_plainer(&mut full, &all, observer);
+        self.add_small(&mut full, &scale, observer);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.prefer_plain(&mut full, &scale);
-        self.add_unlisted(&mut full, &unexplained, &scale, say);
-        self.add_close(&mut full, &all, &scale, say);
+        self.add_unlisted(&mut full, &unexplained, &scale, observer);
+        self.add_close(&mut full, &all, &scale, observer);
         let before = unexplained.fit.rough - noise;
         let reference = full
             .first()
@@ -206,14 +205,14 @@ impl Search<'_> {
         &self,
         parents: &[&Hypothesis],
         tried: &mut Vec<Vec<&'static str>>,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let mut children = Vec::new();
         for parent in parents {
             let score = self.rough_score(parent);
             for candidate in self.screen(parent, ROUGH, f64::INFINITY) {
                 let gain = score - self.rough_score(&candidate);
-                say(&format!("  {:?} rough gain {gain:.1}", candidate.effects));
+                observer(&Step::RoughFit.of(&candidate, format!("gain {gain:.1}")));
                 let names = candidate.names();
                 if gain > 0.0 && !tried.contains(&names) {
                     tried.push(names);
@@ -231,11 +230,8 @@ impl Search<'_> {
             if refitted.fit.rough < leading.fit.rough {
                 *leading = refitted;
             }
-            say(&format!(
-                "  {:?} rough {:.1}",
-                leading.effects,
-                self.rough_score(leading)
-            ));
+            let detail = format!("score {:.1}", self.rough_score(leading));
+            observer(&Step::RoughFit.of(leading, detail));
         }
         children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         // What is far behind stays there.
@@ -256,7 +252,7 @@ impl Search<'_> {
         rough: &[Hypothesis],
         scale: &Scale,
         done: &mut Vec<Refined>,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
         let mut candidates: Vec<&Hypothesis> = rough
@@ -282,12 +278,9 @@ impl Search<'_> {
                 continue;
             }
             let refined = self.refine(candidate, FULL, FULL_ITERATIONS);
-            say(&format!(
-                "  {:?} full {:.1} left {:.0}",
-                refined.effects,
-                self.score(&refined),
-                refined.fit.cost() - self.evidence.count() as f64
-            ));
+            let left = refined.fit.cost() - self.evidence.count() as f64;
+            let detail = format!("score {:.1}, left {left:.0}", self.score(&refined));
+            observer(&Step::FullFit.of(&refined, detail));
             done.push(Refined {
                 rough: candidate.fit.rough,
                 full: refined.clone(),
@@ -304,7 +297,7 @@ impl Search<'_> {
         &self,
         rough: &[Hypothesis],
         scale: &Scale,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
         let near = |h: &&Hypothesis| self.rough_score(h) <= leading + HOPELESS;
@@ -322,7 +315,7 @@ impl Search<'_> {
                 other.fit.values[own..].copy_from_slice(&start);
                 let refined = self.refine(&other, FULL, FULL_ITERATIONS);
                 let left = refined.fit.cost() - self.evidence.count() as f64;
-                say(&format!("  {:?} anew left {left:.0}", refined.effects));
+                observer(&Step::FullFit.of(&refined, format!("from the start, left {left:.0}")));
                 if scale.is_adequate(&refined) {
                     return vec![refined];
                 }

@@ -21,6 +21,7 @@ use crate::diagnosis::estimate::Number;
 use crate::diagnosis::flange::{NoContact, Run, Shown};
 use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::joint_friction::JointFriction;
+use crate::diagnosis::progress::Observer;
 use crate::diagnosis::recorded::{recorded_of, run_of};
 use crate::diagnosis::servo::{Axes, ServoLink};
 use crate::effects::{PresentEffect, candidates, sought};
@@ -134,8 +135,8 @@ impl Prepared {
         })
     }
 
-    /// Diagnoses it and writes its files; `say` is told how far it is.
-    pub(super) fn run(self, say: &mut dyn FnMut(&str)) -> Result<Finished, AppError> {
+    /// Diagnoses it and writes its files; `observer` is told of its progress.
+    pub(super) fn run(self, observer: &mut Observer<'_>) -> Result<Finished, AppError> {
         let start = Instant::now();
         let provenance = provenance(&self.sources)?;
         let (model, case, recordings) = match self.work {
@@ -149,7 +150,7 @@ impl Prepared {
                 return flange(of, &self.folder, &rig, runs, unseen, start);
             }
         };
-        let diagnosis = diagnose(&case, recordings, say);
+        let diagnosis = diagnose(&case, recordings, observer);
         let found = &diagnosis.best().fit.prediction.plant;
         let (improved, plant) = match &model {
             Model::Rig(rig) => {

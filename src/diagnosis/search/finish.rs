@@ -5,6 +5,7 @@ use super::super::fit::{FULL, ROUGH};
 use super::super::free::Free;
 use super::super::hypothesis::{Hypothesis, stands_for};
 use super::super::left_out;
+use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
 use super::{FULL_ITERATIONS, HOPELESS, LOOK_ELSEWHERE, Search, same};
 
@@ -22,7 +23,7 @@ impl Search<'_> {
         &self,
         full: &mut Vec<Hypothesis>,
         rough: &[Hypothesis],
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) {
         let Some(best) = full.first() else { return };
         let plainer = |h: &&Hypothesis| {
@@ -36,7 +37,7 @@ impl Search<'_> {
             .map(|h| self.refine(h, FULL, FULL_ITERATIONS))
             .collect();
         for h in &more {
-            say(&format!("  plainer: {:?} {:.1}", h.effects, self.score(h)));
+            observer(&Step::Variation.of(h, format!("plainer {:.1}", self.score(h))));
         }
         full.extend(more);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
@@ -50,7 +51,7 @@ impl Search<'_> {
         full: &mut Vec<Hypothesis>,
         rough: &[Hypothesis],
         scale: &Scale,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) {
         let Some(best) = full.first().filter(|best| scale.is_explained(best)) else {
             return;
@@ -68,7 +69,7 @@ impl Search<'_> {
             .map(|h| self.refine(h, FULL, FULL_ITERATIONS))
             .collect();
         for h in &more {
-            say(&format!("  close: {:?} {:.1}", h.effects, self.score(h)));
+            observer(&Step::Variation.of(h, format!("close {:.1}", self.score(h))));
         }
         full.extend(more);
         // The search has weighed the first one with more than its score.
@@ -109,7 +110,7 @@ impl Search<'_> {
         full: &mut Vec<Hypothesis>,
         baseline: &Hypothesis,
         scale: &Scale,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) {
         let Some(best) = full.first() else { return };
         if scale.is_explained(best) {
@@ -121,7 +122,7 @@ impl Search<'_> {
         }
         let mut found: Vec<Hypothesis> = bases
             .iter()
-            .filter_map(|base| self.latent(base, say))
+            .filter_map(|base| self.latent(base, observer))
             .collect();
         found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         if let Some(first) = found.into_iter().next()
@@ -131,7 +132,8 @@ impl Search<'_> {
             let without = (bases.iter().find(own)).map(|base| self.fitted_where(base, &first));
             match without.filter(|h| scale.is_adequate(h) || self.score(h) <= self.score(&first)) {
                 Some(without) => {
-                    say(&format!("  without a term {:.1}", self.score(&without)));
+                    let detail = format!("without a term {:.1}", self.score(&without));
+                    observer(&Step::Variation.of(&without, detail));
                     full.insert(0, without);
                 }
                 None => full.insert(0, first),
@@ -144,7 +146,7 @@ impl Search<'_> {
     pub(in crate::diagnosis) fn eliminate(
         &self,
         full: &mut Vec<Hypothesis>,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) {
         while let Some(best) = full.first()
             && best.effects.len() > self.shown.len()
@@ -158,11 +160,8 @@ impl Search<'_> {
                 break;
             }
             let lighter = fewer.swap_remove(0);
-            say(&format!(
-                "  without: {:?} {:.1} against {score:.1}",
-                lighter.effects,
-                self.score(&lighter)
-            ));
+            let detail = format!("lighter {:.1}, before {score:.1}", self.score(&lighter));
+            observer(&Step::Variation.of(&lighter, detail));
             let better = self.score(&lighter) < score;
             full.push(lighter);
             full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
@@ -235,7 +234,7 @@ impl Search<'_> {
         &self,
         full: &mut Vec<Hypothesis>,
         scale: &Scale,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) {
         while let Some(best) = full.first()
             && best.effects.len() < self.most_effects + self.shown.len()
@@ -255,16 +254,17 @@ impl Search<'_> {
             }
             let more = self.refine(&more, precise, FULL_ITERATIONS);
             let gain = score - self.score(&more);
-            say(&format!("  small: {:?} gain {gain:.1}", more.effects));
+            observer(&Step::Variation.of(&more, format!("small, gain {gain:.1}")));
             if gain <= least {
                 return;
             }
             let again = self.fitted_where(best, &more);
             let gain = self.score(&again) - self.score(&more);
             let held = again.fit.rough - more.fit.rough;
-            say(&format!("  of which its own {gain:.1}, held {held:.1}"));
+            let detail = format!("of which its own {gain:.1}, held {held:.1}");
+            observer(&Step::Variation.of(&more, detail));
             let contradicted = held < -CHANCE * (2.0 * more.fit.free.len() as f64).sqrt();
-            let kept = gain > least && !contradicted && self.foretells(&more, &again, say);
+            let kept = gain > least && !contradicted && self.foretells(&more, &again, observer);
             if self.score(&again) < score {
                 full[0] = again;
             }
@@ -280,13 +280,14 @@ impl Search<'_> {
         &self,
         more: &Hypothesis,
         simpler: &Hypothesis,
-        say: &mut dyn FnMut(&str),
+        observer: &mut Observer<'_>,
     ) -> bool {
         let cost = |h: &Hypothesis| left_out::cost(self.evidence, &h.fit);
         let (Some(without), Some(with)) = (cost(simpler), cost(more)) else {
             return true;
         };
-        say(&format!("  and {:.1} of what was left out", without - with));
+        let detail = format!("and {:.1} of what was left out", without - with);
+        observer(&Step::Variation.with(detail));
         with < without
     }
 }
