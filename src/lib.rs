@@ -15,6 +15,8 @@
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
 //! - [`design`]: the design study
+//! - [`diagnosis`]: what physics recordings contain that the believed model leaves out
+//! - [`case`]: a folder with recordings, read and diagnosed
 //! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
 //! - [`metrics`]: the numbers of a run
@@ -28,6 +30,7 @@
 
 pub mod app;
 pub mod arm;
+pub mod case;
 pub mod cell;
 pub mod control;
 pub mod design;
@@ -54,3 +57,9 @@ pub mod scenario;
 pub mod sensing;
 pub mod simulation;
 pub mod workpiece;
+
+pub use case::{Case, Diagnosed, diagnose};
+pub use cell::Cell;
+pub use diagnosis::settings::Settings;
+pub use recording::Recording;
+pub use rig::Rig;

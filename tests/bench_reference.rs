@@ -30,7 +30,7 @@ fn run(scenario: &str, step: f64, substeps: usize) -> Recording {
     let mut scenario = load_bench(&project(scenario)).unwrap();
     scenario.step = step;
     scenario.substeps = substeps;
-    let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_, _| ()).unwrap();
+    let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_| ()).unwrap();
     assert!(stop.is_none(), "{stop:?}");
     recording
 }

@@ -89,7 +89,7 @@ fn device() -> DeviceParameters {
 
 fn record(bench: BenchScenario) -> Recording {
     let rig = Rig::new(bench).unwrap_or_else(|error| panic!("{error}"));
-    let (recording, stop) = rig.run(&mut |_, _| ()).unwrap();
+    let (recording, stop) = rig.run(&mut |_| ()).unwrap();
     assert!(stop.is_none(), "{stop:?}");
     recording
 }

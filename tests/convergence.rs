@@ -42,7 +42,7 @@ fn halving_both_steps_moves_nothing_that_matters() {
 fn bench(scenario: &BenchScenario, substeps: usize) -> Recording {
     let mut scenario = scenario.clone();
     scenario.substeps = substeps;
-    let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_, _| ()).unwrap();
+    let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_| ()).unwrap();
     assert!(stop.is_none(), "{}", stop.unwrap());
     recording
 }

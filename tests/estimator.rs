@@ -79,7 +79,7 @@ fn score(scenario: BenchScenario) -> Score {
         panic!("the surface must move");
     };
     let slides = 0.95 * scenario.device.parameters.seal_friction.coulomb;
-    let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_, _| ()).unwrap();
+    let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_| ()).unwrap();
     assert!(stop.is_none(), "{stop:?}");
     let channel = |name| recording.values(name).unwrap();
     let (force, seal) = (channel(schema::CONTACT_FORCE), channel(schema::SEAL_FORCE));

@@ -15,6 +15,7 @@ mod diagnose;
 mod effects;
 mod equations;
 mod estimator;
+mod examples;
 mod first_diagnosis;
 mod help;
 mod import;

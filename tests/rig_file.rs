@@ -57,7 +57,7 @@ fn bench_and_prediction_agree_with_every_effect_that_both_have() {
     std::fs::write(path("rig.toml"), RIG.to_owned() + EFFECTS).unwrap();
     std::fs::write(path("bench.toml"), BENCH).unwrap();
     let rig = Rig::new(load_bench(&path("bench.toml")).unwrap()).unwrap();
-    let (recording, stop) = rig.run(&mut |_, _| ()).unwrap();
+    let (recording, stop) = rig.run(&mut |_| ()).unwrap();
     assert_eq!(stop, None);
 
     let time = recording.time().to_vec();

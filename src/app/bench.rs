@@ -46,7 +46,7 @@ pub(super) fn run_watched(
     let start = Instant::now();
     let length = (PART_INTERVAL / rig.scenario.step).round().max(1.0) as usize;
     let mut handed_over = 0;
-    let (recording, stop) = rig.run_watched(&mut |simulation| {
+    let (recording, stop) = rig.run(&mut |simulation| {
         if simulation.steps().is_multiple_of(PROGRESS_STEPS) {
             progress(simulation.steps(), simulation.total_steps());
         }

@@ -224,7 +224,7 @@ mod tests {
         let mut scenario = load_bench(&path).unwrap();
         let all = scenario.clone();
         scenario.duration = 0.01;
-        let (recording, _) = Rig::new(scenario).unwrap().run(&mut |_, _| ()).unwrap();
+        let (recording, _) = Rig::new(scenario).unwrap().run(&mut |_| ()).unwrap();
         assert!(!figures(&all, &recording).unwrap().contains("set 1.8 bar"));
     }
 
@@ -235,7 +235,7 @@ mod tests {
         scenario.duration = 1.5;
         let (recording, stop) = Rig::new(scenario.clone())
             .unwrap()
-            .run(&mut |_, _| ())
+            .run(&mut |_| ())
             .unwrap();
         assert_eq!(stop, None);
         figures(&scenario, &recording).unwrap()

@@ -1,10 +1,7 @@
 //! `idc diagnose`: from a folder with a rig file and recordings to what the model lacks, for one case or many.
 
 mod all;
-mod arm_prediction;
 mod board;
-mod cell;
-mod cell_account;
 mod cell_scene;
 mod comparison_files;
 mod fit_picture;
@@ -13,11 +10,8 @@ mod outputs;
 mod stages;
 mod unlisted_picture;
 
-use std::path::Path;
-
 pub(super) use all::natural;
 pub(super) use comparison_files::{BALANCE, COMPARISON, read_comparison};
-pub(super) use one::{rig_of, to_fit};
 pub(super) use outputs::{BOARD, DIAGNOSIS, HOW_TO_RUN};
 
 use super::cli::{DiagnoseArguments, output_folder};
@@ -28,12 +22,7 @@ use super::output::say;
 use super::progress::StagedLine;
 use crate::diagnosis::progress::Progress;
 use crate::replay::LoadedCell;
-use crate::scenario::load_recorded_cell;
 use stages::Stages;
-
-fn load_cell(path: &Path) -> Result<LoadedCell, AppError> {
-    Ok(LoadedCell::new(load_recorded_cell(path)?)?)
-}
 
 /// Diagnoses and writes.
 pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
@@ -43,7 +32,11 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         (_, true) => Standing::Replace,
         _ => Standing::Refuse,
     };
-    let cell = arguments.scenario.as_deref().map(load_cell).transpose()?;
+    let cell = arguments
+        .scenario
+        .as_deref()
+        .map(LoadedCell::load)
+        .transpose()?;
     let cell = cell.as_ref();
     if arguments.all {
         return all::run(arguments, cell, &out, standing);

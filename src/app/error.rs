@@ -1,9 +1,9 @@
 //! What ends a command early, and the exit code that goes with it.
 
+use crate::case::CaseError;
 use crate::cell::CellError;
 use crate::design::DesignError;
 use crate::diagnosis::answer::AnswerError;
-use crate::diagnosis::flange::NoContact;
 use crate::diagnosis::recorded::RecordedError;
 use crate::import::ImportError;
 use crate::metrics::MetricsError;
@@ -43,24 +43,6 @@ pub enum AppError {
     /// A mesh.
     #[error(transparent)]
     Workpiece(#[from] WorkpieceError),
-    /// A case of a cell without a recording to diagnose from.
-    #[error(
-        "{folder}: no recording in it has a measured column, expected at least one to diagnose from"
-    )]
-    NothingMeasured {
-        /// The case's folder.
-        folder: String,
-    },
-    /// Two recordings of a cell's case that were not measured.
-    #[error(
-        "{file}: it has no measured column, nor has {first}; expected one recording at most that is to be predicted"
-    )]
-    TwoUnseen {
-        /// The second.
-        file: String,
-        /// The first.
-        first: String,
-    },
     /// A folder without results.
     #[error(
         "{folder}: there are no results in it, expected the folder of a run (summary.json), a diagnosis (diagnosis.json) or a study (design.json)"
@@ -289,14 +271,9 @@ pub enum AppError {
     /// A recording of a rig.
     #[error(transparent)]
     Recorded(#[from] RecordedError),
-    /// A folder without a rig file.
-    #[error(
-        "{folder} holds no rig.toml; expected a folder with one and the recordings that it names (--all takes a folder of such folders)"
-    )]
-    NoCase {
-        /// The folder.
-        folder: String,
-    },
+    /// A case.
+    #[error(transparent)]
+    Case(CaseError),
     /// A folder without cases.
     #[error(
         "{folder}: {reason}; expected a folder of folders, each with a rig.toml and the recordings that it names"
@@ -314,36 +291,6 @@ pub enum AppError {
         failed: usize,
         /// Of how many.
         of: usize,
-    },
-    /// A rig file that names nothing to diagnose from.
-    #[error("{file}: `recordings.fit` names no recording, expected the files to diagnose from")]
-    NoRecordings {
-        /// Rig file.
-        file: String,
-    },
-    /// A run of a contact flange without contact.
-    #[error("{folder}: {source}")]
-    NoContact {
-        /// The case.
-        folder: String,
-        /// Which run, and what was expected.
-        source: NoContact,
-    },
-    /// A pattern that no recording fits.
-    #[error("{file}: `recordings.fit` has {pattern:?}, which no file beside it fits")]
-    NoneLike {
-        /// Rig file.
-        file: String,
-        /// The pattern.
-        pattern: String,
-    },
-    /// A rig file that carries a term without a name already.
-    #[error(
-        "{file} holds [latent], a term that a diagnosis found; expected the rig file as believed, to diagnose from (idc predict takes this one)"
-    )]
-    Latent {
-        /// Rig file.
-        file: String,
     },
     /// A diagnosis stands where one is to go.
     #[error(
@@ -368,22 +315,6 @@ pub enum AppError {
         /// The file.
         file: String,
     },
-    /// A rig whose motion cannot be followed.
-    #[error(
-        "{rig}: the rig goes astray at {time} s of {inputs}: its {column} is {value}; expected a rig that stays finite"
-    )]
-    Astray {
-        /// Rig file.
-        rig: String,
-        /// Recording.
-        inputs: String,
-        /// When [s].
-        time: f64,
-        /// What.
-        column: &'static str,
-        /// Its value.
-        value: f64,
-    },
     /// A proof.
     #[error(transparent)]
     Proof(#[from] crate::proof::ProofError),
@@ -399,6 +330,18 @@ pub enum AppError {
     /// A document as JSON.
     #[error("cannot write or read results as JSON: {0}")]
     Json(#[from] serde_json::Error),
+}
+
+impl From<CaseError> for AppError {
+    fn from(error: CaseError) -> Self {
+        match error {
+            CaseError::Scenario(error) => Self::Scenario(error),
+            CaseError::Cell(error) => Self::Cell(error),
+            CaseError::Recording(error) => Self::Recording(error),
+            CaseError::Recorded(error) => Self::Recorded(error),
+            error => Self::Case(error),
+        }
+    }
 }
 
 impl From<DesignError> for AppError {

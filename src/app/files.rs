@@ -16,7 +16,6 @@ use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
-use crate::scenario::{ArmScenario, BurrScenario, DeviceScenario, WorkpieceScenario};
 
 pub(super) const RECORDING: &str = "recording.rrd";
 pub(super) const SAMPLES: &str = "samples.parquet";
@@ -229,27 +228,6 @@ pub(super) fn provenance(files: &[&PathBuf], seed: u64) -> Result<Provenance, Ap
         .zip(files)
         .map(|(name, path)| (name.as_str(), path.as_path()));
     Ok(Provenance::of(files, Some(seed))?)
-}
-
-/// The files that a cell is made of, that of its scenario first.
-pub(super) fn files_of_cell<'a>(
-    path: &'a PathBuf,
-    arm: &'a ArmScenario,
-    device: &'a DeviceScenario,
-    workpiece: &'a WorkpieceScenario,
-) -> Vec<&'a PathBuf> {
-    let mut files = vec![path];
-    let burr = match &workpiece.burr {
-        BurrScenario::Table { path } => Some(path),
-        _ => None,
-    };
-    let others = [&device.model, &arm.urdf, &workpiece.mesh];
-    for file in others.into_iter().chain(burr) {
-        if !files.contains(&file) {
-            files.push(file);
-        }
-    }
-    files
 }
 
 /// Writes recording.rrd.

@@ -25,7 +25,6 @@ mod picture;
 mod predict;
 mod progress;
 mod prove;
-mod recordings;
 mod report;
 mod run;
 mod schema;

@@ -10,7 +10,7 @@ use super::error::{AppError, ExitCode};
 use super::files::{Standing, is_same, prepare_file};
 use super::output::say;
 use super::progress;
-use super::recordings::{check_finite, read_rig, shown_columns};
+use crate::case::{check_finite, read_rig, shown_columns};
 use crate::diagnosis::clean::clean;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::diagnosis::words::of_column;

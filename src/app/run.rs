@@ -19,7 +19,7 @@ use crate::cell::Cell;
 use crate::metrics::{Summary, SummaryLimits, Timing, summarise};
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
-use crate::simulation::{FrameLog, SampleLog, Simulation, SimulationError};
+use crate::simulation::{CellRun, FrameLog, SampleLog, SimulationError};
 
 /// Steps between two looks at the progress bar.
 const PROGRESS_STEPS: usize = 500;
@@ -51,25 +51,28 @@ pub(super) fn run_heard(
     mut listeners: Vec<Listener<'_>>,
 ) -> Result<Finished, AppError> {
     let start = Instant::now();
-    let mut simulation = Simulation::new(cell);
-    let mut stop = None;
-    while !simulation.done() && stop.is_none() {
-        stop = simulation.step().err();
-        if simulation.steps().is_multiple_of(PROGRESS_STEPS) {
-            progress(simulation.steps(), simulation.total_steps());
+    let mut failed = None;
+    let run = cell.run(&mut |simulation| {
+        let (steps, last) = (simulation.steps(), simulation.total_steps());
+        if steps.is_multiple_of(PROGRESS_STEPS) {
+            progress(steps, last);
         }
         for listener in &mut listeners {
-            if simulation.steps().is_multiple_of(listener.part) {
-                listener.hand_over(&simulation)?;
+            let due = simulation.done() || steps.is_multiple_of(listener.part);
+            if failed.is_none() && due {
+                failed = listener.hand_over(simulation.logs()).err();
             }
         }
-    }
-    for listener in &mut listeners {
-        listener.hand_over(&simulation)?;
+    })?;
+    if let Some(error) = failed {
+        return Err(error);
     }
     let wall = start.elapsed().as_secs_f64();
-    let (samples, frames) = simulation.into_logs();
-    let recording = samples.into_recording()?;
+    let CellRun {
+        recording,
+        frames,
+        stop,
+    } = run;
     let mut summary = summarise(&recording, &limits(cell)).map_err(|source| AppError::Metrics {
         file: cell.scenario.path.display().to_string(),
         source,
@@ -134,8 +137,7 @@ impl<'a> Listener<'a> {
         })
     }
 
-    fn hand_over(&mut self, simulation: &Simulation<'_>) -> Result<(), AppError> {
-        let (samples, frames) = simulation.logs();
+    fn hand_over(&mut self, (samples, frames): (&SampleLog, &FrameLog)) -> Result<(), AppError> {
         if samples.count() == self.samples {
             return Ok(());
         }

@@ -4,6 +4,8 @@ mod error;
 mod part;
 mod plant;
 
+use std::path::Path;
+
 use glam::{DMat3, DVec3};
 use glamx::DPose3;
 
@@ -21,7 +23,7 @@ use crate::path::profile::MotionLimits;
 use crate::path::{Plan, ToolPath};
 use crate::physics::push_only::PushOnly;
 use crate::plant::{EdgeStation, PlantParameters, Relief};
-use crate::scenario::{ArmScenario, Scenario, ScenarioError, attainable_set_pressure};
+use crate::scenario::{ArmScenario, Scenario, ScenarioError, attainable_set_pressure, load};
 
 /// A cell, ready to run.
 pub struct Cell {
@@ -54,6 +56,14 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// Reads a scenario file and makes the cell that it describes.
+    ///
+    /// # Errors
+    /// Those of the file, and of [`Cell::new`].
+    pub fn load(path: &Path) -> Result<Self, CellError> {
+        Self::new(load(path)?)
+    }
+
     /// Loads what the scenario names, plans the job and checks that it can be done.
     ///
     /// # Errors

@@ -2,10 +2,10 @@
 //!
 //! Plain data: the pictures, the recording for the viewer and the page are made of it, and it is what stands in comparison.parquet and balance.parquet.
 
-use super::case::{Case, NamedRecording};
 use super::clean::clean;
 use super::diagnose::Diagnosis;
 use super::flange::Run;
+use super::input::{DiagnosisInput, NamedRecording};
 use super::links::{Link, left_by};
 use super::regime::{TIME, regimes, values_of};
 use crate::plant::{CHANNELS, Chain, Channel, PlantInputs, PlantParameters, simulate};
@@ -81,7 +81,7 @@ pub struct Balance {
 impl Diagnosis {
     /// The comparison, the improved model as its file says it.
     #[must_use]
-    pub fn comparison(&self, case: &Case, improved: &PlantParameters) -> Comparison {
+    pub fn comparison(&self, case: &DiagnosisInput, improved: &PlantParameters) -> Comparison {
         let models = [&self.believed, &self.baseline.plant, improved];
         let simulated = |inputs: &PlantInputs| models.map(|plant| simulate(plant, inputs).readings);
         let recordings = self.evidence.recordings.iter().enumerate();
@@ -119,7 +119,7 @@ impl Diagnosis {
         }))
     }
 
-    fn cleaned(&self, case: &Case, unseen: &NamedRecording) -> Channels {
+    fn cleaned(&self, case: &DiagnosisInput, unseen: &NamedRecording) -> Channels {
         let mut readings = unseen.recorded.readings.clone();
         if readings.iter().flatten().any(|value| value.is_finite()) {
             let mass = self.believed.device.moving_mass;

@@ -1,13 +1,13 @@
 //! From a case to everything that is found in it.
 
 use super::answer::UNLISTED;
-use super::case::{Case, NamedRecording, Prepared};
 use super::clean::{Cleaning, clean};
 use super::estimate::{Estimates, estimates};
 use super::evidence::{Evidence, Prediction};
 use super::fit::FULL;
 use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
+use super::input::{DiagnosisInput, NamedRecording, Prepared};
 use super::left_out::{self, left_out};
 use super::links::{LinkResidual, links};
 use super::localise::{Parting, partings, robust_rms, root_mean_square};
@@ -17,15 +17,11 @@ use super::progress::{Observer, Step};
 use super::regime::{Regime, regimes};
 use super::remaining::Remaining;
 use super::ruled_out::{RuledOut, ruled_out};
-use super::search::{MOST_EFFECTS, MOST_OF_LINK, RoughFit, Search};
+use super::search::{RoughFit, Search};
+use super::settings::Settings;
 use super::unlisted::Shape;
 use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
-
-/// Times that what no law explains is looked at anew.
-const MOST_ROUNDS: usize = 3;
-/// Odds below which an explanation is no alternative [1].
-pub const LEAST_ODDS: f64 = 0.01;
 
 /// An explanation among others.
 #[derive(Debug, Clone)]
@@ -98,6 +94,8 @@ impl ErrorSize {
 /// What was found.
 #[derive(Debug)]
 pub struct Diagnosis {
+    /// Thresholds that it was made with.
+    pub settings: Settings,
     /// The rig as believed.
     pub believed: PlantParameters,
     /// What is tolerated of it.
@@ -136,19 +134,24 @@ pub struct Diagnosis {
 
 /// Diagnoses a case from its recordings as prepared; `observer` is told of its progress.
 #[must_use]
-pub fn diagnose(case: &Case, prepared: Prepared, observer: &mut Observer<'_>) -> Diagnosis {
+pub fn diagnose(
+    case: &DiagnosisInput,
+    prepared: Prepared,
+    settings: &Settings,
+    observer: &mut Observer<'_>,
+) -> Diagnosis {
     let Prepared {
         evidence,
         cleanings,
         notes,
     } = prepared;
     let remaining = (case.believed.chain.output())
-        .map(|channel| Remaining::of(&search_of(case, &evidence), channel, observer))
+        .map(|channel| Remaining::of(&search_of(case, &evidence, settings), channel, observer))
         .filter(|(remaining, _)| !remaining.is_noise());
     let mut roughly = Vec::new();
     let (ranked, evidence, remaining) = match remaining {
         None => {
-            let search = search_of(case, &evidence);
+            let search = search_of(case, &evidence, settings);
             let (found, rough) = search.run_with_rough(observer);
             roughly = rough;
             (rank(&search, found), evidence, None)
@@ -156,11 +159,12 @@ pub fn diagnose(case: &Case, prepared: Prepared, observer: &mut Observer<'_>) ->
         Some((mut remaining, mut seed)) => {
             let mut rounds = 0;
             loop {
-                let (mut ranked, whole) = against(case, &remaining, &seed, &evidence, observer);
+                let (mut ranked, whole) =
+                    against((case, settings), &remaining, &seed, &evidence, observer);
                 let best = &ranked[0].hypothesis.fit.prediction;
                 let left = Remaining::left_by(best, &evidence, remaining.channel);
                 rounds += 1;
-                if rounds == MOST_ROUNDS || !remaining.is_more_than(&left) {
+                if rounds == settings.rounds || !remaining.is_more_than(&left) {
                     break (ranked, whole, Some(left));
                 }
                 // The first look was too rough: what it left would hide what is still to be found.
@@ -169,7 +173,7 @@ pub fn diagnose(case: &Case, prepared: Prepared, observer: &mut Observer<'_>) ->
             }
         }
     };
-    let search = search_of(case, &evidence);
+    let search = search_of(case, &evidence, settings);
     let best = &ranked[0].hypothesis;
     observer(&Step::Localisation.begins());
     let baseline = baseline(&search, best);
@@ -186,6 +190,7 @@ pub fn diagnose(case: &Case, prepared: Prepared, observer: &mut Observer<'_>) ->
         separations(&evidence, &best.fit, &rival.hypothesis.fit)
     });
     Diagnosis {
+        settings: *settings,
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
         looked_at: case.candidates.len(),
@@ -211,14 +216,14 @@ pub fn diagnose(case: &Case, prepared: Prepared, observer: &mut Observer<'_>) ->
 
 /// Explanations found against what no law explains, with samples that are all but independent; then fitted to all samples.
 fn against(
-    case: &Case,
+    (case, settings): (&DiagnosisInput, &Settings),
     remaining: &Remaining,
     seed: &Hypothesis,
     evidence: &Evidence,
     observer: &mut Observer<'_>,
 ) -> (Vec<Ranked>, Evidence) {
     let independent = remaining.independent(evidence);
-    let search = search_of(case, &independent);
+    let search = search_of(case, &independent, settings);
     let mut found = search.run(observer);
     // What the first look came to may be out of the search's sight: laws that do nothing but together.
     let seeded = search.refine(seed, FULL, 40);
@@ -230,10 +235,10 @@ fn against(
     }
     let mut ranked = rank(&search, found);
     let whole = remaining.whole(evidence);
-    let search = search_of(case, &whole);
+    let search = search_of(case, &whole, settings);
     let all_samples = &FULL[FULL.len() - 1..];
     for (place, ranked) in ranked.iter_mut().enumerate() {
-        if place == 0 || ranked.odds >= LEAST_ODDS {
+        if place == 0 || ranked.odds >= search.settings.least_odds {
             ranked.hypothesis = search.refine(&ranked.hypothesis, all_samples, 40);
             ranked.left_out = left_out(&whole, &ranked.hypothesis.fit);
         }
@@ -242,11 +247,11 @@ fn against(
 }
 
 /// The search in some evidence of a case.
-fn search_of<'a>(case: &Case, evidence: &'a Evidence) -> Search<'a> {
+fn search_of<'a>(case: &DiagnosisInput, evidence: &'a Evidence, settings: &Settings) -> Search<'a> {
     // A single link is simulated in no time.
     let (look, most_effects) = match case.believed.chain {
-        Chain::Whole => (3, MOST_EFFECTS),
-        _ => (12, MOST_OF_LINK),
+        Chain::Whole => (3, settings.most_effects),
+        _ => (12, settings.most_effects_of_part),
     };
     Search {
         evidence,
@@ -256,6 +261,7 @@ fn search_of<'a>(case: &Case, evidence: &'a Evidence) -> Search<'a> {
         shown: case.shown.clone(),
         look,
         most_effects,
+        settings: *settings,
     }
 }
 
@@ -271,7 +277,7 @@ fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
             hypothesis,
         })
         .collect();
-    let limit = -2.0 * LEAST_ODDS.ln();
+    let limit = -2.0 * search.settings.least_odds.ln();
     let close = ranked[0].score + limit;
     let near = ranked.iter().take_while(|r| r.score <= close).count();
     for leading in &mut ranked[..near] {
@@ -340,7 +346,7 @@ fn baseline(search: &Search<'_>, best: &Hypothesis) -> Baseline {
 
 /// Errors of prediction of a recording that was not looked at; none where it holds no measured column.
 fn unseen_errors(
-    case: &Case,
+    case: &DiagnosisInput,
     evidence: &Evidence,
     unseen: &NamedRecording,
     baseline: &PlantParameters,
@@ -386,7 +392,9 @@ impl Diagnosis {
 
     /// Rivals that the recordings do not rule out.
     pub fn rivals(&self) -> impl Iterator<Item = &Ranked> {
-        self.ranked[1..].iter().filter(|r| r.odds >= LEAST_ODDS)
+        self.ranked[1..]
+            .iter()
+            .filter(|r| r.odds >= self.settings.least_odds)
     }
 }
 

@@ -17,7 +17,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 /// Standard deviation of what a law leaves out, as a share of its own effect [1].
-const IDEALISATION: f64 = 0.005;
+const IDEALISATION_OF_NUMBERS: f64 = 0.005;
 /// Standard deviations to either side in a 95 % interval [1].
 const INTERVAL: f64 = 1.96;
 
@@ -87,7 +87,7 @@ fn allowance(believed: &PlantParameters, free: &Free, value: f64, sample: f64) -
     let own = value - if before.is_finite() { before } else { 0.0 };
     let late = ["delay_s", "offset_s", "time_constant_s"].contains(&free.quantity.name);
     let between = if late { sample / 12f64.sqrt() } else { 0.0 };
-    (IDEALISATION * own).hypot(between)
+    (IDEALISATION_OF_NUMBERS * own).hypot(between)
 }
 
 /// The median distance of samples [s] of the slowest recording.
@@ -190,8 +190,8 @@ fn amplitude(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::case::tolerated;
     use crate::diagnosis::free::Prior;
+    use crate::diagnosis::input::tolerated;
     use crate::plant::registry;
 
     #[test]

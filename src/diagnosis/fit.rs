@@ -4,11 +4,10 @@
 
 use super::evidence::{Evidence, Prediction};
 use super::free::Free;
+use super::settings::HUBER;
 use crate::plant::PlantParameters;
 use nalgebra::{DMatrix, DVector};
 
-/// Residual beyond which a sample counts in proportion only, in standard deviations [1].
-const HUBER: f64 = 4.0;
 /// Step of the difference quotients in the fit's coordinate [1].
 const STEP: f64 = 0.03;
 /// The same where the piston is not held: an impact that is met a tenth of a millisecond earlier reads quite another acceleration, and a wider quotient

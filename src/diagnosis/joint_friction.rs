@@ -7,7 +7,8 @@
 //! tolerance. What a model leaves out is the same over a whole recording: friction is known no better than the recordings agree on it.
 
 use super::free::{Prior, free_of};
-use super::search::{LOOK_ELSEWHERE, Shown};
+use super::search::Shown;
+use super::settings::Settings;
 use crate::effects::JOINT_FRICTION;
 use crate::plant::PlantParameters;
 
@@ -136,7 +137,7 @@ impl JointFriction {
     #[must_use]
     pub fn differs(&self) -> bool {
         let gain = ((self.friction - self.believed) / self.deviation).powi(2);
-        gain > self.count.max(1.0).ln() + LOOK_ELSEWHERE
+        gain > self.count.max(1.0).ln() + Settings::DEFAULT.look_elsewhere
     }
 
     /// The effect, if it does.

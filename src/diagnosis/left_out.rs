@@ -7,11 +7,10 @@
 
 use super::evidence::Evidence;
 use super::fit::{Fit, robust_sum, with_values};
+use super::settings::HUBER;
 use crate::plant::{CHANNELS, simulate};
 use nalgebra::{DMatrix, DVector};
 
-/// Residual beyond which a sample counts in proportion only, as in the fit [1].
-const HUBER: f64 = 4.0;
 /// Longest step in a coordinate, as in the fit [1].
 const LONGEST: f64 = 3.0;
 

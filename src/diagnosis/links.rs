@@ -8,14 +8,13 @@ use super::evidence::{Evidence, Measured, Prediction};
 use super::fit::with_values;
 use super::free::Free;
 use super::localise::{by_channel, robust_rms};
+use super::settings::HUBER;
 use crate::plant::{CHANNELS, Channel, PlantCourse, PlantParameters, Trajectory, readings};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Error in time that is forgiven [s].
 const ROUGH_TIME: f64 = 0.006;
-/// Residual beyond which a sample counts in proportion only, as in the fit [1].
-const HUBER: f64 = 4.0;
 /// Step of the difference quotients in the fit's coordinate [1].
 const STEP: f64 = 0.1;
 

@@ -21,7 +21,7 @@ const ENOUGH: usize = 6000;
 /// Samples of all recordings that a first look takes, about.
 const FIRST_LOOK: usize = 4000;
 /// What is left counts as the sensor's noise up to so many times of it [1].
-const NOISE_ALONE: f64 = 1.3;
+const LIKE_NOISE: f64 = 1.3;
 
 /// What the best laws leave.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,12 +89,12 @@ impl Remaining {
 
     /// Does it turn out to be clearly more than what was left in the end?
     pub fn is_more_than(&self, other: &Self) -> bool {
-        self.size > NOISE_ALONE * other.size
+        self.size > LIKE_NOISE * other.size
     }
 
     /// Is it no more than the sensor's noise?
     pub fn is_noise(&self) -> bool {
-        self.size < NOISE_ALONE * self.noise && self.alike < 2.0
+        self.size < LIKE_NOISE * self.noise && self.alike < 2.0
     }
 
     /// Noise of the channels where what is left counts as it.
@@ -188,7 +188,10 @@ fn greedy(search: &Search<'_>, observer: &mut Observer<'_>) -> Hypothesis {
         let Some(more) = refined.into_iter().next() else {
             break;
         };
-        let detail = format!("forward selection {:.0} -> {:.0}", best.fit.rough, more.fit.rough);
+        let detail = format!(
+            "forward selection {:.0} -> {:.0}",
+            best.fit.rough, more.fit.rough
+        );
         observer(&Step::RoughFit.of(&more, detail));
         if more.fit.rough > (1.0 - WORTH) * best.fit.rough {
             break;

@@ -10,7 +10,7 @@ use super::hypothesis::Hypothesis;
 /// Standard deviations of the sum of squares that noise alone may come to [1].
 const SPREAD: f64 = 6.0;
 /// Share of the mismatch that the idealisation of a law may leave [1].
-const IDEALISATION: f64 = 0.002;
+const IDEALISATION_LEFT: f64 = 0.002;
 /// Share of what is explained already below which one more effect is not told from the idealisation of the others [1].
 const IMMATERIAL: f64 = 1e-3;
 
@@ -52,7 +52,7 @@ impl Scale {
         let chance = SPREAD * (2.0 * self.count).sqrt();
         let idealised = match hypothesis.effects.len() {
             0 => 0.0,
-            _ => IDEALISATION * (self.full - self.count),
+            _ => IDEALISATION_LEFT * (self.full - self.count),
         };
         left < chance.max(idealised)
     }

@@ -9,28 +9,13 @@ use super::free::{Free, Prior};
 use super::hypothesis::{Hypothesis, stands_for};
 use super::progress::{Observer, Step};
 use super::scale::Scale;
+use super::settings::Settings;
 use crate::effects::Effect;
 use crate::plant::PlantParameters;
 use rayon::prelude::*;
 
 /// Iterations of a full fit.
 const FULL_ITERATIONS: usize = 40;
-/// Rough cost over the leading one beyond which a hypothesis is not built upon [1].
-const FAR_BEHIND: f64 = 2.0;
-/// Effects at most, of a whole device.
-pub const MOST_EFFECTS: usize = 3;
-/// Those of a part of it, which is seen with all its details.
-pub const MOST_OF_LINK: usize = 6;
-/// Hypotheses that are carried on from each number of effects.
-const PARENTS: usize = 2;
-/// Candidates of each that are fitted in full.
-const REFINED: usize = 4;
-/// Rough cost behind the best at which a hypothesis is given up [1].
-const HOPELESS: f64 = 300.0;
-/// Share of what a hypothesis leaves unexplained that one more effect must explain, or the search stagnates [1].
-const STAGNATION: f64 = 0.5;
-/// Cost of having looked at so many effects: twice the logarithm of their number [1].
-pub const LOOK_ELSEWHERE: f64 = 7.0;
 
 /// Everything a search needs.
 #[derive(Clone)]
@@ -49,6 +34,8 @@ pub struct Search<'a> {
     pub look: usize,
     /// Effects at most, beside those shown.
     pub most_effects: usize,
+    /// Thresholds.
+    pub settings: Settings,
 }
 
 /// An effect that a link of its own has shown, such as a servo's in commands and encoders: what it found is what is believed of its numbers.
@@ -106,7 +93,7 @@ impl Search<'_> {
     pub fn penalty(&self, hypothesis: &Hypothesis) -> f64 {
         let numbers = hypothesis.fit.free.len() - hypothesis.tolerated(&self.believed);
         numbers as f64 * (self.evidence.count() as f64).ln()
-            + LOOK_ELSEWHERE * hypothesis.effects.len() as f64
+            + self.settings.look_elsewhere * hypothesis.effects.len() as f64
     }
 
     /// Cost of a rough fit with its penalty.
@@ -146,9 +133,9 @@ impl Search<'_> {
             let carried = if before < scale.rough_spread() {
                 1
             } else {
-                PARENTS
+                self.settings.carried_on
             };
-            let near = FAR_BEHIND * self.rough_score(&parents[0]);
+            let near = self.settings.far_behind * self.rough_score(&parents[0]);
             let carried: Vec<&Hypothesis> = parents
                 .iter()
                 .take(carried)
@@ -160,7 +147,7 @@ impl Search<'_> {
                 break;
             }
             let after = best.fit.rough - noise;
-            let stuck = levels.len() > 1 && after > STAGNATION * before;
+            let stuck = levels.len() > 1 && after > self.settings.stagnation * before;
             if after < scale.rough_spread() {
                 full = self.in_full(&children, &scale, &mut done, observer);
                 full.retain(|h| scale.is_adequate(h));
@@ -222,7 +209,7 @@ impl Search<'_> {
         }
         children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         let near = children.first().map_or(0.0, |h| self.rough_score(h));
-        for leading in children.iter_mut().take(REFINED) {
+        for leading in children.iter_mut().take(self.settings.fitted_in_full) {
             if leading.effects.len() > 1 && self.rough_score(leading) > 3.0 * near {
                 break;
             }
@@ -235,8 +222,8 @@ impl Search<'_> {
         }
         children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         // What is far behind stays there.
-        let near = FAR_BEHIND * children.first().map_or(0.0, |h| self.rough_score(h));
-        for leading in children.iter_mut().take(REFINED) {
+        let near = self.settings.far_behind * children.first().map_or(0.0, |h| self.rough_score(h));
+        for leading in children.iter_mut().take(self.settings.fitted_in_full) {
             if self.rough_score(leading) < near {
                 self.choose(leading);
             }
@@ -257,8 +244,8 @@ impl Search<'_> {
         let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
         let mut candidates: Vec<&Hypothesis> = rough
             .iter()
-            .take(REFINED)
-            .take_while(|h| self.rough_score(h) <= leading + HOPELESS)
+            .take(self.settings.fitted_in_full)
+            .take_while(|h| self.rough_score(h) <= leading + self.settings.given_up)
             .collect();
         // The plainest first.
         candidates.sort_by_key(|h| h.fit.free.len());
@@ -300,9 +287,12 @@ impl Search<'_> {
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let leading = rough.first().map_or(0.0, |h| self.rough_score(h));
-        let near = |h: &&Hypothesis| self.rough_score(h) <= leading + HOPELESS;
-        let mut candidates: Vec<&Hypothesis> =
-            rough.iter().take(REFINED).take_while(near).collect();
+        let near = |h: &&Hypothesis| self.rough_score(h) <= leading + self.settings.given_up;
+        let mut candidates: Vec<&Hypothesis> = rough
+            .iter()
+            .take(self.settings.fitted_in_full)
+            .take_while(near)
+            .collect();
         // The richest law first: it has most to lose.
         candidates.sort_by_key(|h| std::cmp::Reverse(h.fit.free.len()));
         for candidate in candidates {

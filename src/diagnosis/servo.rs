@@ -3,7 +3,8 @@
 //!     minimise   sum over joints and samples ((q_measured - q(u, f))/sigma)^2     over the bandwidth f
 
 use super::free::{Prior, free_of};
-use super::search::{LOOK_ELSEWHERE, Shown};
+use super::search::Shown;
+use super::settings::Settings;
 use crate::effects::SERVO_LAG;
 use crate::plant::{PlantParameters, follow};
 
@@ -151,7 +152,7 @@ impl ServoLink {
     /// Do the encoders show another bandwidth than the believed one? By Schwarz's criterion, as for any effect.
     #[must_use]
     pub fn differs(&self) -> bool {
-        self.weight * self.gain > (self.count as f64).ln() + LOOK_ELSEWHERE
+        self.weight * self.gain > (self.count as f64).ln() + Settings::DEFAULT.look_elsewhere
     }
 
     /// The effect, if they do.

@@ -7,10 +7,11 @@ use crate::cell::{CellError, arm_options, choose_edge, station};
 use crate::plant::{
     CellCourse, CellParameters, EdgeStation, MOST_JOINTS, PlantParameters, SharpEdge,
 };
-use crate::scenario::RecordedCell;
+use crate::scenario::{RecordedCell, load_recorded_cell};
 use crate::workpiece::{EdgeCurve, load_mesh};
 use glam::DVec3;
 use glamx::DPose3;
+use std::path::Path;
 use std::sync::Arc;
 
 /// A recorded cell with its arm and its edge.
@@ -27,6 +28,14 @@ pub struct LoadedCell {
 }
 
 impl LoadedCell {
+    /// Reads the scenario of a cell, one that is run or one that was recorded, as what is believed of recordings.
+    ///
+    /// # Errors
+    /// Those of the file, and of [`LoadedCell::new`].
+    pub fn load(path: &Path) -> Result<Self, CellError> {
+        Self::new(load_recorded_cell(path)?)
+    }
+
     /// Loads what the file names.
     ///
     /// # Errors

@@ -1,5 +1,7 @@
 //! One step of the bench rig, read from top to bottom.
 
+use std::path::Path;
+
 use super::carrier::BenchCarrier;
 use super::error::RigError;
 use super::estimator::RigEstimator;
@@ -10,8 +12,8 @@ use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
 use crate::plant::{Moment, PlantParameters, RunningSensors, SensorReadings};
 use crate::recording::{Recording, RecordingError};
-use crate::scenario::ScenarioError;
 use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
+use crate::scenario::{ScenarioError, load_bench};
 use crate::sensing::{Readings, SensorChain, Truth};
 
 /// A bench rig with its job: all that does not change during a run.
@@ -28,6 +30,14 @@ pub struct Rig {
 }
 
 impl Rig {
+    /// Reads a scenario file and makes the bench that it describes.
+    ///
+    /// # Errors
+    /// Those of the file, and of [`Rig::new`].
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        Self::new(load_bench(path)?)
+    }
+
     /// Sets up a rig.
     ///
     /// # Errors
@@ -63,30 +73,19 @@ impl Rig {
         })
     }
 
-    /// Runs the whole job. `progress` is told steps done and in all.
+    /// Simulates the whole job; `observer` is shown the simulation after every step.
     ///
     /// # Errors
     /// Nothing could be recorded.
     pub fn run(
         &self,
-        progress: &mut dyn FnMut(usize, usize),
-    ) -> Result<(Recording, Option<RigError>), RecordingError> {
-        self.run_watched(&mut |simulation| progress(simulation.steps(), simulation.total_steps()))
-    }
-
-    /// Runs the whole job, and shows it to `watch` after every step.
-    ///
-    /// # Errors
-    /// Nothing could be recorded.
-    pub fn run_watched(
-        &self,
-        watch: &mut dyn FnMut(&RigSimulation<'_>),
+        observer: &mut dyn FnMut(&RigSimulation<'_>),
     ) -> Result<(Recording, Option<RigError>), RecordingError> {
         let mut simulation = RigSimulation::new(self);
         let mut stop = None;
         while !simulation.done() && stop.is_none() {
             stop = simulation.step().err();
-            watch(&simulation);
+            observer(&simulation);
         }
         Ok((simulation.into_recording()?, stop))
     }

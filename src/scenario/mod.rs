@@ -11,6 +11,7 @@ use crate::sensing::SensingParameters;
 
 pub mod bench;
 mod bench_file;
+mod cell_files;
 pub(crate) mod check;
 pub mod controller;
 mod device;
@@ -35,6 +36,7 @@ mod variation;
 mod workpiece;
 
 pub use bench::BenchScenario;
+pub use cell_files::files_of_cell;
 pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};
 pub use device::load_device;
 pub use effect_request::EffectRequest;

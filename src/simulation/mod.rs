@@ -6,11 +6,13 @@
 pub mod contact;
 mod dispatch;
 mod error;
+mod run;
 mod sample;
 pub mod slide;
 mod step;
 pub mod world;
 
 pub use error::SimulationError;
+pub use run::CellRun;
 pub use sample::{FrameLog, SampleLog};
 pub use step::{Simulation, StepTimes};

@@ -78,6 +78,7 @@ pub struct Simulation<'a> {
     carried: f64,
     steps: usize,
     total_steps: usize,
+    stopped: bool,
     laws: Vec<JointLaw>,
     slide_force: f64,
     log: SampleLog,
@@ -158,6 +159,7 @@ impl<'a> Simulation<'a> {
             device,
             steps: 0,
             total_steps,
+            stopped: false,
             laws: vec![JointLaw::default(); count],
             slide_force: 0.0,
             log: SampleLog::new(count - 1, total_steps),
@@ -176,9 +178,9 @@ impl<'a> Simulation<'a> {
         self.total_steps
     }
 
-    /// Is the job done?
+    /// Whether the job is done, or was stopped by an error.
     pub fn done(&self) -> bool {
-        self.steps >= self.total_steps
+        self.stopped || self.steps >= self.total_steps
     }
 
     /// What was recorded so far.
@@ -229,6 +231,7 @@ impl<'a> Simulation<'a> {
         self.touch(&reference);
         lap(|t| &mut t.rigid_bodies);
         let result = self.sample(&reference, set_pressure);
+        self.stopped = result.is_err();
         lap(|t| &mut t.sample);
         result
     }

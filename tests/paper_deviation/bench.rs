@@ -121,7 +121,7 @@ fn record(text: &str) -> (Recording, Vec<f64>, [f64; 2], f64) {
     let ends = times.chain([scenario.duration]).collect();
     let areas = scenario.device.parameters.areas();
     let atmosphere = scenario.device.parameters.gas.atmosphere;
-    let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_, _| ()).unwrap();
+    let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_| ()).unwrap();
     assert_eq!(stop, None);
     (
         recording,

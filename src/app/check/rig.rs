@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::super::diagnose::{rig_of, to_fit};
 use super::super::error::AppError;
-use super::super::recordings::read_rig;
 use super::report::{Report, shown};
+use crate::case::{read_rig, rig_of, to_fit};
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::plant::Chain;
 use crate::recording::csv::median_step;

@@ -11,11 +11,11 @@ use serde::Serialize;
 pub use evaluate::ScenarioEvaluator;
 
 use super::error::AppError;
-use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, Standing, files_of_cell, provenance};
+use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, Standing, provenance};
 use super::report::{REPORT, of_design};
 use crate::design::{self, Domain, Study, StudyResult, Variable};
 use crate::recording::provenance::Provenance;
-use crate::scenario::{self, AnyScenario};
+use crate::scenario::{self, AnyScenario, files_of_cell};
 
 /// All that a study may write.
 const NAMES: [&str; 4] = [DESIGN, OVERRIDE, FRONT, REPORT];

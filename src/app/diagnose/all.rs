@@ -11,8 +11,8 @@ use super::super::files::Standing;
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
-use super::cell;
 use super::one::{Prepared, complete, is_case};
+use crate::case::is_cell_case;
 use crate::diagnosis::answer::{Answer, Verdict};
 use crate::replay::LoadedCell;
 
@@ -121,7 +121,7 @@ fn cases(folder: &Path, of_cell: bool) -> Result<Vec<String>, AppError> {
         .iter()
         .filter(|path| {
             if of_cell {
-                cell::is_case(path)
+                is_cell_case(path)
             } else {
                 is_case(path)
             }

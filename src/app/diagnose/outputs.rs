@@ -8,6 +8,7 @@ use super::super::report::{REPORT, of_diagnosis};
 use super::board::board;
 use super::comparison_files::{BALANCE, COMPARISON, write_balances, write_recordings};
 use super::one::Finished;
+use crate::case::IMPROVED;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
 use crate::recording::atomic::write_text;
@@ -15,7 +16,6 @@ use crate::recording::rerun::write_board;
 use crate::recording::scene::Scene;
 
 const ACCOUNT: &str = "account.txt";
-pub(super) const IMPROVED: &str = "improved.toml";
 /// Part of the account that says what to do with it.
 pub(in super::super) const HOW_TO_RUN: &str = "How to run what was found";
 const PREDICTION: &str = "prediction.csv";

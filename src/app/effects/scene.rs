@@ -303,7 +303,7 @@ impl Stage {
         let atmosphere = self.believed.device.gas.atmosphere;
         match scenario {
             AnyScenario::Bench(bench) => {
-                let (recording, _) = Rig::new(*bench)?.run(&mut |_, _| ())?;
+                let (recording, _) = Rig::new(*bench)?.run(&mut |_| ())?;
                 Ok(of_recording(&recording, atmosphere))
             }
             AnyScenario::Cell(cell) => {

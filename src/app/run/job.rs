@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{
     EDGE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches, SummaryDocument,
-    files_of_cell,
 };
 use super::super::growing::GrowingFile;
 use super::super::picture::scene_of;
@@ -21,7 +20,7 @@ use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::recording::scene::Scene;
 use crate::report::{Style, bench_markdown, bench_text, markdown, text};
 use crate::rig::Rig;
-use crate::scenario::{AnyScenario, BenchScenario, Scenario};
+use crate::scenario::{AnyScenario, BenchScenario, Scenario, files_of_cell};
 
 /// A scenario that can be run.
 pub(super) enum Job {

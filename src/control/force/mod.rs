@@ -88,6 +88,23 @@ pub enum ForceController {
     FeedbackLinearisation(Box<FeedbackLinearisation>),
     /// Disturbances predicted over the dead time.
     DisturbancePrediction(Box<DisturbancePrediction>),
+    /// A law from outside this library.
+    Own(Box<dyn OwnController>),
+}
+
+/// A force controller from outside this library.
+pub trait OwnController: std::fmt::Debug + Send + Sync {
+    /// Set pressure for the coming period [Pa gauge].
+    fn set_pressure(&mut self, observation: &ForceObservation) -> f64;
+
+    /// The same controller in the same state.
+    fn boxed_clone(&self) -> Box<dyn OwnController>;
+}
+
+impl Clone for Box<dyn OwnController> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed_clone()
+    }
 }
 
 impl ForceController {
@@ -134,6 +151,7 @@ impl ForceController {
             Self::ProportionalIntegral(controller) => controller.set_pressure(observation),
             Self::FeedbackLinearisation(controller) => controller.set_pressure(observation),
             Self::DisturbancePrediction(controller) => controller.set_pressure(observation),
+            Self::Own(controller) => controller.set_pressure(observation),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! What the recordings do not tell apart, and what to record next.
 
 use super::super::details::Considered;
-use super::super::diagnose::{Diagnosis, LEAST_ODDS, Ranked, names_of};
+use super::super::diagnose::{Diagnosis, Ranked, names_of};
+use super::super::settings::Settings;
 use super::super::unlisted::words::{port, variable};
 use super::super::words::{listed, odds};
 use crate::quantity::significant;
@@ -13,13 +14,13 @@ impl Considered {
     /// Is it ruled out: fitted in full, and at odds below 1 to 100?
     #[must_use]
     pub fn is_ruled_out(&self) -> bool {
-        self.in_full && self.log10_odds < LEAST_ODDS.log10()
+        self.in_full && self.log10_odds < Settings::DEFAULT.least_odds.log10()
     }
 
     /// May it be as good as the explanation given, by what was fitted?
     #[must_use]
     pub fn is_close(&self) -> bool {
-        self.log10_odds >= LEAST_ODDS.log10()
+        self.log10_odds >= Settings::DEFAULT.least_odds.log10()
     }
 }
 

@@ -1,13 +1,12 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
-use super::super::diagnose::LEAST_ODDS;
 use super::super::fit::{FULL, ROUGH};
 use super::super::free::Free;
 use super::super::hypothesis::{Hypothesis, stands_for};
 use super::super::left_out;
 use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
-use super::{FULL_ITERATIONS, HOPELESS, LOOK_ELSEWHERE, Search, same};
+use super::{FULL_ITERATIONS, Search, same};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -56,7 +55,7 @@ impl Search<'_> {
         let Some(best) = full.first().filter(|best| scale.is_explained(best)) else {
             return;
         };
-        let limit = self.rough_reference(best, rough) - 2.0 * LEAST_ODDS.ln();
+        let limit = self.rough_reference(best, rough) - 2.0 * self.settings.least_odds.ln();
         let is_fitted = |h: &Hypothesis| full.iter().any(|known| known.names() == h.names());
         let own = best.names();
         let is_richer = |h: &Hypothesis| own.iter().all(|name| h.names().contains(name));
@@ -204,7 +203,7 @@ impl Search<'_> {
             return Some(near);
         }
         let rough = self.fitted(effects, &self.believed, &free, ROUGH, LIGHTER, None);
-        if self.rough_score(&rough) > self.rough_score(hypothesis) + HOPELESS {
+        if self.rough_score(&rough) > self.rough_score(hypothesis) + self.settings.given_up {
             return None;
         }
         for (f, value) in free.iter_mut().zip(&rough.fit.values) {
@@ -244,7 +243,7 @@ impl Search<'_> {
             let least = scale.material_in_full(best.fit.cost());
             let precise = &FULL[FULL.len() - 1..];
             // What derivatives promise is not exact: half of what is needed is worth a look.
-            let needed = least + LOOK_ELSEWHERE + (self.evidence.count() as f64).ln();
+            let needed = least + self.settings.look_elsewhere + (self.evidence.count() as f64).ln();
             let most = best.fit.misfit - 0.5 * needed;
             let Some(more) = self.screen(best, precise, most).into_iter().next() else {
                 return;

@@ -1,26 +1,32 @@
 //! What the account of a cell says besides: which joint, and where on the path.
 
-use crate::diagnosis::account::Account;
-use crate::diagnosis::details::PredictionError;
+use super::Diagnosed;
+use super::cell::CellCase;
 use crate::diagnosis::diagnose::Diagnosis;
-use crate::diagnosis::joint_friction::JointFriction;
 use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::servo::ServoLink;
 use crate::diagnosis::words::{of_column, with_interval};
 use crate::plant::{Channel, simulate};
 use crate::quantity::{significant, with_unit};
 use crate::replay::LoadedCell;
 
-/// Adds joints, servos and places.
-pub(super) fn add_cell(
-    account: &mut Account,
-    cell: &LoadedCell,
-    servo: Option<&ServoLink>,
-    frictions: &[JointFriction],
-    of_arm: &[PredictionError],
-    diagnosis: &Diagnosis,
-) {
+/// Adds joints, servos and places, and the errors of what is predicted of the arm.
+pub(super) fn add_cell(diagnosed: &mut Diagnosed, cell: &LoadedCell, read: &CellCase) {
+    let Some(diagnosis) = &diagnosed.diagnosis else {
+        return;
+    };
+    let details = &mut diagnosed.answer.details;
+    details.prediction.extend(read.of_arm.iter().cloned());
+    let account = &mut details.account;
+    account.add("The arm", arm(cell, read, diagnosis));
+    account.add("Where on the path", places(diagnosis));
+    if diagnosis.shape.is_some() {
+        let place = "A cell's improved.toml has no place for a term without a name: it stands in prediction.csv alone.";
+        account.add("What improved.toml leaves out", vec![place.to_owned()]);
+    }
+}
+
+fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String> {
     let mut arm = Vec::new();
     for effect in &diagnosis.best().effects {
         if let (name, Some(joint)) = effect.vocabulary() {
@@ -31,7 +37,7 @@ pub(super) fn add_cell(
             ));
         }
     }
-    match servo {
+    match &read.servo {
         Some(servo) if cell.scenario.observed.motors_by_encoders && !servo.differs() => {
             let left: Vec<String> = servo.left.iter().map(|l| format!("{l:.1}")).collect();
             arm.push(format!(
@@ -60,7 +66,7 @@ pub(super) fn add_cell(
             ));
         }
     }
-    for friction in frictions {
+    for friction in &read.frictions {
         arm.push(format!(
             "By its drive's torque joint {} rubs with {}, believed {}{}.",
             friction.joint + 1,
@@ -77,7 +83,7 @@ pub(super) fn add_cell(
             }
         ));
     }
-    for error in of_arm {
+    for error in &read.of_arm {
         let (words, unit, factor) = of_column(&error.channel);
         let size = |value: f64| format!("{} {unit}", significant(factor * value, 3));
         arm.push(format!(
@@ -87,8 +93,7 @@ pub(super) fn add_cell(
             size(error.after)
         ));
     }
-    account.add("The arm", arm);
-    account.add("Where on the path", places(diagnosis));
+    arm
 }
 
 /// Where the effects act, along the edge, and where they act most.

@@ -25,7 +25,7 @@ pub struct NamedRecording {
 
 /// A case to be diagnosed.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct DiagnosisInput {
     /// The rig as believed.
     pub believed: PlantParameters,
     /// What is tolerated of it.
@@ -101,7 +101,7 @@ pub struct Prepared {
 ///
 /// # Errors
 /// A recording that is too short, measures nothing, or is in other units than the rig file.
-pub fn prepare(case: &Case) -> Result<Prepared, RecordedError> {
+pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
     let mass = case.believed.device.moving_mass;
     let mut cleanings = Vec::new();
     let mut notes = Vec::new();

@@ -4,11 +4,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::super::error::AppError;
 use super::arm_prediction::arm_prediction;
-use crate::diagnosis::case::{Case, NamedRecording, tolerated};
+use super::error::CaseError;
 use crate::diagnosis::details::PredictionError;
 use crate::diagnosis::free::{Free, Prior};
+use crate::diagnosis::input::{DiagnosisInput, NamedRecording, tolerated};
 use crate::diagnosis::joint_friction::{DriveLoad, JointFriction, joint_friction};
 use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, check, hold};
 use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
@@ -34,7 +34,7 @@ const HELD: usize = 2;
 
 /// A case of a cell, with what its servos were found to do.
 pub(super) struct CellCase {
-    pub case: Case,
+    pub input: DiagnosisInput,
     /// Commands and encoders of the first recording.
     pub axes: Option<Axes>,
     pub servo: Option<ServoLink>,
@@ -48,7 +48,7 @@ pub(super) struct CellCase {
 type Named = (String, String, CellRecording);
 
 /// Is this a folder with recordings?
-pub(super) fn is_case(folder: &Path) -> bool {
+pub fn is_cell_case(folder: &Path) -> bool {
     folder.is_dir() && !recordings(folder).is_empty()
 }
 
@@ -81,7 +81,7 @@ fn name_of(path: &Path) -> String {
     name.display().to_string()
 }
 
-fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, AppError> {
+fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, CaseError> {
     let joints = cell.joints.len();
     if path.file_name().is_none_or(|name| name != SAMPLES) {
         return Ok(read_cell_csv(path, joints)?);
@@ -91,7 +91,7 @@ fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, AppError> {
     let samples = read_parquet(path)?.recording;
     let taken = cell_recording(&samples, joints, scenario.sample_rate, atmosphere);
     taken.map_err(|source| {
-        AppError::from(RecordedError::Missing {
+        CaseError::from(RecordedError::Missing {
             file: path.display().to_string(),
             source: Box::new(source),
         })
@@ -99,7 +99,7 @@ fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, AppError> {
 }
 
 /// Reads a case.
-pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppError> {
+pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseError> {
     let mut known = Vec::new();
     let mut unseen = Vec::new();
     for path in recordings(folder) {
@@ -114,12 +114,12 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppErro
         }
     }
     if known.is_empty() {
-        return Err(AppError::NothingMeasured {
+        return Err(CaseError::NothingMeasured {
             folder: folder.display().to_string(),
         });
     }
     if let [_, second, ..] = &unseen[..] {
-        return Err(AppError::TwoUnseen {
+        return Err(CaseError::TwoUnseen {
             file: second.1.clone(),
             first: unseen[0].0.clone(),
         });
@@ -166,7 +166,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, AppErro
     let unseen = unseen.into_iter().next().map(&mut named).transpose()?;
     let [pressure, stroke, force] = scenario.noise;
     Ok(CellCase {
-        case: Case {
+        input: DiagnosisInput {
             tolerated: tolerated_numbers(cell, &believed),
             believed: believed.clone(),
             noise: [pressure, stroke, force, UNMEASURED],
@@ -247,7 +247,7 @@ fn recorded(
     file: &str,
     recording: CellRecording,
     bandwidth: f64,
-) -> Result<Recorded, AppError> {
+) -> Result<Recorded, CaseError> {
     let scenario = &cell.scenario;
     let CellRecording {
         time,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::error::AppError;
+use super::error::CaseError;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Chain};
 use crate::recording::csv::{read_csv, read_readings};
@@ -13,7 +13,7 @@ use crate::recording::{Recording, RecordingError};
 ///
 /// # Errors
 /// Those of the file's form.
-pub(super) fn read_rig(chain: Chain, path: &Path) -> Result<Recording, RecordingError> {
+pub fn read_rig(chain: Chain, path: &Path) -> Result<Recording, RecordingError> {
     if path
         .extension()
         .is_some_and(|extension| extension == "parquet")
@@ -31,16 +31,16 @@ pub(super) fn read_rig(chain: Chain, path: &Path) -> Result<Recording, Recording
 /// Is a prediction made of numbers throughout? `rig` and `inputs` are the files that it is of.
 ///
 /// # Errors
-/// [`AppError::Astray`] with the first that is none.
-pub(super) fn check_finite(
+/// [`CaseError::NotFinite`] with the first that is none.
+pub fn check_finite(
     rig: &str,
     inputs: &str,
     time: &[f64],
     predicted: &[Vec<f64>; CHANNELS.len()],
-) -> Result<(), AppError> {
+) -> Result<(), CaseError> {
     for (column, values) in COLUMNS.into_iter().zip(predicted) {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            return Err(AppError::Astray {
+            return Err(CaseError::NotFinite {
                 rig: rig.to_owned(),
                 inputs: inputs.to_owned(),
                 time: time[index],
@@ -53,7 +53,7 @@ pub(super) fn check_finite(
 }
 
 /// The columns of a prediction: those of a whole device that it has sensors of, that of the output of a part.
-pub(super) fn shown_columns(
+pub fn shown_columns(
     chain: Chain,
     sensors: [bool; CHANNELS.len()],
     predicted: &[Vec<f64>; CHANNELS.len()],

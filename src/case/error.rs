@@ -1,0 +1,96 @@
+//! Reasons why a folder is no case that can be diagnosed.
+
+use crate::cell::CellError;
+use crate::diagnosis::flange::NoContact;
+use crate::diagnosis::recorded::RecordedError;
+use crate::recording::RecordingError;
+use crate::scenario::ScenarioError;
+
+/// A case that cannot be read, or a model of it that cannot be simulated.
+#[derive(Debug, thiserror::Error)]
+pub enum CaseError {
+    /// The rig file or the scenario.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The cell.
+    #[error(transparent)]
+    Cell(#[from] CellError),
+    /// A recording's file.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// A recording of a rig.
+    #[error(transparent)]
+    Recorded(#[from] RecordedError),
+    /// A case of a cell without a recording to diagnose from.
+    #[error(
+        "{folder}: no recording in it has a measured column, expected at least one to diagnose from"
+    )]
+    NothingMeasured {
+        /// The case's folder.
+        folder: String,
+    },
+    /// Two recordings of a cell's case that were not measured.
+    #[error(
+        "{file}: it has no measured column, nor has {first}; expected one recording at most that is to be predicted"
+    )]
+    TwoUnseen {
+        /// The second.
+        file: String,
+        /// The first.
+        first: String,
+    },
+    /// A folder without a rig file.
+    #[error(
+        "{folder} holds no rig.toml; expected a folder with one and the recordings that it names (--all takes a folder of such folders)"
+    )]
+    NoRig {
+        /// The folder.
+        folder: String,
+    },
+    /// A rig file that names nothing to diagnose from.
+    #[error("{file}: `recordings.fit` names no recording, expected the files to diagnose from")]
+    NoRecordings {
+        /// Rig file.
+        file: String,
+    },
+    /// A run of a contact flange without contact.
+    #[error("{folder}: {source}")]
+    NoContact {
+        /// The case.
+        folder: String,
+        /// Which run, and what was expected.
+        source: NoContact,
+    },
+    /// A pattern that no recording fits.
+    #[error("{file}: `recordings.fit` has {pattern:?}, which no file beside it fits")]
+    NoneLike {
+        /// Rig file.
+        file: String,
+        /// The pattern.
+        pattern: String,
+    },
+    /// A rig file that carries a term without a name already.
+    #[error(
+        "{file} holds [latent], a term that a diagnosis found; expected the rig file as believed, to diagnose from (idc predict takes this one)"
+    )]
+    Latent {
+        /// Rig file.
+        file: String,
+    },
+    /// A rig whose motion cannot be followed.
+    #[error(
+        "{rig}: the rig goes astray at {time} s of {inputs}: its {column} is {value}; expected a rig that stays finite"
+    )]
+    NotFinite {
+        /// Rig file.
+        rig: String,
+        /// Recording.
+        inputs: String,
+        /// When [s].
+        time: f64,
+        /// What.
+        column: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}

@@ -1,0 +1,282 @@
+//! A case of a diagnosis: a folder with recordings, and the model that is believed of what they were recorded from.
+
+mod arm_prediction;
+mod cell;
+mod cell_account;
+mod error;
+mod improved;
+mod recordings;
+mod rig;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub use cell::is_cell_case;
+pub use error::CaseError;
+pub use recordings::{check_finite, read_rig, shown_columns};
+pub use rig::{RIG, rig_of, to_fit};
+
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::comparison::{Comparison, of_flange};
+use crate::diagnosis::diagnose::{self as search, Diagnosis};
+use crate::diagnosis::flange::Run;
+use crate::diagnosis::flange_answer::FlangeDiagnosis;
+use crate::diagnosis::input::{DiagnosisInput, prepare};
+use crate::diagnosis::progress::Observer;
+use crate::diagnosis::servo::Axes;
+use crate::diagnosis::settings::Settings;
+use crate::plant::{Chain, Channel, PlantParameters, simulate};
+use crate::recording::csv::columns_text;
+use crate::recording::provenance::Provenance;
+use crate::replay::LoadedCell;
+use crate::scenario::files_of_cell;
+use crate::scenario::recorded_cell::improved_cell_text;
+use crate::scenario::rig_file::{RigFile, from_text, improved_text};
+use cell::CellCase;
+use rig::ShownRun;
+
+/// Name of the improved model's file.
+pub const IMPROVED: &str = "improved.toml";
+
+/// Model and recordings, read and checked.
+pub struct Case {
+    /// Name of the folder.
+    pub name: String,
+    folder: PathBuf,
+    kind: Kind,
+}
+
+/// What the recordings are of.
+enum Kind {
+    Rig {
+        rig: Box<RigFile>,
+        input: Box<DiagnosisInput>,
+    },
+    Cell {
+        cell: Box<LoadedCell>,
+        read: Box<CellCase>,
+    },
+    /// A contact flange, seen from outside.
+    Flange {
+        rig: Box<RigFile>,
+        runs: Vec<ShownRun>,
+        unseen: Option<ShownRun>,
+    },
+}
+
+/// Result of a diagnosis, with the files that it comes to.
+pub struct Diagnosed {
+    /// What was found.
+    pub answer: Answer,
+    /// The improved model as a file.
+    pub improved: String,
+    /// The improved model's prediction of the recording that was kept back, as comma-separated values.
+    pub prediction: Option<String>,
+    /// Recordings beside models.
+    pub comparison: Comparison,
+    /// The search with all its explanations; none of a contact flange.
+    pub diagnosis: Option<Diagnosis>,
+    /// The improved model; none of a contact flange.
+    pub plant: Option<PlantParameters>,
+}
+
+impl Case {
+    /// Reads a folder with a rig.toml and the recordings that it names.
+    ///
+    /// # Errors
+    /// A folder that holds none, or what is wrong with rig file or recordings.
+    pub fn from_folder(folder: &Path) -> Result<Self, CaseError> {
+        let rig = Box::new(rig_of(folder)?);
+        if rig.plant.chain == Chain::ContactFlange {
+            let (runs, unseen) = rig::flange_runs(&rig, folder)?;
+            return Ok(Self::new(folder, Kind::Flange { rig, runs, unseen }));
+        }
+        let input = Box::new(rig::input_of(&rig, folder)?);
+        // Refused before anything is written.
+        prepare(&input)?;
+        Ok(Self::new(folder, Kind::Rig { rig, input }))
+    }
+
+    /// Reads a folder with recordings of a cell: files, or folders of runs.
+    ///
+    /// # Errors
+    /// A folder without any, or what is wrong with one.
+    pub fn of_cell(folder: &Path, cell: &LoadedCell) -> Result<Self, CaseError> {
+        let read = Box::new(cell::read(cell, folder)?);
+        prepare(&read.input)?;
+        let cell = Box::new(cell.clone());
+        Ok(Self::new(folder, Kind::Cell { cell, read }))
+    }
+
+    fn new(folder: &Path, kind: Kind) -> Self {
+        let whole = folder.canonicalize();
+        let whole = whole.as_deref().unwrap_or(folder);
+        Self {
+            name: whole.file_name().unwrap_or_default().display().to_string(),
+            folder: folder.to_owned(),
+            kind,
+        }
+    }
+
+    /// The cell that the recordings are of; none where they are of a rig.
+    #[must_use]
+    pub fn cell(&self) -> Option<&LoadedCell> {
+        match &self.kind {
+            Kind::Cell { cell, .. } => Some(cell),
+            _ => None,
+        }
+    }
+
+    /// Commands and encoders of the first recording of a cell.
+    #[must_use]
+    pub fn axes(&self) -> Option<&Axes> {
+        match &self.kind {
+            Kind::Cell { read, .. } => read.axes.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Inputs of the search; none of a contact flange.
+    #[must_use]
+    pub fn input(&self) -> Option<&DiagnosisInput> {
+        match &self.kind {
+            Kind::Rig { input, .. } => Some(input),
+            Kind::Cell { read, .. } => Some(&read.input),
+            Kind::Flange { .. } => None,
+        }
+    }
+
+    /// Files that it was read from, by their names for people.
+    fn sources(&self) -> Vec<(String, PathBuf)> {
+        let within = |name: &str| (name.to_owned(), self.folder.join(name));
+        let mut sources = match self.cell().map(|cell| &cell.scenario) {
+            Some(cell) => files_of_cell(&cell.path, &cell.arm, &cell.device, &cell.workpiece)
+                .into_iter()
+                .map(|path| (path.display().to_string(), path.clone()))
+                .collect(),
+            None => vec![within(RIG)],
+        };
+        if let Kind::Flange { runs, unseen, .. } = &self.kind {
+            sources.extend(runs.iter().chain(unseen).map(|(run, _)| within(&run.name)));
+        }
+        // Of a run of this program the recording is a file in the folder that it is called by.
+        let recordings = self
+            .input()
+            .map(|input| input.recordings.iter().chain(&input.unseen));
+        let named = recordings.into_iter().flatten();
+        sources.extend(named.map(|r| (r.name.clone(), PathBuf::from(&r.file))));
+        sources
+    }
+
+    fn provenance(&self) -> Result<Provenance, CaseError> {
+        let sources = self.sources();
+        let named = sources
+            .iter()
+            .map(|(name, path)| (name.as_str(), path.as_path()));
+        Ok(Provenance::of(named, None)?)
+    }
+}
+
+/// Diagnoses a case; `observer` is told of its progress.
+///
+/// # Errors
+/// An improved model that cannot be written or simulated, a source that cannot be read again.
+pub fn diagnose(
+    case: &Case,
+    settings: &Settings,
+    observer: &mut Observer<'_>,
+) -> Result<Diagnosed, CaseError> {
+    let start = Instant::now();
+    let provenance = case.provenance()?;
+    let mut diagnosed = match &case.kind {
+        Kind::Rig { rig, input } => {
+            let diagnosis = search::diagnose(input, prepare(input)?, settings, observer);
+            let improved = improved::improved_rig(rig, &diagnosis);
+            // As the file says it, so that whoever takes the file gets the same.
+            let plant = from_text(Path::new(IMPROVED), &improved)?.plant;
+            of_plant(input, diagnosis, improved, plant, start)?
+        }
+        Kind::Cell { cell, read } => {
+            let diagnosis =
+                search::diagnose(&read.input, prepare(&read.input)?, settings, observer);
+            let effects = improved::written(&cell.scenario.effects, &diagnosis);
+            let improved = improved_cell_text(&cell.scenario, &effects)?;
+            let plant = diagnosis.best().fit.prediction.plant.clone();
+            let mut diagnosed = of_plant(&read.input, diagnosis, improved, plant, start)?;
+            cell_account::add_cell(&mut diagnosed, cell, read);
+            diagnosed
+        }
+        Kind::Flange { rig, runs, unseen } => of_flange_runs(rig, runs, unseen.as_ref(), start),
+    };
+    diagnosed.answer.details.case.clone_from(&case.name);
+    diagnosed.answer.details.provenance = provenance;
+    Ok(diagnosed)
+}
+
+fn of_plant(
+    input: &DiagnosisInput,
+    diagnosis: Diagnosis,
+    improved: String,
+    plant: PlantParameters,
+    start: Instant,
+) -> Result<Diagnosed, CaseError> {
+    Ok(Diagnosed {
+        prediction: prediction(input, &plant)?,
+        comparison: diagnosis.comparison(input, &plant),
+        answer: diagnosis.answer(start.elapsed().as_secs_f64()),
+        improved,
+        diagnosis: Some(diagnosis),
+        plant: Some(plant),
+    })
+}
+
+/// The improved model's prediction of the recording that was kept back.
+fn prediction(
+    input: &DiagnosisInput,
+    plant: &PlantParameters,
+) -> Result<Option<String>, CaseError> {
+    let Some(unseen) = &input.unseen else {
+        return Ok(None);
+    };
+    let inputs = &unseen.recorded.inputs;
+    let predicted = simulate(plant, inputs).readings;
+    check_finite(IMPROVED, &unseen.file, &inputs.time, &predicted)?;
+    let columns = shown_columns(plant.chain, input.noise.map(f64::is_finite), &predicted);
+    Ok(Some(columns_text(&inputs.time, &columns)?))
+}
+
+/// What the runs of a contact flange show.
+fn of_flange_runs(
+    rig: &RigFile,
+    runs: &[ShownRun],
+    unseen: Option<&ShownRun>,
+    start: Instant,
+) -> Diagnosed {
+    let named = |(run, shown): &ShownRun| (run.name.clone(), shown.clone());
+    let diagnosis = FlangeDiagnosis {
+        runs: runs.iter().map(named).collect(),
+        unseen: unseen.map(named),
+        mass: rig.plant.device.moving_mass,
+        time_constant: rig.plant.device.regulator.time_constant,
+        noise: rig.noise[Channel::Force as usize],
+    };
+    let answer = diagnosis.answer(start.elapsed().as_secs_f64());
+    // What was found cannot be simulated from outside: it stands in the file as a comment.
+    let mut improved = improved_text(rig, &[], &[], None);
+    for effect in &answer.effects {
+        improved += &format!("\n# Found, and not simulated: {}\n", effect.name);
+        for (key, number) in &effect.parameters {
+            let (value, low, high) = (number.value, number.low, number.high);
+            improved += &format!("# {key} = {value:.5e}   # {low:.3e} to {high:.3e}\n");
+        }
+    }
+    let runs: Vec<Run> = runs.iter().map(|(run, _)| run.clone()).collect();
+    Diagnosed {
+        answer,
+        improved,
+        prediction: None,
+        comparison: of_flange(&runs, unseen.map(|(run, _)| run)),
+        diagnosis: None,
+        plant: None,
+    }
+}

@@ -1,0 +1,127 @@
+//! A rig file and the recordings that it names.
+
+use std::path::Path;
+
+use super::error::CaseError;
+use super::recordings::read_rig;
+use crate::diagnosis::flange::{NoContact, Run, Shown};
+use crate::diagnosis::input::{DiagnosisInput, NamedRecording, of_link, tolerated};
+use crate::diagnosis::recorded::{recorded_of, run_of};
+use crate::effects::{candidates, sought};
+use crate::scenario::rig_file::{RigFile, load_rig};
+
+/// Rig file of a case.
+pub const RIG: &str = "rig.toml";
+
+/// The rig file of a case.
+///
+/// # Errors
+/// A folder without one, one without recordings, or what is wrong with the file.
+pub fn rig_of(folder: &Path) -> Result<RigFile, CaseError> {
+    if !folder.join(RIG).is_file() {
+        return Err(CaseError::NoRig {
+            folder: folder.display().to_string(),
+        });
+    }
+    let rig = load_rig(&folder.join(RIG))?;
+    if rig.fit.is_empty() {
+        return Err(CaseError::NoRecordings {
+            file: rig.path.display().to_string(),
+        });
+    }
+    if rig.plant.latent.is_some() {
+        return Err(CaseError::Latent {
+            file: rig.path.display().to_string(),
+        });
+    }
+    Ok(rig)
+}
+
+/// Names of the recordings to diagnose from; one with a star stands for all in the folder that fit it, but the one to be predicted, in order.
+///
+/// # Errors
+/// A pattern that no file fits.
+pub fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, CaseError> {
+    let mut names: Vec<String> = Vec::new();
+    for name in &rig.fit {
+        let Some((before, after)) = name.split_once('*') else {
+            names.push(name.clone());
+            continue;
+        };
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut found: Vec<String> = entries
+            .filter_map(|entry| entry.file_name().into_string().ok())
+            .filter(|file| file.len() >= before.len() + after.len())
+            .filter(|file| file.starts_with(before) && file.ends_with(after))
+            .filter(|file| rig.predict.as_ref() != Some(file) && !names.contains(file))
+            .collect();
+        if found.is_empty() {
+            return Err(CaseError::NoneLike {
+                file: rig.path.display().to_string(),
+                pattern: name.clone(),
+            });
+        }
+        found.sort_unstable();
+        names.append(&mut found);
+    }
+    Ok(names)
+}
+
+/// Inputs of a diagnosis.
+pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, CaseError> {
+    let read = |name: &String| -> Result<NamedRecording, CaseError> {
+        let path = folder.join(name);
+        let file = path.display().to_string();
+        let recorded = recorded_of(rig.plant.chain, &file, &read_rig(rig.plant.chain, &path)?)?;
+        let recorded = recorded.of_sensors(rig.sensors());
+        Ok(NamedRecording {
+            name: name.clone(),
+            file,
+            recorded,
+        })
+    };
+    let tolerances = rig.tolerances.iter();
+    let mut believed = rig.plant.clone();
+    let own = sought(&mut believed);
+    Ok(DiagnosisInput {
+        believed,
+        tolerated: tolerances
+            .map(|t| tolerated(t.quantity, t.value, t.tolerance))
+            .chain(of_link(rig.plant.chain, rig.noise[0], rig.pressure_drift))
+            .collect(),
+        noise: rig.noise,
+        recordings: to_fit(rig, folder)?
+            .iter()
+            .map(read)
+            .collect::<Result<_, _>>()?,
+        unseen: rig.predict.as_ref().map(read).transpose()?,
+        candidates: candidates(rig.plant.chain).into_iter().chain(own).collect(),
+        shown: Vec::new(),
+    })
+}
+
+/// A run of a contact flange with its features.
+pub(super) type ShownRun = (Run, Shown);
+
+/// Runs of a contact flange: those to diagnose from and the one to be predicted.
+pub(super) fn flange_runs(
+    rig: &RigFile,
+    folder: &Path,
+) -> Result<(Vec<ShownRun>, Option<ShownRun>), CaseError> {
+    let shown = |name: &String| -> Result<ShownRun, CaseError> {
+        let path = folder.join(name);
+        let file = path.display().to_string();
+        let run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
+        let refused = |source: NoContact| CaseError::NoContact {
+            folder: folder.display().to_string(),
+            source,
+        };
+        let shown = run.shown().map_err(refused)?;
+        Ok((run, shown))
+    };
+    let runs = to_fit(rig, folder)?
+        .iter()
+        .map(shown)
+        .collect::<Result<_, _>>()?;
+    Ok((runs, rig.predict.as_ref().map(shown).transpose()?))
+}

@@ -1,0 +1,26 @@
+//! Files that a cell is made of.
+
+use std::path::PathBuf;
+
+use super::{ArmScenario, BurrScenario, DeviceScenario, WorkpieceScenario};
+
+/// The files that a cell is made of, that of its scenario first.
+pub fn files_of_cell<'a>(
+    path: &'a PathBuf,
+    arm: &'a ArmScenario,
+    device: &'a DeviceScenario,
+    workpiece: &'a WorkpieceScenario,
+) -> Vec<&'a PathBuf> {
+    let mut files = vec![path];
+    let burr = match &workpiece.burr {
+        BurrScenario::Table { path } => Some(path),
+        _ => None,
+    };
+    let others = [&device.model, &arm.urdf, &workpiece.mesh];
+    for file in others.into_iter().chain(burr) {
+        if !files.contains(&file) {
+            files.push(file);
+        }
+    }
+    files
+}
