@@ -26,6 +26,7 @@
 // Units stand in square brackets, which rustdoc would take for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+#[cfg(feature = "cli")]
 pub mod app;
 pub mod arm;
 pub mod cell;
@@ -33,13 +34,17 @@ pub mod control;
 pub mod design;
 pub mod device;
 pub mod diagnosis;
+#[cfg(feature = "cli")]
 pub mod drawing;
 pub mod effects;
 pub mod estimation;
+#[cfg(feature = "cli")]
 pub mod figure;
+#[cfg(feature = "import")]
 pub mod import;
 pub mod laboratory;
 pub mod metrics;
+#[cfg(feature = "cli")]
 pub mod page;
 pub mod path;
 pub mod physics;

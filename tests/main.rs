@@ -34,6 +34,7 @@ mod real_robots;
 mod recorded_cell;
 mod report;
 mod rig_file;
+mod rrd_file;
 mod schemas;
 mod settings;
 mod standing;

@@ -2,9 +2,9 @@
 
 use idc_cell::recording::parquet::read_parquet;
 use idc_cell::recording::schema;
-use rerun::{ChunkStore, ChunkStoreConfig, StoreKind};
 
 use crate::program::{Bench, FILES, Outcome};
+use crate::rrd_file;
 
 fn misplaced(shift_mm: f64) -> Bench {
     let bench = Bench::new("plate_edge");
@@ -68,15 +68,10 @@ fn holds_up_to(bench: &Bench, steps: usize, reason: &str) {
 
 /// Points of the stroke's plot in recording.rrd, as Rerun's own reader finds them.
 fn drawn_strokes(bench: &Bench) -> usize {
-    let mut file =
-        std::io::BufReader::new(std::fs::File::open(bench.path("out/recording.rrd")).unwrap());
-    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut file).unwrap();
-    let (_, store) = stores
-        .into_iter()
-        .find(|(id, _)| id.kind() == StoreKind::Recording)
-        .unwrap();
-    store
-        .iter_physical_chunks()
+    let file = std::fs::File::open(bench.path("out/recording.rrd")).unwrap();
+    rrd_file::recording(std::io::BufReader::new(file))
+        .chunks
+        .iter()
         .filter(|chunk| chunk.entity_path().to_string().ends_with("/stroke") && !chunk.is_static())
         .map(|chunk| chunk.num_rows())
         .max()

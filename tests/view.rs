@@ -6,10 +6,11 @@ use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-use rerun::{ChunkStore, ChunkStoreConfig, Scalars};
+use re_sdk_types::archetypes::Scalars;
 
 use crate::common::{project, skipped};
 use crate::program::Bench;
+use crate::rrd_file;
 
 /// The program, with no viewer and no display about.
 fn idc(folder: &Path) -> Command {
@@ -81,12 +82,11 @@ fn fetch(address: &str, path: &str, host: Option<&str>) -> (String, Vec<u8>) {
 
 /// All values of the force plot's lines in an `.rrd`, and the times at which they stand [ns].
 fn forces(bytes: &[u8]) -> BTreeMap<i64, f64> {
-    let mut reader = std::io::Cursor::new(bytes);
-    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut reader).unwrap();
-    let data = stores.values().find(|s| s.id().is_recording()).unwrap();
-    assert!(stores.values().any(|s| !s.id().is_recording()), "no layout");
+    let stores = rrd_file::stores(bytes);
+    let data = stores.iter().find(|s| s.id.is_recording()).unwrap();
+    assert!(stores.iter().any(|s| !s.id.is_recording()), "no layout");
     let mut found = BTreeMap::new();
-    for chunk in data.iter_physical_chunks() {
+    for chunk in &data.chunks {
         if chunk.entity_path().to_string() != "/plots/force" || chunk.is_static() {
             continue;
         }

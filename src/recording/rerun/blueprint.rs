@@ -4,16 +4,16 @@
 //! and gives every panel a random id. This writes the same archetypes by hand, with ids counted
 //! from one.
 
-use ::rerun::external::re_sdk_types::blueprint::archetypes::{
+use re_sdk_types::blueprint::archetypes::{
     ContainerBlueprint, PanelBlueprint, TimeAxis, TimePanelBlueprint, ViewBlueprint, ViewContents,
     ViewportBlueprint,
 };
-use ::rerun::external::re_sdk_types::blueprint::components::{
+use re_sdk_types::blueprint::components::{
     ColumnShare, ContainerKind, IncludedContent, PanelState, QueryExpression, RootContainer,
     RowShare, TimeRange, ViewClass,
 };
-use ::rerun::log::TimeColumn;
-use ::rerun::{AsComponents, components::Name, datatypes};
+use re_chunk::TimeColumn;
+use re_sdk_types::{AsComponents, components::Name, datatypes};
 
 use super::rrd::{RrdError, RrdWriter};
 

@@ -1,10 +1,11 @@
 //! Draws the cell in space: bodies, edge path, contact force.
 
-use ::rerun::log::TimeColumn;
-use ::rerun::{
-    Arrows3D, Boxes3D, Color, Cylinders3D, Ellipsoids3D, FillMode, LineStrips3D, Mesh3D,
-    Quaternion, Radius, Transform3D, ViewCoordinates,
+use re_chunk::TimeColumn;
+use re_sdk_types::archetypes::{
+    Arrows3D, Boxes3D, Cylinders3D, Ellipsoids3D, LineStrips3D, Mesh3D, Transform3D, ViewCoordinates,
 };
+use re_sdk_types::components::{Color, FillMode, Radius};
+use re_sdk_types::datatypes::Quaternion;
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
 

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
-use ::rerun::external::re_log_encoding::{
+use re_log_encoding::{
     CrateVersion, Decodable as _, OLD_RRD_FOURCC, RRD_FOURCC, StreamFooter, StreamHeader,
 };
 

@@ -17,9 +17,9 @@ pub(super) const PALE_GREY: Colour = [140, 140, 140, 255];
 pub(super) const PALETTE: [Colour; 7] = [SKY_BLUE, ORANGE, GREEN, YELLOW, VERMILLION, PURPLE, BLUE];
 
 /// As the viewer wants it.
-pub(super) fn rerun_colour(colour: Colour) -> ::rerun::Color {
+pub(super) fn rerun_colour(colour: Colour) -> re_sdk_types::components::Color {
     let [red, green, blue, opacity] = colour;
-    ::rerun::Color::from_unmultiplied_rgba(red, green, blue, opacity)
+    re_sdk_types::components::Color::from_unmultiplied_rgba(red, green, blue, opacity)
 }
 
 #[cfg(test)]

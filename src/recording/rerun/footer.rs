@@ -7,7 +7,7 @@
 use std::io::Write;
 use std::sync::Arc;
 
-use ::rerun::external::re_log_encoding::{
+use re_log_encoding::{
     CodecError, Decodable as _, Encodable as _, MessageHeader, MessageKind, RawRrdManifest,
     RrdFooter, StreamFooter, StreamHeader, ToApplication as _, ToTransport,
 };

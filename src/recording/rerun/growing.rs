@@ -5,8 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
-use ::rerun::archetypes::RecordingInfo;
-use ::rerun::{EntityPath, StoreKind, TextDocument};
+use re_sdk_types::archetypes::{RecordingInfo, TextDocument};
+use re_log_types::{EntityPath, StoreKind};
 
 use super::fingerprint::fingerprint;
 use super::footer::write_joined;

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeSet;
 
-use ::rerun::archetypes::{RecordingInfo, StateChange};
-use ::rerun::external::re_uri::ProxyUri;
-use ::rerun::log::TimeColumn;
-use ::rerun::{EntityPath, StoreKind, TextDocument};
+use re_sdk_types::archetypes::{RecordingInfo, StateChange, TextDocument};
+use re_uri::{ProxyUri, Scheme};
+use re_chunk::TimeColumn;
+use re_log_types::{EntityPath, StoreKind};
 
 use super::fingerprint::fingerprint;
 use super::plots::{Plot, Series, plots};
@@ -52,6 +52,9 @@ impl LiveRecording {
     /// Says what is wrong with it.
     pub fn address(text: &str) -> Result<(String, u16), String> {
         let uri: ProxyUri = text.parse().map_err(|error| format!("{error}"))?;
+        if uri.origin.scheme != Scheme::RerunHttp {
+            return Err("it asks for encryption, which is not built in".to_owned());
+        }
         Ok((uri.origin.host.to_string(), uri.origin.port))
     }
 

@@ -6,19 +6,18 @@
 
 use std::time::Duration;
 
-use ::rerun::external::re_log_encoding::{
+use re_log_encoding::{
     CodecError, CrateVersion, EncodeError, Encoder, EncodingOptions,
 };
-use ::rerun::external::re_log_types::{
-    BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource,
+use re_chunk::{Chunk, ChunkError, ChunkId, TimeColumn};
+use re_grpc_client::write::{Client, ClientConnectionState, Options};
+use re_log_types::external::re_tuid::Tuid;
+use re_log_types::{
+    BlueprintActivationCommand, EntityPath, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind,
+    StoreSource,
 };
-use ::rerun::external::re_tuid::Tuid;
-use ::rerun::external::re_uri::ProxyUri;
-use ::rerun::log::{Chunk, ChunkError, ChunkId, LogMsg, TimeColumn};
-use ::rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
-use ::rerun::{
-    AsComponents, EntityPath, SerializationError, SerializedComponentColumn, StoreId, StoreKind,
-};
+use re_sdk_types::{AsComponents, SerializationError, SerializedComponentColumn};
+use re_uri::ProxyUri;
 
 /// How long a viewer that listens may take to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -50,7 +49,7 @@ enum Outlet {
     /// Whoever reads on the other side, such as a viewer's standard input.
     Stream(Encoder<LiveWriter>),
     /// A viewer that listens for recordings.
-    Viewer(Box<GrpcSink>),
+    Viewer(Box<Client>),
 }
 
 /// Takes the bytes of a recording while it is made.
@@ -99,7 +98,7 @@ impl RrdWriter {
         recording_id: &str,
         id_seed: u64,
     ) -> Result<Self, RrdError> {
-        let sink = Outlet::Viewer(Box::new(GrpcSink::new(address)));
+        let sink = Outlet::Viewer(Box::new(Client::new(address, Options::default())));
         Self::begin_at(sink, kind, recording_id, id_seed)
     }
 
@@ -141,11 +140,11 @@ impl RrdWriter {
         match &mut self.outlet {
             Outlet::File(encoder) => drop(encoder.append(&message)?),
             Outlet::Stream(encoder) => drop(encoder.append(&message)?),
-            Outlet::Viewer(sink) => {
-                if matches!(sink.status(), GrpcSinkConnectionState::Disconnected(_)) {
+            Outlet::Viewer(client) => {
+                if matches!(client.status(), ClientConnectionState::Disconnected(_)) {
                     return Err(RrdError::Gone);
                 }
-                sink.send(message);
+                client.send_blocking(message);
             }
         }
         Ok(())
@@ -202,8 +201,8 @@ impl RrdWriter {
         match &mut self.outlet {
             Outlet::File(_) => Ok(()),
             Outlet::Stream(encoder) => Ok(encoder.flush_blocking()?),
-            Outlet::Viewer(sink) => {
-                let sent = sink.flush_blocking(PATIENCE);
+            Outlet::Viewer(client) => {
+                let sent = client.flush_blocking(PATIENCE);
                 sent.map_err(|_| RrdError::Gone)
             }
         }

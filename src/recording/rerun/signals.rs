@@ -1,7 +1,7 @@
 //! Writes the signals: the plots' lines and the phases' lane.
 
-use ::rerun::Scalars;
-use ::rerun::archetypes::{SeriesLines, StateChange, StateConfiguration};
+use re_sdk_types::archetypes::Scalars;
+use re_sdk_types::archetypes::{SeriesLines, StateChange, StateConfiguration};
 
 use super::PHASES;
 use super::colours::rerun_colour;

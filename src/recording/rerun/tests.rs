@@ -4,17 +4,21 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use ::rerun::external::re_tuid;
-use ::rerun::log::Chunk;
-use ::rerun::{Arrows3D, ChunkStore, ChunkStoreConfig, Scalars, StateChange, Transform3D};
+use re_chunk::Chunk;
+use re_log_types::external::re_tuid;
+use re_sdk_types::archetypes::{Arrows3D, Scalars, StateChange, Transform3D};
 use glamx::DPose3;
 
+use self::rrd_file::Store;
 use super::timelines::{PATH_LENGTH, SIM_TIME};
 use super::*;
 use crate::recording::scene::{
     ContactArrow, EdgePath, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
 };
 use crate::recording::{Channel, PhaseSpan, Unit, schema};
+
+#[path = "../../../tests/rrd_file.rs"]
+pub(super) mod rrd_file;
 
 const SAMPLES: usize = 2001;
 const FRAMES: usize = 101;
@@ -103,12 +107,11 @@ fn options() -> RerunOptions {
 }
 
 /// The recording's and the blueprint's stores of a file.
-fn read(path: &Path) -> (ChunkStore, ChunkStore) {
-    let mut file = fs::File::open(path).unwrap();
-    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut file).unwrap();
-    let mut by_kind: BTreeMap<bool, ChunkStore> = stores
+fn read(path: &Path) -> (Store, Store) {
+    let stores = rrd_file::stores(&fs::read(path).unwrap()[..]);
+    let mut by_kind: BTreeMap<bool, Store> = stores
         .into_iter()
-        .map(|(id, store)| (id.is_recording(), store))
+        .map(|store| (store.id.is_recording(), store))
         .collect();
     (
         by_kind.remove(&true).unwrap(),
@@ -116,16 +119,16 @@ fn read(path: &Path) -> (ChunkStore, ChunkStore) {
     )
 }
 
-fn chunks<'a>(store: &'a ChunkStore, entity: &str) -> Vec<&'a Chunk> {
+fn chunks<'a>(store: &'a Store, entity: &str) -> Vec<&'a Chunk> {
     store
-        .iter_physical_chunks()
-        .map(AsRef::as_ref)
+        .chunks
+        .iter()
         .filter(|chunk| chunk.entity_path().to_string() == entity)
         .collect()
 }
 
 /// The one chunk of an entity that changes with time.
-fn moving<'a>(store: &'a ChunkStore, entity: &str) -> &'a Chunk {
+fn moving<'a>(store: &'a Store, entity: &str) -> &'a Chunk {
     let moving: Vec<_> = chunks(store, entity)
         .into_iter()
         .filter(|c| !c.is_static())
@@ -145,7 +148,7 @@ fn scalars(chunk: &Chunk) -> Vec<f64> {
         .collect()
 }
 
-fn written() -> (ChunkStore, ChunkStore) {
+fn written() -> (Store, Store) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("recording.rrd");
     write_rrd(&path, &recording(), &scene(), &options()).unwrap();
@@ -224,7 +227,7 @@ fn phases_are_states_with_an_end() {
 #[test]
 fn nothing_is_on_a_clock() {
     let (data, _) = written();
-    for chunk in data.iter_physical_chunks() {
+    for chunk in &data.chunks {
         for timeline in chunk.timelines().keys() {
             assert!(
                 [SIM_TIME, PATH_LENGTH].contains(&timeline.as_str()),
@@ -237,9 +240,10 @@ fn nothing_is_on_a_clock() {
 #[test]
 fn the_layout_has_a_view_for_every_plot_and_one_root() {
     let (data, layout) = written();
-    assert_eq!(data.id().application_id().as_str(), "idc-cell");
+    assert_eq!(data.id.application_id().as_str(), "idc-cell");
     let entities: Vec<String> = layout
-        .iter_physical_chunks()
+        .chunks
+        .iter()
         .map(|chunk| chunk.entity_path().to_string())
         .collect();
     let heads = |prefix: &str| {
@@ -267,7 +271,7 @@ fn equal_input_gives_equal_bytes_and_other_input_another_id() {
     let [first, second] = ["a.rrd", "b.rrd"].map(|name| write(name, &options()));
     assert!(fs::read(&first).unwrap() == fs::read(&second).unwrap());
     let other = write("c.rrd", &RerunOptions::default());
-    assert_ne!(read(&first).0.id(), read(&other).0.id());
+    assert_ne!(read(&first).0.id, read(&other).0.id);
 }
 
 /// The samples and the frames of a part of the run, as they come while it goes on.
@@ -293,7 +297,7 @@ fn part(samples: std::ops::Range<usize>, frames: std::ops::Range<usize>) -> (Rec
 }
 
 /// Times and values of what changes with time, chunk after chunk.
-fn course(store: &ChunkStore, entity: &str) -> (Vec<i64>, Vec<i64>, Vec<f64>) {
+fn course(store: &Store, entity: &str) -> (Vec<i64>, Vec<i64>, Vec<f64>) {
     let mut own = chunks(store, entity);
     own.retain(|chunk| !chunk.is_static());
     own.sort_by_key(|chunk| chunk.id().as_tuid());
@@ -330,7 +334,7 @@ fn encoded_while_it_is_made_it_holds_the_same() {
         assert!(!time.is_empty() && time.len() == values.len(), "{entity}");
         assert_eq!(course(&data, entity), course(&whole, entity), "{entity}");
     }
-    let places = |store: &ChunkStore| -> Vec<[f32; 3]> {
+    let places = |store: &Store| -> Vec<[f32; 3]> {
         let mut own = chunks(store, "/cell/arm/link_1");
         own.retain(|chunk| !chunk.is_static());
         own.sort_by_key(|chunk| chunk.id().as_tuid());
@@ -344,9 +348,8 @@ fn encoded_while_it_is_made_it_holds_the_same() {
     assert_eq!(places(&data), places(&whole));
     let when = |store| course(store, "/cell/arm/link_1").0;
     assert_eq!(when(&data), when(&whole));
-    let statics = |store: &ChunkStore| {
-        let all = store.iter_physical_chunks();
-        let all = all.filter(|chunk| chunk.is_static());
+    let statics = |store: &Store| {
+        let all = store.chunks.iter().filter(|chunk| chunk.is_static());
         let mut all: Vec<String> = all.map(|chunk| chunk.entity_path().to_string()).collect();
         all.sort();
         all
@@ -357,12 +360,12 @@ fn encoded_while_it_is_made_it_holds_the_same() {
     let again = grown("again.rrd", "a scenario");
     assert!(fs::read(&path).unwrap() == fs::read(&again).unwrap());
     let other = read(&grown("other.rrd", "another scenario")).0;
-    assert_ne!(other.id(), data.id());
+    assert_ne!(other.id, data.id);
 }
 
 #[test]
 fn chunks_lie_where_the_footer_says() {
-    use ::rerun::external::re_log_encoding::{
+    use re_log_encoding::{
         Decodable as _, MessageHeader, MessageKind, RrdFooter, StreamFooter, ToApplication as _,
         ToTransport,
     };
@@ -423,7 +426,8 @@ fn ids_within_a_store_differ() {
     let (data, layout) = written();
     for store in [&data, &layout] {
         let mut ids: Vec<re_tuid::Tuid> = store
-            .iter_physical_chunks()
+            .chunks
+            .iter()
             .map(|chunk| chunk.id().as_tuid())
             .collect();
         let count = ids.len();

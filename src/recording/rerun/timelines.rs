@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ::rerun::log::TimeColumn;
+use re_chunk::TimeColumn;
 
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, schema};

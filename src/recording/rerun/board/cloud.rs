@@ -1,6 +1,7 @@
 //! Quantities against a variable. The viewer's plots know time alone, so these stand in a view of the plane, with axes of their own.
 
-use ::rerun::{LineStrips2D, Points2D, Radius};
+use re_sdk_types::archetypes::{LineStrips2D, Points2D};
+use re_sdk_types::components::Radius;
 
 use super::role_colour;
 use crate::recording::board::Cloud;

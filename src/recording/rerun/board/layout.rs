@@ -1,14 +1,14 @@
 //! The screen on which findings open: left the words and below them space and quantities against one another, right the signals.
 
-use ::rerun::AsComponents;
-use ::rerun::components::Range1D;
-use ::rerun::external::re_sdk_types::blueprint::archetypes::{
+use re_sdk_types::AsComponents;
+use re_sdk_types::components::Range1D;
+use re_sdk_types::blueprint::archetypes::{
     Background, PlotLegend, ScalarAxis, TimeAxis, TimePanelBlueprint, VisualBounds2D,
 };
-use ::rerun::external::re_sdk_types::blueprint::components::{
+use re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LinkAxis, PanelState, PlayState, TimeRange, TimelineName,
 };
-use ::rerun::external::re_sdk_types::datatypes::{Range2D, TimeRange as Range, TimeRangeBoundary};
+use re_sdk_types::datatypes::{Range2D, TimeRange as Range, TimeRangeBoundary};
 
 use super::cloud::{self, FIELD, ROOM};
 use super::sheet::{self, TIME};

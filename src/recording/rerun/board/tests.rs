@@ -1,7 +1,8 @@
 //! Reads a written file back with Rerun's own reader.
 
-use ::rerun::{ChunkStore, ChunkStoreConfig, Scalars, StateChange};
+use re_sdk_types::archetypes::{Scalars, StateChange};
 
+use super::super::tests::rrd_file;
 use super::*;
 use crate::recording::board::{BoardLine, Cloud, CloudGroup, Lane, Sheet, SheetPlot};
 
@@ -60,12 +61,9 @@ fn lines_lanes_and_clouds_are_there_and_bytes_repeat() {
     assert!(std::fs::read(&first).unwrap() == std::fs::read(&second).unwrap());
     crate::recording::rerun::check_rrd(&first).unwrap();
 
-    let mut file = std::fs::File::open(&first).unwrap();
-    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::ALL_DISABLED, &mut file).unwrap();
-    let data = stores.values().find(|s| s.id().is_recording()).unwrap();
+    let data = rrd_file::recording(&std::fs::read(&first).unwrap()[..]);
     let moving = |entity: &str| {
-        let chunks = data.iter_physical_chunks();
-        let mut own = chunks.filter(|c| c.entity_path().to_string() == entity && !c.is_static());
+        let mut own = (data.chunks.iter()).filter(|c| c.entity_path().to_string() == entity && !c.is_static());
         own.next().unwrap_or_else(|| panic!("no {entity}")).clone()
     };
     let force = moving("/recording_1/force");
@@ -79,9 +77,7 @@ fn lines_lanes_and_clouds_are_there_and_bytes_repeat() {
     let states = lane.iter_slices::<String>(StateChange::descriptor_state().component);
     let states: Vec<String> = states.map(|row| row[0].to_string()).collect();
     assert_eq!(states, ["parts", "", "parts", ""]);
-    let entities = data
-        .iter_physical_chunks()
-        .map(|c| c.entity_path().to_string());
+    let entities = data.chunks.iter().map(|c| c.entity_path().to_string());
     assert!(
         entities
             .into_iter()
