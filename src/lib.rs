@@ -31,6 +31,7 @@ pub mod app;
 pub mod arm;
 pub mod cell;
 pub mod control;
+#[cfg(feature = "cli")]
 pub mod design;
 pub mod device;
 pub mod diagnosis;
@@ -42,6 +43,7 @@ pub mod estimation;
 pub mod figure;
 #[cfg(feature = "import")]
 pub mod import;
+#[cfg(feature = "cli")]
 pub mod laboratory;
 pub mod metrics;
 #[cfg(feature = "cli")]
@@ -49,10 +51,12 @@ pub mod page;
 pub mod path;
 pub mod physics;
 pub mod plant;
+#[cfg(feature = "cli")]
 pub mod proof;
 pub mod quantity;
 pub mod recording;
 pub mod replay;
+#[cfg(feature = "cli")]
 pub mod report;
 pub mod rig;
 pub mod scenario;

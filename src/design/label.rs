@@ -26,7 +26,6 @@ pub(super) fn symbol(key: &str) -> &'static str {
 }
 
 /// `impact peak [N]` for `impact_peak_n`.
-#[cfg(feature = "cli")]
 pub(super) fn axis(key: &str) -> String {
     let (name, unit) = spoken(key);
     if unit.is_empty() {
@@ -67,7 +66,6 @@ pub fn number(value: f64) -> String {
 mod tests {
     use super::*;
 
-    #[cfg(feature = "cli")]
     #[test]
     fn a_key_reads_as_a_name_with_its_unit() {
         for (key, name) in [

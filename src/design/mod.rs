@@ -21,7 +21,6 @@ mod front;
 mod goal;
 mod label;
 mod limits;
-#[cfg(feature = "cli")]
 mod picture;
 mod polish;
 mod refine;
@@ -39,7 +38,6 @@ pub use error::DesignError;
 pub use file::schema;
 pub use label::{number, spoken};
 pub use limits::{Limit, LimitQuantity, Side};
-#[cfg(feature = "cli")]
 pub use picture::front_svg;
 pub use result::{
     ActiveBound, ActiveLimit, Candidate, FrontPoint, LimitState, ObjectiveNames, Sensitivity,

@@ -128,9 +128,16 @@ mod tests {
     #[test]
     fn libraries_are_those_that_are_pinned() {
         let manifest = include_str!("../../Cargo.toml");
-        for (name, version) in LIBRARIES {
-            let line = manifest.lines().find(|line| line.contains(name)).unwrap();
-            assert!(line.contains(&format!("={version}")), "{line}");
+        let pinned = |start: &str, version: &str| {
+            let mut lines = manifest.lines().filter(|line| line.starts_with(start));
+            lines.clone().next().is_some()
+                && lines.all(|line| line.contains(&format!("\"={version}\"")))
+        };
+        // All crates of Rerun's bear its version but for `re_cdr`, which decodes logs.
+        let [rapier, rerun] = LIBRARIES.map(|(_, version)| version);
+        assert!(pinned("rapier3d = ", rapier));
+        for name in ["re_chunk = ", "re_log_encoding = ", "re_sdk_types = "] {
+            assert!(pinned(name, rerun), "{name}");
         }
     }
 }

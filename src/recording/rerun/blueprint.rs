@@ -4,6 +4,7 @@
 //! and gives every panel a random id. This writes the same archetypes by hand, with ids counted
 //! from one.
 
+use re_chunk::TimeColumn;
 use re_sdk_types::blueprint::archetypes::{
     ContainerBlueprint, PanelBlueprint, TimeAxis, TimePanelBlueprint, ViewBlueprint, ViewContents,
     ViewportBlueprint,
@@ -12,7 +13,6 @@ use re_sdk_types::blueprint::components::{
     ColumnShare, ContainerKind, IncludedContent, PanelState, QueryExpression, RootContainer,
     RowShare, TimeRange, ViewClass,
 };
-use re_chunk::TimeColumn;
 use re_sdk_types::{AsComponents, components::Name, datatypes};
 
 use super::rrd::{RrdError, RrdWriter};

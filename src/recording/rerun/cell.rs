@@ -1,13 +1,14 @@
 //! Draws the cell in space: bodies, edge path, contact force.
 
+use glam::{DQuat, DVec3};
+use glamx::DPose3;
 use re_chunk::TimeColumn;
 use re_sdk_types::archetypes::{
-    Arrows3D, Boxes3D, Cylinders3D, Ellipsoids3D, LineStrips3D, Mesh3D, Transform3D, ViewCoordinates,
+    Arrows3D, Boxes3D, Cylinders3D, Ellipsoids3D, LineStrips3D, Mesh3D, Transform3D,
+    ViewCoordinates,
 };
 use re_sdk_types::components::{Color, FillMode, Radius};
 use re_sdk_types::datatypes::Quaternion;
-use glam::{DQuat, DVec3};
-use glamx::DPose3;
 
 use super::RerunOptions;
 use super::colours::{SKY_BLUE, rerun_colour};

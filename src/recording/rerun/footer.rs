@@ -7,12 +7,12 @@
 use std::io::Write;
 use std::sync::Arc;
 
+use arrow::array::{RecordBatch, UInt64Array};
+use arrow::datatypes::Schema;
 use re_log_encoding::{
     CodecError, Decodable as _, Encodable as _, MessageHeader, MessageKind, RawRrdManifest,
     RrdFooter, StreamFooter, StreamHeader, ToApplication as _, ToTransport,
 };
-use arrow::array::{RecordBatch, UInt64Array};
-use arrow::datatypes::Schema;
 
 use super::rrd::RrdError;
 

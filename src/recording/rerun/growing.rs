@@ -5,8 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
-use re_sdk_types::archetypes::{RecordingInfo, TextDocument};
 use re_log_types::{EntityPath, StoreKind};
+use re_sdk_types::archetypes::{RecordingInfo, TextDocument};
 
 use super::fingerprint::fingerprint;
 use super::footer::write_joined;

@@ -3,6 +3,7 @@
 //! Left the cell, below it a close look at the edge and the table of results; right the phases and
 //! the plots, one above the other on one time axis.
 
+use glam::DVec3;
 use re_sdk_types::blueprint::archetypes::{
     Background, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis, TimePanelBlueprint,
 };
@@ -10,7 +11,6 @@ use re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LinkAxis, LoopMode, PanelState, PlayState, TimelineName,
 };
 use re_sdk_types::{AsComponents, components::Range1D, datatypes};
-use glam::DVec3;
 
 use super::blueprint::{Panel, View, ViewKind};
 use super::cell::CELL;

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeSet;
 
-use re_sdk_types::archetypes::{RecordingInfo, StateChange, TextDocument};
-use re_uri::{ProxyUri, Scheme};
 use re_chunk::TimeColumn;
 use re_log_types::{EntityPath, StoreKind};
+use re_sdk_types::archetypes::{RecordingInfo, StateChange, TextDocument};
+use re_uri::{ProxyUri, Scheme};
 
 use super::fingerprint::fingerprint;
 use super::plots::{Plot, Series, plots};

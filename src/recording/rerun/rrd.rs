@@ -6,11 +6,9 @@
 
 use std::time::Duration;
 
-use re_log_encoding::{
-    CodecError, CrateVersion, EncodeError, Encoder, EncodingOptions,
-};
 use re_chunk::{Chunk, ChunkError, ChunkId, TimeColumn};
 use re_grpc_client::write::{Client, ClientConnectionState, Options};
+use re_log_encoding::{CodecError, CrateVersion, EncodeError, Encoder, EncodingOptions};
 use re_log_types::external::re_tuid::Tuid;
 use re_log_types::{
     BlueprintActivationCommand, EntityPath, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind,

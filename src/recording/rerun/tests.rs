@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use glamx::DPose3;
 use re_chunk::Chunk;
 use re_log_types::external::re_tuid;
 use re_sdk_types::archetypes::{Arrows3D, Scalars, StateChange, Transform3D};
-use glamx::DPose3;
 
 use self::rrd_file::Store;
 use super::timelines::{PATH_LENGTH, SIM_TIME};

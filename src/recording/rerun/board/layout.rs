@@ -1,13 +1,13 @@
 //! The screen on which findings open: left the words and below them space and quantities against one another, right the signals.
 
 use re_sdk_types::AsComponents;
-use re_sdk_types::components::Range1D;
 use re_sdk_types::blueprint::archetypes::{
     Background, PlotLegend, ScalarAxis, TimeAxis, TimePanelBlueprint, VisualBounds2D,
 };
 use re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LinkAxis, PanelState, PlayState, TimeRange, TimelineName,
 };
+use re_sdk_types::components::Range1D;
 use re_sdk_types::datatypes::{Range2D, TimeRange as Range, TimeRangeBoundary};
 
 use super::cloud::{self, FIELD, ROOM};

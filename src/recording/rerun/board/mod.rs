@@ -6,8 +6,8 @@ mod sheet;
 
 use std::path::Path;
 
-use re_sdk_types::archetypes::{RecordingInfo, TextDocument};
 use re_log_types::{EntityPath, StoreKind};
+use re_sdk_types::archetypes::{RecordingInfo, TextDocument};
 
 use super::blueprint::write_blueprint;
 use super::fingerprint::Fingerprint;

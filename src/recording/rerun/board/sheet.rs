@@ -1,8 +1,8 @@
 //! Signals of one recording: lines, lanes.
 
+use re_chunk::TimeColumn;
 use re_sdk_types::archetypes::Scalars;
 use re_sdk_types::archetypes::{SeriesLines, StateChange, StateConfiguration};
-use re_chunk::TimeColumn;
 
 use super::role_colour;
 use crate::recording::board::{BoardRole, Lane, Sheet, SheetPlot};

@@ -63,7 +63,8 @@ fn lines_lanes_and_clouds_are_there_and_bytes_repeat() {
 
     let data = rrd_file::recording(&std::fs::read(&first).unwrap()[..]);
     let moving = |entity: &str| {
-        let mut own = (data.chunks.iter()).filter(|c| c.entity_path().to_string() == entity && !c.is_static());
+        let mut own = (data.chunks.iter())
+            .filter(|c| c.entity_path().to_string() == entity && !c.is_static());
         own.next().unwrap_or_else(|| panic!("no {entity}")).clone()
     };
     let force = moving("/recording_1/force");
