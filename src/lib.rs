@@ -28,29 +28,38 @@
 // Units stand in square brackets, which rustdoc would take for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+#[cfg(feature = "cli")]
 pub mod app;
 pub mod arm;
 pub mod case;
 pub mod cell;
 pub mod control;
+#[cfg(feature = "cli")]
 pub mod design;
 pub mod device;
 pub mod diagnosis;
+#[cfg(feature = "cli")]
 pub mod drawing;
 pub mod effects;
 pub mod estimation;
+#[cfg(feature = "cli")]
 pub mod figure;
+#[cfg(feature = "import")]
 pub mod import;
+#[cfg(feature = "cli")]
 pub mod laboratory;
 pub mod metrics;
+#[cfg(feature = "cli")]
 pub mod page;
 pub mod path;
 pub mod physics;
 pub mod plant;
+#[cfg(feature = "cli")]
 pub mod proof;
 pub mod quantity;
 pub mod recording;
 pub mod replay;
+#[cfg(feature = "cli")]
 pub mod report;
 pub mod rig;
 pub mod scenario;

@@ -9,13 +9,17 @@ pub mod board;
 pub mod csv;
 mod error;
 pub mod error_scale;
+#[cfg(feature = "parquet")]
 pub mod long_table;
+#[cfg(feature = "parquet")]
 pub mod parquet;
 pub mod provenance;
+#[cfg(feature = "viewer")]
 pub mod rerun;
 pub mod samples;
 pub mod scene;
 pub mod schema;
+#[cfg(feature = "parquet")]
 pub mod table;
 pub mod thousandfold;
 pub mod unit;

@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
+#[cfg(feature = "import")]
 pub(crate) use page::key_rows;
 pub use rig::schema as rig;
 

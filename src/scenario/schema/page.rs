@@ -33,6 +33,7 @@ pub(crate) struct Row {
 
 impl Row {
     /// Is it about this key, alone or with others?
+    #[cfg(feature = "import")]
     pub(crate) fn names(&self, key: &str) -> bool {
         self.cells[0].contains(&format!("`{key}`"))
     }
@@ -77,6 +78,7 @@ impl Row {
 }
 
 /// The tables of keys of a page, in order, each with its rows.
+#[cfg(feature = "import")]
 pub(crate) fn key_rows(page: &str) -> Vec<Vec<Row>> {
     let mut tables = Vec::new();
     let mut open = false;
