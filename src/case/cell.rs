@@ -15,7 +15,7 @@ use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
 use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, sought};
 use crate::plant::{CHANNELS, PlantInputs, PlantParameters, Quantity, registry};
 use crate::recording::csv::{CellRecording, read_cell_csv};
-use crate::recording::parquet::read_parquet;
+use crate::recording::read_table;
 use crate::recording::samples::cell_recording;
 use crate::replay::{Drive, LoadedCell};
 use crate::scenario::RecordedCell;
@@ -88,7 +88,7 @@ fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, CaseError> 
     }
     let scenario = &cell.scenario;
     let atmosphere = scenario.device.parameters.gas.atmosphere;
-    let samples = read_parquet(path)?.recording;
+    let samples = read_table(path)?;
     let taken = cell_recording(&samples, joints, scenario.sample_rate, atmosphere);
     taken.map_err(|source| {
         CaseError::from(RecordedError::Missing {

@@ -6,8 +6,7 @@ use super::error::CaseError;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Chain};
 use crate::recording::csv::{read_csv, read_readings};
-use crate::recording::parquet::read_parquet;
-use crate::recording::{Recording, RecordingError};
+use crate::recording::{Recording, RecordingError, read_table};
 
 /// Reads a recording: a Parquet table by its extension, otherwise comma-separated values. Of a rig with a part of the device not every input is asked for.
 ///
@@ -18,7 +17,7 @@ pub fn read_rig(chain: Chain, path: &Path) -> Result<Recording, RecordingError> 
         .extension()
         .is_some_and(|extension| extension == "parquet")
     {
-        return Ok(read_parquet(path)?.recording);
+        return read_table(path);
     }
     let read = if chain == Chain::Whole {
         read_csv(path)?

@@ -6,6 +6,15 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
+    /// A Parquet table, and no reader of such.
+    #[cfg(not(feature = "parquet"))]
+    #[error(
+        "{file}: this program was built without the feature `parquet`; expected comma-separated values"
+    )]
+    WithoutParquet {
+        /// The file.
+        file: String,
+    },
     /// A recording needs at least one sample.
     #[error("the recording has no samples; at least one is needed")]
     Empty,

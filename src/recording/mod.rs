@@ -246,6 +246,19 @@ fn check_phases(phases: &[PhaseSpan]) -> Result<(), RecordingError> {
     Ok(())
 }
 
+/// Reads a recording from a Parquet table.
+///
+/// # Errors
+/// Those of the file; any file where the library is built without the feature `parquet`.
+pub fn read_table(path: &std::path::Path) -> Result<Recording, RecordingError> {
+    #[cfg(feature = "parquet")]
+    return Ok(parquet::read_parquet(path)?.recording);
+    #[cfg(not(feature = "parquet"))]
+    return Err(RecordingError::WithoutParquet {
+        file: path.display().to_string(),
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

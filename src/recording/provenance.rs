@@ -129,7 +129,10 @@ mod tests {
     fn libraries_are_those_that_are_pinned() {
         let manifest = include_str!("../../Cargo.toml");
         for (name, version) in LIBRARIES {
-            let line = manifest.lines().find(|line| line.contains(name)).unwrap();
+            let line = manifest
+                .lines()
+                .find(|line| line.starts_with(&format!("{name} = ")))
+                .unwrap();
             assert!(line.contains(&format!("={version}")), "{line}");
         }
     }
