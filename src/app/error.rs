@@ -273,7 +273,7 @@ pub enum AppError {
     Recorded(#[from] RecordedError),
     /// A case.
     #[error(transparent)]
-    Case(CaseError),
+    Case(Box<CaseError>),
     /// A folder without cases.
     #[error(
         "{folder}: {reason}; expected a folder of folders, each with a rig.toml and the recordings that it names"
@@ -339,7 +339,7 @@ impl From<CaseError> for AppError {
             CaseError::Cell(error) => Self::Cell(error),
             CaseError::Recording(error) => Self::Recording(error),
             CaseError::Recorded(error) => Self::Recorded(error),
-            error => Self::Case(error),
+            error => Self::Case(Box::new(error)),
         }
     }
 }

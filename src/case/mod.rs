@@ -60,7 +60,7 @@ enum Kind {
     Flange {
         rig: Box<RigFile>,
         runs: Vec<ShownRun>,
-        unseen: Option<ShownRun>,
+        unseen: Option<Box<ShownRun>>,
     },
 }
 
@@ -89,6 +89,7 @@ impl Case {
         let rig = Box::new(rig_of(folder)?);
         if rig.plant.chain == Chain::ContactFlange {
             let (runs, unseen) = rig::flange_runs(&rig, folder)?;
+            let unseen = unseen.map(Box::new);
             return Ok(Self::new(folder, Kind::Flange { rig, runs, unseen }));
         }
         let input = Box::new(rig::input_of(&rig, folder)?);
@@ -157,7 +158,8 @@ impl Case {
             None => vec![within(RIG)],
         };
         if let Kind::Flange { runs, unseen, .. } = &self.kind {
-            sources.extend(runs.iter().chain(unseen).map(|(run, _)| within(&run.name)));
+            let all = runs.iter().chain(unseen.as_deref());
+            sources.extend(all.map(|(run, _)| within(&run.name)));
         }
         // Of a run of this program the recording is a file in the folder that it is called by.
         let recordings = self
@@ -206,7 +208,7 @@ pub fn diagnose(
             cell_account::add_cell(&mut diagnosed, cell, read);
             diagnosed
         }
-        Kind::Flange { rig, runs, unseen } => of_flange_runs(rig, runs, unseen.as_ref(), start),
+        Kind::Flange { rig, runs, unseen } => of_flange_runs(rig, runs, unseen.as_deref(), start),
     };
     diagnosed.answer.details.case.clone_from(&case.name);
     diagnosed.answer.details.provenance = provenance;
