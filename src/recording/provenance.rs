@@ -129,10 +129,8 @@ mod tests {
     fn libraries_are_those_that_are_pinned() {
         let manifest = include_str!("../../Cargo.toml");
         for (name, version) in LIBRARIES {
-            let line = manifest
-                .lines()
-                .find(|line| line.starts_with(&format!("{name} = ")))
-                .unwrap();
+            let declares = |line: &&str| line.contains(name) && line.contains("version = ");
+            let line = manifest.lines().find(declares).unwrap();
             assert!(line.contains(&format!("={version}")), "{line}");
         }
     }
