@@ -1,6 +1,8 @@
 //! What a run's recording costs: a minute of a cell at 1 kHz, by the program as a user runs it, with recording.rrd and without, in turns:
 //!
-//!     cargo bench --bench recording
+//! ```text
+//! cargo bench --bench recording
+//! ```
 //!
 //! Each alone by criterion; then interleaved rounds, whose medians are compared, and what a first write of as many bytes to the disk takes.
 

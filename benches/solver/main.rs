@@ -1,6 +1,8 @@
 //! Which integrator the device gets: error against cost, and scipy's LSODA beside it in the same call:
 //!
-//!     cargo bench --bench solver                      (with --features diffsol for that crate's methods too)
+//! ```text
+//! cargo bench --bench solver                      (with --features diffsol for that crate's methods too)
+//! ```
 //!
 //! On one core, the same for both. First one step of the device by itself (criterion); then, against the golden files of scipy's Radau, the device's own
 //! integrator, other methods of fixed step, and the adaptive solvers of two crates on the same equations; last the ratio to LSODA.

@@ -1,6 +1,8 @@
 //! How fast the coupled cell steps, where each microsecond goes, and MuJoCo beside it in the same call:
 //!
-//!     cargo bench --bench step
+//! ```text
+//! cargo bench --bench step
+//! ```
 //!
 //! On one core, the same for both. First each part alone (criterion), then interleaved rounds of the whole cell, the whole cell with its parts timed,
 //! the rigid bodies alone, and MuJoCo on the same arm, load and path; the table at the end holds their medians. The timed parts of a step include the

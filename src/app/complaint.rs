@@ -1,10 +1,12 @@
 //! How an error is told: one sentence on standard error, below it the line of the file that it is about with a caret; as JSON where JSON was asked for.
 //!
-//!     error: cell.toml:28:1: unknown key `process.froce_n`; did you mean `force_n`?
-//!       --> cell.toml:28:1
-//!        |
-//!     28 | froce_n = 150
-//!        | ^^^^^^^
+//! ```text
+//! error: cell.toml:28:1: unknown key `process.froce_n`; did you mean `force_n`?
+//!   --> cell.toml:28:1
+//!    |
+//! 28 | froce_n = 150
+//!    | ^^^^^^^
+//! ```
 
 use std::path::Path;
 

@@ -1,6 +1,8 @@
 //! Drives that trail their commands: an interpolator or a filter ahead of the servo, critically damped, the same for all axes.
 //!
-//!     q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
+//! ```text
+//! q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
+//! ```
 //!
 //! Exact for commands that are linear between steps (Franklin, Powell, Workman, Digital Control, 1998, sec. 4.3: first-order hold).
 

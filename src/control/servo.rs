@@ -1,7 +1,9 @@
 //! The arm's joint servo: per axis proportional, integral and derivative, on top of the torque that the planned motion needs.
 //!
-//!     tau = tau_ff + k_p (q_ref - q) + k_d (v_ref - v) + k_i integral(q_ref - q) dt,   |tau| <= effort
-//!     k_p = m w^2,  k_d = 2 z w m,  k_i = k_p / T_i
+//! ```text
+//! tau = tau_ff + k_p (q_ref - q) + k_d (v_ref - v) + k_i integral(q_ref - q) dt,   |tau| <= effort
+//! k_p = m w^2,  k_d = 2 z w m,  k_i = k_p / T_i
+//! ```
 //!
 //! m the axis's own inertia at the start [kg m2], w natural frequency [rad/s], z damping ratio, T_i integral time [s]. tau_ff is the inverse dynamics of
 //! the reference with the device's moving mass, less the contact force's share.

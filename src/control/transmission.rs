@@ -1,7 +1,9 @@
 //! What stands between a joint's motor and its link: a spring, and play between teeth.
 //!
-//!     B theta'' = tau - T                                      motor, seen from the joint
-//!     T = K z + K b (theta' - q'),   z = e - sign(e) p/2 where |e| > p/2, else T = 0,   e = theta - q
+//! ```text
+//! B theta'' = tau - T                                      motor, seen from the joint
+//! T = K z + K b (theta' - q'),   z = e - sign(e) p/2 where |e| > p/2, else T = 0,   e = theta - q
+//! ```
 //!
 //! theta motor's angle over the gear, where the encoder sits [rad], q link's angle [rad], tau torque of the drive less its losses [N m], B rotor's inertia
 //! seen from the joint [kg m2], K stiffness [N m/rad], b damping over stiffness [s], p play from flank to flank [rad]. (Spong, J. Dyn. Syst. Meas. Control

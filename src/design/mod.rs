@@ -1,8 +1,10 @@
 //! The design study: which device, within bounds and a catalogue, keeps the contact force most uniform under limits.
 //!
-//!     minimise   f(d)                    over scenarios: contact-force variation, or another metric
-//!     subject to g_j(d) <= 0             limits: force range, stroke margin, impact peak, ...
-//!                d_i in [min, max], or in a catalogue
+//! ```text
+//! minimise   f(d)                    over scenarios: contact-force variation, or another metric
+//! subject to g_j(d) <= 0             limits: force range, stroke margin, impact peak, ...
+//!            d_i in [min, max], or in a catalogue
+//! ```
 //!
 //! [`load`] reads and checks the study file; [`run`] searches, given anything that can [`Evaluate`] a [`Design`]; the [`StudyResult`] holds the
 //! chosen design beside the starting one, the trade-off front against a second objective, what binds it, and what each variable would still do.

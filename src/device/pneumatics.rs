@@ -16,7 +16,9 @@ use crate::physics::valve::{ValveParameters, ValvePosition};
 
 /// Force of the device on its moving part over a step, for a solver that treats it implicitly:
 ///
-///     F(x, v) = force - damping (v - v_foretold) - stiffness (x - x_foretold)          at the end of the step
+/// ```text
+/// F(x, v) = force - damping (v - v_foretold) - stiffness (x - x_foretold)          at the end of the step
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeviceForce {
     /// Mean force along extension on the foretold motion [N].

@@ -1,6 +1,8 @@
 //! From a desired contact force to the set pressure that gives it at rest.
 //!
-//!     p_set = (F - m g_a) / (K A_1)                                  (source paper, eq. 1 at rest, chamber 2 at the atmosphere)
+//! ```text
+//! p_set = (F - m g_a) / (K A_1)                                  (source paper, eq. 1 at rest, chamber 2 at the atmosphere)
+//! ```
 //!
 //! p_set gauge [Pa], F contact force along the axis [N], m moving mass [kg], g_a component of gravity along extension [m/s2],
 //! K regulator gain [1], A_1 area of chamber 1 [m2].

@@ -1,6 +1,8 @@
 //! Covariance of fitted quantities that holds where the residuals are not white.
 //!
-//!     V = H^-1 (B + P) H^-1,   B = sum over blocks of g g^T,   g = sum over a block's samples of w c r         (White 1982; blocks: Newey and West 1987)
+//! ```text
+//! V = H^-1 (B + P) H^-1,   B = sum over blocks of g g^T,   g = sum over a block's samples of w c r         (White 1982; blocks: Newey and West 1987)
+//! ```
 //!
 //! H information with priors, P that of the priors alone, c derivatives of a residual r by the fit's coordinates, w its robust weight. Where a law is a
 //! little wrong its residuals have the same sign for a while, and a block of them counts as one. Where they are white, B is H less P and V is H^-1; less

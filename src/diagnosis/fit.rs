@@ -1,6 +1,8 @@
 //! Bounded, robust least squares in the simulator: Levenberg-Marquardt on whitened residuals with priors.
 //!
-//!     minimise   sum rho(r_i) + sum ((value - mean)/deviation)^2,     rho(r) = r^2 for |r| <= c,   2 c |r| - c^2 beyond    (Huber)
+//! ```text
+//! minimise   sum rho(r_i) + sum ((value - mean)/deviation)^2,     rho(r) = r^2 for |r| <= c,   2 c |r| - c^2 beyond    (Huber)
+//! ```
 
 use super::evidence::{Evidence, Prediction};
 use super::free::Free;

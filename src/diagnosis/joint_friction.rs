@@ -1,6 +1,8 @@
 //! The link from an arm's motion to the torques of its drives, by itself: dry friction of each joint.
 //!
-//!     tau_measured - tau_expected = b_r + F sat(v)        b_r of recording r, F friction [N m], sat(v) = v/sqrt(v^2 + v_0^2)
+//! ```text
+//! tau_measured - tau_expected = b_r + F sat(v)        b_r of recording r, F friction [N m], sat(v) = v/sqrt(v^2 + v_0^2)
+//! ```
 //!
 //! Ordinary least squares; what is left is not white, so that its samples count for as many as are independent of each other (first-order autocorrelation:
 //! Bartlett, J. R. Stat. Soc. 8, 1946). A drive's torque is known through a torque constant, and its load through a model: neither better than the belief's

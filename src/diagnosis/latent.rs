@@ -1,7 +1,9 @@
 //! Physics without a name: where no known effect explains the recordings, a latent term inside the simulator, at each port and over each variable in
 //! turn; the evidence says which.
 //!
-//!     score = 1/2 (S + L),   S = cost + n ln N,   L = cost of each recording as foretold by a term fitted to the others
+//! ```text
+//! score = 1/2 (S + L),   S = cost + n ln N,   L = cost of each recording as foretold by a term fitted to the others
+//! ```
 //!
 //! S is Schwarz's estimate of -2 ln p(all recordings), L the sum of -2 ln p(one recording | the others). Hats over time fit whatever happens in one
 //! recording, and S cannot tell: all hats have as many coefficients. What happens in another recording they do not foretell, unless it is a matter of

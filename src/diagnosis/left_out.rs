@@ -1,6 +1,8 @@
 //! Does an explanation predict a recording that it was not fitted to?
 //!
-//!     u_r = u - (J' W J + P)^-1 (J' W r + p)      over all recordings but r, from the optimum u of all
+//! ```text
+//! u_r = u - (J' W J + P)^-1 (J' W r + p)      over all recordings but r, from the optimum u of all
+//! ```
 //!
 //! J derivatives of the residuals by the coordinates, W weights of Huber's loss, P and p of the priors: one step of Gauss and Newton, which from the optimum
 //! is all but the whole way. Then the recording r is simulated with u_r.

@@ -1,6 +1,8 @@
 //! The experiment that best tells two explanations apart.
 //!
-//!     D^2 = min over du of |d - J du|^2 + du' N du = |d|^2 - d' J (J' J + N)^-1 J' d
+//! ```text
+//! D^2 = min over du of |d - J du|^2 + du' N du = |d|^2 - d' J (J' J + N)^-1 J' d
+//! ```
 //!
 //! d difference of their predictions in standard deviations of the sensors, J derivatives by what the better one leaves free, N what the recordings at hand
 //! know of that already. D^2 is by how much the chi-square of the wrong one would stand above that of the right one after a new fit.

@@ -1,6 +1,8 @@
 //! Which variable says when a mismatch appears: the share of its variance that lies between bins of each.
 //!
-//!     eta^2 = SS_between / SS,     share = (eta^2 - e) / (1 - e)
+//! ```text
+//! eta^2 = SS_between / SS,     share = (eta^2 - e) / (1 - e)
+//! ```
 //!
 //! e what the variable has by chance: the mean of eta^2 over mismatches shifted in time against it, round about. They have the same course, so that nothing
 //! need be known of how far neighbouring samples depend on each other; the test of F would. A variable is named if few shifts have as much.

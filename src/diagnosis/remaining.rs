@@ -1,6 +1,8 @@
 //! What no law explains of a rig with a part of the device, and how recordings are judged against it.
 //!
-//!     t = 1 + 2 sum rho_k   up to the first rho_k < 0.05
+//! ```text
+//! t = 1 + 2 sum rho_k   up to the first rho_k < 0.05
+//! ```
 //!
 //! rho_k correlation of what is left with itself k samples later, t samples that tell as much as one. A part on a laboratory's bench is seen through one good
 //! sensor at close distances of samples: what the best laws leave is large beside its noise and alike for many samples, so that any effect would gain

@@ -1,6 +1,8 @@
 //! The link from the commands to the encoders of an arm: its joints' servos, by themselves.
 //!
-//!     minimise   sum over joints and samples ((q_measured - q(u, f))/sigma)^2     over the bandwidth f
+//! ```text
+//! minimise   sum over joints and samples ((q_measured - q(u, f))/sigma)^2     over the bandwidth f
+//! ```
 
 use super::free::{Prior, free_of};
 use super::search::Shown;

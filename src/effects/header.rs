@@ -1,10 +1,12 @@
 //! What the header comment of an effect's file says of it, for people: the one place where its physics is told.
 //!
-//!     first paragraph    what it is in a sentence, then where it comes from
-//!     indented lines     equation
-//!     next paragraph     legend, and on a line of its own `Source:`
-//!     `Signature:`       what it looks like in the signals
-//!     `Confused with:`   a line `- NAME: how the two are told apart.` each
+//! ```text
+//! first paragraph    what it is in a sentence, then where it comes from
+//! fenced lines       equation
+//! next paragraph     legend, and on a line of its own `Source:`
+//! `Signature:`       what it looks like in the signals
+//! `Confused with:`   a line `- NAME: how the two are told apart.` each
+//! ```
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -73,12 +75,15 @@ impl Header {
         let mut part = Part::First;
         let lines = file.lines().map_while(|line| line.strip_prefix("//!"));
         for line in lines {
-            if let Some(equation) = line.strip_prefix("     ") {
-                header.equation.push(equation.trim_end());
-                part = Part::Legend;
+            let mut words = line.trim();
+            if let Some(fence) = words.strip_prefix("```") {
+                part = if fence.is_empty() {
+                    Part::Legend
+                } else {
+                    Part::Equation
+                };
                 continue;
             }
-            let mut words = line.trim();
             for (label, labelled) in [
                 ("Source:", Part::Source),
                 ("Signature:", Part::Signature),
@@ -90,6 +95,10 @@ impl Header {
             }
             let text = match part {
                 Part::First => &mut first,
+                Part::Equation => {
+                    (header.equation).push(line.strip_prefix(' ').unwrap_or(line).trim_end());
+                    continue;
+                }
                 Part::Legend => &mut header.legend,
                 Part::Source => &mut header.source,
                 Part::Signature => &mut header.signature,
@@ -124,6 +133,7 @@ impl Header {
 #[derive(Clone, Copy)]
 enum Part {
     First,
+    Equation,
     Legend,
     Source,
     Signature,

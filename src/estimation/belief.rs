@@ -2,7 +2,9 @@
 //!
 //! A sample z = h s + noise of variance R:   c = P h,  S = h' P h + R,  K = c / S on the state and 0 on the parameters (Schmidt),
 //!
-//!     s <- s + K (z - h s),   P <- P - K c' - c K' + S K K'  =  P - c c' / S but for the parameters' own block, which stays
+//! ```text
+//! s <- s + K (z - h s),   P <- P - K c' - c K' + S K K'  =  P - c c' / S but for the parameters' own block, which stays
+//! ```
 //!
 //! An element replaced by a linear combination of all:   P <- T P T'.
 //!

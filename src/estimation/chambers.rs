@@ -1,8 +1,10 @@
 //! The air in a chamber over one sampling period, and how it answers to everything that is uncertain.
 //!
-//!     dm/dt = m_dot(p_up, p),   p = m R T / V(x(t))                                       (source paper, eqs. 4 and 9 to 11)
-//!     dm/dt = k (m_eq(t) - m),  m_eq = p_up V / (R T),  k = m_dot / (m_eq - m)             (the same, as a lag behind equilibrium)
-//!     d(dm)/dt = f_m dm + f_x dx + f_p dp_up + f_C dC + f_V dV                             (its linearisation)
+//! ```text
+//! dm/dt = m_dot(p_up, p),   p = m R T / V(x(t))                                       (source paper, eqs. 4 and 9 to 11)
+//! dm/dt = k (m_eq(t) - m),  m_eq = p_up V / (R T),  k = m_dot / (m_eq - m)             (the same, as a lag behind equilibrium)
+//! d(dm)/dt = f_m dm + f_x dx + f_p dp_up + f_C dC + f_V dV                             (its linearisation)
+//! ```
 //!
 //! m air [kg], p_up pressure that the chamber hangs on [Pa], x stroke [m], C orifice and V_0 dead volume with relative errors dC and dV [1].
 //! Near equal pressures k is steep and the chamber simply follows. So k is taken from the middle of a sub-step and the lag solved exactly: of

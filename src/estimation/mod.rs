@@ -1,6 +1,8 @@
 //! Contact force without a load cell and without sensors in the chambers, from the regulator's outlet, stroke and acceleration, with its uncertainty.
 //!
-//!     F = (p1 A1 - p2 A2 - p_atm (A1 - A2)) - F_f - b v + M (g - a)                     (source paper, eq. 1, solved for the load)
+//! ```text
+//! F = (p1 A1 - p2 A2 - p_atm (A1 - A2)) - F_f - b v + M (g - a)                     (source paper, eq. 1, solved for the load)
+//! ```
 //!
 //! F contact force, positive when the tool presses [N]; p1, p2 absolute chamber pressures [Pa]; F_f dry friction of the seals [N], b v viscous [N];
 //! M moving mass [kg]; g gravity along extension [m/s2]; a acceleration, v speed of extension.

@@ -1,7 +1,9 @@
 //! Several hypotheses side by side: mixed before a step, weighed by how well they foresaw the samples.
 //!
-//!     mixing:    w_ij = T_ij q_i / sum_i T_ij q_i,   s_j = sum_i w_ij s_i,   P_j = sum_i w_ij (P_i + (s_i - s_j)(s_i - s_j)')
-//!     weighing:  q_j <- q_j L_j / sum                                               (Blom and Bar-Shalom 1988)
+//! ```text
+//! mixing:    w_ij = T_ij q_i / sum_i T_ij q_i,   s_j = sum_i w_ij s_i,   P_j = sum_i w_ij (P_i + (s_i - s_j)(s_i - s_j)')
+//! weighing:  q_j <- q_j L_j / sum                                               (Blom and Bar-Shalom 1988)
+//! ```
 //!
 //! q probability of a hypothesis, T chance to change from i to j within a period, L likelihood of the samples.
 

@@ -1,7 +1,9 @@
 //! What is believed before the first sample, and how a belief goes on from one sample to the next.
 //!
-//!     x <- x + v T + a T^2/2,   v <- v + a T,   a <- a + walk                             (the motion that the surface imposes)
-//!     p_o <- p_t + (p_o - p_t) exp(-T/tau),     p_t <- p_t + walk                          (source paper, eq. 8, set pressure unknown)
+//! ```text
+//! x <- x + v T + a T^2/2,   v <- v + a T,   a <- a + walk                             (the motion that the surface imposes)
+//! p_o <- p_t + (p_o - p_t) exp(-T/tau),     p_t <- p_t + walk                          (source paper, eq. 8, set pressure unknown)
+//! ```
 
 use super::belief::{
     ACCELERATION, ACCELERATION_BIAS, Belief, DEAD_VOLUME, EXHAUST, MASSES, OUTLET, PRESLIDING,

@@ -1,6 +1,8 @@
 //! The offset between two clocks, from two quantities that rise and fall together.
 //!
-//!     r(o) = sum a(t) b(t - o) / sqrt(sum a^2 sum b^2)          means taken out; a and b read off every h; o where |r| is largest
+//! ```text
+//! r(o) = sum a(t) b(t - o) / sqrt(sum a^2 sum b^2)          means taken out; a and b read off every h; o where |r| is largest
+//! ```
 //!
 //! between two such steps where the parabola through three of them is highest (Knapp and Carter 1976: the correlator; its peak).
 

@@ -264,7 +264,9 @@ pub fn of_time(file: &FileMap, series: &Series) -> Option<String> {
 
 /// A force that is within volts, and that motion explains as a controller's law does.
 ///
-///     force = a (x - y) + b dy/dt + c
+/// ```text
+/// force = a (x - y) + b dy/dt + c
+/// ```
 #[must_use]
 pub fn of_command(recording: &Recording, channel: &ChannelMap) -> Option<String> {
     if !channel.is_plain() || !matches!(channel.unit.si, Unit::Newton | Unit::NewtonMetre) {

@@ -1,6 +1,8 @@
 //! What a log turned out to hold, channel by channel: rate, gaps, range, noise, steps of its converter, and what makes its unit doubtful.
 //!
-//!     noise = 1.4826 median |x_{i+1} - 2 x_i + x_{i-1}| / sqrt 6          white noise on a smooth course (Gasser, Sroka and Jennen-Steinmetz 1986)
+//! ```text
+//! noise = 1.4826 median |x_{i+1} - 2 x_i + x_{i-1}| / sqrt 6          white noise on a smooth course (Gasser, Sroka and Jennen-Steinmetz 1986)
+//! ```
 
 use super::assemble::{Imported, LogNote};
 use super::doubts;

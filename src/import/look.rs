@@ -1,7 +1,9 @@
 //! A map drafted by looking at logs: how they are written, what their columns are and in what units, each with how sure it is and why. What cannot be told
 //! is asked for in a comment.
 //!
-//!     logs -> layout and columns (`text`, `forms`) -> quantities (`names`, `assign`) and units (`units`) -> map (`write`)
+//! ```text
+//! logs -> layout and columns (`text`, `forms`) -> quantities (`names`, `assign`) and units (`units`) -> map (`write`)
+//! ```
 
 use std::path::{Path, PathBuf};
 

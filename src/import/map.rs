@@ -1,6 +1,8 @@
 //! The import map: which column of a log is what. A small TOML file, one for all logs of a kind.
 //!
-//!     SI value = unit(gain * number + offset)          negated where `reversed`; absolute where a pressure was gauge
+//! ```text
+//! SI value = unit(gain * number + offset)          negated where `reversed`; absolute where a pressure was gauge
+//! ```
 
 use std::path::PathBuf;
 

@@ -1,6 +1,8 @@
 //! A log as MATLAB's MAT file of version 5: arrays with names.
 //!
-//!     header of 128 bytes, then elements: kind [4 bytes], length [4 bytes], content; padded to 8 bytes unless it is compressed
+//! ```text
+//! header of 128 bytes, then elements: kind [4 bytes], length [4 bytes], content; padded to 8 bytes unless it is compressed
+//! ```
 //!
 //! (MathWorks, MAT-File Format). The elements are told apart here, so that a file that is cut off is known as such and an array that cannot be
 //! read does not take the others with it; `matfile` reads each.

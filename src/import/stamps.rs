@@ -1,6 +1,8 @@
 //! Stamps of a text log: dates with times, times of the day, and durations as controllers write them (IEC 61131-3, `T#1s250ms`).
 //!
-//!     2024-03-05T14:02:03.123Z   05.03.2024 14:02:03,123   3/5/2024 2:02:03 PM   5 Mar 2024 14:02:03   20240305T140203   14:02:03.123   T#1m2s
+//! ```text
+//! 2024-03-05T14:02:03.123Z   05.03.2024 14:02:03,123   3/5/2024 2:02:03 PM   5 Mar 2024 14:02:03   20240305T140203   14:02:03.123   T#1m2s
+//! ```
 //!
 //! The order of day and month is told by all the dates of a log together, by a point between them, or by the map. Stamps without a zone are read as UTC.
 

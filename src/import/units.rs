@@ -1,6 +1,8 @@
 //! Units as logs name them.
 //!
-//!     SI value = factor * (value + zero)
+//! ```text
+//! SI value = factor * (value + zero)
+//! ```
 //!
 //! Factors of the pound and the inch are exact (NIST SP 811, 2008, app. B.8), the psi from them; normal litres are those of DIN 1343 (0 degrees Celsius,
 //! 1.01325 bar), 1.2930 kg of air a cubic metre.

@@ -1,12 +1,14 @@
 //! The device's equations, with all that may be concealed in it.
 //!
-//!     regulator    T p' = K u - p, or p'' + 2 z w p' + w^2 p = w^2 K u, rates limited; outlet = min(max(p, 0), reservoir) + ripple - droop
-//!     reservoir    m' = m_c s(p) - drawn
-//!     line         evenly spread: N equal resistances, a cell behind each, the last one half: the half before the first is the outlet's (trapezoidal rule)
-//!     orifice      m' = A C p_u / sqrt(R T_u) f(u),  f = y / (y^2 + e^2)^(1/4),  y = 2k/(k-1) (u^(2/k) - u^((k+1)/k)),  u held at the critical ratio
-//!     chamber      E' = cp (T_in m'_in - T m'_out) - p V' + G (T_w - T),  p V = m R T;   C_w T_w' = -G (T_w - T) - G_a (T_w - T_a)
-//!     piston       M x'' = p1 A1 - p2 A2 - pa (A1 - A2) + M g + F_0 - k_s x - F_seal - F_cushion + stops - contact
-//!     seal         F = s0 z + s1 z' + b x',   z' = x' - a(z, x') s0 |x'| z / g(x')    (LuGre, Canudas de Wit et al. 1995; a: elastoplastic, Dupont et al. 2002)
+//! ```text
+//! regulator    T p' = K u - p, or p'' + 2 z w p' + w^2 p = w^2 K u, rates limited; outlet = min(max(p, 0), reservoir) + ripple - droop
+//! reservoir    m' = m_c s(p) - drawn
+//! line         evenly spread: N equal resistances, a cell behind each, the last one half: the half before the first is the outlet's (trapezoidal rule)
+//! orifice      m' = A C p_u / sqrt(R T_u) f(u),  f = y / (y^2 + e^2)^(1/4),  y = 2k/(k-1) (u^(2/k) - u^((k+1)/k)),  u held at the critical ratio
+//! chamber      E' = cp (T_in m'_in - T m'_out) - p V' + G (T_w - T),  p V = m R T;   C_w T_w' = -G (T_w - T) - G_a (T_w - T_a)
+//! piston       M x'' = p1 A1 - p2 A2 - pa (A1 - A2) + M g + F_0 - k_s x - F_seal - F_cushion + stops - contact
+//! seal         F = s0 z + s1 z' + b x',   z' = x' - a(z, x') s0 |x'| z / g(x')    (LuGre, Canudas de Wit et al. 1995; a: elastoplastic, Dupont et al. 2002)
+//! ```
 //!
 //! e makes the flow through an orifice smooth where it reverses: 1e-3, felt within 0.05 % of equal pressures.
 

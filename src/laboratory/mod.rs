@@ -5,7 +5,9 @@
 //! than a model's: seals with elastoplastic presliding, a hose of many cells, walls that warm up, orifices without the model's laminar line.
 //! Formulas stand here twice on purpose: nothing here may use `physics`, `device` or `plant`.
 //!
-//!     programme -> device (with something concealed) -> sensors -> recordings + rig file + sealed truth
+//! ```text
+//! programme -> device (with something concealed) -> sensors -> recordings + rig file + sealed truth
+//! ```
 
 mod case;
 mod concealed;

@@ -1,6 +1,8 @@
 //! How strongly an effect shows beside all that its owner tolerates.
 //!
-//!     D^2 = min over q of  sum w_i^2 (d_i - sum J_ij q_j)^2 + sum q_j^2,      w_i = 1 / sqrt(1 + (T s_i)^2)
+//! ```text
+//! D^2 = min over q of  sum w_i^2 (d_i - sum J_ij q_j)^2 + sum q_j^2,      w_i = 1 / sqrt(1 + (T s_i)^2)
+//! ```
 //!
 //! d what the effect moves a reading by, in standard deviations of its noise; J what a tolerated number moves it by, in that number's standard deviation
 //! q (of a value anywhere within its tolerance); s how fast the reading changes, in standard deviations a second; T 1 ms: that an impact comes a moment

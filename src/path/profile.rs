@@ -2,7 +2,9 @@
 //!
 //! A change of speed v0 -> v1 takes jerk +-j in three parts (up, constant, down):
 //!
-//!     |v1 - v0| <= a^2/j:  T = 2 sqrt(|v1 - v0|/j);   else  T = |v1 - v0|/a + a/j;   distance = (v0 + v1)/2 T
+//! ```text
+//! |v1 - v0| <= a^2/j:  T = 2 sqrt(|v1 - v0|/j);   else  T = |v1 - v0|/a + a/j;   distance = (v0 + v1)/2 T
+//! ```
 //!
 //! v speed [m/s], a acceleration [m/s2], j jerk [m/s3]. (Biagiotti and Melchiorri, Trajectory Planning for Automatic Machines and Robots, 2008, sec. 3.4.)
 

@@ -1,6 +1,8 @@
 //! A load that hangs on the piston all along its stroke: a constant force, and a spring from the retracted end.
 //!
-//!     F = F_0 - k x
+//! ```text
+//! F = F_0 - k x
+//! ```
 //!
 //! F along extension [N], F_0 constant force: a weight that hangs on, a wrong tilt [N], k stiffness of a return spring, cable or hose [N/m],
 //! x stroke from the retracted end, where the spring is relaxed [m].

@@ -1,7 +1,9 @@
 //! One cylinder chamber: volume and pressure.
 //!
-//!     V_1 = V_0 + A_1 x,   V_2 = V_0 + A_2 (L - x)                         (source paper, below eq. 6)
-//!     dP/dt = R T / V (m_dot_in - m_dot_out) - P / V dV/dt                 (eq. 6)
+//! ```text
+//! V_1 = V_0 + A_1 x,   V_2 = V_0 + A_2 (L - x)                         (source paper, below eq. 6)
+//! dP/dt = R T / V (m_dot_in - m_dot_out) - P / V dV/dt                 (eq. 6)
+//! ```
 //!
 //! V_0 dead volume [m3], A piston area [m2], x stroke from the retracted end [m], L full stroke [m].
 //!

@@ -1,6 +1,8 @@
 //! Damping at either end of the stroke that the piston meets as it comes near, and not as it leaves.
 //!
-//!     F = -c (1 - d / l) v     for d < l and towards the end,     0 otherwise
+//! ```text
+//! F = -c (1 - d / l) v     for d < l and towards the end,     0 otherwise
+//! ```
 //!
 //! F along extension [N], c damping at the very end [N s/m], l length [m], d distance from the end, 0 beyond it [m], v speed of extension [m/s].
 //!

@@ -1,6 +1,8 @@
 //! The working gas: dry air as an ideal gas at constant temperature.
 //!
-//!     P = rho R T,   P V = m R T          (source paper, eqs. 2 to 4)
+//! ```text
+//! P = rho R T,   P V = m R T          (source paper, eqs. 2 to 4)
+//! ```
 //!
 //! P absolute pressure [Pa], rho density [kg/m3], R specific gas constant [J/(kg K)], T temperature [K], V volume [m3], m mass [kg].
 

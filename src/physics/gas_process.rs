@@ -1,7 +1,9 @@
 //! What the gas in a chamber does as it is compressed: stays at its temperature, or heats up and exchanges heat with the wall.
 //!
-//!     isothermal:  p V = m R T_0                                                               (source paper, eq. 4)
-//!     wall heat:   dE/dt = sum(m_dot_in c_p T_in) - sum(m_dot_out c_p T) - p dV/dt + G (T_w - T),   p V = (k - 1) E,   T = E / (m c_v)
+//! ```text
+//! isothermal:  p V = m R T_0                                                               (source paper, eq. 4)
+//! wall heat:   dE/dt = sum(m_dot_in c_p T_in) - sum(m_dot_out c_p T) - p dV/dt + G (T_w - T),   p V = (k - 1) E,   T = E / (m c_v)
+//! ```
 //!
 //! E internal energy [J], T temperature [K], G conductance from gas to wall [W/K], T_w wall temperature [K], k ratio of specific heats [1],
 //! c_p and c_v specific heats [J/(kg K)]. G = 0 is adiabatic; a large G comes back to isothermal.

@@ -1,9 +1,11 @@
 //! A line between regulator and valve: resistance, then volume.
 //!
-//!     p_h V_h = m_h R T                                                (lumped line, Richer and Hurmuzlu 2000, without the wave's delay)
-//!     f Re^2 = K = d^3 (p_in^2 - p_h^2) / (mu^2 l R T),   Re = 4 m_dot / (pi d mu)      (Darcy and Weisbach at the mean density)
-//!     Re = K / 64                          up to Re 2300               (laminar: Hagen and Poiseuille)
-//!     Re = 2 sqrt(K) log10(sqrt(K)/2.51)   from sqrt(K) 800, Re 4006   (turbulent, smooth: Colebrook 1939, explicit in the flow)
+//! ```text
+//! p_h V_h = m_h R T                                                (lumped line, Richer and Hurmuzlu 2000, without the wave's delay)
+//! f Re^2 = K = d^3 (p_in^2 - p_h^2) / (mu^2 l R T),   Re = 4 m_dot / (pi d mu)      (Darcy and Weisbach at the mean density)
+//! Re = K / 64                          up to Re 2300               (laminar: Hagen and Poiseuille)
+//! Re = 2 sqrt(K) log10(sqrt(K)/2.51)   from sqrt(K) 800, Re 4006   (turbulent, smooth: Colebrook 1939, explicit in the flow)
+//! ```
 //!
 //! V_h volume [m3], m_h air in it [kg], l length [m], d inner diameter [m], mu viscosity [Pa s], f Darcy friction factor [1], p absolute pressures [Pa].
 //! For an ideal gas the mean density times the pressure drop is (p_in^2 - p_h^2) / (2 R T), whatever the course of the pressure.
@@ -203,7 +205,9 @@ impl Hose {
 
     /// Pressure in the line [Pa absolute] at which what comes in is what goes on, as `on` gives it, and what is stored:
     ///
-    ///     storage (p - base) = flow(before, p) - on(p)
+    /// ```text
+    /// storage (p - base) = flow(before, p) - on(p)
+    /// ```
     ///
     /// `storage` is at least 0 [kg/(s Pa)] and `base` any number [Pa], no more than a first guess if nothing is stored; `on` grows with the pressure
     /// and is 0 at `after` [Pa absolute].

@@ -1,14 +1,18 @@
 //! Mass flow through a bought component, from the two numbers of its data sheet.
 //!
-//!     m_dot = C p_1 rho_0 sqrt(T_0 / T_1)                                              for u <= b          (ISO 6358: choked)
-//!     m_dot = C p_1 rho_0 sqrt(T_0 / T_1) sqrt(1 - ((u - b) / (1 - b))^2)              for u >  b          (subsonic: an ellipse)
+//! ```text
+//! m_dot = C p_1 rho_0 sqrt(T_0 / T_1)                                              for u <= b          (ISO 6358: choked)
+//! m_dot = C p_1 rho_0 sqrt(T_0 / T_1) sqrt(1 - ((u - b) / (1 - b))^2)              for u >  b          (subsonic: an ellipse)
+//! ```
 //!
 //! m_dot mass flow [kg/s], C sonic conductance [m3/(s Pa)], b critical pressure ratio [1], p_1 upstream and p_2 downstream pressure, absolute [Pa],
 //! u = p_2 / p_1, T_1 upstream temperature [K], rho_0 and T_0 density and temperature of the standard reference atmosphere (ANR, ISO 8778).
 //!
 //! The source paper's eqs. (9) to (11) (`orifice`) know an area and a discharge coefficient instead. Equal choked flow makes one of the other,
 //!
-//!     C rho_0 sqrt(T_0) = A C_d f(r) / sqrt(R)
+//! ```text
+//! C rho_0 sqrt(T_0) = A C_d f(r) / sqrt(R)
+//! ```
 //!
 //! and b = r of eq. (11) then gives nearly the same subsonic flow. A real valve has a lower b, 0.2 to 0.5: the same choked flow, less of it near u = 1.
 //! As in `orifice`, the flow is linear in the pressure difference above `LAMINAR_RATIO`, and goes either way.

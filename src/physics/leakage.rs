@@ -1,6 +1,8 @@
 //! Air that passes where it should not: the piston seal, and the fittings of chamber 1.
 //!
-//!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)                (equivalent orifices in the source paper's eqs. 9 to 11, `orifice`)
+//! ```text
+//! m_dot = A C p_u / sqrt(R T) f(p_d / p_u)                (equivalent orifices in the source paper's eqs. 9 to 11, `orifice`)
+//! ```
 //!
 //! A equivalent area [m2], C discharge coefficient of the device's orifices [1]. The higher pressure is upstream, and near equal pressures the
 //! flow is as linear in their difference as through any orifice here.

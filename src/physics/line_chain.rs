@@ -1,7 +1,9 @@
 //! A line in segments, each a resistance and then a volume: all but the last eliminated from an implicit step.
 //!
-//!     c (p_j - h_j) = (p_{j-1} - p_j)/r - (p_j - p_{j+1})/r,     c = V/(N R T share)      (telegraph equation without inertia, in N segments)
-//!     p_j = A_j + B_j p_{j+1},   B_j = k/D_j,   A_j = (h_j + k A_{j-1})/D_j,   D_j = 1 + k (2 - B_{j-1}),   k = 1/(c r)      (Thomas's elimination)
+//! ```text
+//! c (p_j - h_j) = (p_{j-1} - p_j)/r - (p_j - p_{j+1})/r,     c = V/(N R T share)      (telegraph equation without inertia, in N segments)
+//! p_j = A_j + B_j p_{j+1},   B_j = k/D_j,   A_j = (h_j + k A_{j-1})/D_j,   D_j = 1 + k (2 - B_{j-1}),   k = 1/(c r)      (Thomas's elimination)
+//! ```
 //!
 //! p_0 pressure before the line, A_0 = p_0, B_0 = 0; h_j pressure that a segment keeps from the earlier stages; r resistance of a segment [Pa s/kg].
 //! What the last segment sees is a pressure A/(1 - B) behind a resistance r/(1 - B).

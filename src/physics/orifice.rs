@@ -1,9 +1,11 @@
 //! Mass flow through an orifice.
 //!
-//!     m_dot = A C p_u / sqrt(R T) * f(u),   u = p_d / p_u                                   (source paper, eq. 9)
-//!     f(u)  = sqrt(2 k/(k-1) (u^(2/k) - u^((k+1)/k)))     for u >= r                        (eq. 10)
-//!           = sqrt(k (2/(k+1))^((k+1)/(k-1)))             for u <  r
-//!     r     = (2/(k+1))^(k/(k-1))                                                           (eq. 11)
+//! ```text
+//! m_dot = A C p_u / sqrt(R T) * f(u),   u = p_d / p_u                                   (source paper, eq. 9)
+//! f(u)  = sqrt(2 k/(k-1) (u^(2/k) - u^((k+1)/k)))     for u >= r                        (eq. 10)
+//!       = sqrt(k (2/(k+1))^((k+1)/(k-1)))             for u <  r
+//! r     = (2/(k+1))^(k/(k-1))                                                           (eq. 11)
+//! ```
 //!
 //! A area [m2], C discharge coefficient [1], p_u and p_d absolute pressures upstream and downstream [Pa],
 //! R specific gas constant [J/(kg K)], T temperature [K], k ratio of specific heats [1].

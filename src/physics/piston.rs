@@ -1,6 +1,8 @@
 //! Force of the gas on the piston and its load.
 //!
-//!     F = p_1 A_1 - p_2 A_2 - p_a (A_1 - A_2)
+//! ```text
+//! F = p_1 A_1 - p_2 A_2 - p_a (A_1 - A_2)
+//! ```
 //!
 //! p_1, p_2 absolute chamber pressures [Pa], A_1, A_2 areas [m2], p_a atmosphere [Pa], F positive in extension [N].
 //!

@@ -1,6 +1,8 @@
 //! A spring and damper side by side that push and never pull: end stops, the tool on a load cell or surface.
 //!
-//!     F = max(0, k d + c d_dot)   for d > 0,   0 otherwise
+//! ```text
+//! F = max(0, k d + c d_dot)   for d > 0,   0 otherwise
+//! ```
 //!
 //! d penetration [m], k stiffness [N/m], c damping [N s/m], F [N] apart.
 

@@ -1,6 +1,8 @@
 //! The piezo pressure regulator: first order with a dead time, relieving.
 //!
-//!     tau dp/dt = K p_set(t - theta) - p,   C(s)/R(s) = K e^(-theta s) / (tau s + 1)        (source paper, eq. 8, and its delay)
+//! ```text
+//! tau dp/dt = K p_set(t - theta) - p,   C(s)/R(s) = K e^(-theta s) / (tau s + 1)        (source paper, eq. 8, and its delay)
+//! ```
 //!
 //! p outlet pressure [Pa, gauge], p_set set pressure [Pa, gauge], K gain [1], tau time constant [s], theta dead time [s].
 //! The set pressure is held over a step, so the lag is solved exactly. The outlet cannot exceed the supply.

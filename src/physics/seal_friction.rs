@@ -1,14 +1,18 @@
 //! Friction of piston seals and guides: bristles that bend before they slide.
 //!
-//!     F = s z + b v,   dz/dx = 1 - sign(v) s z / g(v),   s = F_c / z_p              (Dahl 1968; Canudas de Wit et al. 1995, without micro-damping)
-//!     g(v) = F_c + (F_s - F_c) exp(-(v / v_s)^2)                                    (Stribeck)
+//! ```text
+//! F = s z + b v,   dz/dx = 1 - sign(v) s z / g(v),   s = F_c / z_p              (Dahl 1968; Canudas de Wit et al. 1995, without micro-damping)
+//! g(v) = F_c + (F_s - F_c) exp(-(v / v_s)^2)                                    (Stribeck)
+//! ```
 //!
 //! F resisting force [N], z bristle deflection [m], s its stiffness [N/m], b viscous coefficient [N s/m], v speed of extension [m/s],
 //! F_c Coulomb and F_s static friction [N], v_s Stribeck velocity [m/s], z_p presliding displacement [m]: Coulomb friction over initial stiffness.
 //!
 //! The deflection depends on the path alone, not on time. While the direction and g hold, it follows in closed form over a displacement d,
 //!
-//!     z(d) = z_inf + (z_0 - z_inf) exp(-s |d| / g),   z_inf = sign(d) g / s
+//! ```text
+//! z(d) = z_inf + (z_0 - z_inf) exp(-s |d| / g),   z_inf = sign(d) g / s
+//! ```
 //!
 //! so sliding, however fast, is never stiff.
 //!

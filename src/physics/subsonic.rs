@@ -1,6 +1,8 @@
 //! Eq. (10) of the source paper without its powers, for a machine that evaluates it some ten thousand times for each second that it simulates.
 //!
-//!     f(u)^2 = (1 - u) q(u),   q(u) = 2 k/(k-1) u^(2/k) (1 - u^((k-1)/k)) / (1 - u)                    for u in r..1
+//! ```text
+//! f(u)^2 = (1 - u) q(u),   q(u) = 2 k/(k-1) u^(2/k) (1 - u^((k-1)/k)) / (1 - u)                    for u in r..1
+//! ```
 //!
 //! q is smooth there, its nearest singularity being u = 0. Its polynomial through the Chebyshev nodes therefore converges to the resolution of a
 //! number: degree 15 keeps f to 1e-14 for any gas. It is evaluated by Estrin's scheme, whose terms do not wait for each other.

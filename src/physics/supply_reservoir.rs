@@ -1,7 +1,9 @@
 //! A finite reservoir in front of the regulator, refilled by a small compressor.
 //!
-//!     p V = m R T_0,   dm/dt = m_dot_c s(p) - m_dot_drawn                         (isothermal tank, source paper eq. 4)
-//!     s(p) = 1 below 0.999 p_f, from there linearly to 0 at p_f
+//! ```text
+//! p V = m R T_0,   dm/dt = m_dot_c s(p) - m_dot_drawn                         (isothermal tank, source paper eq. 4)
+//! s(p) = 1 below 0.999 p_f, from there linearly to 0 at p_f
+//! ```
 //!
 //! p absolute pressure [Pa], V volume [m3], m air in it [kg], m_dot_c flow of the compressor [kg/s], p_f pressure at which it unloads [Pa],
 //! m_dot_drawn what the regulator lets through to the device, never negative [kg/s]: a relieving regulator lets air out to the atmosphere.

@@ -1,6 +1,8 @@
 //! The 5/2 valve's spool, which goes over some time after its solenoid is told to.
 //!
-//!     position(t) = command(t - theta)
+//! ```text
+//! position(t) = command(t - theta)
+//! ```
 //!
 //! theta switching delay [s], the same either way: makers state 10 to 30 ms for a pilot-operated valve of this size (ISO 12238).
 //! The very first command is where the spool stands from the start. Leaves out: flow while the spool is on its way, a few milliseconds.

@@ -1,6 +1,8 @@
 //! What acts on the piston of a recorded rig between two samples: weight and contact.
 //!
-//!     M dv/dt = F_device + M g_a - c F_contact,   c the share of the contact's direction that lies along the stroke
+//! ```text
+//! M dv/dt = F_device + M g_a - c F_contact,   c the share of the contact's direction that lies along the stroke
+//! ```
 
 use super::contact::ContactParameters;
 use super::contact_friction::AxialFriction;

@@ -1,14 +1,18 @@
 //! A cell's arm over a recording, reduced to what the device at its end feels.
 //!
-//!     d = x c - s                  penetration along the bisector n of the edge, the links' swing aside (`flexing`)
-//!     s = n . (b - e) - r - l      standoff at no stroke
-//!     c = -n . a                   share of the stroke that goes into the part
+//! ```text
+//! d = x c - s                  penetration along the bisector n of the edge, the links' swing aside (`flexing`)
+//! s = n . (b - e) - r - l      standoff at no stroke
+//! c = -n . a                   share of the stroke that goes into the part
+//! ```
 //!
 //! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out (a burr is met by the ball alone,
 //! `carrier`), x stroke. Joints that are off turn all behind them about their axes, from the last one to the first: the product of exponentials (Brockett,
 //! 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
 //!
-//!     l = n . u,   u = shift n_0 + tilt (t_0 x n_0) x (e - e_0)          small displacement of a rigid part (Siciliano et al., Robotics, 2009, sec. 2.4)
+//! ```text
+//! l = n . u,   u = shift n_0 + tilt (t_0 x n_0) x (e - e_0)          small displacement of a rigid part (Siciliano et al., Robotics, 2009, sec. 2.4)
+//! ```
 //!
 //! e_0, t_0, n_0 middle of the edge, its direction and bisector there.
 

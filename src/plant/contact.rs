@@ -1,8 +1,10 @@
 //! The tool on the workpiece: a law that pushes and never pulls, on a surface that may not be where the robot says.
 //!
-//!     F = max(0, k d + c d_dot)            spring and damper
-//!     F = max(0, k d^(3/2) + c d_dot)      Hertz, a ball on a flat (Johnson, Contact Mechanics, 1985, eq. 4.23)
-//!     x_s = x_robot + o + sum a sin(2 pi f t + phi)
+//! ```text
+//! F = max(0, k d + c d_dot)            spring and damper
+//! F = max(0, k d^(3/2) + c d_dot)      Hertz, a ball on a flat (Johnson, Contact Mechanics, 1985, eq. 4.23)
+//! x_s = x_robot + o + sum a sin(2 pi f t + phi)
+//! ```
 //!
 //! d penetration of the tool beyond the surface [m], x_s where the surface stands along the stroke [m], o offset [m], a amplitude [m], f frequency [Hz].
 

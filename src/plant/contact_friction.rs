@@ -1,6 +1,8 @@
 //! Friction of the ball on the part: it sticks elastically until it slides.
 //!
-//!     F = -k z,   z' = v_t,   |k z| <= mu N
+//! ```text
+//! F = -k z,   z' = v_t,   |k z| <= mu N
+//! ```
 //!
 //! z tangential deflection [m], v_t speed of the ball along the part's surface [m/s], N contact force [N], k tangential stiffness [N/m]. The deflection beyond
 //! what friction holds is slip (return mapping of elastic-plastic friction: Simo, Hughes, Computational Inelasticity, 1998, sec. 1.2).

@@ -1,7 +1,9 @@
 //! Links that swing on the springs of their joints.
 //!
-//!     M d'' + D d' + K d = J_n F + J_t T + J . S + J_a (c F - a . S - G) - tau           links against motors
-//!     T = -mu F sat(v / v_s),   v = v_motors + J_t . d'
+//! ```text
+//! M d'' + D d' + K d = J_n F + J_t T + J . S + J_a (c F - a . S - G) - tau           links against motors
+//! T = -mu F sat(v / v_s),   v = v_motors + J_t . d'
+//! ```
 //!
 //! With play p the spring rests at the flank, K (d - sign(d) p/2), and does nothing between the flanks.
 //!

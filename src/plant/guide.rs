@@ -1,6 +1,8 @@
 //! A measured motion that a simulated piston is held to.
 //!
-//!     F_g = M (w^2 (x_m - x) + 2 w (v_m - v)),   w = 2 pi 10 Hz
+//! ```text
+//! F_g = M (w^2 (x_m - x) + 2 w (v_m - v)),   w = 2 pi 10 Hz
+//! ```
 //!
 //! x_m and v_m measured motion. A model that lacks something soon meets impacts at other times than the device did, and from then on every
 //! difference is one of timing. Held to the measured motion it stays beside it, and F_g is the force that it lacks. (Nudging, or synchronisation:

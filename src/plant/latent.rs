@@ -1,8 +1,10 @@
 //! A term that a rig's model lacks and that has no name: a force, a pressure, a flow, a displacement or an error of a reading, as a function of one
 //! variable.
 //!
-//!     y = s(v) sum c_k phi_k(x),   phi_k hats between evenly spaced knots, or sines and cosines of a frequency and its double
-//!     s(v) = 1, or tanh(v/v_0), v_0 = 2 mm/s, for what acts against the motion
+//! ```text
+//! y = s(v) sum c_k phi_k(x),   phi_k hats between evenly spaced knots, or sines and cosines of a frequency and its double
+//! s(v) = 1, or tanh(v/v_0), v_0 = 2 mm/s, for what acts against the motion
+//! ```
 //!
 //! x variable, v speed of extension [m/s], c coefficients in the port's unit.
 

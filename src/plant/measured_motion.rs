@@ -1,6 +1,8 @@
 //! A recorded motion with its speed and acceleration, as far as the recording's noise lets them be known.
 //!
-//!     minimise  sum K((t_i - t)/W) (x_i - c_0 - c_1 (t_i - t) - c_2 (t_i - t)^2 - c_3 (t_i - t)^3)^2,   x = c_0, v = c_1, a = 2 c_2
+//! ```text
+//! minimise  sum K((t_i - t)/W) (x_i - c_0 - c_1 (t_i - t) - c_2 (t_i - t)^2 - c_3 (t_i - t)^3)^2,   x = c_0, v = c_1, a = 2 c_2
+//! ```
 //!
 //! K tricube weights (Cleveland 1979), W half-width [s]: the largest that foretells a reading from the others about as well as the best one does, because
 //! derivatives need more smoothing than the readings themselves. Samples may be at unlike distances.

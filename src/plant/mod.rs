@@ -1,8 +1,10 @@
 //! A bench rig as one description, driven by the inputs of a recording: what would have been measured if the description were true.
 //!
-//!     set pressure -> regulator -> line and valve -> chambers -> piston <- contact <- surface
-//!                         |                                        |         |
-//!                         +-------------- sensors -----------------+---------+
+//! ```text
+//! set pressure -> regulator -> line and valve -> chambers -> piston <- contact <- surface
+//!                     |                                        |         |
+//!                     +-------------- sensors -----------------+---------+
+//! ```
 //!
 //! The device is that of every other simulation ([`crate::device`]); contact and sensors have their own errors here, because a recording shows them
 //! only through each other.

@@ -1,6 +1,8 @@
 //! Where a cell's contact stands over one sample, seen along the slide: share of the stroke that goes into it, surface as a cubic of time.
 //!
-//!     d = c (x - s)
+//! ```text
+//! d = c (x - s)
+//! ```
 //!
 //! On a sharp edge c and s are those of the tangent plane of the distance at the present stroke; over a sample they err by its curvature alone.
 

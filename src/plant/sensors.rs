@@ -1,8 +1,10 @@
 //! What the sensors of a rig do to what they measure, before their noise.
 //!
-//!     force:   F_m = clip( g L(F + m_x a) + b + d t ),   at the time of its stamp less a delay;   L: 1/(T s + 1)
-//!     stroke:  x_m = g_x x
-//!     outlet:  p_m = p + b_p + d_p t
+//! ```text
+//! force:   F_m = clip( g L(F + m_x a) + b + d t ),   at the time of its stamp less a delay;   L: 1/(T s + 1)
+//! stroke:  x_m = g_x x
+//! outlet:  p_m = p + b_p + d_p t
+//! ```
 //!
 //! F contact force [N], a acceleration along extension [m/s2], m_x mass beyond the load cell [kg], g gains [1], b bias [N], d drift [N/s],
 //! T time constant [s], b_p offset [Pa] and d_p drift [Pa/s] of the pressure sensor.

@@ -1,6 +1,8 @@
 //! A joint's servo as its owner describes it: the motor follows its command as a critically damped second-order lag.
 //!
-//!     q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
+//! ```text
+//! q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
+//! ```
 //!
 //! Exact for commands that are linear between samples (Franklin, Powell, Workman, Digital Control, 1998, sec. 4.3: first-order hold).
 

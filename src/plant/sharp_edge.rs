@@ -1,7 +1,9 @@
 //! A ball on a sharp edge of a part, as the part's faces have it.
 //!
-//!     d = r - |q|,     n = q/|q|          q from the nearest point of the edge to the ball's centre, between the normals of the two faces
-//!     d = r - n_f . q                     beyond one of them: the ball stands on that face
+//! ```text
+//! d = r - |q|,     n = q/|q|          q from the nearest point of the edge to the ball's centre, between the normals of the two faces
+//! d = r - n_f . q                     beyond one of them: the ball stands on that face
+//! ```
 //!
 //! The nearest point of a convex part to a point outside of it (Ericson, Real-Time Collision Detection, 2005, sec. 5.1), for the part whose only features
 //! near the ball are a chain of straight edges and the two faces of each.

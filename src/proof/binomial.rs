@@ -1,6 +1,8 @@
 //! Exact bounds on a probability from counts (Clopper and Pearson, Biometrika 26, 1934).
 //!
-//!     upper p:  sum_{i <= k} C(n, i) p^i (1 - p)^(n - i) = alpha
+//! ```text
+//! upper p:  sum_{i <= k} C(n, i) p^i (1 - p)^(n - i) = alpha
+//! ```
 
 /// Probability of at most `hits` among `trials` at a probability each.
 fn at_most(hits: usize, trials: usize, probability: f64) -> f64 {

@@ -1,7 +1,9 @@
 //! What the drives of a cell's arm had to give, by its model: the torque of each but for its joint's dry friction; where the tool moves along the edge, or
 //! is off it.
 //!
-//!     tau = M(q) q'' + C(q, q') + G(q) + D q' - J_n F_n + J_t mu F_n sat(v)
+//! ```text
+//! tau = M(q) q'' + C(q, q') + G(q) + D q' - J_n F_n + J_t mu F_n sat(v)
+//! ```
 //!
 //! M, C, G with the device's moving mass at its stroke, D viscous friction of the URDF, F_n contact force, J_n, J_t levers of the ball along the part's normal
 //! and along the edge, mu friction of the tool, v speed along the edge. (Swevers et al., IEEE Control Systems 27(5), 2007: inverse dynamics identification.)

@@ -1,6 +1,8 @@
 //! What acts on the piston of a bench rig: weight, load, hand.
 //!
-//!     M dv/dt = F_device + M g_a - F_load - F_hand
+//! ```text
+//! M dv/dt = F_device + M g_a - F_load - F_hand
+//! ```
 //!
 //! M moving mass [kg], g_a component of gravity along extension [m/s2], F_load push-only contact on the load's surface [N].
 //! Source paper, eq. (1), whose sign of g is that of a device that extends upwards.

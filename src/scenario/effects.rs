@@ -1,15 +1,17 @@
 //! `[[effect]]` of a file, the same in a cell, a bench, a recorded cell and a rig: physics beyond what is believed, of the catalogue or as an expression.
 //!
-//!     [[effect]]
-//!     name = "joint_friction"             of the catalogue, with all its numbers
-//!     joint = 3                           of an effect of one joint
-//!     friction_n_m = 20
+//! ```text
+//! [[effect]]
+//! name = "joint_friction"             of the catalogue, with all its numbers
+//! joint = 3                           of an effect of one joint
+//! friction_n_m = 20
 //!
-//!     [[effect]]
-//!     name = "one_way_damping"            a name of one's own
-//!     acts_on = "piston_force"
-//!     is = "-c * max(v, 0)"
-//!     c = { value = 200, min = 0, max = 1000, unit = "N s/m" }
+//! [[effect]]
+//! name = "one_way_damping"            a name of one's own
+//! acts_on = "piston_force"
+//! is = "-c * max(v, 0)"
+//! c = { value = 200, min = 0, max = 1000, unit = "N s/m" }
+//! ```
 //!
 //! A file of schema 1 has `[effect.NAME]` with its numbers instead, and names the joint at the end of NAME.
 

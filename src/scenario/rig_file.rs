@@ -1,11 +1,13 @@
 //! The rig file: a device, its contact and its sensors as their owner believes them to be, or as a diagnosis has improved them. Strict SI.
 //!
-//!     key = 5.09                                   a number
-//!     key = { value = 5.09, tolerance = 0.01 }     believed to lie within 1 % of it
-//!     key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
-//!     [rig]  chain = "moved_piston"                a part of the device ([`crate::plant::Chain`]); only that part's numbers are then asked for
-//!     [[effect]]                                   physics beyond the believed model (`super::effects`)
-//!     [latent]                                     physics that no known effect explains (`latent`)
+//! ```text
+//! key = 5.09                                   a number
+//! key = { value = 5.09, tolerance = 0.01 }     believed to lie within 1 % of it
+//! key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
+//! [rig]  chain = "moved_piston"                a part of the device ([`crate::plant::Chain`]); only that part's numbers are then asked for
+//! [[effect]]                                   physics beyond the believed model (`super::effects`)
+//! [latent]                                     physics that no known effect explains (`latent`)
+//! ```
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,8 @@
 //! The accelerometer: orthogonal acceleration of the device, along its axis, gravity removed.
 //!
-//!     a_read = q round(A / q),   A = a + b + sigma n, kept within -r .. r
+//! ```text
+//! a_read = q round(A / q),   A = a + b + sigma n, kept within -r .. r
+//! ```
 //!
 //! b bias [m/s2], sigma noise [m/s2], r range [m/s2], q resolution [m/s2]; a resolution of 0 does not round.
 //! The source paper names the sensor and gives no number. Leaves out: bandwidth, cross axes, and the error of the gravity that

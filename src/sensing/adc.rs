@@ -1,6 +1,8 @@
 //! Analogue to digital converter: mid-tread, and its input clips.
 //!
-//!     code = round(V / q + sigma n), kept within 0 .. 2^b - 1,   q = V_ref / 2^b
+//! ```text
+//! code = round(V / q + sigma n), kept within 0 .. 2^b - 1,   q = V_ref / 2^b
+//! ```
 //!
 //! V input [V], V_ref reference [V], b bits, sigma noise in steps, n a standard normal number.
 //! The ATmega2560's: 10 bits, and ideally its first transition at half a step (data sheet, "ADC Accuracy Definitions").

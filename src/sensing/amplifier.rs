@@ -1,6 +1,8 @@
 //! The amplifier from the RC's 0-5 V to the regulator's 0-8 V: non-inverting, its gain set by two resistors.
 //!
-//!     V_out = G V_in,   G = 1 + R_f / R_g = 1 + (G_n - 1) (1 + e_f) / (1 + e_g)
+//! ```text
+//! V_out = G V_in,   G = 1 + R_f / R_g = 1 + (G_n - 1) (1 + e_f) / (1 + e_g)
+//! ```
 //!
 //! G_n nominal gain [1], R_f feedback and R_g ground resistor [ohm], e_f and e_g their relative errors [1].
 //! The source paper shows no amplifier, but a 5 V PWM through an RC cannot give its 8 V: 1.6 is the gain that does.

@@ -1,6 +1,8 @@
 //! The sensing chain as the controller meets it: what it commands, and what it reads.
 //!
-//!     readings = sensor(truth at t_k) from t_k on until t_(k+1)
+//! ```text
+//! readings = sensor(truth at t_k) from t_k on until t_(k+1)
+//! ```
 
 use super::filter::Filter;
 use super::noise::{Noise, Stream};

@@ -1,6 +1,8 @@
 //! A measured quantity: read as it is, with white noise, or through a real sensor.
 //!
-//!     reading = truth,   truth + sigma n,   or what the sensor makes of it
+//! ```text
+//! reading = truth,   truth + sigma n,   or what the sensor makes of it
+//! ```
 
 use super::noise::Noise;
 

@@ -1,6 +1,8 @@
 //! The INA125P: gain of one resistor, output kept within its swing.
 //!
-//!     V = V_ref + G V_in, kept within the swing,   G = 4 + 60 kohm / R_G      (INA125 data sheet, SBOS060)
+//! ```text
+//! V = V_ref + G V_in, kept within the swing,   G = 4 + 60 kohm / R_G      (INA125 data sheet, SBOS060)
+//! ```
 //!
 //! V_in bridge voltage [V], V_ref voltage at its reference pin [V], R_G gain resistor [ohm].
 //! Leaves out: its bandwidth, and its own offset and noise, for which the cell's zero offset and noise stand.

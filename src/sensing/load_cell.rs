@@ -1,6 +1,8 @@
 //! The load cell: bridge, INA125P, ADC, and the software that assumes a gain resistor.
 //!
-//!     V_b = s V_x (F + b + sigma n) / F_c,   F_read = F_c (V_adc - V_ref) / (s V_x G_a)
+//! ```text
+//! V_b = s V_x (F + b + sigma n) / F_c,   F_read = F_c (V_adc - V_ref) / (s V_x G_a)
+//! ```
 //!
 //! s rated output [V/V], V_x excitation [V], F_c capacity [N], b zero offset [N], G_a gain with the resistor that is assumed.
 //! Source paper, section 3: 50 kg, 2.0 mV/V, INA125P with 100 ohm (121 ohm as assumption), taken here as 100 ohm fitted and

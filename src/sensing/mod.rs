@@ -1,9 +1,11 @@
 //! What lies between the controller and the device: the chain of the source paper's section 3, each stage ideal or real.
 //!
-//!     set pressure -> PWM -> RC -> amplifier -> regulator          set_value, of pwm_filter and amplifier
-//!     outlet pressure -> linear converter -> ADC -> software       outlet_pressure, of adc
-//!     contact force -> bridge -> INA125P -> ADC -> software        load_cell, of instrumentation_amplifier and adc
-//!     stroke -> magnetic sensor, acceleration -> accelerometer     position, accelerometer
+//! ```text
+//! set pressure -> PWM -> RC -> amplifier -> regulator          set_value, of pwm_filter and amplifier
+//! outlet pressure -> linear converter -> ADC -> software       outlet_pressure, of adc
+//! contact force -> bridge -> INA125P -> ADC -> software        load_cell, of instrumentation_amplifier and adc
+//! stroke -> magnetic sensor, acceleration -> accelerometer     position, accelerometer
+//! ```
 //!
 //! [`chain`] samples them, each with its own stream of noise ([`noise`]), and treats the load cell's noise ([`filter`]).
 

@@ -1,6 +1,8 @@
 //! Noise of the sensors: one stream of standard normal numbers for each.
 //!
-//!     n ~ N(0, 1), from stream k of ChaCha8 under the seed
+//! ```text
+//! n ~ N(0, 1), from stream k of ChaCha8 under the seed
+//! ```
 //!
 //! The streams of one seed do not overlap, so that what one sensor draws leaves the others' noise as it is.
 

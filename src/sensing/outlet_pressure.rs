@@ -1,6 +1,8 @@
 //! The actual value: the regulator's own outlet sensor, the linear converter, and the ADC.
 //!
-//!     V_s = V_0 + (V_1 - V_0) (1 + e) p / p_fs,   V = c V_s,   p_read = p_fs (V_adc / c_a - V_0) / (V_1 - V_0)
+//! ```text
+//! V_s = V_0 + (V_1 - V_0) (1 + e) p / p_fs,   V = c V_s,   p_read = p_fs (V_adc / c_a - V_0) / (V_1 - V_0)
+//! ```
 //!
 //! V_0, V_1 the sensor's voltage at no and full pressure [V], p_fs full scale [Pa, gauge], e scale error of the sensor [1],
 //! c gain of the converter [1] and c_a the one that the software assumes. Source paper, section 3: 1.25-6.25 V to 1-5 V, so

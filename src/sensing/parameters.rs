@@ -1,6 +1,8 @@
 //! Parameters of the whole sensing chain, and the ones that are ready made.
 //!
-//!     paper() states what section 3 of the source paper states; what it does not is judged, and said so below
+//! ```text
+//! paper() states what section 3 of the source paper states; what it does not is judged, and said so below
+//! ```
 //!
 //! Judged: 6 bar at the regulator's 8 V and at its sensor's 6.25 V; 10 kohm and 10 uF of the RC (0.1 s: a ripple of 0.5 % of
 //! full scale, for the price of a lag of two thirds of the regulator's); the amplifier; 490 Hz, the Arduino's own; an INA125P that

@@ -1,6 +1,8 @@
 //! The magnetic position sensor on the cylinder.
 //!
-//!     x_read = q round((g x + b + sigma n) / q)
+//! ```text
+//! x_read = q round((g x + b + sigma n) / q)
+//! ```
 //!
 //! g gain [1], b offset [m], sigma noise [m], q resolution [m]; a resolution of 0 does not round.
 //! The source paper names the sensor and gives no number. Leaves out: nonlinearity along the stroke, lag.

@@ -1,7 +1,9 @@
 //! Pulse width modulation into a first-order RC, solved exactly over its on and off phases.
 //!
-//!     tau dv/dt = u(t) - v,   u = U while high, for d T of each period T, then 0,   tau = R C
-//!     settled:  mean v = d U,   ripple = U (1 - e^(-d T/tau)) (1 - e^(-(1-d) T/tau)) / (1 - e^(-T/tau))
+//! ```text
+//! tau dv/dt = u(t) - v,   u = U while high, for d T of each period T, then 0,   tau = R C
+//! settled:  mean v = d U,   ripple = U (1 - e^(-d T/tau)) (1 - e^(-(1-d) T/tau)) / (1 - e^(-T/tau))
+//! ```
 //!
 //! v capacitor's voltage [V], U high level [V], d duty [1], T period [s]; the ripple is peak to peak.
 //! A new duty counts from the start of the next period, as the ATmega2560's timer buffers it (data sheet, "Phase Correct PWM

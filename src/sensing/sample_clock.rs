@@ -1,6 +1,8 @@
 //! When a sample is due.
 //!
-//!     sample k at the step nearest to t = k / f
+//! ```text
+//! sample k at the step nearest to t = k / f
+//! ```
 //!
 //! The sample's number is counted, not its time added up, so that nothing drifts; half the last step is the tolerance, so that
 //! rounding of the time decides nothing.

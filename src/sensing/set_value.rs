@@ -1,6 +1,8 @@
 //! The set value on its way to the regulator: pressure, PWM, RC, amplifier, and pressure again.
 //!
-//!     p_told = p_fs V / V_fs,   V = G v kept within 0 .. V_fs,   duty from v_wanted = V_fs p_wanted / (p_fs G_n)
+//! ```text
+//! p_told = p_fs V / V_fs,   V = G v kept within 0 .. V_fs,   duty from v_wanted = V_fs p_wanted / (p_fs G_n)
+//! ```
 //!
 //! p_fs pressure [Pa, gauge] at the regulator's full input V_fs [V], G gain of the amplifier and G_n the one that the software
 //! assumes, v mean voltage of the RC over a step [V]. Source paper, section 3: 0-8 V from a 0-5 V PWM; it states no pressure

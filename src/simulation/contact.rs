@@ -1,6 +1,8 @@
 //! Tool on part: where the ball touches, and Rapier's contact made to carry the force that the contact law has there.
 //!
-//!     p = r + l - d,   p' = l' - n.u - (n.a) x'                    penetration of the ball along a contact's normal n and its rate
+//! ```text
+//! p = r + l - d,   p' = l' - n.u - (n.a) x'                    penetration of the ball along a contact's normal n and its rate
+//! ```
 //!
 //! r radius [m], d distance of the ball's centre from the part [m], l how far the part stands out (burr) [m], u velocity of the ball with the slide held
 //! [m/s], a slide's axis, x' its speed [m/s]. The law itself is the plant's (`plant::ContactParameters`), integrated with the slide (`slide`).

@@ -1,6 +1,8 @@
 //! The device's slide over one step of the cell, its contact included: the device's own integration, carried by an arm that keeps its motion meanwhile.
 //!
-//!     M x'' = F_device + M a_0 - sum c_i N_i,   p_i(t) = p_i + t p_i' + c_i (x - x_0)
+//! ```text
+//! M x'' = F_device + M a_0 - sum c_i N_i,   p_i(t) = p_i + t p_i' + c_i (x - x_0)
+//! ```
 //!
 //! x stroke [m], M moving mass [kg], a_0 what gravity, the arm's own acceleration and friction did to the slide over the step before [m/s2], N_i contact force
 //! and p_i penetration of touch i [m], p_i' its rate with the slide held [m/s], c_i share of the slide's motion that goes into the part [1]. Both are of the

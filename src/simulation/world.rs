@@ -3,7 +3,9 @@
 //! Units SI, `f64` build of Rapier. Each degree of freedom is driven by a `JointLaw`, an affine force law; nothing else acts on a joint, so the torque that was
 //! really applied is known after the step. The law acts at one moment of the step,
 //!
-//!     v_m = (1 - theta) v + theta v',   q_m = q + theta h v_m,   q' = q + h v_m
+//! ```text
+//! v_m = (1 - theta) v + theta v',   q_m = q + theta h v_m,   q' = q + h v_m
+//! ```
 //!
 //! v, v' speeds at its start and end. theta = 1/(1 - exp(-z)) - 1/z, z = h times the law's own rate, is exact for a decay at that rate: 1/2, the implicit
 //! midpoint rule of second order, where the step resolves the law, 1 where it does not (exponential fitting: Liniger, Willoughby, SIAM J. Numer. Anal. 7,

@@ -1,6 +1,8 @@
 //! Seals that bend, break away, slide and reverse, with their bristles as a fifth differential equation:
 //!
-//!     M dv/dt = F - F_c w,   dw/dt = v / z_p (1 - sign(v) F_c w / g(v))              (F_c w is the force; see `physics::seal_friction`)
+//! ```text
+//! M dv/dt = F - F_c w,   dw/dt = v / z_p (1 - sign(v) F_c w / g(v))              (F_c w is the force; see `physics::seal_friction`)
+//! ```
 //!
 //! The loop's integrator follows the bristles in closed form instead.
 

@@ -1,6 +1,8 @@
 //! Force that a device can be relied upon to give at rest.
 //!
-//!     F_least = max(0, M g_a + F_b),   F_greatest = K A_1 p_max + M g_a - F_b
+//! ```text
+//! F_least = max(0, M g_a + F_b),   F_greatest = K A_1 p_max + M g_a - F_b
+//! ```
 //!
 //! M moving mass [kg], g_a component of gravity along extension [m/s2], F_b breakaway friction of the seals [N], which holds either way,
 //! K A_1 p_max force of the largest pressure that the regulator can be told and the supply can give [N].

@@ -1,7 +1,9 @@
 //! A recorded cell in space: the arm as its encoders read, pale, beside that of the improved model and that of the believed one, and the edge coloured by
 //! where the believed model's force is off.
 //!
-//!     q = q_s + k (q_o - q_s)                 k = 1, 2, 5, 10 .. 100
+//! ```text
+//! q = q_s + k (q_o - q_s)                 k = 1, 2, 5, 10 .. 100
+//! ```
 //!
 //! q drawn, q_s joint angles and stroke of the improved model, q_o recorded or believed ones. What an arm gives is less than a millimetre, and nobody would
 //! see it: k makes the recorded arm's departure some 30 mm.

@@ -1,7 +1,9 @@
 //! The chambers as a controller knows them, for there is no sensor in them: fed with the measured outlet and stroke.
 //!
-//!     V_i dp_i/dt = R T m_dot_i - p_i dV_i/dt                                            (source paper, eq. 6)
-//!     p' = (p + h (R T / V) g s) / (1 + h (R T / V) g + h dV/dt / V),   g = m_dot(s, p) / (s - p)
+//! ```text
+//! V_i dp_i/dt = R T m_dot_i - p_i dV_i/dt                                            (source paper, eq. 6)
+//! p' = (p + h (R T / V) g s) / (1 + h (R T / V) g + h dV/dt / V),   g = m_dot(s, p) / (s - p)
+//! ```
 //!
 //! s the pressure beside the chamber [Pa absolute], g the orifice's conductance at the start of a step h [kg/(s Pa)]. Linear in p', so it neither
 //! overshoots nor needs small steps; the chamber forgets a wrong start within some milliseconds, for it is open to s.
@@ -222,7 +224,9 @@ impl ChamberModel {
     /// A regulator of time constant tau comes down no faster than p/tau and up no faster than (p_s - p)/tau. While an excess D runs off at the rate r,
     /// the chamber gains (R T / V) A C sqrt(2 rho) (2/3) D^(3/2) / r, which is not to be more than its error e:
     ///
-    ///     D = (3/2 e r V / (R T A C sqrt(2 rho)))^(2/3)
+    /// ```text
+    /// D = (3/2 e r V / (R T A C sqrt(2 rho)))^(2/3)
+    /// ```
     ///
     /// with the flow of an incompressible gas at the drop D, r as at `goal`: right to a tenth of e.
     pub(super) fn returnable(&self, goal: f64, stroke: f64, time_constant: f64) -> [f64; 2] {

@@ -1,6 +1,8 @@
 //! How much of the believed dry friction there is, and what else disturbs the force: a Kalman filter with two states.
 //!
-//!     y = o - k f + noise,   o and k walk at random
+//! ```text
+//! y = o - k f + noise,   o and k walk at random
+//! ```
 //!
 //! y measured force less all that the model explains but dry friction [N], f the believed dry friction [N], k its true share [1], o everything else
 //! [N]. The walk of o is such that the filter follows it with a time constant T_o; that of k, over a time T_k; k begins uncertain by a given share and never

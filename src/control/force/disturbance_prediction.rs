@@ -1,9 +1,11 @@
 //! What disturbs the force is estimated, foretold over the dead time, and cancelled through the inverted regulator and chamber.
 //!
-//!     F = F_gas(p_1, p_2) - k f(z) - b v + m g_a - m a + o                       p_1, p_2 and f from models, o and k estimated
-//!     F_gas,d(t+h) = F_d + k f(z(t+h)) + b v(t+h) - m g_a + m a - o              the force of the gas that is wanted after the dead time
-//!     dp_1,d/dt = (p_1,d(t+h) - p_1(t+h)) / T_r + slope of F_gas,d / A_1         p_d, the outlet for it, by the orifice law inverted (eqs. 6 and 9)
-//!     p_set = p_d through the inverted lag of the regulator, from its outlet at t + h                 (`regulator_model`)
+//! ```text
+//! F = F_gas(p_1, p_2) - k f(z) - b v + m g_a - m a + o                       p_1, p_2 and f from models, o and k estimated
+//! F_gas,d(t+h) = F_d + k f(z(t+h)) + b v(t+h) - m g_a + m a - o              the force of the gas that is wanted after the dead time
+//! dp_1,d/dt = (p_1,d(t+h) - p_1(t+h)) / T_r + slope of F_gas,d / A_1         p_d, the outlet for it, by the orifice law inverted (eqs. 6 and 9)
+//! p_set = p_d through the inverted lag of the regulator, from its outlet at t + h                 (`regulator_model`)
+//! ```
 //!
 //! F contact force [N], f believed dry friction [N], k its true share [1], b viscous coefficient [N s/m], z bristle deflection [m], v and a speed and
 //! acceleration, o whatever is left [N], h the dead time and half a period [s], T_r the response time [s].

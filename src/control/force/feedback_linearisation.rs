@@ -1,7 +1,9 @@
 //! Feedback linearisation of chamber 1 with the regulator's set pressure as input, with a bounded input gain.
 //!
-//!     dy/dt = (R T / V) m_dot(p, y) - y dV/dt / V,   dp/dt = (K u - p) / tau                                 y = p_1, u set pressure, p outlet
-//!     u = (p + tau w) / K,   w = [(V / R T)(v + 2 (A v_x / V) dy/dt + y A a / V) - m_y dy/dt] / m_p,   v = r^2 (y_d - y) - 2 r dy/dt
+//! ```text
+//! dy/dt = (R T / V) m_dot(p, y) - y dV/dt / V,   dp/dt = (K u - p) / tau                                 y = p_1, u set pressure, p outlet
+//! u = (p + tau w) / K,   w = [(V / R T)(v + 2 (A v_x / V) dy/dt + y A a / V) - m_y dy/dt] / m_p,   v = r^2 (y_d - y) - 2 r dy/dt
+//! ```
 //!
 //! m_p and m_y slopes of the flow over outlet and chamber pressure [kg/(s Pa)], v_x and a speed and acceleration of the piston, r the wanted
 //! rate [1/s]; y_d the pressure that gives the desired force plus an integral of the load cell's error (eq. 6, 8 and 9 of the source paper inverted).

@@ -2,8 +2,10 @@
 //!
 //! The controller knows a first-order lag with a dead time. Whatever else lies in the loop is put into these two:
 //!
-//!     theta' = theta + T_rc / 2,   tau' = tau + T_rc / 2        a second lag T_rc, of the set value's RC (Skogestad 2003, half rule)
-//!     theta'' = theta' + T_f                                    for gains and their stability: the delay of the load cell's filter
+//! ```text
+//! theta' = theta + T_rc / 2,   tau' = tau + T_rc / 2        a second lag T_rc, of the set value's RC (Skogestad 2003, half rule)
+//! theta'' = theta' + T_f                                    for gains and their stability: the delay of the load cell's filter
+//! ```
 
 use super::{
     ControllerError, ControllerParameters, DisturbancePredictionParameters,

@@ -3,7 +3,9 @@
 //! **Disturbances.** A set pressure given at t acts at t + theta, whatever the controller. Let d be the disturbance, the error of the contact force with a
 //! constant set pressure [N], and d^ the controller's estimate of it from what is known theta earlier. Then
 //!
-//!     e(t) = d(t) - d^(t | t - theta)
+//! ```text
+//! e(t) = d(t) - d^(t | t - theta)
+//! ```
 //!
 //! even if d is seen at once, without noise, and cancelled fully and at once. With d^(t | t - theta) = d(t - theta) this is [`dead_time_error`].
 //! It is a lower bound for every causal controller if d cannot be foretold: if its increments have zero mean given its past (a random walk), d(t - theta)
@@ -14,8 +16,10 @@
 //! **Steps.** From outlet pressure p_a to p_b (gauge) the regulator is quickest with the supply p_s commanded, and the step is over when the outlet is
 //! within a share s of it:
 //!
-//!     t = theta + tau ln((p_s - p_a) / (p_s - p_c)),   p_c = p_b - s (p_b - p_a)        rising
-//!     t = theta + tau ln(p_a / p_c)                                                     falling, with nothing commanded
+//! ```text
+//! t = theta + tau ln((p_s - p_a) / (p_s - p_c)),   p_c = p_b - s (p_b - p_a)        rising
+//! t = theta + tau ln(p_a / p_c)                                                     falling, with nothing commanded
+//! ```
 //!
 //! [`least_settling_time`]. The chamber's filling comes on top, so this is a lower bound too.
 

@@ -1,9 +1,11 @@
 //! Frequency response of what a controller acts on, linear about rest on a contact, and where a loop turns by 180 degrees.
 //!
-//!     regulator   e^(-theta s) / (tau s + 1)
-//!     sampling    ((1 - e^(-s T)) / (s T))^2:   a set pressure held over a period, a force that is the mean over one: one period of delay in all
-//!     chamber     p_1 = H p - Z rho A_1 v,   Z = 1 / (s C_1 + Y),   1/Y = 1/G + 1/(s C_h + 1/R_h),   H = Y Z / (1 + s C_h R_h);   C = V / (R T)
-//!     contact     F = (c s + k) / (M s^2 + c s + k + s B) A_1 H p,   B = rho (A_1^2 Z_1 + A_2^2 Z_2)
+//! ```text
+//! regulator   e^(-theta s) / (tau s + 1)
+//! sampling    ((1 - e^(-s T)) / (s T))^2:   a set pressure held over a period, a force that is the mean over one: one period of delay in all
+//! chamber     p_1 = H p - Z rho A_1 v,   Z = 1 / (s C_1 + Y),   1/Y = 1/G + 1/(s C_h + 1/R_h),   H = Y Z / (1 + s C_h R_h);   C = V / (R T)
+//! contact     F = (c s + k) / (M s^2 + c s + k + s B) A_1 H p,   B = rho (A_1^2 Z_1 + A_2^2 Z_2)
+//! ```
 //!
 //! G the orifice's laminar conductance, its largest [kg/(s Pa)]; large motions see a smaller one and a slower chamber. C_h and R_h the line's capacity and
 //! resistance, if there is one. Taken at full stroke, where chamber 1 is slowest, and with the atmosphere's density, where the air damps least.

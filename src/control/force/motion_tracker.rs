@@ -1,6 +1,8 @@
 //! Stroke, speed and acceleration from a coarse stroke and a biased accelerometer.
 //!
-//!     x' = v,  v' = a + b,  b' = 0      corrected by the stroke's error e:  x += (1 - z^3) e,  v += 1.5 (1 - z)^2 (1 + z) e / T,  b += (1 - z)^3 e / T^2
+//! ```text
+//! x' = v,  v' = a + b,  b' = 0      corrected by the stroke's error e:  x += (1 - z^3) e,  v += 1.5 (1 - z)^2 (1 + z) e / T,  b += (1 - z)^3 e / T^2
+//! ```
 //!
 //! z = exp(-w T), so that all three poles lie at w [rad/s] (critically damped g-h-k filter, Brookner 1998, with the measured acceleration as input).
 //! b takes up the accelerometer's bias, and all of the acceleration if there is no accelerometer.

@@ -1,6 +1,8 @@
 //! PI on the load cell around the pressure map.
 //!
-//!     p_set = (F_d - m g_a + k_p e + I) / (K A_1),   e = F_m - F,   dI/dt = k_i e + (p_lim - p_set) K A_1 / T_t
+//! ```text
+//! p_set = (F_d - m g_a + k_p e + I) / (K A_1),   e = F_m - F,   dI/dt = k_i e + (p_lim - p_set) K A_1 / T_t
+//! ```
 //!
 //! F_d desired and F measured force [N], m g_a weight along the axis [N], p_lim the set pressure within the regulator's limits [Pa gauge],
 //! T_t = k_p / k_i the tracking time of the anti-windup by back-calculation [s]; F_m the force that the map alone is going to give, through the

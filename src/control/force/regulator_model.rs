@@ -1,7 +1,9 @@
 //! The regulator as a controller knows it: where the outlet will be when a set pressure given now begins to act, and what to give.
 //!
-//!     p(t + theta) = e^(-theta/tau) p(t) + (1/tau) integral_0^theta e^(-(theta - s)/tau) K p_set(t + s - theta) ds            (prediction)
-//!     p_set = (p + (p_goal - p) (1 - e^(-T/T_r)) / (1 - e^(-T/tau))) / K                                                     (lead)
+//! ```text
+//! p(t + theta) = e^(-theta/tau) p(t) + (1/tau) integral_0^theta e^(-(theta - s)/tau) K p_set(t + s - theta) ds            (prediction)
+//! p_set = (p + (p_goal - p) (1 - e^(-T/T_r)) / (1 - e^(-T/tau))) / K                                                     (lead)
+//! ```
 //!
 //! From the measured outlet and the set pressures on their way the outlet after the dead time is known without feedback (Smith 1957; Manitius and
 //! Olbrot 1979, finite spectrum assignment), and there the lag is inverted: over a period T the outlet closes the share of its distance to p_goal that a

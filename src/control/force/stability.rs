@@ -6,7 +6,9 @@
 //! **Outlet's loop** (lead after the dead time, `regulator_model`): with the model exact its only pole is e^(-T/T_r), always stable. With a regulator P
 //! that differs from the model P_m it is stable as far as what the model misses comes back small (Normey-Rico and Camacho 2007, ch. 6):
 //!
-//!     M = T_0 (P / P_m - 1),   T_0 = n a^N (1 - a) z^(-N) / (z - e^(-T/T_r)),   n = (1 - e^(-T/T_r)) / (1 - a) - 1,   a = e^(-T/tau)
+//! ```text
+//! M = T_0 (P / P_m - 1),   T_0 = n a^N (1 - a) z^(-N) / (z - e^(-T/T_r)),   n = (1 - e^(-T/T_r)) / (1 - a) - 1,   a = e^(-T/tau)
+//! ```
 //!
 //! N periods of dead time; |M| < 1 wherever it turns by 180 degrees, for a time constant 20 % off either way and up to one period more dead time.
 

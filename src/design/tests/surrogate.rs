@@ -1,7 +1,9 @@
 //! A smooth model of a device whose best design is known in closed form.
 //!
-//!     variation = 3 / s + m / 10 + 9 / V + 5 (b / 33 - 1)^2        s supply orifice, m moving mass, V dead volume, b bore
-//!     peak      = 180 + 4 V - 10 m,      force range = 0 .. 2 pi/4 b^2 6 bar
+//! ```text
+//! variation = 3 / s + m / 10 + 9 / V + 5 (b / 33 - 1)^2        s supply orifice, m moving mass, V dead volume, b bore
+//! peak      = 180 + 4 V - 10 m,      force range = 0 .. 2 pi/4 b^2 6 bar
+//! ```
 //!
 //! The bore wants to be 32 mm but must be 40 mm to give 1000 N. The orifice goes to its bound of 6 mm2. With the peak P on its limit,
 //! V = (P - 180 + 10 m) / 4, and d/dm (m / 10 + 9 / V) = 0 gives V = 15, m = (240 - P) / 10.

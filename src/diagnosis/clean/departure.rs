@@ -1,6 +1,8 @@
 //! How far a reading departs from its neighbours: from the cubic through the two on either side, at the times of their stamps.
 //!
-//!     e_i = x_i - sum w_j x_j,     z_i = e_i / sqrt(1 + sum w_j^2)
+//! ```text
+//! e_i = x_i - sum w_j x_j,     z_i = e_i / sqrt(1 + sum w_j^2)
+//! ```
 //!
 //! w Lagrange's weights. White noise of a standard deviation gives z the same one; motion that is smooth over five samples gives none.
 

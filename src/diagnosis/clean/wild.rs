@@ -1,7 +1,9 @@
 //! Wild readings: they stand alone, far from both neighbours, and another sensor denies what they say of the rig.
 //!
-//!     force e    ->  acceleration e / m                    stroke e  ->  acceleration e / T^2
-//!     acceleration e  ->  speed after less speed before e T, as the stroke has it
+//! ```text
+//! force e    ->  acceleration e / m                    stroke e  ->  acceleration e / T^2
+//! acceleration e  ->  speed after less speed before e T, as the stroke has it
+//! ```
 //!
 //! e departure, m moving mass [kg], T step [s]. An impact of one sample passes, for what it says is true; so does what no other sensor can deny.
 //! The regulator's outlet is left by a lag, which no single sample can come out of.

@@ -1,7 +1,9 @@
 //! What would close the balance at a term's port, straight from the recordings, with the term taken out of the improved model.
 //!
-//!     force on the piston:   M a_m - W + F_m - P,   the piston held to its measured motion
-//!     reading or outlet:     measured less predicted
+//! ```text
+//! force on the piston:   M a_m - W + F_m - P,   the piston held to its measured motion
+//! reading or outlet:     measured less predicted
+//! ```
 //!
 //! a_m acceleration and F_m force as measured, M mass, W weight, P force of chambers, seals and stops. Medians over narrow ranges of the variable: dots
 //! beside the curve that was fitted.

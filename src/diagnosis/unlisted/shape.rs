@@ -1,6 +1,8 @@
 //! The shape of a term without a name: its value against its variable, with how sure it is.
 //!
-//!     y(x) = sum d_k psi_k(x),   half width = 1.96 sqrt(psi^T V psi)
+//! ```text
+//! y(x) = sum d_k psi_k(x),   half width = 1.96 sqrt(psi^T V psi)
+//! ```
 //!
 //! d what the fit moves, in the port's unit, psi what a unit of each adds (`super::super::latent`), V their covariance (`super::super::covariance`).
 

@@ -1,6 +1,8 @@
 //! A burr stands on the edge. A smooth bump.
 //!
-//!     l(s) = h exp(-((s - p)/w)^2 / 2)
+//! ```text
+//! l(s) = h exp(-((s - p)/w)^2 / 2)
+//! ```
 //!
 //! l how far the part stands out along the bisector of its edge [m], s place along the edge and p that of the burr [m], h height and w standard width of the
 //! burr [m].

@@ -1,6 +1,8 @@
 //! A joint gives way between its motor and its link, more than believed. The encoder sits on the motor.
 //!
-//!     theta_link = theta_motor + (J^T F - M(q) q'')/K
+//! ```text
+//! theta_link = theta_motor + (J^T F - M(q) q'')/K
+//! ```
 //!
 //! theta_link and theta_motor angles of link and motor [rad], J Jacobian of the tool's ball [m/rad] and J^T its transpose, F contact force [N], M inertia
 //! matrix of the arm [kg m2], q posture and q'' its acceleration [rad], [rad/s2], K stiffness of the joint [N m/rad].

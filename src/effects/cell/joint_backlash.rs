@@ -1,6 +1,8 @@
 //! A joint has play between its motor and its link. The encoder sits on the motor.
 //!
-//!     theta_link = theta_motor - sign(T) p/2 - T/K
+//! ```text
+//! theta_link = theta_motor - sign(T) p/2 - T/K
+//! ```
 //!
 //! theta_link and theta_motor angles of link and motor [rad], T torque that goes through the teeth [N m], p play from flank to flank [rad], K stiffness of
 //! the teeth [N m/rad].

@@ -1,6 +1,8 @@
 //! A joint's encoder reads too much, so that the arm stands off by it. The servo closes on what it reads, so that the arm stands off by as much.
 //!
-//!     theta = theta_measured - offset
+//! ```text
+//! theta = theta_measured - offset
+//! ```
 //!
 //! theta angle of the joint and theta_measured that which its encoder reads [rad], offset how much it reads too much [rad].
 //! Source: Mooring, Roth, Driels, Fundamentals of Manipulator Calibration, 1991, sec. 2: joint offsets.

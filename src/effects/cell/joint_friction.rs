@@ -1,6 +1,8 @@
 //! A joint rubs more than believed, or less. Bearings and gears, dry.
 //!
-//!     tau = tau_frictionless + F sat(q'/v_0)
+//! ```text
+//! tau = tau_frictionless + F sat(q'/v_0)
+//! ```
 //!
 //! tau torque of the drive and tau_frictionless what the motion takes without friction [N m], F friction [N m], sat dry friction's sign of the speed,
 //! rounded near rest, q' speed of the joint and v_0 that of the rounding [rad/s].

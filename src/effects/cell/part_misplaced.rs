@@ -1,6 +1,8 @@
 //! The part stands out, or back, along the bisector of its edge, and slopes along it.
 //!
-//!     l(s) = shift + tilt (s - L/2)          along a straight edge
+//! ```text
+//! l(s) = shift + tilt (s - L/2)          along a straight edge
+//! ```
 //!
 //! l how far the part stands out along the bisector of its edge, positive towards the tool [m], s place along the edge and L its length [m], shift [m] and
 //! tilt [m/m]. Round a corner the shift has another share along the bisector. Turns about the edge and its bisector, and shifts across, are not looked for.

@@ -1,6 +1,8 @@
 //! The joints' servos follow their commands at another bandwidth than believed. All of them alike.
 //!
-//!     q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
+//! ```text
+//! q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
+//! ```
 //!
 //! q angle of a joint and u its command [rad], q' and q'' speed [rad/s] and acceleration [rad/s2], w natural frequency [rad/s], f bandwidth [Hz].
 //! Source: Critically damped servo of second order (Ogata, Modern Control Engineering, 5.3).

@@ -1,6 +1,8 @@
 //! Air leaks past the piston from chamber to chamber. A worn seal, a scratched bore.
 //!
-//!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
+//! ```text
+//! m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
+//! ```
 //!
 //! m_dot flow from the higher to the lower pressure [kg/s], A equivalent area of the gap [m2], C discharge coefficient [1], p_u and p_d upstream and
 //! downstream pressure [Pa absolute], R specific gas constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function.

@@ -1,6 +1,8 @@
 //! Air leaves through another orifice than believed. A clogged or missing silencer.
 //!
-//!     m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
+//! ```text
+//! m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
+//! ```
 //!
 //! m_dot flow [kg/s], A area of the orifice [m2], C discharge coefficient [1], p_u and p_d upstream and downstream pressure [Pa absolute], R specific gas
 //! constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function.

@@ -1,6 +1,8 @@
 //! Air leaks from chamber 1 to the surroundings. A fitting, a rod seal.
 //!
-//!     m_dot = A C p_u / sqrt(R T) f(p_a / p_u)
+//! ```text
+//! m_dot = A C p_u / sqrt(R T) f(p_a / p_u)
+//! ```
 //!
 //! m_dot flow out of chamber 1 [kg/s], A equivalent area of the leak [m2], C discharge coefficient [1], p_u pressure of the chamber and p_a that of the
 //! atmosphere [Pa absolute], R specific gas constant [J/(kg K)], T temperature [K], f the choked or subsonic flow function.

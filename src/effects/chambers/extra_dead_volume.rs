@@ -1,6 +1,8 @@
 //! The chambers' dead volume is another one than believed. Fittings, ports and short lines behind the valve.
 //!
-//!     V_1 = A_1 x + V_d,   V_2 = A_2 (L - x) + V_d
+//! ```text
+//! V_1 = A_1 x + V_d,   V_2 = A_2 (L - x) + V_d
+//! ```
 //!
 //! V_1 and V_2 volumes [m3], V_d dead volume of each [m3], A_1 and A_2 piston areas [m2], x stroke [m], L full stroke [m].
 //! Source: Geometry; source paper eq. (4).

@@ -1,6 +1,8 @@
 //! Air in the chambers warms up and cools down, and exchanges heat with their walls. Compression warms it, expansion cools it.
 //!
-//!     dE/dt = sum(m_dot_in c_p T_in) - sum(m_dot_out c_p T) - p dV/dt + G (T_w - T),   p V = (k - 1) E
+//! ```text
+//! dE/dt = sum(m_dot_in c_p T_in) - sum(m_dot_out c_p T) - p dV/dt + G (T_w - T),   p V = (k - 1) E
+//! ```
 //!
 //! E internal energy [J], T gas and T_w wall temperature [K], T_in that of what flows in [K], m_dot flows [kg/s], G conductance from gas to wall of each
 //! chamber [W/K], p pressure [Pa absolute], V volume [m3], c_p specific heat at constant pressure [J/(kg K)], k ratio of specific heats [1].

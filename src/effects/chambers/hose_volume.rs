@@ -1,6 +1,8 @@
 //! A line that holds air and resists its flow stands before the valve. Between regulator and valve.
 //!
-//!     p_i V / n = m_i R T,   dm_i/dt = n (p_(i-1) - p_i) / R_h - n (p_i - p_(i+1)) / R_h      in n segments
+//! ```text
+//! p_i V / n = m_i R T,   dm_i/dt = n (p_(i-1) - p_i) / R_h - n (p_i - p_(i+1)) / R_h      in n segments
+//! ```
 //!
 //! V volume of the line [m3], R_h its resistance, pressure drop over mass flow [Pa s/kg], p_i and m_i pressure [Pa absolute] and air [kg] of a segment, R
 //! specific gas constant [J/(kg K)], T temperature [K], n segments: as many as fit best, up to four, or eight with the last one halved, which are a line of

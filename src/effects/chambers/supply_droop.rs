@@ -1,6 +1,8 @@
 //! The supply falls when much air is drawn: a small reservoir and compressor.
 //!
-//!     V dp/dt = R T_0 (m_dot_c s(p) - m_dot_drawn),   outlet <= p
+//! ```text
+//! V dp/dt = R T_0 (m_dot_c s(p) - m_dot_drawn),   outlet <= p
+//! ```
 //!
 //! p absolute pressure of the reservoir and of the outlet [Pa], V volume of the reservoir [m3], m_dot_c flow of the compressor [kg/s], s 1 until the
 //! reservoir is full and 0 then, m_dot_drawn what the regulator lets through [kg/s], R specific gas constant [J/(kg K)], T_0 temperature [K].

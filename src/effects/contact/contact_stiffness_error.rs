@@ -1,6 +1,8 @@
 //! Tool, part or fixture is softer or stiffer than believed.
 //!
-//!     F = max(0, k d + c d')
+//! ```text
+//! F = max(0, k d + c d')
+//! ```
 //!
 //! F contact force [N], k stiffness [N/m], d penetration [m], d' its rate [m/s], c damping [N s/m].
 //! Source: Spring and damper of Kelvin and Voigt.

@@ -1,6 +1,8 @@
 //! Contact stiffens as it is pressed, as a ball on a flat does.
 //!
-//!     F = max(0, k d^(3/2) + c d')
+//! ```text
+//! F = max(0, k d^(3/2) + c d')
+//! ```
 //!
 //! F contact force [N], k stiffness [N/m^1.5], d penetration [m], d' its rate [m/s], c damping [N s/m].
 //! Source: Hertz 1882; Johnson, Contact Mechanics, 1985, eq. (4.23).

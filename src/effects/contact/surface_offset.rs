@@ -1,6 +1,8 @@
 //! The surface is not where the robot has it, positive along extension.
 //!
-//!     x_s = x_robot + o
+//! ```text
+//! x_s = x_robot + o
+//! ```
 //!
 //! x_s where the surface is met along the stroke and x_robot where the robot has it [m], o offset, positive along extension [m].
 //! Source: Kinematics.

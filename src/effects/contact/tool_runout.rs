@@ -1,6 +1,8 @@
 //! The tool turns off its axis and lifts and presses in turn.
 //!
-//!     x_s = x_robot + s sin(2 pi f t) + c cos(2 pi f t)
+//! ```text
+//! x_s = x_robot + s sin(2 pi f t) + c cos(2 pi f t)
+//! ```
 //!
 //! x_s where the surface is met along the stroke and x_robot where the robot has it [m], s and c amplitudes of sine and cosine [m], f frequency of the
 //! spindle [Hz], t time since the start of the recording [s].

@@ -1,6 +1,8 @@
 //! A constant force acts along the axis, positive in extension. A weight that hangs on, a wrong tilt.
 //!
-//!     F = F_0
+//! ```text
+//! F = F_0
+//! ```
 //!
 //! F force along extension [N], F_0 its value [N].
 //! Source: Statics.

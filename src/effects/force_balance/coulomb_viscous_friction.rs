@@ -1,6 +1,8 @@
 //! Seals and guides rub: a dry part and one that grows with speed. Dry friction knows the direction of motion alone.
 //!
-//!     F = -F_c sign(v) - b v
+//! ```text
+//! F = -F_c sign(v) - b v
+//! ```
 //!
 //! F force along extension [N], F_c Coulomb friction [N], b viscous coefficient [N s/m], v speed of extension [m/s]. In the simulator the sign is that of
 //! bristles that bend before they slide, over a presliding displacement that is fitted along.

@@ -1,6 +1,8 @@
 //! The piston is damped as it comes near an end of its stroke. A pneumatic cushion traps air that leaves through a needle valve.
 //!
-//!     F = -c (1 - d / l) v     for d < l and towards the end,     0 otherwise
+//! ```text
+//! F = -c (1 - d / l) v     for d < l and towards the end,     0 otherwise
+//! ```
 //!
 //! F force along extension [N], c damping at the very end [N s/m], l length [m], d distance from the end [m], v speed of extension [m/s].
 //! Source: Cushioned cylinders of ISO 15552; the linear taper is the simplest that ends at l.

@@ -1,6 +1,8 @@
 //! The moving mass is another one than believed. Another tool, a part left off, a hose that hangs on.
 //!
-//!     m a = F
+//! ```text
+//! m a = F
+//! ```
 //!
 //! m moving mass [kg], a acceleration along extension [m/s2], F sum of the forces, weight included [N].
 //! Source: Newton's second law.

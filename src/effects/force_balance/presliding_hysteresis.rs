@@ -1,6 +1,8 @@
 //! Seals bend before they slide, over a displacement that shows. A soft lip, or a soft mount of the piston.
 //!
-//!     F = -s z - b v,   dz/dx = 1 - sign(v) s z / F_c,   s = F_c / z_p
+//! ```text
+//! F = -s z - b v,   dz/dx = 1 - sign(v) s z / F_c,   s = F_c / z_p
+//! ```
 //!
 //! F force along extension [N], z deflection [m], s its stiffness [N/m], F_c Coulomb friction [N], z_p presliding displacement [m], b viscous coefficient [N
 //! s/m], v speed of extension [m/s], x stroke [m].

@@ -1,6 +1,8 @@
 //! Seals rub the harder, the more the two chambers' pressures differ. Pressure presses the lip against the bore.
 //!
-//!     F = -(F_c + c |p_1 - p_2|) sign(v) - b v
+//! ```text
+//! F = -(F_c + c |p_1 - p_2|) sign(v) - b v
+//! ```
 //!
 //! F force along extension [N], c growth of friction with pressure [N/Pa], p_1 and p_2 chamber pressures [Pa], F_c Coulomb friction [N], b viscous
 //! coefficient [N s/m], v speed of extension [m/s].

@@ -1,6 +1,8 @@
 //! Something elastic pulls the piston back, in proportion to its stroke. A return spring, a cable, a hose that is dragged along.
 //!
-//!     F = -k x
+//! ```text
+//! F = -k x
+//! ```
 //!
 //! F force along extension [N], k stiffness [N/m], x stroke from the retracted end, where the spring is relaxed [m].
 //! Source: Hooke's law.

@@ -1,6 +1,8 @@
 //! Seals stick: breaking loose takes more force than sliding on. The lubricant film of a lip only builds up with speed.
 //!
-//!     F = -(F_c + (F_s - F_c) exp(-(v / v_s)^2)) sign(v) - b v
+//! ```text
+//! F = -(F_c + (F_s - F_c) exp(-(v / v_s)^2)) sign(v) - b v
+//! ```
 //!
 //! F force along extension [N], F_c Coulomb and F_s static friction [N], v_s Stribeck velocity [m/s], b viscous coefficient [N s/m], v speed of extension
 //! [m/s].

@@ -1,6 +1,8 @@
 //! Air that filling has warmed cools after the chamber is shut.
 //!
-//!     dp/dt = -(D/T_c) e^(-t/T_c)
+//! ```text
+//! dp/dt = -(D/T_c) e^(-t/T_c)
+//! ```
 //!
 //! p pressure [Pa], D pressure that cooling takes [Pa], T_c its time [s], t since the chamber was shut [s].
 //! Source: The last of the heat of a filling, to the walls at a constant coefficient (Carneiro and Gomes de Almeida 2006).

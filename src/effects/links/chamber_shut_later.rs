@@ -1,6 +1,8 @@
 //! The chamber is still fed when the recording begins.
 //!
-//!     dp/dt = 0   for t < t_s
+//! ```text
+//! dp/dt = 0   for t < t_s
+//! ```
 //!
 //! p pressure [Pa], t time since the start of the recording and t_s that at which it is shut [s].
 //! Source: Definition of the time of shutting.

@@ -1,6 +1,8 @@
 //! The chamber leaks as through a narrow gap, laminar while the air expands.
 //!
-//!     dp/dt = -k (p^2 - p_a^2)
+//! ```text
+//! dp/dt = -k (p^2 - p_a^2)
+//! ```
 //!
 //! p pressure and p_a that of the atmosphere [Pa absolute], k conductance by volume [1/(Pa s)], g excess over the atmosphere [Pa].
 //! Source: Poiseuille's law for a gas at constant temperature; Egli 1937.

@@ -1,6 +1,8 @@
 //! The chamber leaks in proportion to its gauge pressure, as through pores. Permeation, or a long narrow gap at a small pressure.
 //!
-//!     dp/dt = -r g
+//! ```text
+//! dp/dt = -r g
+//! ```
 //!
 //! p pressure [Pa], g its excess over the atmosphere [Pa], r conductance by volume, one over the time constant [1/s].
 //! Source: Darcy 1856.

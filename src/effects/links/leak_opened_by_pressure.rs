@@ -1,6 +1,8 @@
 //! The chamber leaks through something that pressure opens. A seam, a lip or a wall that gives way.
 //!
-//!     dp/dt = -r (1 + o g) g
+//! ```text
+//! dp/dt = -r (1 + o g) g
+//! ```
 //!
 //! p pressure [Pa], g its excess over the atmosphere [Pa], r conductance by volume at no pressure [1/s], o its growth [1/Pa].
 //! Source: First order of a gap's width in the pressure.

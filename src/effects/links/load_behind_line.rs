@@ -1,6 +1,8 @@
 //! A load behind a line fills and empties more slowly than the outlet moves. The outlet gives way until the load has filled.
 //!
-//!     y = p - w (p - q),   dq/dt = (p - q)/T
+//! ```text
+//! y = p - w (p - q),   dq/dt = (p - q)/T
+//! ```
 //!
 //! y outlet [Pa gauge], p what the regulator alone would hold [Pa gauge], q the load's pressure [Pa gauge], w share [1], T time in which the load fills [s].
 //! Source: Two volumes with a laminar line between them; Anderson 1967, chapter 4.

@@ -1,6 +1,8 @@
 //! The chamber leaks as through a short hole.
 //!
-//!     dp/dt = -(A C/V) sqrt(R T) p f(p_a/p)
+//! ```text
+//! dp/dt = -(A C/V) sqrt(R T) p f(p_a/p)
+//! ```
 //!
 //! p pressure and p_a that of the atmosphere [Pa absolute], A C/V equivalent area by volume [1/m], R specific gas constant [J/(kg K)], T temperature [K], f
 //! the choked or subsonic flow function.

@@ -1,6 +1,8 @@
 //! The pressure sensor does not read zero at the atmosphere.
 //!
-//!     p_m = p + b
+//! ```text
+//! p_m = p + b
+//! ```
 //!
 //! p_m reading and p pressure [Pa gauge], b offset [Pa].
 //! Source: ISA-37.

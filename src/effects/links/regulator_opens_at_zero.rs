@@ -1,6 +1,8 @@
 //! The regulator opens its exhaust wide where nothing is set. It is not metered then.
 //!
-//!     dp/dt = -p/T_0   while p_set = 0
+//! ```text
+//! dp/dt = -p/T_0   while p_set = 0
+//! ```
 //!
 //! p outlet and p_set set pressure [Pa gauge], T_0 time constant of the open exhaust [s].
 //! Source: Makers of proportional regulators state that below a least set value the supply valve shuts and the exhaust stands open.

@@ -1,6 +1,8 @@
 //! The regulator vents at another pace than it fills. Exhaust and inlet are valves of their own.
 //!
-//!     dp/dt = (K p_set - p)/T_v   while it falls
+//! ```text
+//! dp/dt = (K p_set - p)/T_v   while it falls
+//! ```
 //!
 //! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], T_v time constant of venting [s].
 //! Source: Zorlu, Ozsoy and Kuzucu 2003: inlet and exhaust of a proportional regulator's own valve differ, and the exhaust works against the atmosphere.

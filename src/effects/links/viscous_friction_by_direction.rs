@@ -1,6 +1,8 @@
 //! Viscous friction is larger one way than the other. Lips of seals that face one way, a ball screw.
 //!
-//!     F = -(b + B sign(v)) v
+//! ```text
+//! F = -(b + B sign(v)) v
+//! ```
 //!
 //! F force along extension [N], b viscous coefficient [N s/m], B half of what it is larger by in extension than in retraction [N s/m], v speed of extension
 //! [m/s].

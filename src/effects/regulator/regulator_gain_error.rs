@@ -1,6 +1,8 @@
 //! The regulator holds another share of its set pressure than believed. Its set value's scale is off, or it droops.
 //!
-//!     p = K p_set        at rest
+//! ```text
+//! p = K p_set        at rest
+//! ```
 //!
 //! p outlet and p_set set pressure [Pa gauge], K gain [1].
 //! Source: Definition of a static gain.

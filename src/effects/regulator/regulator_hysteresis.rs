@@ -1,6 +1,8 @@
 //! The regulator has play: small changes of its set pressure do nothing. Friction of its pilot's spool.
 //!
-//!     p_a = min(max(p_a, p_set - r), p_set + r)
+//! ```text
+//! p_a = min(max(p_a, p_set - r), p_set + r)
+//! ```
 //!
 //! p_a pressure acted on [Pa gauge], p_set set pressure [Pa gauge], r half the width of the play [Pa].
 //! Source: Play operator, Krasnosel'skii and Pokrovskii 1989.

@@ -1,6 +1,8 @@
 //! The regulator's outlet cannot rise or fall faster than so much. Its own valve is small.
 //!
-//!     dp/dt = min(max((K p_set - p) / tau, -fall), rise)
+//! ```text
+//! dp/dt = min(max((K p_set - p) / tau, -fall), rise)
+//! ```
 //!
 //! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], tau time constant [s], rise and fall the largest rates [Pa/s].
 //! Source: Slew limit; Zorlu, Ozsoy and Kuzucu 2003 for the flow of a proportional regulator's own valve.

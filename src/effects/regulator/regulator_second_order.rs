@@ -1,6 +1,8 @@
 //! The regulator overshoots and swings. Its diaphragm and pilot are an oscillator.
 //!
-//!     p'' + 2 zeta w p' + w^2 p = w^2 K p_set        in place of the first-order lag
+//! ```text
+//! p'' + 2 zeta w p' + w^2 p = w^2 K p_set        in place of the first-order lag
+//! ```
 //!
 //! p outlet [Pa gauge], p_set set pressure [Pa gauge], K gain [1], w natural frequency [rad/s], zeta damping ratio [1].
 //! Source: Linear oscillator (Ogata, Modern Control Engineering, 5.3).

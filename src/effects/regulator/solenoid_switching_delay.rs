@@ -1,6 +1,8 @@
 //! The 5/2 valve switches later than it is told to. Its coil builds up its field, its pilot fills.
 //!
-//!     position(t) = command(t - theta)
+//! ```text
+//! position(t) = command(t - theta)
+//! ```
 //!
 //! t time [s], theta switching delay [s], the same either way.
 //! Source: ISO 12238 for how makers state it: 10 to 30 ms for a pilot-operated valve of this size.

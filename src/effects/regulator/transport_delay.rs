@@ -1,6 +1,8 @@
 //! The regulator answers a set pressure only after a dead time. A bus, a PWM filter, its own electronics.
 //!
-//!     p_acted(t) = p_set(t - theta)
+//! ```text
+//! p_acted(t) = p_set(t - theta)
+//! ```
 //!
 //! t time [s], p_set set pressure and p_acted that acted on [Pa gauge], theta dead time [s].
 //! Source: Dead time of process control (Smith 1957).

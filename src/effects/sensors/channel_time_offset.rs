@@ -1,6 +1,8 @@
 //! The load cell's samples are stamped late. Another clock, a buffer.
 //!
-//!     F_m(t) = F(t - delta)
+//! ```text
+//! F_m(t) = F(t - delta)
+//! ```
 //!
 //! t time [s], F_m reading and F contact force [N], delta how late it is stamped [s].
 //! Source: Definition of a delay.

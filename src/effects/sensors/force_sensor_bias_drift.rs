@@ -1,6 +1,8 @@
 //! The load cell does not read zero at no force, and drifts. Temperature, creep, a wrong tare.
 //!
-//!     F_m = F + b + d t
+//! ```text
+//! F_m = F + b + d t
+//! ```
 //!
 //! F_m reading and F contact force [N], b bias at the start of each recording [N], d drift [N/s], t time since then [s].
 //! Source: Doebelin, Measurement Systems.

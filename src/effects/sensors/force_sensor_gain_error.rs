@@ -1,6 +1,8 @@
 //! The load cell reads too much or too little in proportion. Wrong calibration, another bridge supply.
 //!
-//!     F_m = g F
+//! ```text
+//! F_m = g F
+//! ```
 //!
 //! F_m reading and F contact force [N], g gain [1].
 //! Source: Doebelin, Measurement Systems.

@@ -1,6 +1,8 @@
 //! The load cell's signal is smoothed, and late by it. Its amplifier's filter.
 //!
-//!     T dF_m/dt + F_m = F
+//! ```text
+//! T dF_m/dt + F_m = F
+//! ```
 //!
 //! F_m reading and F contact force [N], T time constant [s].
 //! Source: First-order low pass.

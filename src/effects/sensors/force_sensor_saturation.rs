@@ -1,6 +1,8 @@
 //! The load cell's signal ends at a limit. Its amplifier or its converter is at its end.
 //!
-//!     F_m = min(max(F, -l), l)
+//! ```text
+//! F_m = min(max(F, -l), l)
+//! ```
 //!
 //! F_m reading and F contact force [N], l limit [N].
 //! Source: Limiter; Doebelin, Measurement Systems.

@@ -1,6 +1,8 @@
 //! The load cell feels the mass in front of it being accelerated.
 //!
-//!     F_m = F + m_x a
+//! ```text
+//! F_m = F + m_x a
+//! ```
 //!
 //! F_m reading and F contact force [N], m_x mass beyond the load cell [kg], a acceleration along extension [m/s2].
 //! Source: Newton's second law.

@@ -1,6 +1,8 @@
 //! The position sensor reads too much or too little in proportion. Wrong scale, a magnet that stands off.
 //!
-//!     x_m = g x
+//! ```text
+//! x_m = g x
+//! ```
 //!
 //! x_m reading and x stroke [m], g gain [1].
 //! Source: Doebelin, Measurement Systems.

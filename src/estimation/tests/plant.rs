@@ -1,6 +1,8 @@
 //! A truth that the estimator does not share a line of integration with: the device on a moved surface, every equation in one Runge-Kutta step.
 //!
-//!     dm_i/dt = m_dot_i,  M dv/dt = F_gas - F_seal - F_contact + M g,  dz/dt = v - |v| s z / g(v)
+//! ```text
+//! dm_i/dt = m_dot_i,  M dv/dt = F_gas - F_seal - F_contact + M g,  dz/dt = v - |v| s z / g(v)
+//! ```
 
 use crate::device::DeviceParameters;
 use crate::estimation::{EstimatorParameters, Measurement, SensorNoise, Tolerances};

@@ -1,6 +1,8 @@
 //! Play between the set pressure and the pressure that the regulator acts on.
 //!
-//!     p_a = min(max(p_a, p_set - r), p_set + r)          at each change of the set pressure           (play operator, Krasnosel'skii 1989)
+//! ```text
+//! p_a = min(max(p_a, p_set - r), p_set + r)          at each change of the set pressure           (play operator, Krasnosel'skii 1989)
+//! ```
 //!
 //! p_a pressure acted on [Pa gauge], p_set set pressure [Pa gauge], r half the width of the play [Pa].
 //! The friction of the pilot's spool does this: it follows once the difference is r, and stays after a reversal until it is r the other way.

@@ -1,7 +1,9 @@
 //! The outlet's largest rates: what the regulator's own valve can fill or vent behind it.
 //!
-//!     dp/dt = min(max((K p_set - p) / tau, -fall), rise)                                 first order
-//!     p'' = w^2 (K p_set - p) - 2 zeta w p',  p' held at -fall or rise while p'' would drive it beyond         second order
+//! ```text
+//! dp/dt = min(max((K p_set - p) / tau, -fall), rise)                                 first order
+//! p'' = w^2 (K p_set - p) - 2 zeta w p',  p' held at -fall or rise while p'' would drive it beyond         second order
+//! ```
 //!
 //! Either is solved exactly, piece by piece. First order: a ramp until the distance to the target is the limit times tau, then the lag. Second order:
 //! free until the rate meets its limit, a ramp until the oscillator would slow down by itself, then free again; the rate is monotonic between

@@ -1,10 +1,14 @@
 //! The regulator as an oscillator of one degree of freedom, in closed form for any damping ratio.
 //!
-//!     p'' + 2 zeta w p' + w^2 p = w^2 p_target                      (its pilot and diaphragm; in place of the first-order lag)
+//! ```text
+//! p'' + 2 zeta w p' + w^2 p = w^2 p_target                      (its pilot and diaphragm; in place of the first-order lag)
+//! ```
 //!
 //! With y = p - p_target, s = zeta w and d = w sqrt(1 - zeta^2),
 //!
-//!     y(t) = e^(-s t) (y_0 cos d t + (y'_0 + s y_0) sin(d t) / d),    y'(t) = e^(-s t) (y'_0 cos d t - (w^2 y_0 + s y'_0) sin(d t) / d)
+//! ```text
+//! y(t) = e^(-s t) (y_0 cos d t + (y'_0 + s y_0) sin(d t) / d),    y'(t) = e^(-s t) (y'_0 cos d t - (w^2 y_0 + s y'_0) sin(d t) / d)
+//! ```
 //!
 //! and for zeta >= 1 the hyperbolic functions, or 1 and t, in place of cosine and sine over d.
 //!

@@ -1,7 +1,9 @@
 //! A chamber that was filled and shut off.
 //!
-//!     dp/dt = - (A C/V) sqrt(R T) p f(p_a/p)  -  k (p^2 - p_a^2)  -  r (1 + o g) g  -  (D/T_c) e^(-t/T_c)
-//!             orifice                            narrow gap          opening leak      air that cools after filling
+//! ```text
+//! dp/dt = - (A C/V) sqrt(R T) p f(p_a/p)  -  k (p^2 - p_a^2)  -  r (1 + o g) g  -  (D/T_c) e^(-t/T_c)
+//!         orifice                            narrow gap          opening leak      air that cools after filling
+//! ```
 //!
 //! p pressure and p_a that of the atmosphere [Pa absolute], g = p - p_a [Pa], A C/V equivalent area by volume [1/m], f flow function (the source paper's
 //! eqs. 9 to 11), k conductance of laminar compressible flow by volume [1/(Pa s)] (Poiseuille; Egli 1937 for gaps), r rate at small pressure [1/s], o its

@@ -1,6 +1,8 @@
 //! A contact flange as its owner believes it to be: the contact force follows the desired one, first order.
 //!
-//!     tau dF/dt = F_d - F
+//! ```text
+//! tau dF/dt = F_d - F
+//! ```
 //!
 //! F contact force [N], F_d desired force [N], tau time constant [s]. The desired force stands where that of the other rigs is a set pressure.
 

@@ -1,10 +1,12 @@
 //! Rigs that have a part of the device alone: what is recorded stands in the place of what would be simulated before it.
 //!
-//!     moved piston      pressure, motion -> force          a rig moves the piston, the chamber's pressure is held
-//!     driven slide      motion -> force of the drive       a motor and screw in place of the air
-//!     closed chamber    start pressure -> pressure         filled and shut off
-//!     regulator         set pressure -> outlet             nothing but its own volume behind it
-//!     contact flange    desired force -> contact force     its own control inside, seen from outside
+//! ```text
+//! moved piston      pressure, motion -> force          a rig moves the piston, the chamber's pressure is held
+//! driven slide      motion -> force of the drive       a motor and screw in place of the air
+//! closed chamber    start pressure -> pressure         filled and shut off
+//! regulator         set pressure -> outlet             nothing but its own volume behind it
+//! contact flange    desired force -> contact force     its own control inside, seen from outside
+//! ```
 //!
 //! Each is a link of the whole chain with the same parameters, effects and sensors.
 

@@ -1,7 +1,9 @@
 //! A piston or slide whose motion is recorded: the force that it takes.
 //!
-//!     moved:   F = p A_1 + F_0 - k x + m g - F_f - m a                      what the piston pushes with
-//!     driven:  F = m a + F_f - F_0 + k x - m g                               what the drive pushes with
+//! ```text
+//! moved:   F = p A_1 + F_0 - k x + m g - F_f - m a                      what the piston pushes with
+//! driven:  F = m a + F_f - F_0 + k x - m g                               what the drive pushes with
+//! ```
 //!
 //! p gauge pressure in chamber 1 [Pa], A_1 its piston area [m2], F_0 - k x axial load [N], g component of gravity along extension [m/s2], m moving mass
 //! [kg], a acceleration along extension [m/s2], F_f friction against the motion [N], x stroke [m]. Chamber 2 is open.

@@ -1,6 +1,8 @@
 //! A regulator alone, and what hangs on it.
 //!
-//!     y = p - w (p - q),   dq/dt = (p - q)/T
+//! ```text
+//! y = p - w (p - q),   dq/dt = (p - q)/T
+//! ```
 //!
 //! p what the regulator's law gives ([`crate::physics::regulator`]) with time constants of its own while it falls, and while nothing is set, if there are
 //! such [Pa], y outlet [Pa],

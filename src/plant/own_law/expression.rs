@@ -1,6 +1,8 @@
 //! An arithmetic expression over named variables and constants: read, checked for its units and for values that are not finite, evaluated.
 //!
-//!     -c * max(v - v_0, 0) ^ 1.5
+//! ```text
+//! -c * max(v - v_0, 0) ^ 1.5
+//! ```
 //!
 //! `^` binds before a sign, as on paper: -v^2 is -(v^2). A comparison is 1 where it holds and 0 elsewhere.
 

@@ -1,6 +1,8 @@
 //! A law that a user writes: physics of one's own at a port of the rig, as an expression over the variables of the moment there, in SI.
 //!
-//!     y = f(t, x, v, p1, p2, q, p_set, x_s, f; constants)          beside what acts at the port
+//! ```text
+//! y = f(t, x, v, p1, p2, q, p_set, x_s, f; constants)          beside what acts at the port
+//! ```
 //!
 //! On the piston it acts with the motion within a step; elsewhere it is held over a sample at its value in the middle.
 

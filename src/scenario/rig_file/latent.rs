@@ -1,15 +1,17 @@
 //! `[latent]` of an improved rig file: a term that no known effect explains, as `crate::plant::Latent` has it.
 //!
-//!     port = "piston_force"            where it enters
-//!     variable = "stroke_m"            on what it depends
-//!     directed = false                 does it turn with the motion?
-//!     from_m = 0.021                   first and last of evenly spaced knots, in the variable's unit, and the value at each in the port's unit;
-//!     to_m = 0.034                     linear between them, constant beyond
-//!     value_n = [0.1, -3.2, ...]
+//! ```text
+//! port = "piston_force"            where it enters
+//! variable = "stroke_m"            on what it depends
+//! directed = false                 does it turn with the motion?
+//! from_m = 0.021                   first and last of evenly spaced knots, in the variable's unit, and the value at each in the port's unit;
+//! to_m = 0.034                     linear between them, constant beyond
+//! value_n = [0.1, -3.2, ...]
 //!
-//!     frequency_hz = 6.4               or, over time, sine and cosine of this frequency and of its multiples
-//!     sine_pa = [4100.0, 120.0]
-//!     cosine_pa = [-800.0, 95.0]
+//! frequency_hz = 6.4               or, over time, sine and cosine of this frequency and of its multiples
+//! sine_pa = [4100.0, 120.0]
+//! cosine_pa = [-800.0, 95.0]
+//! ```
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

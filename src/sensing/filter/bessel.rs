@@ -1,7 +1,9 @@
 //! Second-order Bessel low-pass, bilinear, its natural frequency prewarped.
 //!
-//!     H(s) = 1 / (1 + k s/w + (s/w)^2),   k = sqrt(3),   s/w -> (1/g) (z - 1) / (z + 1),   g = tan(w T/2)
-//!     delay = k T / (2 g),   noise factor = sqrt(g (1 + k g) / (k (1 + k g + g^2)))
+//! ```text
+//! H(s) = 1 / (1 + k s/w + (s/w)^2),   k = sqrt(3),   s/w -> (1/g) (z - 1) / (z + 1),   g = tan(w T/2)
+//! delay = k T / (2 g),   noise factor = sqrt(g (1 + k g) / (k (1 + k g + g^2)))
+//! ```
 //!
 //! w natural frequency [rad/s], T sample period [s]. k = sqrt(3) makes the group delay maximally flat (Thomson 1949); the gain
 //! 1/sqrt(2) lies at w sqrt((sqrt(5) - 1) / 2) by |H|^2 = 1 / (1 + x^2 + x^4), x = Omega/w, the bilinear frequency

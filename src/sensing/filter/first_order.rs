@@ -1,7 +1,9 @@
 //! First-order lag, exact for an input held between samples.
 //!
-//!     y_k = y_(k-1) + a (u_k - y_(k-1)),   a = 1 - e^(-T/tau)
-//!     delay = T (1 - a) / a = T / (e^(T/tau) - 1),   noise factor = sqrt(a / (2 - a))
+//! ```text
+//! y_k = y_(k-1) + a (u_k - y_(k-1)),   a = 1 - e^(-T/tau)
+//! delay = T (1 - a) / a = T / (e^(T/tau) - 1),   noise factor = sqrt(a / (2 - a))
+//! ```
 //!
 //! T sample period [s], tau time constant [s].
 

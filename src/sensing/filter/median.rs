@@ -1,7 +1,9 @@
 //! Median of the last samples.
 //!
-//!     y_k = the middle one of u_k .. u_(k-n+1) in order of size,   delay = (n - 1) T / 2
-//!     noise factor^2 = integral of x^2 n! / (m!)^2 (P (1 - P))^m p dx,   m = (n - 1) / 2      (order statistics of the normal)
+//! ```text
+//! y_k = the middle one of u_k .. u_(k-n+1) in order of size,   delay = (n - 1) T / 2
+//! noise factor^2 = integral of x^2 n! / (m!)^2 (P (1 - P))^m p dx,   m = (n - 1) / 2      (order statistics of the normal)
+//! ```
 //!
 //! n length, odd, T sample period [s], p and P density and distribution of the standard normal.
 //! It is not linear: the delay is that of whatever rises or falls throughout, and shorter turns are cut.

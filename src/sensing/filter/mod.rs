@@ -1,6 +1,8 @@
 //! Treatment of the load cell's noise, with what it costs in delay.
 //!
-//!     delay = -d arg H(e^(i w T)) / dw at w = 0,   noise factor = sd(output) / sd(white input)
+//! ```text
+//! delay = -d arg H(e^(i w T)) / dw at w = 0,   noise factor = sd(output) / sd(white input)
+//! ```
 //!
 //! T sample period [s]. The delay is how far the output lags a ramp, the discretisation included. It counts from sample to
 //! sample: that a reading is held until the next one adds half a period on average, with or without a filter.
