@@ -109,7 +109,7 @@ fn scenario_files() {
                     b,
                     "flange_link = \"flange\"",
                     "flange_link = \"flange\"\nseed_posture_deg = [0, 0]",
-                )
+                );
             },
             &["scenario.toml: `arm.seed_posture_deg` is a list of 2, expected a list of 6"],
         ),
@@ -149,7 +149,7 @@ fn robot_files() {
                     "arm.urdf",
                     ELBOW,
                     &format!("{ELBOW}<mimic joint=\"shoulder_pan\"/>"),
-                )
+                );
             },
             &["arm.urdf: joint `elbow`", "mimics joint `shoulder_pan`"],
         ),
@@ -176,7 +176,7 @@ fn robot_files() {
                     b,
                     "[device]",
                     "[[arm.limit_overrides]]\njoint = \"elbo\"\neffort_n_m = 30\n[device]",
-                )
+                );
             },
             &["limit override names joint `elbo`"],
         ),
@@ -387,7 +387,7 @@ fn controllers_of_a_cell() {
                 controller(
                     b,
                     "kind = \"proportional_integral\"\nproportional_gain = 60",
-                )
+                );
             },
             &[
                 "scenario.toml:33:1: `controller.proportional_gain` is 60, with which the loop is unstable",
@@ -401,7 +401,7 @@ fn controllers_of_a_cell() {
                 controller(
                     b,
                     "kind = \"proportional_integral\"\nproportional_gain = -1",
-                )
+                );
             },
             &["scenario.toml:33:1: `controller.proportional_gain` is -1, expected 0 to 1000"],
         ),
@@ -416,7 +416,7 @@ fn controllers_of_a_cell() {
                 controller(
                     b,
                     "kind = \"disturbance_prediction\"\ntracking_frequency_rad_per_s = 4000",
-                )
+                );
             },
             &[
                 "scenario.toml:33:1: `controller.tracking_frequency_rad_per_s` is 4000 rad/s, expected less than 3141.6 rad/s",
@@ -429,7 +429,7 @@ fn controllers_of_a_cell() {
                     b,
                     "[expect]",
                     "[sensing.command]\nkind = \"real\"\npwm_high_v = 0.625\n[expect]",
-                )
+                );
             },
             &[
                 "scenario.toml: `process.force_n` is 150 N, which needs 0.76 bar gauge",
@@ -465,7 +465,7 @@ fn controllers_of_a_bench() {
                         b,
                         KIND,
                         "kind = \"feedback_linearisation\"\nintegral_gain_per_s = 900",
-                    )
+                    );
                 },
                 &[
                     "scenario.toml:34:1: `controller.integral_gain_per_s` is 900 1/s, with which the loop is unstable",

@@ -307,7 +307,7 @@ fn static_penetration_is_force_over_stiffness() {
             }
         }
     }
-    println!("static penetration: within {:.2e} of F/k", worst);
+    println!("static penetration: within {worst:.2e} of F/k");
     assert!(worst < 1e-9, "{worst}");
 }
 
@@ -325,7 +325,7 @@ fn ringing(mass: f64, contact: Law, preload: f64) -> f64 {
         settle(&mut press, preload - mass * GRAVITY, 1);
         let now = press.world.positions()[1] - rest;
         if before < 0.0 && now >= 0.0 {
-            crossings.push(step as f64 - now / (now - before));
+            crossings.push(f64::from(step) - now / (now - before));
         }
         before = now;
         if crossings.len() == 4 {
@@ -414,7 +414,7 @@ fn drag(part: &TriangleMesh, friction: f64, speed: f64) -> Vec<(f64, f64, f64)> 
     press.put(&[-0.05, TOUCH]);
     let mut out = Vec::new();
     for step in 0..4000 {
-        let along = -0.05 + speed * 1e-3 * (step as f64 - 1000.0).max(0.0);
+        let along = -0.05 + speed * 1e-3 * (f64::from(step) - 1000.0).max(0.0);
         press.step(along, 150.0 - mass * GRAVITY);
         if step > 1200 {
             let reading = press.carried_by_rapier();

@@ -95,7 +95,7 @@ fn record(bench: BenchScenario) -> Recording {
 }
 
 /// Errors on the surface moved at a frequency [Hz], after its first turn.
-fn moved(law: ForceLaw, frequency: f64, sensing: SensingParameters) -> Errors {
+fn moved(law: ForceLaw, frequency: f64, sensing: &SensingParameters) -> Errors {
     let mut bench = moving_surface();
     let LoadScenario::Contact {
         motion: Some(motion),
@@ -109,12 +109,12 @@ fn moved(law: ForceLaw, frequency: f64, sensing: SensingParameters) -> Errors {
     bench.duration = motion.start + (2.0 / frequency).max(6.0);
     let end = bench.duration;
     bench.controller.law = law;
-    bench.sensing = sensing;
+    bench.sensing = *sensing;
     Errors::of(&record(bench), DESIRED, [from, end])
 }
 
 /// The bench with a surface that stands still and these desired forces: times [s] and forces [N].
-fn standing(law: ForceLaw, sensing: SensingParameters, forces: &[(f64, f64)]) -> BenchScenario {
+fn standing(law: ForceLaw, sensing: &SensingParameters, forces: &[(f64, f64)]) -> BenchScenario {
     let mut bench = moving_surface();
     if let LoadScenario::Contact { motion, .. } = &mut bench.load {
         *motion = None;
@@ -122,7 +122,7 @@ fn standing(law: ForceLaw, sensing: SensingParameters, forces: &[(f64, f64)]) ->
     bench.duration = 6.0;
     bench.command = CommandScenario::Force(forces.to_vec());
     bench.controller.law = law;
-    bench.sensing = sensing;
+    bench.sensing = *sensing;
     bench
 }
 
@@ -149,7 +149,7 @@ fn on_the_moved_surface_prediction_is_best_and_beats_what_waits() {
         (0.5, SensingParameters::ideal()),
     ];
     let found = LAWS.map(|(name, law)| {
-        let errors = cases.map(|(frequency, sensing)| moved(law, frequency, sensing));
+        let errors = cases.map(|(frequency, sensing)| moved(law, frequency, &sensing));
         let shown = errors
             .each_ref()
             .map(|e| format!("{:.3} N ({:.1} N)", e.rms(), e.largest()));
@@ -186,7 +186,7 @@ fn a_step_of_the_desired_force_settles_no_sooner_than_the_regulator_can() {
     println!("| controller | overshoot | settling, at best {least:.3} s |");
     let found = LAWS.map(|(name, law)| {
         let forces = [(0.5, 100.0), (STEP, 200.0)];
-        let bench = standing(law, moving_surface().sensing, &forces);
+        let bench = standing(law, &moving_surface().sensing, &forces);
         let after = Errors::of(&record(bench), 200.0, [STEP, 6.0]);
         let (overshoot, settling) = response(&after, 5.0);
         println!("| {name} | {overshoot:.1} % | {} |", seconds(settling));
@@ -266,7 +266,7 @@ fn in_the_cell_each_takes_out_the_friction() {
 fn behind_the_papers_chain_none_diverges() {
     // The load cell reads 20.8 % too much, so 150 N are read at 124 N. RC of 0.1 s, 8 and 10 bits, 100 samples a second.
     for (name, law) in LAWS {
-        let mut bench = standing(law, SensingParameters::paper(), &[(0.5, DESIRED)]);
+        let mut bench = standing(law, &SensingParameters::paper(), &[(0.5, DESIRED)]);
         bench.controller.period = 0.01;
         let after = Errors::of(&record(bench), DESIRED / 1.208, [4.0, 6.0]);
         println!("{name}: {:.2} N, {:.2} N", after.rms(), after.largest());
@@ -279,7 +279,7 @@ fn behind_the_papers_chain_none_diverges() {
 #[test]
 fn the_picture_of_the_page_shows_all_four() {
     let roles = [Role::Command, Role::Regulator, Role::Stroke, Role::Force];
-    let runs = LAWS.map(|(_, law)| moved(law, 0.1, moving_surface().sensing));
+    let runs = LAWS.map(|(_, law)| moved(law, 0.1, &moving_surface().sensing));
     let panel = |title: &str, first: usize| Panel {
         title: title.to_owned(),
         vertical_label: "force error [N]".to_owned(),

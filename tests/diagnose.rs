@@ -265,6 +265,7 @@ fn all_goes_on_past_a_bad_case_and_resumes() {
 
 #[test]
 fn bad_input_is_one_line_and_writes_nothing() {
+    type Spoil<'a> = &'a dyn Fn(&Bench);
     let rows = |text: &str, rows: std::ops::Range<usize>| -> String {
         let lines: Vec<&str> = text.lines().collect();
         [&lines[..1], &lines[rows]].concat().join("\n") + "\n"
@@ -284,7 +285,6 @@ fn bad_input_is_one_line_and_writes_nothing() {
         lines.swap(200, 300);
         lines.join("\n") + "\n"
     };
-    type Spoil<'a> = &'a dyn Fn(&Bench);
     let press = |change: &dyn Fn(&str) -> String, bench: &Bench| {
         let path = bench.path("case/press.csv");
         let text = std::fs::read_to_string(&path).unwrap();

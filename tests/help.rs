@@ -57,7 +57,7 @@ fn examples(help: &str) -> Vec<(String, String)> {
             let (command, _) = found.last_mut().unwrap();
             *command += &format!("\n{line}");
         } else if let Some(words) = line.strip_prefix("  # ") {
-            comment = words.to_owned();
+            words.clone_into(&mut comment);
         } else {
             let command = line.strip_prefix("  ");
             let command =

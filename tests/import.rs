@@ -130,7 +130,7 @@ fn texts_of_every_kind_come_back() {
     let comma = |number: f64| format!("{number}").replace('.', ",");
     files::text(&folder.path("log.csv"), "made by\r\nt;F;p;s\r\n", |row| {
         let (truth, (millis, micros)) = (truth(row), whole(row));
-        let psi = comma(truth.pressure / 6894.757293168361);
+        let psi = comma(truth.pressure / 6_894.757_293_168_361);
         let time = dotted(millis * 1000);
         format!(
             "{time};{};{psi};{}\r",
@@ -200,7 +200,12 @@ fn what_the_program_writes_is_imported_and_read_alike() {
     )
     .unwrap();
     let path = folder.path("samples.parquet");
-    idc_cell::recording::parquet::write_parquet(&path, &own, &Default::default()).unwrap();
+    idc_cell::recording::parquet::write_parquet(
+        &path,
+        &own,
+        &std::collections::BTreeMap::default(),
+    )
+    .unwrap();
     let channels = channel("force", "\"force_n\"", "N") + &channel("stroke", "\"stroke_m\"", "m");
     let keys = "form = \"parquet\"\ntime = { column = \"time_s\", unit = \"s\" }\n";
     folder.map("map.toml", &(keys.to_owned() + &channels));

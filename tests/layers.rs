@@ -255,7 +255,7 @@ fn paths_in_the_documents_exist() {
         let quoted = text.split('`').skip(1).step_by(2);
         let is_path = |quote: &&str| {
             !quote.contains([' ', '<', ':'])
-                && (quote.contains('/') || quote.contains(".md") || quote.ends_with(".toml"))
+                && (quote.contains('/') || quote.contains(".md") || quote.contains(".toml"))
         };
         let paths: Vec<&str> = quoted.filter(is_path).collect();
         assert!(!paths.is_empty(), "{document}");

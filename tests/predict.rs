@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::program::{Bench, Outcome};
 
-pub const RIG: &str = r#"schema = 1
+pub const RIG: &str = r"schema = 1
 
 [cylinder]
 count = 2
@@ -44,7 +44,7 @@ force_n = 0.8
 stroke_m = 2e-05
 regulator_pressure_pa = 400.0
 acceleration_m_per_s2 = 0.15
-"#;
+";
 
 /// 2 bar from the start against a surface that stands at 20 mm, for two seconds, without measured columns.
 fn inputs() -> String {

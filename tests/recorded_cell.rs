@@ -242,7 +242,7 @@ const PLANTED: [Planted; 7] = [
         |p| p.cell.encoder_offset[2] = 0.003,
     ),
     ("servo_lag", None, &[("bandwidth_hz", 11.0)], |p| {
-        p.cell.servo_bandwidth = 11.0
+        p.cell.servo_bandwidth = 11.0;
     }),
     (
         "tool_runout",

@@ -48,7 +48,7 @@ fn rigid_bodies(criterion: &mut Criterion, cell: &Cell) {
         let touching = world.force() > 0.0;
         assert_eq!(touching, lift == 0.0, "the ball must be {name}");
         group.bench_function(BenchmarkId::new("step", name), |bencher| {
-            bencher.iter(|| world.step())
+            bencher.iter(|| world.step());
         });
     }
     group.finish();
@@ -97,7 +97,7 @@ fn path_and_servo(criterion: &mut Criterion, cell: &Cell) {
     });
     let chain = &cell.arm_with_slide;
     let count = chain.len();
-    let reference = cell.plan.reference((start + end) / 2.0);
+    let reference = cell.plan.reference(f64::midpoint(start, end));
     let gravity = cell.scenario.simulation.gravity;
     let base = cell.scenario.arm.world_from_base.rotation;
     group.bench_function("inverse dynamics", |bencher| {

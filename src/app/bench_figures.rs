@@ -228,10 +228,10 @@ mod tests {
         assert!(!figures(&all, &recording).unwrap().contains("set 1.8 bar"));
     }
 
-    fn drawn(sensing: SensingParameters) -> String {
+    fn drawn(sensing: &SensingParameters) -> String {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper_step.toml");
         let mut scenario = load_bench(&path).unwrap();
-        scenario.sensing = sensing;
+        scenario.sensing = *sensing;
         scenario.duration = 1.5;
         let (recording, stop) = Rig::new(scenario.clone())
             .unwrap()
@@ -245,16 +245,16 @@ mod tests {
     fn readings_are_drawn_where_they_are_not_the_truth() {
         let has = |svg: &str, texts: [&str; 4]| texts.map(|text| svg.contains(text));
         let texts = [", read", "filtered", "(delay ", "set 1.8 bar"];
-        let ideal = drawn(SensingParameters::ideal());
+        let ideal = drawn(&SensingParameters::ideal());
         assert_eq!(has(&ideal, texts), [false, false, false, true]);
         let paper = SensingParameters::paper();
-        assert_eq!(has(&drawn(paper), texts), [true, false, false, true]);
+        assert_eq!(has(&drawn(&paper), texts), [true, false, false, true]);
         let treated = SensingParameters {
             force_filter: FilterParameters::FirstOrder {
                 time_constant: 0.05,
             },
             ..paper
         };
-        assert_eq!(has(&drawn(treated), texts), [true, true, true, true]);
+        assert_eq!(has(&drawn(&treated), texts), [true, true, true, true]);
     }
 }

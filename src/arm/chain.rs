@@ -74,6 +74,7 @@ impl BodyInertia {
     };
 
     /// The same body described in another frame, `frame_from_body` being the body's old frame in it.
+    #[must_use]
     pub fn seen_from(&self, frame_from_body: &DPose3) -> Self {
         let rotation = DMat3::from_quat(frame_from_body.rotation);
         Self {
@@ -84,6 +85,7 @@ impl BodyInertia {
     }
 
     /// This body and `other` welded together; both in the same frame.
+    #[must_use]
     pub fn welded_to(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         if mass <= 0.0 {

@@ -105,7 +105,10 @@ pub struct IkFailure {
 /// Finds joint positions that put the tip at `world_from_tip`, starting from `start`.
 ///
 /// With a start near the answer the answer is the one near the start. The result depends on the arguments
-/// alone. Fails if `world_from_tip` or `start` is not finite.
+/// alone.
+///
+/// # Errors
+/// No posture was found; `world_from_tip` or `start` is not finite.
 pub fn solve(
     chain: &Chain,
     world_from_base: DPose3,

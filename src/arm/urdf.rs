@@ -105,6 +105,9 @@ pub enum VisualShape {
 }
 
 /// Loads the arm in the URDF file `path`.
+///
+/// # Errors
+/// The file or a mesh cannot be read, or holds something that cannot be honoured.
 pub fn load_arm(path: &Path, options: &ArmOptions) -> Result<Arm, ArmError> {
     let text = std::fs::read_to_string(path).map_err(|source| ArmError::Unreadable {
         file: path.to_path_buf(),

@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_value_has_the_digits_that_the_file_states() {
-        assert_eq!(rounded(2.345617894), 2.3456);
+        assert_eq!(rounded(2.345_617_894), 2.3456);
         assert_eq!(rounded(2.0e-7 / 3.0), 6.6667e-8);
         assert_eq!(rounded(0.0), 0.0);
     }

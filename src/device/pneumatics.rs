@@ -264,10 +264,8 @@ impl Device {
         let beyond = motion.stroke - self.parameters.full_stroke;
         if end_stop.pushes(-motion.stroke, -motion.speed) {
             -1
-        } else if end_stop.pushes(beyond, motion.speed) {
-            1
         } else {
-            0
+            i8::from(end_stop.pushes(beyond, motion.speed))
         }
     }
 
@@ -310,6 +308,7 @@ impl Device {
 
     /// Rates of the air at an outlet pressure of the regulator [Pa absolute], with air that comes into each chamber from elsewhere [kg/s]. Into its one caller: a tenth of a step.
     #[inline(always)]
+    #[expect(clippy::too_many_lines, reason = "one balance, inlined as one")]
     pub(super) fn air_rates<const LEDGER: bool>(
         &self,
         air: &AirState,

@@ -93,7 +93,7 @@ impl Diagnosis {
     fn headline(&self) -> String {
         let mut names = names_of(self.best());
         if let Some(unlisted) = names.iter_mut().find(|name| *name == UNLISTED) {
-            *unlisted = "physics that no known effect explains".to_owned();
+            "physics that no known effect explains".clone_into(unlisted);
         }
         if names.is_empty() {
             let errors = self.remaining_errors();

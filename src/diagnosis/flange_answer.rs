@@ -81,6 +81,7 @@ impl FlangeDiagnosis {
 
     /// diagnosis.json.
     #[must_use]
+    #[expect(clippy::too_many_lines, reason = "one document, key by key")]
     pub fn answer(&self, seconds: f64) -> Answer {
         let estimate = |[value, low, high]: [f64; 3]| Estimate::new(value, low, high);
         let effect = |name: &str, subsystem: &str, parameters: Vec<(&str, Estimate)>| FoundEffect {
@@ -199,6 +200,7 @@ impl FlangeDiagnosis {
 
     /// The account.
     #[must_use]
+    #[expect(clippy::too_many_lines, reason = "one text, sentence by sentence")]
     pub fn account(&self) -> Account {
         let missing = self.missing();
         let names: Vec<String> = missing.iter().map(|name| (*name).to_owned()).collect();

@@ -35,11 +35,13 @@ pub struct Free {
 
 impl Free {
     /// The same from another start.
+    #[must_use]
     pub fn from(self, start: f64) -> Self {
         Self { start, ..self }
     }
 
     /// The same from where it stands in a description.
+    #[must_use]
     pub fn from_where(self, plant: &PlantParameters) -> Self {
         self.from(self.clamp(self.quantity.get(plant)))
     }

@@ -99,6 +99,9 @@ fn values_of(file: &str, recording: &Recording, quantity: &str) -> Result<Vec<f6
 }
 
 /// Refuses inputs that cannot drive a rig.
+///
+/// # Errors
+/// The first fault of the inputs.
 pub fn check(file: &str, inputs: &PlantInputs) -> Result<(), RecordedError> {
     inputs.check().map_err(|source| RecordedError::Inputs {
         file: file.to_owned(),

@@ -143,7 +143,9 @@ fn share(variable: &[f64], mismatch: &[f64]) -> Option<f64> {
         return None;
     }
     let mean = mismatch.iter().sum::<f64>() / count as f64;
-    mismatch.iter_mut().for_each(|y| *y -= mean);
+    for y in &mut mismatch {
+        *y -= mean;
+    }
     let square: f64 = mismatch.iter().map(|y| y * y).sum();
     let bins = bins(&variable);
     let kinds = bins.iter().max().map_or(0, |last| last + 1);
@@ -151,13 +153,15 @@ fn share(variable: &[f64], mismatch: &[f64]) -> Option<f64> {
         return None;
     }
     let mut sizes = vec![0.0; kinds];
-    bins.iter().for_each(|bin| sizes[*bin] += 1.0);
+    for bin in &bins {
+        sizes[*bin] += 1.0;
+    }
     let between = |shift: usize| -> f64 {
         let mut sums = vec![0.0; kinds];
         let shifted = mismatch[shift..].iter().chain(&mismatch[..shift]);
-        bins.iter()
-            .zip(shifted)
-            .for_each(|(bin, y)| sums[*bin] += y);
+        for (bin, y) in bins.iter().zip(shifted) {
+            sums[*bin] += y;
+        }
         let squares = sums.iter().zip(&sizes).map(|(sum, size)| sum * sum / size);
         squares.sum::<f64>() / square
     };

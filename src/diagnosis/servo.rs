@@ -45,12 +45,12 @@ const TRIED: usize = 40;
 /// Halvings of the interval about the best: to a part in 1e8.
 const NARROWED: usize = 40;
 
-fn residuals<'a>(
-    axes: &'a [Axes],
+fn residuals(
+    axes: &[Axes],
     joint: usize,
     noise: f64,
     bandwidth: f64,
-) -> impl Iterator<Item = f64> + 'a {
+) -> impl Iterator<Item = f64> + '_ {
     axes.iter().flat_map(move |axes| {
         let encoder = axes.encoders[joint].as_deref().unwrap_or_default();
         let angle = follow(&axes.time, &axes.commands[joint], bandwidth).angle;

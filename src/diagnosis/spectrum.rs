@@ -1,7 +1,10 @@
 //! Periodic parts of what is left in the force while the tool touches.
 
-use super::evidence::{Evidence, Prediction};
 use std::f64::consts::TAU;
+
+use rayon::prelude::*;
+
+use super::evidence::{Evidence, Prediction};
 
 /// Frequencies [Hz] of the strongest periodic parts of the force while touching, the strongest first, at most two slower and two faster than a tool
 /// turns, by least squares of a sine over all recordings with the same phase.
@@ -47,7 +50,6 @@ pub fn strongest_in(evidence: &Evidence, prediction: &Prediction, channel: usize
     };
     let spacing = 0.025;
     let frequencies: Vec<f64> = (20..4000).map(|i| f64::from(i) * spacing).collect();
-    use rayon::prelude::*;
     let powers: Vec<f64> = frequencies.par_iter().map(|f| power(*f)).collect();
     let mut peaks: Vec<(f64, f64)> = (1..powers.len() - 1)
         .filter(|&i| powers[i] > powers[i - 1] && powers[i] >= powers[i + 1])

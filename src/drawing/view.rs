@@ -30,7 +30,7 @@ pub(super) fn edge_direction(scene: &Scene) -> DVec3 {
     };
     let azimuths = (0..360)
         .step_by(AZIMUTH_STEP)
-        .map(|a| (a as f64).to_radians());
+        .map(|a| f64::from(a).to_radians());
     let directions = azimuths.flat_map(|azimuth| {
         ELEVATIONS.map(|elevation| {
             let (height, flat) = elevation.to_radians().sin_cos();

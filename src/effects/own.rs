@@ -37,7 +37,9 @@ pub fn own_effect(law: &LawText, place: usize) -> &'static Effect {
     static EFFECTS: Mutex<Vec<&'static Effect>> = Mutex::new(Vec::new());
     let which = Which::Own { place };
     let subsystem = subsystem(law.port);
-    let mut effects = EFFECTS.lock().unwrap_or_else(|broken| broken.into_inner());
+    let mut effects = EFFECTS
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
     let same = |e: &&&Effect| e.name == law.name && e.which == which && e.subsystem == subsystem;
     if let Some(known) = effects.iter().find(same) {
         return known;

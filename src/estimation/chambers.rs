@@ -301,7 +301,7 @@ mod tests {
         };
         let h = 1e-6;
         (0..1000).fold(mass, |m, i| {
-            let t = h * i as f64;
+            let t = h * f64::from(i);
             let k1 = rate(m, t);
             let k2 = rate(m + 0.5 * h * k1, t + 0.5 * h);
             let k3 = rate(m + 0.5 * h * k2, t + 0.5 * h);

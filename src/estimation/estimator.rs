@@ -86,6 +86,9 @@ impl ContactForceEstimator {
     /// For a device as its data say, about at a stroke [m], sampled every `period` [s].
     ///
     /// It starts with chambers in equilibrium with what they hang on, and with seals whose deflection is anywhere.
+    ///
+    /// # Errors
+    /// A parameter, the stroke or the period is out of its range.
     pub fn new(
         device: &DeviceParameters,
         parameters: &EstimatorParameters,

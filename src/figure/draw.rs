@@ -83,14 +83,14 @@ impl Layout<'_> {
         ];
         canvas.line(&corners, frame)?;
         if self.labelled {
-            let middle = ((LEFT + RIGHT) / 2, bottom + 34 * PX);
+            let middle = (i32::midpoint(LEFT, RIGHT), bottom + 34 * PX);
             canvas.text(label, middle, NORMAL, Anchor::Centre)?;
         }
         let label = &self.panel.vertical_label;
         let size = fitting(label, NORMAL, bottom - self.above);
         canvas.text(
             label,
-            (2 * SPACE, (top + bottom) / 2),
+            (2 * SPACE, i32::midpoint(top, bottom)),
             size,
             Anchor::Upwards,
         )
@@ -129,7 +129,7 @@ impl Layout<'_> {
             let (left, right) = (spot.left, spot.left + KEY);
             if let Some(series) = series {
                 let line = match series.stroke {
-                    Stroke::Points => vec![((left + right) / 2, y)],
+                    Stroke::Points => vec![(i32::midpoint(left, right), y)],
                     Stroke::Area => vec![
                         (left, y - SPACE),
                         (right, y - SPACE),

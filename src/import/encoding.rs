@@ -185,7 +185,9 @@ fn odd_character(bytes: &[u8]) -> Option<(usize, String)> {
 
 /// The line, from 1, of a byte.
 fn line(bytes: &[u8], at: usize) -> usize {
-    1 + bytes[..at].iter().filter(|byte| **byte == b'\n').count()
+    #[expect(clippy::naive_bytecount, reason = "once, for a message")]
+    let before = bytes[..at].iter().filter(|byte| **byte == b'\n').count();
+    1 + before
 }
 
 #[cfg(test)]

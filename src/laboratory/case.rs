@@ -52,8 +52,8 @@ struct Pair {
 impl Pair {
     /// Numbers of the rig that are off stand in the real one; without the effect they are what is believed.
     fn new(believed: &Rig, drawn: Rig, concealed: &Concealed) -> Self {
-        let (mut bare, mut real) = (drawn.clone(), drawn);
         type Place = fn(&mut Rig) -> &mut f64;
+        let (mut bare, mut real) = (drawn.clone(), drawn);
         let places: [(Option<f64>, Place); 6] = [
             (concealed.mass, |r| &mut r.mass),
             (concealed.dead_volume, |r| &mut r.dead_volume),

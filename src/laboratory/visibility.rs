@@ -67,7 +67,9 @@ impl Eye {
             let mut moved = bare.clone();
             *toleranced(&mut moved)[index] += STEP * deviation;
             let mut column = eye.differences(&all(&moved)?);
-            column.iter_mut().for_each(|value| *value /= STEP);
+            for value in &mut column {
+                *value /= STEP;
+            }
             eye.columns.push(column);
         }
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };

@@ -177,7 +177,7 @@ mod tests {
     use super::*;
     use crate::figure::Role;
 
-    fn chart<'a>(series: Vec<Series<'a>>) -> Chart<'a> {
+    fn chart(series: Vec<Series<'_>>) -> Chart<'_> {
         Chart {
             panel: Panel {
                 vertical_label: "force [N]".to_owned(),

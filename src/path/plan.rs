@@ -125,6 +125,7 @@ pub struct Reference {
 
 impl Reference {
     /// Position, velocity and acceleration in the middle between this and a reference that comes `dt` [s] later, of the cubic through both; all else as there.
+    #[must_use]
     pub fn middle(&self, later: &Self, dt: f64) -> Self {
         let mut middle = *later;
         for i in 0..MAX_JOINTS {

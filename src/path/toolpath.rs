@@ -256,8 +256,8 @@ mod tests {
         let steps = 20_000;
         let mut before = path.at(0.0);
         for i in 1..=steps {
-            let now = path.at(path.length() * i as f64 / steps as f64);
-            let bound = 1.5 * path.length() / steps as f64;
+            let now = path.at(path.length() * f64::from(i) / f64::from(steps));
+            let bound = 1.5 * path.length() / f64::from(steps);
             assert!((now.point - before.point).length() < bound + 2e-6);
             assert!(now.axis.angle_between(before.axis) < bound / CORNER_RADIUS + 1e-5);
             before = now;

@@ -36,10 +36,8 @@ impl EndCushioning {
             0
         } else if speed < 0.0 && stroke < self.length {
             -1
-        } else if speed > 0.0 && full_stroke - stroke < self.length {
-            1
         } else {
-            0
+            i8::from(speed > 0.0 && full_stroke - stroke < self.length)
         }
     }
 

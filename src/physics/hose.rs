@@ -126,6 +126,7 @@ impl Hose {
     }
 
     /// The last segment with another constant resistance before it [Pa s/kg].
+    #[must_use]
     pub fn last_behind(&self, resistance: f64) -> Self {
         Self::lumped(self.last_volume(), resistance)
     }

@@ -58,6 +58,7 @@ impl SealFriction {
     }
 
     /// The same seals with a pressure difference across them [Pa], as they are while it lasts.
+    #[must_use]
     pub fn under(&self, pressure_difference: f64) -> Self {
         if self.pressure_coefficient == 0.0 {
             return *self;

@@ -37,6 +37,10 @@ impl Guide {
     }
 
     /// From times [s], stroke [m] and acceleration [m/s2], NaN where there is no value, and their noise.
+    #[expect(
+        clippy::too_many_lines,
+        reason = "a filter and its smoother, which share all matrices"
+    )]
     pub fn new(
         time: &[f64],
         stroke: &[f64],

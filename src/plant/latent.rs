@@ -221,6 +221,7 @@ pub struct Moment {
 
 impl Moment {
     /// The same a time [s] later, as far as its motion tells.
+    #[must_use]
     pub fn ahead(&self, time: f64) -> Self {
         Self {
             time: self.time + time,

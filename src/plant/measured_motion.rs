@@ -153,7 +153,7 @@ impl Cubic {
         let mut normal = Matrix4::zeros();
         let mut right = Vector4::zeros();
         // About a reading, so that small departures keep their figures.
-        let origin = known[(from + to) / 2].1;
+        let origin = known[usize::midpoint(from, to)].1;
         for (t, x) in &known[from..to] {
             let u = (t - time) / width;
             let weight = (1.0 - u.abs().powi(3)).powi(3);

@@ -131,6 +131,7 @@ fn same_times(one: &[f64], other: &[f64]) -> bool {
 mod tests {
     use super::*;
     use crate::diagnosis::answer::{SCHEMA, Verdict};
+    use crate::diagnosis::details::Details;
     use crate::laboratory::{Recipe, write_case};
 
     fn nothing() -> Answer {
@@ -142,7 +143,7 @@ mod tests {
             seconds: 1.0,
             alternatives: Vec::new(),
             notes: Vec::new(),
-            details: Default::default(),
+            details: Details::default(),
         }
     }
 

@@ -221,6 +221,7 @@ pub fn worst_channel(
 mod tests {
     use super::*;
     use crate::diagnosis::answer::{Estimate, FoundEffect, Mismatch, SCHEMA};
+    use crate::diagnosis::details::Details;
     use crate::laboratory::SealedInterval;
 
     fn truth() -> SealedCase {
@@ -270,7 +271,7 @@ mod tests {
             seconds: 1.0,
             alternatives: Vec::new(),
             notes: Vec::new(),
-            details: Default::default(),
+            details: Details::default(),
         }
     }
 

@@ -244,9 +244,9 @@ mod tests {
         let sealed = SealedCase {
             case: "case".to_owned(),
             effects: Vec::new(),
-            noise: Default::default(),
+            noise: std::collections::BTreeMap::default(),
             mismatch: Vec::new(),
-            true_parameters: Default::default(),
+            true_parameters: std::collections::BTreeMap::default(),
             shows: 0.0,
             seed: 0,
         };

@@ -230,6 +230,7 @@ fn attempt(
 mod tests {
     use super::*;
     use crate::diagnosis::answer::{Answer, SCHEMA, Verdict};
+    use crate::diagnosis::details::Details;
 
     #[test]
     fn a_sweep_goes_on_where_it_was_stopped_and_only_as_it_began() {
@@ -258,7 +259,7 @@ mod tests {
                 seconds: 1.0,
                 alternatives: Vec::new(),
                 notes: Vec::new(),
-                details: Default::default(),
+                details: Details::default(),
             })
         };
         let first = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap();

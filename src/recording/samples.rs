@@ -25,7 +25,9 @@ pub fn cell_recording(
         Ok(rows.iter().map(|row| values[*row]).collect())
     };
     let gauge = |mut values: Vec<f64>| {
-        values.iter_mut().for_each(|value| *value -= atmosphere);
+        for value in &mut values {
+            *value -= atmosphere;
+        }
         values
     };
     let joint = |joint: usize, signal| picked(&joint_quantity(joint + 1, signal));

@@ -132,8 +132,8 @@ impl Scene {
         )?;
         let mut entities: Vec<&str> = self.bodies.iter().map(|b| b.entity.as_str()).collect();
         entities.sort_unstable();
-        if let Some(pair) = entities.windows(2).find(|pair| pair[0] == pair[1]) {
-            let found = format!("`{}` twice", pair[0]);
+        if let Some([name, ..]) = entities.windows(2).find(|pair| pair[0] == pair[1]) {
+            let found = format!("`{name}` twice");
             return Err(RecordingError::scene(
                 "body entity",
                 found,

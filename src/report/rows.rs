@@ -265,7 +265,7 @@ mod tests {
         let shown = |value, kept| comparison(&verdict(Some(value), kept)).0;
         assert_eq!(shown(0.5, true), "0.500");
         assert_eq!(shown(1.0, true), "1.000");
-        assert_eq!(shown(1.00000012, false), "1.0000001");
+        assert_eq!(shown(1.000_000_12, false), "1.0000001");
         assert_eq!(shown(0.99999, true), "0.99999");
         assert_eq!(
             comparison(&verdict(None, false)),

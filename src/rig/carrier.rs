@@ -77,6 +77,7 @@ impl<'a> BenchCarrier<'a> {
     }
 
     /// The same with the further forces of a description, and where it puts the surface, over a step [s] that starts at a moment.
+    #[must_use]
     pub fn with_terms(mut self, plant: &'a PlantParameters, moment: Moment, step: f64) -> Self {
         self.surface[0] += plant.term(Port::Surface, &moment.ahead(0.5 * step));
         self.terms = ForceTerms::over(plant, &moment);

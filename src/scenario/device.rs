@@ -18,6 +18,9 @@ mod parts;
 pub(super) use keys::ModelKeys;
 
 /// Reads a device model file: the device as it comes, not locked.
+///
+/// # Errors
+/// The file cannot be read, or a key is unknown, absent or out of its range.
 pub fn load_device(path: &Path) -> Result<DeviceScenario, ScenarioError> {
     load_with_overrides(path, None)
 }

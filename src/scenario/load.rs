@@ -27,6 +27,9 @@ use crate::effects::{Effect, PresentEffect, every};
 use crate::plant::{CellParameters, PlantParameters, registry};
 
 /// Reads and checks a scenario file of either kind and the device model file that it names.
+///
+/// # Errors
+/// A file cannot be read, or a key is unknown, absent or out of its range.
 pub fn load_any(path: &Path) -> Result<AnyScenario, ScenarioError> {
     from_text(path, &read_text(path)?)
 }
@@ -67,6 +70,9 @@ fn name_kind(error: ScenarioError, other: &str, sections: &Sections) -> Scenario
 }
 
 /// Reads and checks the scenario file of a cell and the device model file that it names.
+///
+/// # Errors
+/// A file cannot be read, or a key is unknown, absent or out of its range.
 pub fn load(path: &Path) -> Result<Scenario, ScenarioError> {
     match load_any(path)? {
         AnyScenario::Cell(cell) => Ok(*cell),
@@ -79,6 +85,9 @@ pub fn load(path: &Path) -> Result<Scenario, ScenarioError> {
 }
 
 /// Reads and checks a bench scenario file and the device model file that it names.
+///
+/// # Errors
+/// A file cannot be read, or a key is unknown, absent or out of its range.
 pub fn load_bench(path: &Path) -> Result<BenchScenario, ScenarioError> {
     match load_any(path)? {
         AnyScenario::Bench(bench) => Ok(*bench),

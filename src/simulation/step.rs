@@ -458,6 +458,7 @@ impl<'a> Simulation<'a> {
         self.world.touches(&relief, &mut self.touches);
     }
 
+    #[expect(clippy::too_many_lines, reason = "one row, signal by signal")]
     fn sample(&mut self, reference: &Reference, set_pressure: f64) -> Result<(), SimulationError> {
         let (cell, n) = (self.cell, self.slide());
         let time = self.steps as f64 * cell.scenario.simulation.step;

@@ -63,12 +63,18 @@ impl BurrProfile {
     pub const NONE: Self = Self::Constant { height: 0.0 };
 
     /// The same height [m] everywhere.
+    ///
+    /// # Errors
+    /// The height is negative or not finite.
     pub fn constant(height: f64) -> Result<Self, WorkpieceError> {
         require("burr height [m]", height, height >= 0.0, "0 or more")?;
         Ok(Self::Constant { height })
     }
 
     /// One raised cosine at path length `position` [m], `height` [m] high, `width` [m] wide.
+    ///
+    /// # Errors
+    /// A number is not finite or out of its range.
     pub fn bump(position: f64, height: f64, width: f64) -> Result<Self, WorkpieceError> {
         require("burr bump position [m]", position, true, "a number")?;
         require("burr bump height [m]", height, height >= 0.0, "0 or more")?;
@@ -82,6 +88,9 @@ impl BurrProfile {
 
     /// A random burr with this mean height [m], standard deviation [m] and correlation length [m]
     /// (distance over which the correlation of the logarithm falls to exp(-1/2) = 0.61).
+    ///
+    /// # Errors
+    /// A number is not finite or out of its range.
     pub fn seeded_random(
         seed: u64,
         mean: f64,
@@ -119,6 +128,9 @@ impl BurrProfile {
     }
 
     /// Reads a table with the header `position_mm,height_mm`, positions strictly increasing.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a row is not of this form.
     pub fn from_csv(path: &Path) -> Result<Self, WorkpieceError> {
         let file = std::fs::File::open(path).map_err(|source| WorkpieceError::Read {
             file: path.to_owned(),
@@ -217,6 +229,9 @@ impl BurrProfile {
     }
 
     /// Refuses a table that does not cover a path of this length [m], and a bump that does not touch it.
+    ///
+    /// # Errors
+    /// The path begins before the table or ends beyond it, or the bump lies beside the path.
     pub fn require_cover(&self, length: f64) -> Result<(), WorkpieceError> {
         // A table written in millimetres to three decimals may miss the end by a rounding.
         const SLACK: f64 = 1e-6;

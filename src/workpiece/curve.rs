@@ -177,6 +177,7 @@ impl EdgeCurve {
     }
 
     /// The same edge run the other way; the faces of `normal_a` and `normal_b` change places.
+    #[must_use]
     pub fn reversed(&self) -> Self {
         let count = self.points.len();
         let mut points = self.points.clone();
@@ -195,6 +196,9 @@ impl EdgeCurve {
 
     /// The part from path length `start` to `end` [m] as an open curve. On a closed curve `end` may
     /// lie up to one length beyond `start`, past the seam.
+    ///
+    /// # Errors
+    /// The ends do not lie on the curve, or not in this order.
     pub fn trim(&self, start: f64, end: f64) -> Result<Self, WorkpieceError> {
         let last = if self.closed {
             start + self.length
@@ -246,6 +250,9 @@ impl EdgeCurve {
     }
 
     /// The same closed curve begun at path length `start` [m].
+    ///
+    /// # Errors
+    /// The curve is open, or `start` does not lie on it.
     pub fn started_at(&self, start: f64) -> Result<Self, WorkpieceError> {
         require(
             "number of free ends of a curve that is to start elsewhere",

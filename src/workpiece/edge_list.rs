@@ -17,6 +17,9 @@ pub struct EdgeList {
 
 impl EdgeList {
     /// The edge or loop of this id.
+    ///
+    /// # Errors
+    /// There is none; the message names those there are.
     pub fn find(&self, id: &str) -> Result<&EdgeCurve, WorkpieceError> {
         let all = || self.edges.iter().chain(&self.loops);
         all().find(|curve| curve.id == id).ok_or_else(|| {

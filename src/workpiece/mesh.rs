@@ -20,6 +20,9 @@ pub struct TriangleMesh {
 
 impl TriangleMesh {
     /// Takes triangles with shared vertices [m], counter-clockwise seen from outside, and checks them.
+    ///
+    /// # Errors
+    /// The first fault of the surface.
     pub fn new(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshFault> {
         check_numbers(&vertices, &triangles)?;
         if triangles.is_empty() {
@@ -52,6 +55,9 @@ impl TriangleMesh {
 
     /// Builds the surface from loose triangles in any unit: scales to metres, merges vertices, drops
     /// triangles without area, and checks the result.
+    ///
+    /// # Errors
+    /// The first fault of the surface.
     pub fn from_loose_triangles(
         points: &[DVec3],
         triangles: &[[u32; 3]],

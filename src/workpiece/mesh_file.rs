@@ -22,6 +22,9 @@ const OBJ_CORNERS: usize = 4;
 
 /// Reads a part. `scale` is the length of the file's unit [m]: 0.001 for a file in millimetres.
 /// A COLLADA file states its unit; `scale` multiplies it, so it is normally 1 there.
+///
+/// # Errors
+/// The file cannot be read, is malformed or of another format, or its surface has a fault.
 pub fn load_mesh(path: &Path, scale: f64) -> Result<TriangleMesh, WorkpieceError> {
     require(
         "mesh scale [m per file unit]",

@@ -25,6 +25,9 @@ impl BurrProfile {
     ///
     /// Between its samples the profile is taken as linear, and the largest lift is sought among
     /// the samples: the error is at most `step^2 / (8 r)` plus what the profile bends in a step.
+    ///
+    /// # Errors
+    /// The radius, the length or the step is out of its range, or the burr is not on the path.
     pub fn ridden_by_ball(
         &self,
         radius: f64,

@@ -221,7 +221,7 @@ fn loads_that_the_tool_cannot_meet() {
                     b,
                     "position_mm = 40",
                     "position_mm = 40\nstiffness_n_per_m = 0",
-                )
+                );
             },
             &[
                 "scenario.toml:23:1: `load.stiffness_n_per_m` is 0 N/m, expected 100 to 1000000000 N/m",
@@ -282,7 +282,7 @@ fn commands_and_valve_positions_that_contradict_themselves() {
                 more(
                     b,
                     "[[valve]]\nat_s = 2\nposition = \"retract\"\n[[valve]]\nat_s = 1\nposition = \"extend\"\n",
-                )
+                );
             },
             &[
                 "scenario.toml:31:1: `valve[1].at_s` is 1 s, expected later than the entry ahead of it, 2 s",

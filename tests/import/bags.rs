@@ -50,11 +50,13 @@ fn messages(row: usize) -> Vec<(usize, Vec<u8>)> {
     let joints = |names: &[(&str, f64)]| {
         message(row, "", |cdr| {
             cdr.write_sequence_length(names.len());
-            names.iter().for_each(|(name, _)| cdr.write_string(name));
+            for (name, _) in names {
+                cdr.write_string(name);
+            }
             cdr.write_sequence_length(names.len());
-            names
-                .iter()
-                .for_each(|(_, position)| cdr.write_f64(*position));
+            for (_, position) in names {
+                cdr.write_f64(*position);
+            }
             cdr.write_sequence_length(0);
             cdr.write_sequence_length(0);
         })
@@ -67,9 +69,9 @@ fn messages(row: usize) -> Vec<(usize, Vec<u8>)> {
     arm.rotate_left(row % 3);
     let wrench = |frame: &str, force: f64| {
         message(row, frame, |cdr| {
-            [0.1, 0.2, force, 0.0, 0.0, 0.0]
-                .into_iter()
-                .for_each(|v| cdr.write_f64(v));
+            for value in [0.1, 0.2, force, 0.0, 0.0, 0.0] {
+                cdr.write_f64(value);
+            }
         })
     };
     vec![

@@ -222,7 +222,12 @@ pub fn mcap(path: &Path, compression: Option<mcap::Compression>) {
             .add_schema(name, encodings[0], definition.as_bytes())
             .unwrap();
         writer
-            .add_channel(schema, topic, encodings[1], &Default::default())
+            .add_channel(
+                schema,
+                topic,
+                encodings[1],
+                &std::collections::BTreeMap::default(),
+            )
             .unwrap()
     };
     let ros = ["ros2msg", "cdr"];

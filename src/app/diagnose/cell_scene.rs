@@ -179,7 +179,9 @@ fn simulated_angles(axes: &Axes, model: &PlantParameters) -> Vec<Vec<f64>> {
     joints
         .map(|(command, offset)| {
             let mut angle = follow(&axes.time, command, model.cell.servo_bandwidth).angle;
-            angle.iter_mut().for_each(|angle| *angle -= offset);
+            for angle in &mut angle {
+                *angle -= offset;
+            }
             angle
         })
         .collect()

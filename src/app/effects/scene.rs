@@ -448,9 +448,9 @@ fn inputs_of(chain: Chain, name: &str) -> PlantInputs {
     };
     // To and fro at rising speeds.
     let motion = (chain == Chain::DrivenSlide).then(|| {
+        const SWING: f64 = 0.02;
         let phase = |t: f64| 0.5 * std::f64::consts::PI * t * t / 3.0;
         let rate = |t: f64| std::f64::consts::PI * t / 3.0;
-        const SWING: f64 = 0.02;
         Arc::new(MeasuredMotion {
             stroke: time
                 .iter()

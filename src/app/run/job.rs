@@ -155,7 +155,7 @@ fn perform_cell(
         let growing =
             (manner.recorded).then(|| GrowingFile::begin(scope, cell, &target, &content, options));
         let watching = watch.map(|watch| Listener::watching(cell, watch));
-        let growing_too = growing.iter().map(|growing| growing.listener());
+        let growing_too = growing.iter().map(GrowingFile::listener);
         let listeners = watching.into_iter().chain(growing_too).collect();
         let finished = run_heard(cell, told, listeners)?;
         let expect = &cell.scenario.expect;

@@ -46,7 +46,7 @@ impl Column {
         let mut lines: Vec<String> = vec![String::new()];
         for word in heading.split(' ') {
             match lines.last_mut() {
-                Some(line) if line.is_empty() => *line = word.to_owned(),
+                Some(line) if line.is_empty() => word.clone_into(line),
                 Some(line) if line.chars().count() + 1 + word.chars().count() <= NARROW => {
                     *line += &format!(" {word}");
                 }

@@ -1,7 +1,7 @@
 //! Rerun's native viewer: the program `rerun`, if it is there, is of our version and has a display.
 
 use std::env;
-use std::ffi::OsString;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
@@ -89,12 +89,12 @@ impl NativeViewer {
 
 fn program() -> Option<PathBuf> {
     let named = env::var_os(PROGRAM).filter(|name| !name.is_empty());
-    named.map_or_else(|| on_path(env::var_os("PATH")?), |name| Some(name.into()))
+    named.map_or_else(|| on_path(&env::var_os("PATH")?), |name| Some(name.into()))
 }
 
-fn on_path(path: OsString) -> Option<PathBuf> {
+fn on_path(path: &OsStr) -> Option<PathBuf> {
     let name = format!("rerun{}", env::consts::EXE_SUFFIX);
-    env::split_paths(&path)
+    env::split_paths(path)
         .map(|folder| folder.join(&name))
         .find(|program| program.is_file())
 }

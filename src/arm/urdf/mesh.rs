@@ -92,9 +92,9 @@ fn scaled_part(
     }
     // A mirrored mesh is inside out unless its triangles are wound the other way.
     if scale.x * scale.y * scale.z < 0.0 {
-        triangles
-            .iter_mut()
-            .for_each(|triangle| triangle.swap(1, 2));
+        for triangle in &mut triangles {
+            triangle.swap(1, 2);
+        }
     }
     Ok(Some(MeshPart {
         vertices,

@@ -1,7 +1,5 @@
 //! Fronts against those of test problems, known in closed form.
 
-use std::collections::BTreeMap;
-
 use super::surrogate::{STUDY, Surrogate, least_variation};
 use super::*;
 use crate::design::{Design, EvaluateError, Outcome, ScenarioOutcome};
@@ -14,7 +12,7 @@ pub fn outcome(metrics: &[(&str, f64)]) -> Outcome {
         force_range: [0.0, 1.0],
         scenarios: vec![ScenarioOutcome {
             name: "only".into(),
-            metrics: BTreeMap::from_iter(metrics),
+            metrics: metrics.collect(),
         }],
     }
 }

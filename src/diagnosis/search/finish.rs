@@ -86,6 +86,7 @@ impl Search<'_> {
 
     /// Of laws that exclude one another puts the plainest first that explains as much but for what idealisation leaves: a richer law bends to the errors
     /// of a plain one.
+    #[expect(clippy::unused_self, reason = "a step of the search as the others are")]
     pub(super) fn prefer_plain(&self, full: &mut Vec<Hypothesis>, scale: &Scale) {
         let Some(best) = full.first() else { return };
         let allowed = scale.material_in_full(best.fit.cost());

@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(form(&odd, [-1.0, 0.9]), Form::Odd);
         let even = of([-1.0, 1.0], |x| x * x);
         assert_eq!(form(&even, [-1.0, 1.0]), Form::Even);
-        let rising = of([0.0, 1.0], |x| x.sqrt());
+        let rising = of([0.0, 1.0], f64::sqrt);
         assert_eq!(form(&rising, [0.0, 1.0]), Form::Monotonic);
         let there_and_back = of([0.0, 1.0], |x| (std::f64::consts::TAU * x).sin());
         assert_eq!(form(&there_and_back, [0.0, 1.0]), Form::Broad);

@@ -7,7 +7,9 @@ static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
 
 /// The name, kept once however often it is read.
 pub fn kept_name(name: &str) -> &'static str {
-    let mut names = NAMES.lock().unwrap_or_else(|broken| broken.into_inner());
+    let mut names = NAMES
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
     if let Some(known) = names.get(name) {
         return known;
     }

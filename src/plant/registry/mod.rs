@@ -77,6 +77,7 @@ impl std::fmt::Debug for Quantity {
 
 impl Quantity {
     /// The one of several alike.
+    #[must_use]
     pub const fn of(self, index: usize) -> Self {
         Self { index, ..self }
     }
@@ -114,6 +115,7 @@ macro_rules! numbers {
                 set: numbers!(@set $access),
             };
         )+
+        /// All of them, in this order.
         pub static $list: &[&Number] = &[$(&$id),+];
     };
     (@get ($p:ident => $($place:tt)+)) => { |$p, _| $($place)+ };

@@ -425,9 +425,9 @@ fn an_improved_file_differs_from_the_believed_one_by_the_diagnosis_alone() {
             .find(|effect| effect.name == "coulomb_viscous_friction")
             .unwrap(),
         parameters: vec![
-            ("coulomb_force_n", 13.200000000004, Some([12.8, 13.6])),
-            ("viscous_coefficient_n_s_per_m", 90.123456789123, None),
-            ("presliding_displacement_m", 4.123456789123e-5, None),
+            ("coulomb_force_n", 13.200_000_000_004, Some([12.8, 13.6])),
+            ("viscous_coefficient_n_s_per_m", 90.123_456_789_123, None),
+            ("presliding_displacement_m", 4.123_456_789_123e-5, None),
         ],
     };
     let moved = [(
@@ -461,7 +461,7 @@ fn terms() -> [Latent; 3] {
         variable: Variable::Stroke,
         directed: true,
         basis: Basis::Hats {
-            ends: [0.0123457, 0.0234568],
+            ends: [0.012_345_7, 0.023_456_8],
         },
         coefficients: vec![0.0, -31.2346, 4.0, 1.5e-7],
     };
@@ -470,7 +470,7 @@ fn terms() -> [Latent; 3] {
         variable: Variable::PressureDifference,
         directed: false,
         basis: Basis::Hats {
-            ends: [-412000.0, 588123.0],
+            ends: [-412_000.0, 588_123.0],
         },
         coefficients: vec![1.25e-5; 24],
     };

@@ -60,6 +60,7 @@ fn a_law_of_one_s_own_acts_and_its_free_numbers_are_those_with_a_range() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table")]
 fn what_cannot_be_is_refused_with_its_place() {
     let line = RIG.lines().count() + 2;
     let own = |from: &str, to: &str| {

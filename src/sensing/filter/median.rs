@@ -25,6 +25,8 @@ pub fn delay(length: usize, sample_period: f64) -> f64 {
 
 /// Standard deviation of the output over that of normal white noise at the input [1].
 pub fn noise_factor(length: usize) -> f64 {
+    const STEP: f64 = 1e-3;
+    const REACH: f64 = 8.0;
     let half = (length - 1) / 2;
     // n! / (m!)^2 as a product, with (P (1 - P))^m taken in so that nothing overflows.
     let density_of_median = |density: f64, below: f64| {
@@ -32,8 +34,6 @@ pub fn noise_factor(length: usize) -> f64 {
             product * below * (1.0 - below) * (half + k) as f64 / k as f64
         }) * length as f64
     };
-    const STEP: f64 = 1e-3;
-    const REACH: f64 = 8.0;
     let normal = |x: f64| (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt();
     let mut below = 0.0;
     let mut variance = 0.0;

@@ -114,7 +114,7 @@ fn lead_errors(response_time: f64, period: f64, factor: f64, late: f64) -> [f64;
         let set = model.send(model.lead(ahead, goal, 0.0, response_time), state.outlet);
         state.command(&truth, set);
         state.advance(&truth, period);
-        let window = if time > 1.5 { 1 } else { 0 };
+        let window = usize::from(time > 1.5);
         if time > 0.3 {
             largest[window] = largest[window].max((state.outlet - 1e5).abs());
         }
