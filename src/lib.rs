@@ -2,28 +2,34 @@
 //!
 //! Data flows one way: scenario -> cell -> simulation -> recording -> metrics -> report.
 //!
+//! - [`quantity`]: numbers with their units as people read them
 //! - [`physics`]: the pneumatic equations, one effect a file
 //! - [`device`]: the device made of them
 //! - [`arm`]: the robot arm from URDF: kinematics, dynamics
 //! - [`workpiece`]: mesh, edges, burrs, where a ball touches
+//! - [`path`]: the tool's path along an edge and the joint motion that follows it
+//! - [`sensing`]: the chain between controller and device: converters, amplifiers, filters, sensors
+//! - [`control`]: joint servo and force controllers
 //! - [`estimation`]: contact force without a load cell, with its uncertainty
 //! - [`scenario`]: the file that says what to simulate, checked
-//! - [`path`]: the tool's path along an edge and the joint motion that follows it
 //! - [`cell`]: all of it assembled and checked
-//! - [`control`]: joint servo and force controllers
-//! - [`recording`]: sampled signals, Parquet, Rerun
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
+//! - [`recording`]: sampled signals, CSV, Parquet, Rerun
+//! - [`metrics`]: the numbers of a run
+//! - [`report`]: tables for people
 //! - [`design`]: the design study
-//! - [`diagnosis`]: what physics recordings contain that the believed model leaves out
+//! - [`plant`]: a rig as one description of numbers, driven by the inputs of a recording
+//! - [`replay`]: the loads of the device in a recorded cell, from the arm's commands
+//! - [`effects`]: the physics that a description may lack, one effect a file
+//! - [`import`]: logs of real devices made into recordings
 //! - [`case`]: a folder with recordings, read and diagnosed
+//! - [`diagnosis`]: the physics in recordings that the believed model leaves out
 //! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
-//! - [`metrics`]: the numbers of a run
-//! - [`drawing`]: a scene as an SVG picture
 //! - [`figure`]: signals as SVG pictures
-//! - [`quantity`]: numbers with their units as people read them
-//! - [`report`]: tables for people
+//! - [`drawing`]: a scene as an SVG picture
+//! - [`page`]: one HTML file for a browser, with everything in it
 //! - [`app`]: the command line and the files that it writes
 // Units stand in square brackets, which rustdoc would take for links.
 #![allow(rustdoc::broken_intra_doc_links)]
