@@ -8,7 +8,7 @@ use idc_cell::scenario::load_bench;
 
 use crate::common::project;
 
-/// What is asked for: error over full scale [1].
+/// Requirement: error over full scale [1].
 const ASKED: f64 = 1e-4;
 
 /// Columns of a golden file, by name.

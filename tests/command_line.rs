@@ -1,4 +1,4 @@
-//! What the program prints, and with what exit code it ends.
+//! Output and exit codes of the program.
 
 use std::process::Stdio;
 

@@ -1,4 +1,4 @@
-//! What tests share.
+//! Helpers that tests share.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

@@ -172,7 +172,7 @@ impl Press {
         (deepest.fold(f64::NEG_INFINITY, f64::max), forces.sum())
     }
 
-    /// What Rapier says that the contact carried.
+    /// Force that the contact carried, by Rapier.
     fn carried_by_rapier(&self) -> ContactReading {
         *self.world.contact()
     }

@@ -72,7 +72,7 @@ impl Errors {
         self.error.iter().map(|e| e.abs()).fold(0.0, f64::max)
     }
 
-    /// What is left of these errors, those of a constant set pressure, when they are cancelled a dead time late [N].
+    /// Remainder of these errors, those of a constant set pressure, when they are cancelled a dead time late [N].
     fn bound(&self, device: &DeviceParameters) -> f64 {
         let period = self.time[1] - self.time[0];
         dead_time_error(&self.error, period, device.regulator.dead_time)

@@ -87,7 +87,7 @@ fn a_name_that_is_none_is_refused_with_the_nearest() {
     assert!(standing.err.contains("--force"), "{}", standing.err);
 }
 
-/// What a page says to write into a file is what a file takes.
+/// The entry that a page says to write into a file is what a file takes.
 #[test]
 fn the_lines_of_every_page_are_those_of_a_file() {
     let folder = place();

@@ -9,7 +9,7 @@ use idc_cell::scenario::{BenchScenario, load_bench};
 
 use crate::common::project;
 
-/// What is asked for: error while sliding over the mean force [1], share of samples inside the 95 % band.
+/// Requirements: error while sliding over the mean force [1], share of samples inside the 95 % band.
 const ASKED_ERROR: f64 = 0.02;
 const ASKED_COVERAGE: std::ops::RangeInclusive<f64> = 0.90..=0.99;
 /// Seeds of no run before these.

@@ -8,7 +8,7 @@ use idc_cell::app::Cli;
 
 use crate::common::project;
 
-/// What a comment may say of an example that no test runs.
+/// Allowed words in the comment of an example that no test runs.
 const REASONS: [&str; 4] = [
     "(takes minutes)",
     "(takes hours)",

@@ -1,4 +1,4 @@
-//! What may use what: ARCHITECTURE.md says it, the sources must keep to it.
+//! Permitted uses between modules: ARCHITECTURE.md tells them, the sources must keep to them.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -116,7 +116,7 @@ fn word(text: &str) -> String {
         .collect()
 }
 
-/// Is this external crate named as the head of a path, `name::` or `::name::`, or in a `use` of itself?
+/// Whether this external crate is named as the head of a path, `name::` or `::name::`, or in a `use` of itself.
 fn names_crate(text: &str, name: &str) -> bool {
     text.match_indices(name).any(|(place, _)| {
         let (before, after) = (&text[..place], &text[place + name.len()..]);
@@ -132,7 +132,7 @@ fn names_crate(text: &str, name: &str) -> bool {
     })
 }
 
-/// Does a file climb out of its module by `super::super::`? `depth` counts its own path in the crate.
+/// Whether a file climbs out of its module by `super::super::`. `depth` counts its own path in the crate.
 fn climbs_out(text: &str, depth: usize) -> bool {
     text.contains(&"super::".repeat(depth))
 }

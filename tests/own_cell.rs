@@ -11,7 +11,7 @@ use parquet::record::{Field, Row};
 use crate::common::project;
 use crate::program::Bench;
 
-/// What is planted: name of the case, where it goes in a scenario, how an answer names it, joint from 1, numbers, a column that is predicted better.
+/// Planted effects: name of the case, where it goes in a scenario, how an answer names it, joint from 1, numbers, a column that is predicted better.
 struct Planted {
     case: &'static str,
     edits: &'static [(&'static str, &'static str)],
@@ -19,7 +19,7 @@ struct Planted {
     joint: Option<usize>,
     numbers: &'static [(&'static str, f64)],
     better: &'static str,
-    /// Is nothing else named beside it on the plate, on the bracket? What a joint swings and strikes by while the tool is set on the edge, the encoders'
+    /// Whether nothing else is named beside it on the plate, on the bracket. What a joint swings and strikes by while the tool is set on the edge, the encoders'
     /// samples do not follow quite, and a smaller effect may be named for what is left.
     alone: [bool; 2],
 }
@@ -162,7 +162,7 @@ const PROGRAMS: [Program; 5] = [
 struct Job {
     name: &'static str,
     part: &'static str,
-    /// What its file says, and what the test has it say.
+    /// Text of its file, and its text in the test.
     cuts: &'static [(&'static str, &'static str)],
 }
 
@@ -185,7 +185,7 @@ const BRACKET: Job = Job {
     ],
 };
 
-/// How the tool is set on the edge.
+/// Process that sets the tool on the edge.
 const PROCESS: &str = "feed_mm_per_s = FEED
 lean_deg = LEAN
 approach_distance_mm = 10
@@ -283,7 +283,7 @@ fn diagnosed(job: &Job, all: &[Planted]) -> Bench {
     bench
 }
 
-/// What was said of a case, and the account of it.
+/// Answer to a case, and the account of it.
 fn answer(bench: &Bench, case: &str) -> (Answer, String) {
     let folder = bench.path("out").join(case);
     let text = std::fs::read_to_string(folder.join("diagnosis.json")).unwrap();

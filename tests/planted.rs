@@ -1,4 +1,4 @@
-//! What a device of the laboratory conceals is found by name, and its numbers with it: another integrator and richer parts than the model that is fitted.
+//! Physics concealed by a device of the laboratory is found by name, and its numbers with it: another integrator and richer parts than the model that is fitted.
 
 use std::path::Path;
 use std::process::Command;

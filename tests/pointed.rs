@@ -9,7 +9,7 @@ fn spoiled(from: &str, to: &str) -> Outcome {
     bench.run()
 }
 
-/// What stands below the sentence.
+/// Text below the sentence.
 fn shown(outcome: &Outcome) -> String {
     let (_, below) = outcome.err.split_once('\n').unwrap();
     below.trim_end().to_owned()

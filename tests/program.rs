@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::common::project;
 
-/// What a run of the program gave.
+/// Output of a run of the program.
 pub struct Outcome {
     /// Exit code.
     pub code: i32,

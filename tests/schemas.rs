@@ -251,7 +251,7 @@ fn slips_of_the_pen_are_not() {
     }
 }
 
-/// What a key means, its unit, range and default are shown by an editor as the pages tell them.
+/// A key's meaning, unit, range and default are shown by an editor as the pages tell them.
 #[test]
 fn keys_are_described() {
     let scenario = printed("scenario");

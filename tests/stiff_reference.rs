@@ -37,9 +37,9 @@ mod model;
 mod dry_seals;
 mod near_equilibrium;
 
-/// What is asked for: error over full scale [1].
+/// Requirement: error over full scale [1].
 const ASKED: f64 = 1e-4;
-/// What the references may differ by.
+/// Allowed differences between the references.
 const DOUBT: f64 = 3e-5;
 /// Tolerance of the references.
 const TOLERANCE: f64 = 1e-10;

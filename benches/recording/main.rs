@@ -1,4 +1,4 @@
-//! What a run's recording costs: a minute of a cell at 1 kHz, by the program as a user runs it, with recording.rrd and without, in turns:
+//! Cost of a run's recording: a minute of a cell at 1 kHz, by the program as a user runs it, with recording.rrd and without, in turns:
 //!
 //! ```text
 //! cargo bench --bench recording

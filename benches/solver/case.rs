@@ -21,7 +21,7 @@ pub const STEP: f64 = 1e-3;
 /// Full scale of pressure [Pa], stroke [m] and force [N].
 const FULL_SCALE: [f64; 3] = [6e5, 0.05, 490.332_5];
 
-/// What is compared: both chamber pressures [Pa], stroke [m], contact force and the gas's force [N].
+/// Quantities compared: both chamber pressures [Pa], stroke [m], contact force and the gas's force [N].
 type Signals = [f64; 5];
 
 /// A case.
@@ -34,7 +34,7 @@ pub struct Case {
     pub device: Device,
     /// The same as plain equations.
     pub model: Model,
-    /// What is commanded.
+    /// Commands.
     pub timetable: Timetable,
     /// Where it starts.
     pub start: State,

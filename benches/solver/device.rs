@@ -27,12 +27,12 @@ pub fn steps(criterion: &mut Criterion, case: &Case) {
     group.finish();
 }
 
-/// How a step is taken.
+/// Ways of taking a step.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
     /// The device moves its piston.
     Carried {
-        /// Is the energy ledger kept?
+        /// Whether the energy ledger is kept.
         audited: bool,
     },
     /// Somebody else does.

@@ -63,7 +63,7 @@ struct Rosenbrock<const S: usize> {
     m: [f64; S],
     alpha: [f64; S],
     gammas: [f64; S],
-    /// Does the stage need new rates?
+    /// Whether the stage needs new rates.
     fresh: [bool; S],
 }
 
@@ -249,7 +249,7 @@ pub struct Fixed {
     pub method: Method,
     /// Sub-steps in a millisecond.
     pub substeps: usize,
-    /// Are changes of contact met where they happen? If not, a sub-step keeps to the contacts that it began with.
+    /// Whether changes of contact are met where they happen. If not, a sub-step keeps to the contacts that it began with.
     pub located: bool,
 }
 

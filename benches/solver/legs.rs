@@ -10,7 +10,7 @@ use super::model::{Leg, Model, State};
 /// Times that are closer than this are the same [s].
 const ROUNDING: f64 = 1e-12;
 
-/// What is commanded, in order of time.
+/// Commands, in order of time.
 #[derive(Debug, Clone)]
 pub struct Timetable {
     /// When a set pressure arrives at the regulator's lag [s] and the outlet that it leads to, gauge [Pa].
@@ -80,7 +80,7 @@ pub enum Stops {
 pub struct Run<'a> {
     /// The equations.
     pub model: &'a Model,
-    /// What is commanded.
+    /// Commands.
     pub timetable: &'a Timetable,
     /// State at the start.
     pub start: State,

@@ -13,14 +13,14 @@ use idc_cell::physics::valve::ValvePosition;
 /// Masses, stroke and speed over their scales [1].
 pub type State = [f64; 4];
 
-/// What pushes on the piston.
+/// Contacts that push on the piston.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Contacts {
     /// Retracted stop, extended stop, load.
     pub pushing: [bool; 3],
 }
 
-/// What holds from one discontinuity to the next.
+/// Quantities that hold from one discontinuity to the next.
 #[derive(Debug, Clone, Copy)]
 pub struct Leg {
     /// Since when [s].
@@ -31,7 +31,7 @@ pub struct Leg {
     pub target: f64,
     /// Position of the valve.
     pub valve: ValvePosition,
-    /// What pushes.
+    /// Contacts that push.
     pub contacts: Contacts,
 }
 
@@ -147,7 +147,7 @@ impl Model {
         leg.target + (leg.outlet - leg.target) * (-(time - leg.start) * self.lag_rate).exp()
     }
 
-    /// What pushes on the piston at a state.
+    /// Contacts that push on the piston at a state.
     pub fn contacts(&self, state: &State) -> Contacts {
         let PistonMotion { stroke, speed } = self.motion(state);
         let load = self
@@ -252,7 +252,7 @@ impl Model {
         ]
     }
 
-    /// Does nothing move, and will nothing until the leg ends?
+    /// Whether nothing moves, and nothing will until the leg ends.
     pub fn rests(&self, leg: &Leg, state: &State) -> bool {
         let rates = self.rates(leg, leg.start, state);
         leg.outlet == leg.target && rates.iter().all(|rate| rate.abs() < 1e-9)

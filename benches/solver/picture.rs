@@ -25,7 +25,7 @@ const GREY: RGBColor = RGBColor(0x77, 0x77, 0x77);
 const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
 const ERRORS: Range<f64> = 1e-8..1.0;
 const COSTS: Range<f64> = 0.1..600.0;
-/// What is asked of one step: error over full scale [1] and time [us].
+/// Demand on one step: error over full scale [1] and time [us].
 const ASKED: (f64, f64) = (1e-4, 2.0);
 
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;

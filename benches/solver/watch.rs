@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::case::Case;
 use super::model::State;
 
-/// What a method costs and how far off it is, on one case.
+/// Cost and error of a method on one case.
 #[derive(Debug, Clone, Copy)]
 pub struct Measured {
     /// Microseconds a simulated millisecond, within the window.
@@ -19,7 +19,7 @@ pub struct Measured {
 /// Time that the rounds of a run take at least: short ones get more of them.
 const AT_LEAST: Duration = Duration::from_millis(300);
 
-/// What is told the samples of a run.
+/// Listener to the samples of a run.
 pub type Seen<'a> = &'a mut dyn FnMut(f64, &State);
 
 /// Simulated time whose cost is taken by itself [s].

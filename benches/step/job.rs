@@ -217,7 +217,7 @@ impl Holding {
         self.world.contact().normal_force
     }
 
-    /// How deep the ball is in the part [m].
+    /// Depth of the ball in the part [m].
     pub fn penetration(&self) -> f64 {
         let depths = self.touches.iter().map(|touch| touch.penetration);
         depths.fold(f64::NEG_INFINITY, f64::max)

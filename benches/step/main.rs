@@ -1,4 +1,4 @@
-//! How fast the coupled cell steps, where each microsecond goes, and MuJoCo beside it in the same call:
+//! Speed of the coupled cell, cost of each part of its step, and MuJoCo beside it in the same call:
 //!
 //! ```text
 //! cargo bench --bench step

@@ -16,7 +16,7 @@ use crate::job::{feed_forward, follow_span, servo_gains};
 /// Share by which its static contact force may miss the desired one and still be the same job.
 const FORCE_TOLERANCE: f64 = 1e-3;
 
-/// What it says once it stands on the edge.
+/// Its report once it stands on the edge.
 #[derive(Debug, Deserialize)]
 pub struct Ready {
     /// MuJoCo's version.
@@ -27,7 +27,7 @@ pub struct Ready {
     pub penetration: f64,
 }
 
-/// What it says after following the edge once.
+/// Its report after following the edge once.
 #[derive(Debug, Deserialize)]
 pub struct Round {
     /// Time that it took [s].
@@ -178,7 +178,7 @@ fn list(vector: DVec3) -> [f64; 3] {
     vector.to_array()
 }
 
-/// What drives the arm in one step.
+/// Inputs of the arm's drives in one step.
 struct Row {
     /// References of the axes' servos [rad].
     position: Vec<f64>,

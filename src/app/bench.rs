@@ -17,11 +17,11 @@ use crate::scenario::bench::LoadScenario;
 
 /// A bench run that has ended.
 pub struct FinishedBench {
-    /// What was recorded.
+    /// The recording.
     pub recording: Recording,
     /// Its numbers.
     pub summary: BenchSummary,
-    /// What stopped it early.
+    /// Reason for an early stop.
     pub stop: Option<RigError>,
 }
 
@@ -116,7 +116,7 @@ pub(super) fn document(
         /// Keys that have other values than in the scenario's file.
         #[serde(skip_serializing_if = "Option::is_none")]
         set: Option<serde_json::Value>,
-        /// What stopped the run early; null if it ran to its end.
+        /// Reason for an early stop of the run; null if it ran to its end.
         stopped: Option<String>,
         summary: &'a BenchSummary,
         expectations: &'a [Verdict],

@@ -81,7 +81,7 @@ pub(super) const STROKE: [Line; 3] = [
 /// Draws a run.
 ///
 /// # Errors
-/// What cannot be drawn.
+/// Something cannot be drawn.
 pub(super) fn figures(
     scenario: &BenchScenario,
     recording: &Recording,
@@ -168,7 +168,7 @@ fn series<'a>(
         .collect()
 }
 
-/// Is a line a reading that is the truth, or a reading before it, sample by sample? An ideal sensor's would only hide the truth.
+/// Whether a line is a reading that is the truth, or a reading before it, sample by sample. An ideal sensor's would only hide the truth.
 fn repeats(recording: &Recording, lines: &[Line], index: usize) -> bool {
     let is_reading = |line: &Line| matches!(line.2, Role::Measured | Role::Filtered);
     let Some(own) = recording.channel(lines[index].0) else {

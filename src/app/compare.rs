@@ -65,7 +65,7 @@ struct Row {
     values: Vec<Option<f64>>,
 }
 
-/// What is compared.
+/// Quantities compared.
 struct Compared {
     names: Vec<String>,
     /// A sentence per folder.

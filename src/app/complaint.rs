@@ -1,4 +1,4 @@
-//! How an error is told: one sentence on standard error, below it the line of the file that it is about with a caret; as JSON where JSON was asked for.
+//! Printing of an error: one sentence on standard error, below it the line of the file that it is about with a caret; as JSON where JSON was asked for.
 //!
 //! ```text
 //! error: cell.toml:28:1: unknown key `process.froce_n`; did you mean `force_n`?
@@ -24,7 +24,7 @@ use crate::scenario::place_of;
 /// The word that an error begins with.
 const WORD: Style = AnsiColor::BrightRed.on_default().bold();
 
-/// Was JSON asked for, of whichever command?
+/// Whether JSON was asked for, of whichever command.
 pub fn wants_json(matches: &clap::ArgMatches) -> bool {
     let Some((_, command)) = matches.subcommand() else {
         return false;

@@ -1,4 +1,4 @@
-//! What ends a command early, and the exit code that goes with it.
+//! Errors that end a command early, and the exit code that goes with each.
 
 use crate::case::CaseError;
 use crate::cell::CellError;
@@ -82,7 +82,7 @@ pub enum AppError {
     Unwritable {
         /// The file.
         file: String,
-        /// What cannot.
+        /// The letter that cannot.
         letter: char,
     },
     /// A bound on a metric.
@@ -90,7 +90,7 @@ pub enum AppError {
     Metrics {
         /// Scenario file.
         file: String,
-        /// What is wrong.
+        /// The fault.
         source: MetricsError,
     },
     /// A recording.
@@ -102,15 +102,15 @@ pub enum AppError {
     /// Only an import map is drafted from logs.
     #[error("--from is of `idc new import`, and `idc new {kind}` was asked for")]
     NotDrafted {
-        /// What was asked for.
+        /// The request.
         kind: &'static str,
     },
     /// Logs that do not come in the map's number.
     #[error("{given} logs were given, expected {each} or a multiple of it: {} has as many [[file]]", map.display())]
     Logs {
-        /// How many.
+        /// Their number.
         given: usize,
-        /// How many the map has.
+        /// Number of them that the map has.
         each: usize,
         /// The map.
         map: std::path::PathBuf,
@@ -181,13 +181,13 @@ pub enum AppError {
     /// Flags that ask for no runs.
     #[error("--set: {reason}")]
     Setting {
-        /// What is wrong, and what was expected.
+        /// The fault, and what was expected.
         reason: String,
     },
     /// An effect that cannot be put in as it is asked for.
     #[error("--with: {reason}")]
     With {
-        /// What is wrong, and what was expected.
+        /// The fault, and what was expected.
         reason: String,
     },
     /// An effect that there is not.
@@ -203,7 +203,7 @@ pub enum AppError {
     Set {
         /// The flags.
         flags: String,
-        /// What is wrong.
+        /// The fault.
         source: Box<AppError>,
     },
     /// Several runs where one can be watched.
@@ -211,7 +211,7 @@ pub enum AppError {
         "--view shows one run, and --set asks for {runs}; expected one of the two, and idc view FOLDER for all of them afterwards"
     )]
     ViewOfSeveral {
-        /// How many.
+        /// Their number.
         runs: usize,
     },
     /// A case that does not come with the project.
@@ -239,9 +239,9 @@ pub enum AppError {
     TooManyToView {
         /// The folder.
         folder: String,
-        /// How many.
+        /// Their number.
         count: usize,
-        /// How many are opened at most.
+        /// Largest number that is opened.
         most: usize,
         /// The first ones.
         some: String,
@@ -259,7 +259,7 @@ pub enum AppError {
         option: &'static str,
         /// Its value.
         value: f64,
-        /// What was expected.
+        /// Expected value or form.
         expected: &'static str,
     },
     /// An option that only a cell has.
@@ -287,7 +287,7 @@ pub enum AppError {
     /// Cases of which some could not be diagnosed.
     #[error("{failed} of {} failed; the others are done", counted(*of, "case"))]
     CasesFailed {
-        /// How many failed.
+        /// Number that failed.
         failed: usize,
         /// Of how many.
         of: usize,

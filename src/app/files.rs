@@ -33,7 +33,7 @@ pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
 pub(super) const FRONT: &str = "front.svg";
 
-/// What becomes of results that stand where new ones are to go.
+/// Treatment of results that stand where new ones are to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Standing {
     /// New ones are refused.
@@ -51,7 +51,7 @@ impl Standing {
     }
 }
 
-/// Do two paths lead to one file, or folder, that is there?
+/// Whether two paths lead to one file, or folder, that is there.
 pub(super) fn is_same(one: &Path, other: &Path) -> bool {
     match (one.canonicalize(), other.canonicalize()) {
         (Ok(one), Ok(other)) => one == other,
@@ -233,13 +233,13 @@ pub(super) fn provenance(files: &[&PathBuf], seed: u64) -> Result<Provenance, Ap
 /// Writes recording.rrd.
 pub(super) type Picture<'a> = Box<dyn FnOnce(&Path) -> Result<(), RecordingError> + Send + 'a>;
 
-/// What a run leaves behind.
+/// Files of a run.
 pub(super) struct RunOutput<'a> {
     /// Name for people.
     pub title: &'a str,
     /// The signals.
     pub recording: &'a Recording,
-    /// What writes recording.rrd; none where it is not wanted.
+    /// Writer of recording.rrd; none where it is not wanted.
     pub picture: Option<Picture<'a>>,
     /// summary.json.
     pub summary: &'a str,
@@ -274,7 +274,7 @@ impl Sketches {
     }
 }
 
-/// What summary.json holds, and `--json` prints.
+/// Content of summary.json, which `--json` prints.
 #[derive(serde::Serialize)]
 pub(super) struct SummaryDocument<'a> {
     schema: u32,
@@ -283,7 +283,7 @@ pub(super) struct SummaryDocument<'a> {
     /// Keys that have other values than in the scenario's file.
     #[serde(skip_serializing_if = "Option::is_none")]
     set: Option<serde_json::Value>,
-    /// What stopped the run early; null if it ran to its end.
+    /// Reason for an early stop of the run; null if it ran to its end.
     stopped: Option<String>,
     summary: &'a Summary,
     expectations: &'a [Verdict],

@@ -1,4 +1,4 @@
-//! What `--help` ends with: exit codes and examples. Examples run as printed from the project's folder, in the order given (`tests/help.rs` runs them);
+//! End of `--help`: exit codes and examples. Examples run as printed from the project's folder, in the order given (`tests/help.rs` runs them);
 //! the comment of one that no test can run says why in brackets: (takes minutes), (takes hours), (opens a window) or (serves until stopped).
 
 /// After the list of commands.

@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
-/// How large logs are together.
+/// Size of logs together [bytes].
 fn bytes(logs: &[PathBuf]) -> u64 {
     let size = |log: &PathBuf| std::fs::metadata(log).map_or(0, |file| file.len());
     logs.iter().map(size).sum()

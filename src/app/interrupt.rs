@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What is told of the command that goes on; none where nothing need be.
+/// Words on the command that goes on; none where none are needed.
 static TELL: Mutex<Option<Tell>> = Mutex::new(None);
 
 type Tell = Box<dyn Fn() -> String + Send>;

@@ -38,7 +38,7 @@ const BESIDE: [(&str, &[u8]); 3] = [
 
 #[derive(Debug, Args)]
 pub(super) struct NewArguments {
-    /// What to begin with.
+    /// Kind of file to begin with.
     #[arg(value_enum)]
     kind: Kind,
     /// File to write [default: new_KIND.toml].
@@ -92,7 +92,7 @@ impl Kind {
         }
     }
 
-    /// What to do next with the file.
+    /// Next step with the file.
     fn next(self, file: &Path) -> String {
         let file = file.display();
         match self {
@@ -168,7 +168,7 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
-/// What was found in logs, and what is asked for, for people.
+/// Quantities found in logs, and those asked for, for people.
 fn told(draft: &Draft) -> String {
     let wide = draft.found.iter().map(|(quantity, _)| quantity.len());
     let wide = wide.max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! What is printed on standard output.
+//! Text on standard output.
 
 use std::io::{ErrorKind, Write};
 

@@ -88,7 +88,7 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
         .collect()
 }
 
-/// What a link of the arm looks like; nothing beyond the last.
+/// Appearance of a link of the arm; nothing beyond the last.
 pub(super) fn visual_shapes(arm: &Arm, link: usize) -> impl Iterator<Item = SceneShape> {
     let visuals = arm.visuals.iter();
     visuals

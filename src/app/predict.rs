@@ -95,7 +95,7 @@ struct Error {
     noise: f64,
 }
 
-/// What is printed of columns with their errors in standard deviations of the noise.
+/// Printed text on columns with their errors in standard deviations of the noise.
 fn text(arguments: &PredictArguments, samples: usize, notes: &[String], off: &[Error]) -> String {
     let mut text = String::new();
     // Writing into a text cannot fail.

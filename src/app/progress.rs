@@ -1,4 +1,4 @@
-//! How far a command is: a bar with the time that is left, in a terminal and nowhere else, and only once a second has passed.
+//! Progress of a command: a bar with the time that is left, in a terminal and nowhere else, and only once a second has passed.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -102,7 +102,7 @@ impl StagedLine {
     }
 }
 
-/// What is left after a mark, in words: to one digit, as it is a guess; nothing where it has been outlived.
+/// Time that is left after a mark, in words: to one digit, as it is a guess; nothing where it has been outlived.
 fn left(elapsed: Duration, mark: Option<(Duration, f64)>) -> String {
     let Some((then, share)) = mark else {
         return String::new();

@@ -26,13 +26,13 @@ const PROGRESS_STEPS: usize = 500;
 
 /// A run that has ended.
 pub struct Finished {
-    /// What was recorded.
+    /// The recording.
     pub recording: Recording,
     /// Poses for the picture.
     pub frames: FrameLog,
     /// Its numbers.
     pub summary: Summary,
-    /// What stopped it early.
+    /// Reason for an early stop.
     pub stop: Option<SimulationError>,
 }
 
@@ -94,7 +94,7 @@ pub(super) struct RunPart {
 }
 
 impl RunPart {
-    /// What is shown of it: of the first part the cell as well, of others what moves.
+    /// Signals shown of it: of the first part the cell as well, of others what moves.
     pub(super) fn shown(self, cell: &Cell) -> Result<(Recording, Scene), RecordingError> {
         let samples = self.samples.into_recording()?;
         let scene = if self.first {

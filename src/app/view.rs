@@ -57,7 +57,7 @@ pub(super) struct ViewArguments {
     json: bool,
 }
 
-/// What `--json` prints.
+/// The document of `--json`.
 #[derive(Serialize)]
 struct Place<'a> {
     viewer: &'static str,

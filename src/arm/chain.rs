@@ -9,7 +9,7 @@ use glamx::DPose3;
 /// Most joints a chain may hold: seven of the arm and one of the device at its end.
 pub const MAX_JOINTS: usize = 8;
 
-/// How a joint moves.
+/// Motion of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointKind {
     /// Turns about its axis; an endless (URDF `continuous`) joint has infinite position limits.

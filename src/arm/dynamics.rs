@@ -10,7 +10,7 @@ use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 use nalgebra::DMatrix;
 
-/// What the way back of the recursion needs of one link.
+/// Quantities of one link for the way back of the recursion.
 #[derive(Clone, Copy)]
 struct LinkState {
     parent_from_link: DMat3,

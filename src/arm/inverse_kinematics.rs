@@ -27,7 +27,7 @@ pub enum TipOrientation {
     FreeAboutZ,
 }
 
-/// How to search.
+/// Settings of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IkOptions {
     /// Largest position error accepted [m].

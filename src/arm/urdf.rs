@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tree::Tree;
 
-/// What to take from the file.
+/// Choice of the parts taken from the file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ArmOptions {
     /// Link that stands still; the file's root link if not given.
@@ -56,9 +56,9 @@ pub struct Arm {
     pub chain: Chain,
     /// The base link's name, then the link's behind each moving joint.
     pub link_names: Vec<String>,
-    /// What to draw.
+    /// Shapes to draw.
     pub visuals: Vec<Visual>,
-    /// What was done with the file that its reader may not expect, one sentence each.
+    /// Changes to the file's content that its reader may not expect, one sentence each.
     pub notes: Vec<String>,
 }
 

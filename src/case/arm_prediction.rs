@@ -1,4 +1,4 @@
-//! What the improved arm says of the recording that is to be predicted, where it holds encoders and torques: servos and friction show there, and hardly in
+//! Findings of the improved arm in the recording that is to be predicted, where it holds encoders and torques: servos and friction show there, and hardly in
 //! what the device feels.
 
 use crate::diagnosis::details::PredictionError;

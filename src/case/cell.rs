@@ -38,7 +38,7 @@ pub(super) struct CellCase {
     /// Commands and encoders of the first recording.
     pub axes: Option<Axes>,
     pub servo: Option<ServoLink>,
-    /// What the drives' torques show of their joints' friction.
+    /// Friction of the joints, from their drives' torques.
     pub frictions: Vec<JointFriction>,
     /// Errors of what is said of the arm in the recording that is to be predicted.
     pub of_arm: Vec<PredictionError>,
@@ -47,7 +47,7 @@ pub(super) struct CellCase {
 /// Name, file and content.
 type Named = (String, String, CellRecording);
 
-/// Is this a folder with recordings?
+/// Whether this is a folder with recordings.
 pub fn is_cell_case(folder: &Path) -> bool {
     folder.is_dir() && !recordings(folder).is_empty()
 }

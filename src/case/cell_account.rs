@@ -1,4 +1,4 @@
-//! What the account of a cell says besides: which joint, and where on the path.
+//! Additions to the account of a cell: which joint, and where on the path.
 
 use super::Diagnosed;
 use super::cell::CellCase;

@@ -88,7 +88,7 @@ pub enum CaseError {
         inputs: String,
         /// When [s].
         time: f64,
-        /// What.
+        /// The column.
         column: &'static str,
         /// Its value.
         value: f64,

@@ -42,7 +42,7 @@ pub(super) fn written<'a>(
     kept.chain(new).collect()
 }
 
-/// Is it a law whose numbers were sought? Then it stands in the file only where they were found.
+/// Whether it is a law whose numbers were sought. Then it stands in the file only where they were found.
 fn is_sought(present: &PresentEffect) -> bool {
     let law = present.law.as_ref();
     law.is_some_and(|law| law.constants.iter().any(|c| c.range.is_some()))

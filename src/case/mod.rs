@@ -46,7 +46,7 @@ pub struct Case {
     kind: Kind,
 }
 
-/// What the recordings are of.
+/// Kind of rig of the recordings.
 enum Kind {
     Rig {
         rig: Box<RigFile>,
@@ -66,7 +66,7 @@ enum Kind {
 
 /// Result of a diagnosis, with the files that it comes to.
 pub struct Diagnosed {
-    /// What was found.
+    /// The finding.
     pub answer: Answer,
     /// The improved model as a file.
     pub improved: String,
@@ -247,7 +247,7 @@ fn prediction(
     Ok(Some(columns_text(&inputs.time, &columns)?))
 }
 
-/// What the runs of a contact flange show.
+/// Results of the runs of a contact flange.
 fn of_flange_runs(
     rig: &RigFile,
     runs: &[ShownRun],

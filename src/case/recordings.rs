@@ -27,7 +27,7 @@ pub fn read_rig(chain: Chain, path: &Path) -> Result<Recording, RecordingError> 
     Ok(read.recording)
 }
 
-/// Is a prediction made of numbers throughout? `rig` and `inputs` are the files that it is of.
+/// Checks that a prediction is made of numbers throughout. `rig` and `inputs` are the files that it is of.
 ///
 /// # Errors
 /// [`CaseError::NotFinite`] with the first that is none.

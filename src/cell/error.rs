@@ -24,9 +24,9 @@ pub enum CellError {
     JointStiffness {
         /// Scenario file.
         file: PathBuf,
-        /// How many it gives.
+        /// Number that it gives.
         found: usize,
-        /// How many joints the arm has.
+        /// Number of joints of the arm.
         axes: usize,
     },
     /// A joint that slides in an arm that is to be replayed.
@@ -45,7 +45,7 @@ pub enum CellError {
         file: PathBuf,
         /// The mesh.
         mesh: PathBuf,
-        /// What was chosen.
+        /// The choice.
         chosen: String,
         /// Number of edges.
         edges: usize,
@@ -60,9 +60,9 @@ pub enum CellError {
         file: PathBuf,
         /// The mesh.
         mesh: PathBuf,
-        /// What was chosen.
+        /// The choice.
         chosen: String,
-        /// How it is.
+        /// Its convexity.
         convexity: &'static str,
     },
     /// Start or end of the chosen stretch does not lie on the edge.
@@ -74,7 +74,7 @@ pub enum CellError {
         key: &'static str,
         /// Its value [m].
         value: f64,
-        /// What was expected.
+        /// Expected value or form.
         expected: String,
     },
     /// The burr.
@@ -82,7 +82,7 @@ pub enum CellError {
     Burr {
         /// Scenario file.
         file: PathBuf,
-        /// What is wrong with it.
+        /// Its fault.
         source: WorkpieceError,
     },
     /// An effect that a running cell cannot have.
@@ -120,7 +120,7 @@ pub enum CellError {
     Plan {
         /// Scenario file.
         file: PathBuf,
-        /// What stands in the way.
+        /// The obstacle.
         source: Box<PlanError>,
     },
     /// The supply cannot give the force, or the command's way not the set pressure.
@@ -137,7 +137,7 @@ pub enum CellError {
         needed: f64,
         /// Largest set pressure, gauge [Pa].
         supply: f64,
-        /// What limits it.
+        /// Origin of the limit.
         giver: &'static str,
         /// Contact forces at no and at full pressure [N].
         attainable: [f64; 2],

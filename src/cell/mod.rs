@@ -27,7 +27,7 @@ use crate::scenario::{ArmScenario, Scenario, ScenarioError, attainable_set_press
 
 /// A cell, ready to run.
 pub struct Cell {
-    /// What it was made from.
+    /// Scenario from which it was made.
     pub scenario: Scenario,
     /// The arm.
     pub arm: Arm,
@@ -35,7 +35,7 @@ pub struct Cell {
     pub arm_with_slide: Chain,
     /// The same as it is.
     pub bodies: Chain,
-    /// What stands between motor and link of each of its joints, base first; none where they are one.
+    /// Transmission between motor and link of each of its joints, base first; none where they are one.
     pub transmissions: Vec<Option<TransmissionParameters>>,
     /// Its physics.
     pub plant: PlantParameters,
@@ -43,7 +43,7 @@ pub struct Cell {
     pub middle: EdgeStation,
     /// The device.
     pub device: Device,
-    /// What sets the regulator's pressure, as it is at the start.
+    /// Controller of the regulator's pressure, as it is at the start.
     pub controller: ForceController,
     /// Part, edge and burr.
     pub part: Part,
@@ -51,7 +51,7 @@ pub struct Cell {
     pub plan: Plan,
     /// Least and greatest component of gravity along the tool's axis on the edge [m/s2].
     pub gravity_on_edge: [f64; 2],
-    /// What a user may not expect, one sentence each.
+    /// Notes on what a user may not expect, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -67,7 +67,7 @@ impl Cell {
     /// Loads what the scenario names, plans the job and checks that it can be done.
     ///
     /// # Errors
-    /// What is missing, refused or out of reach, by file, key or waypoint.
+    /// Something is missing, refused or out of reach; the error names file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
         let mut arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         check_drives(&scenario, &arm.chain)?;
@@ -125,7 +125,7 @@ impl Cell {
         self.scenario.simulation.gravity.dot(axis)
     }
 
-    /// How the part's surface is off its mesh where the ball is, at a place along the edge [m].
+    /// Offset of the part's surface from its mesh where the ball is, at a place along the edge [m].
     pub fn relief(&self, place: f64) -> Relief {
         let world_from_part = self.scenario.workpiece.world_from_part;
         let here = station(&self.part.edge, world_from_part, place);
@@ -161,7 +161,7 @@ impl Cell {
     }
 }
 
-/// What of its file a scenario's arm takes.
+/// The parts of its file that a scenario's arm takes.
 pub fn arm_options(arm: &ArmScenario) -> ArmOptions {
     ArmOptions {
         base_link: arm.base_link.clone(),

@@ -36,7 +36,7 @@ impl Part {
     /// Loads the mesh, finds the edge and prepares the burr for the tool's ball.
     ///
     /// # Errors
-    /// What is wrong with the mesh, the choice of the edge or the burr.
+    /// A fault of the mesh, the choice of the edge or the burr.
     pub fn load(scenario: &Scenario) -> Result<Self, CellError> {
         let workpiece = &scenario.workpiece;
         let mesh = load_mesh(&workpiece.mesh, workpiece.mesh_scale)?;
@@ -170,7 +170,7 @@ fn real_pose(workpiece: &WorkpieceScenario, edge: &EdgeCurve) -> DPose3 {
         * believed
 }
 
-/// How the ball's centre is lifted along an edge of a length [m].
+/// Lift of the ball's centre along an edge of a length [m].
 fn ride(
     scenario: &BurrScenario,
     ball_radius: f64,

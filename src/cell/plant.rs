@@ -74,7 +74,7 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
     Ok(plant)
 }
 
-/// What stands between motor and link of each joint; none where they are one.
+/// Transmission between motor and link of each joint; none where they are one.
 pub(super) fn transmissions(
     scenario: &Scenario,
     chain: &Chain,

@@ -8,7 +8,7 @@
 
 use std::f64::consts::TAU;
 
-/// What becomes of one axis's command.
+/// Response of one axis to its command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommandLag {
     rate: f64,

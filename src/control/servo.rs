@@ -48,7 +48,7 @@ pub struct Servo {
     losses: Vec<JointLaw>,
 }
 
-/// What the servo is to do for one axis.
+/// Task of the servo for one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisCommand {
     /// Reference in the middle of the step [rad].

@@ -1,4 +1,4 @@
-//! What stands between a joint's motor and its link: a spring, and play between teeth.
+//! The transmission between a joint's motor and its link: a spring, and play between teeth.
 //!
 //! ```text
 //! B theta'' = tau - T                                      motor, seen from the joint

@@ -12,11 +12,11 @@ use super::study::{Study, TradeOff};
 pub(super) struct Judged {
     /// Its values, one a variable.
     pub values: Vec<f64>,
-    /// What it gives, or why nothing.
+    /// Its result, or the reason why there is none.
     pub result: Result<Scored, EvaluateError>,
 }
 
-/// What a design that could be simulated is worth.
+/// Value of a design that could be simulated.
 #[derive(Debug, Clone)]
 pub(super) struct Scored {
     pub outcome: Outcome,
@@ -29,7 +29,7 @@ pub(super) struct Scored {
 }
 
 impl Scored {
-    /// Are all limits kept?
+    /// Whether all limits are kept.
     pub fn feasible(&self) -> bool {
         self.excess.iter().all(|excess| *excess <= 0.0)
     }
@@ -56,7 +56,7 @@ pub(super) struct Archive<'a> {
     study: &'a Study,
     evaluator: &'a dyn Evaluate,
     progress: &'a (dyn Fn(usize, usize) + Sync),
-    /// What is told of the progress.
+    /// State of the progress.
     stage: Mutex<Stage>,
     known: Mutex<BTreeMap<Vec<u64>, Arc<Judged>>>,
 }

@@ -82,7 +82,7 @@ impl Serialize for Design {
     }
 }
 
-/// What a design does in one scenario.
+/// Results of a design in one scenario.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ScenarioOutcome {
     /// Name of the scenario, as it is shown.
@@ -91,7 +91,7 @@ pub struct ScenarioOutcome {
     pub metrics: BTreeMap<String, f64>,
 }
 
-/// What a design does in all scenarios of a study.
+/// Results of a design in all scenarios of a study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Outcome {
     /// Least and greatest force that the device can be relied upon to give at rest [N].

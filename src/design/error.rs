@@ -1,4 +1,4 @@
-//! What can end a design study.
+//! Errors that can end a design study.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub enum DesignError {
         place: Place,
         /// The variable's key.
         key: String,
-        /// What the scenario says.
+        /// Message on the scenario.
         reason: Box<ScenarioError>,
     },
     /// The starting design, to which everything is compared.
@@ -27,7 +27,7 @@ pub enum DesignError {
     Start {
         /// The study.
         file: PathBuf,
-        /// What the evaluation says.
+        /// Message of the evaluation.
         detail: String,
     },
     /// A metric that no scenario gives.
@@ -55,7 +55,7 @@ pub enum DesignError {
         limit: String,
         /// By how much, unit included.
         excess: String,
-        /// What it reaches, unit included.
+        /// Value reached, unit included.
         value: String,
     },
     /// Nothing but failures.
@@ -65,7 +65,7 @@ pub enum DesignError {
     OnlyFailures {
         /// Designs tried.
         designs: usize,
-        /// How many failed.
+        /// Number that failed.
         count: usize,
         /// Most frequent reason.
         reason: String,
@@ -79,7 +79,7 @@ pub enum DesignError {
 }
 
 impl DesignError {
-    /// Is it what the study found out, and not something wrong with its input?
+    /// Whether it is a finding of the study, and not a fault of its input.
     pub fn is_verdict(&self) -> bool {
         matches!(self, Self::NoDesign { .. } | Self::OnlyFailures { .. })
     }

@@ -20,13 +20,13 @@ pub(super) struct StudyFile {
     pub schema: u32,
     /// The study and its scenarios.
     pub study: StudyKeys,
-    /// What is minimised.
+    /// The objective.
     #[serde(default)]
     pub objective: ObjectiveKeys,
-    /// What must be kept in every scenario that gives it: metrics by name, and `force_n`, forces that the device must be able to give at rest [N].
+    /// Limits kept in every scenario that gives the metric: metrics by name, and `force_n`, forces that the device must be able to give at rest [N].
     #[serde(default)]
     pub limits: BTreeMap<String, BoundKeys>,
-    /// What is varied: keys of `[device.override]` or, in quotes, of a controller.
+    /// Variables: keys of `[device.override]` or, in quotes, of a controller.
     #[serde(default)]
     pub variables: BTreeMap<String, VariableKeys>,
 }
@@ -55,12 +55,12 @@ pub(super) struct ObjectiveKeys {
     /// Metric of docs/METRICS.md.
     #[schemars(extend("default" = "coefficient_of_variation_percent"))]
     pub minimise: Option<String>,
-    /// How the scenarios make one number of it.
+    /// Reduction of the scenarios to one number of it.
     #[schemars(extend("default" = "mean"))]
     pub minimise_over: Option<OverKeys>,
     /// Second objective, for the front: a metric, or one of the variables.
     pub trade_off: Option<String>,
-    /// How the scenarios make one number of it; not of a variable.
+    /// Reduction of the scenarios to one number of it; not of a variable.
     #[schemars(extend("default" = "mean"))]
     pub trade_off_over: Option<OverKeys>,
     /// Levels of the second objective at which the front is sought.
@@ -68,7 +68,7 @@ pub(super) struct ObjectiveKeys {
     pub front_points: Option<usize>,
 }
 
-/// How the scenarios make one number.
+/// Reduction of the scenarios to one number.
 #[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum OverKeys {
@@ -98,7 +98,7 @@ pub(super) struct VariableKeys {
     pub max: Option<f64>,
     /// Its value in the design that all is compared with.
     pub start: f64,
-    /// How it is stepped through.
+    /// Scale of its steps.
     #[schemars(extend("default" = "linear"))]
     pub scale: Option<ScaleKeys>,
     /// Values that there are; for `bore_mm` the standard bores unless given.
@@ -109,7 +109,7 @@ pub(super) struct VariableKeys {
     pub rod_mm: Option<Vec<f64>>,
 }
 
-/// How a variable is stepped through.
+/// Scale of a variable's steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum ScaleKeys {

@@ -1,4 +1,4 @@
-//! What one part of the search is after, and which of two designs is the better one for it.
+//! Aim of one part of the search, and the order of two designs by it.
 //!
 //! Feasibility first (K. Deb, An efficient constraint handling method for genetic algorithms, Comput. Methods Appl. Mech. Engrg. 186, 2000): of two
 //! feasible designs the one of lower cost, of a feasible and an infeasible one the feasible one, of two infeasible ones the one with the smaller
@@ -23,7 +23,7 @@ pub(super) struct Goal {
     pub ceiling: Option<f64>,
     /// Per limit, excess that is let pass, as a share of its bound.
     pub slack: Vec<f64>,
-    /// What counts as one of each objective.
+    /// Scale of each objective.
     pub scales: [f64; 2],
 }
 
@@ -70,7 +70,7 @@ impl Goal {
         }
     }
 
-    /// Is this the rank of a design that keeps everything?
+    /// Whether this is the rank of a design that keeps everything.
     pub fn keeps(rank: f64) -> bool {
         rank < 2.0
     }

@@ -3,7 +3,7 @@
 use super::candidate::Outcome;
 use super::label::{symbol, with_unit};
 
-/// What is limited.
+/// The limited quantity.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LimitQuantity {
     /// Force that the device must be able to give at rest [N].
@@ -24,7 +24,7 @@ pub enum Side {
 /// One side of a quantity in `[limits]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
-    /// What is limited.
+    /// The limited quantity.
     pub quantity: LimitQuantity,
     /// Which side.
     pub side: Side,
@@ -56,7 +56,7 @@ impl Limit {
         )
     }
 
-    /// What a design reaches: the worst over the scenarios, in the quantity's unit.
+    /// Value that a design reaches: the worst over the scenarios, in the quantity's unit.
     pub(super) fn value(&self, outcome: &Outcome) -> Option<f64> {
         let values = || {
             let metrics = outcome.scenarios.iter().map(|scenario| &scenario.metrics);
@@ -82,7 +82,7 @@ impl Limit {
         }
     }
 
-    /// What counts as one [quantity's unit]: the bound itself, or the unit where that is 0.
+    /// Scale of the quantity [its unit]: the bound itself, or the unit where that is 0.
     pub(super) fn scale(&self) -> f64 {
         if self.bound == 0.0 {
             1.0

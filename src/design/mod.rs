@@ -8,7 +8,7 @@
 //!
 //! [`load`] reads and checks the study file; [`run`] searches, given anything that can [`Evaluate`] a [`Design`]; the [`StudyResult`] holds the
 //! chosen design beside the starting one, the trade-off front against a second objective, what binds it, and what each variable would still do.
-//! How a design is simulated is none of this module's business.
+//! The simulation of a design is none of this module's business.
 //!
 //! The search (`search`): differential evolution over everything with feasibility first, then COBYLA on the continuous variables of the best few
 //! catalogue choices and of their neighbours. The front: the same under a ceiling on the second objective, one level after the other.

@@ -133,7 +133,7 @@ fn heading(root: &DrawingArea<SVGBackend<'_>, Shift>, result: &StudyResult) -> D
     Ok(())
 }
 
-/// What must be seen: the front and the chosen design, the start unless it is far, and what limits both axes if that is near.
+/// Range that must be seen: the front and the chosen design, the start unless it is far, and what limits both axes if that is near.
 fn ranges(result: &StudyResult, trade_off: &str) -> [(f64, f64); 2] {
     let keys = [trade_off, result.objectives.minimised.as_str()];
     [0, 1].map(|axis| {

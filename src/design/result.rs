@@ -1,4 +1,4 @@
-//! What a study ends with. Serialises to design.json, where every number is in the unit that its name ends with.
+//! Result of a study. Serialises to design.json, where every number is in the unit that its name ends with.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,7 +14,7 @@ pub struct StudyResult {
     pub schema: u32,
     /// The study's title.
     pub title: String,
-    /// What was minimised.
+    /// Names of the objectives.
     pub objectives: ObjectiveNames,
     /// Seed of the search.
     pub seed: u64,
@@ -32,7 +32,7 @@ pub struct StudyResult {
     pub active_bounds: Vec<ActiveBound>,
     /// Limits that the chosen design just keeps, within 0.5 % of the bound.
     pub active_limits: Vec<ActiveLimit>,
-    /// What a change of one variable alone would do to the chosen design.
+    /// Effect of a change of one variable alone on the chosen design.
     pub sensitivities: Vec<Sensitivity>,
     /// Both objectives of every other design that keeps the limits, second one first; for the picture.
     #[serde(skip)]
@@ -63,7 +63,7 @@ pub struct Candidate {
     pub objective: f64,
     /// The second objective, in its unit.
     pub trade_off: Option<f64>,
-    /// Does it keep all limits?
+    /// Whether it keeps all limits.
     pub feasible: bool,
     /// Each limit.
     pub limits: Vec<LimitState>,
@@ -85,11 +85,11 @@ pub struct LimitState {
     pub side: &'static str,
     /// Its bound, in that unit.
     pub bound: f64,
-    /// What the design reaches, in that unit.
+    /// Value that the design reaches, in that unit.
     pub value: f64,
-    /// Is it kept?
+    /// Whether it is kept.
     pub kept: bool,
-    /// Is it kept, but by no more than 0.5 % of the bound?
+    /// Whether it is kept, but by no more than 0.5 % of the bound.
     pub active: bool,
 }
 
@@ -128,7 +128,7 @@ pub struct ActiveLimit {
     pub objective_change_percent: Option<f64>,
 }
 
-/// What a change of one variable alone would do to the chosen design.
+/// Effect of a change of one variable alone on the chosen design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sensitivity {
     /// Its key.
@@ -139,7 +139,7 @@ pub struct Sensitivity {
     pub change_percent: f64,
     /// Change of the objective [%]; none if it cannot be simulated.
     pub objective_change_percent: Option<f64>,
-    /// Does the value lie outside the study's bounds?
+    /// Whether the value lies outside the study's bounds.
     pub beyond_bound: bool,
     /// Limits that it breaks.
     pub breaks: Vec<String>,

@@ -1,4 +1,4 @@
-//! What binds the chosen design, and what it would gain from more room.
+//! Bounds of the chosen design, and its gain from more room.
 //!
 //! One-sided finite differences: each variable alone a tenth up and down, or to the next entry of its catalogue, also where that is beyond the
 //! study's bounds. For an active limit the multiplier as a finite difference: the limit is loosened by a tenth, and the continuous variables are

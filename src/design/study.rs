@@ -34,15 +34,15 @@ pub struct Study {
     pub seed: u64,
     /// Most designs that are evaluated.
     pub evaluations: usize,
-    /// What is varied, by key.
+    /// Variables, by key.
     pub variables: Vec<Variable>,
-    /// What is minimised.
+    /// The objective.
     pub objective: Objective,
     /// Second objective, if there is one.
     pub trade_off: Option<TradeOff>,
     /// Levels of the second objective at which the front is computed.
     pub front_points: usize,
-    /// What must be kept.
+    /// Limits to be kept.
     pub limits: Vec<Limit>,
     /// Where the metrics of both objectives, then those of the limits stand in the file.
     pub(super) places: Vec<(String, String, Place)>,
@@ -53,11 +53,11 @@ pub struct Study {
 pub struct Objective {
     /// Its name, unit included.
     pub metric: String,
-    /// How the scenarios make one number.
+    /// Reduction of the scenarios to one number.
     pub over: Over,
 }
 
-/// How the scenarios make one number; those that do not give the metric are left out.
+/// Reduction of the scenarios to one number; those that do not give the metric are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Over {
     /// Their mean.
@@ -66,7 +66,7 @@ pub enum Over {
     Worst,
 }
 
-/// What is minimised besides, for the front.
+/// Further objectives, for the front.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TradeOff {
     /// A metric.

@@ -175,7 +175,7 @@ fn direction(change: f64) -> String {
     }
 }
 
-/// What lies past a bound.
+/// The quantity past a bound.
 fn past(bound: &ActiveBound, result: &StudyResult) -> String {
     let beyond = |step: &&Sensitivity| step.variable == bound.variable && step.beyond_bound;
     match bound.objective_change_percent {
@@ -187,7 +187,7 @@ fn past(bound: &ActiveBound, result: &StudyResult) -> String {
     }
 }
 
-/// What binds, in sentences.
+/// Active bounds, in sentences.
 fn binding(out: &mut String, result: &StudyResult) {
     let metric = &result.objectives.minimised;
     out.push('\n');

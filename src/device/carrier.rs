@@ -12,24 +12,24 @@ pub struct PistonMotion {
     pub speed: f64,
 }
 
-/// What moves with the piston and acts on it from outside the device. Times are since the start of the step that is being integrated [s].
+/// Carrier: the moving mass beside the piston, and the forces from outside the device. Times are since the start of the step that is being integrated [s].
 pub trait Carrier {
-    /// Does the piston move under the force? If not, it keeps its speed.
+    /// Whether the piston moves under the force. If not, it keeps its speed.
     const MOVES: bool;
 
     /// Force along extension from outside the device [N]: weight, load, hand. `touching` holds the contact as it was found by `touches`
     /// for the whole of a sub-step, so that the law is smooth in it.
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64;
 
-    /// Is what the load takes of the force wanted by itself?
+    /// Whether the load's share of the force is wanted by itself.
     const LOADED: bool = false;
 
-    /// What the load takes of `force` [N], positive against extension.
+    /// Share of `force` [N] that the load takes, positive against extension.
     fn load(&self, _time: f64, _motion: PistonMotion, _touching: bool) -> f64 {
         0.0
     }
 
-    /// Does the load push on the piston?
+    /// Whether the load pushes on the piston.
     fn touches(&self, time: f64, motion: PistonMotion) -> bool;
 
     /// The fastest rate [1/s] of whatever hangs on the piston, for the choice of sub-steps.

@@ -30,7 +30,7 @@ const MOST_HALVINGS: i32 = 8;
 /// Changes of mode that are sought in one sub-step; a piston that chatters is then taken as it comes.
 const MOST_EVENTS: usize = 6;
 
-/// What is integrated.
+/// The integrated quantities.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Flow {
     pub(super) air: AirState,
@@ -71,7 +71,7 @@ impl Flow {
     }
 }
 
-/// What holds over a sub-step.
+/// Quantities that hold over a sub-step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Mode {
     touching: bool,
@@ -206,7 +206,7 @@ impl<C: Carrier> Leg<'_, C> {
         }
     }
 
-    /// How often the first sub-step of a course is halved until the outlet moves in it by no more than it is away from the chamber's pressure already,
+    /// Number of times that the first sub-step of a course is halved until the outlet moves in it by no more than it is away from the chamber's pressure already,
     /// or than the orifice passes in proportion.
     #[inline]
     fn halvings(&self, flow: &Flow, h: f64) -> i32 {

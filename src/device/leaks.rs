@@ -1,4 +1,4 @@
-//! What leaks between the chambers and out of chamber 1, with the enthalpy that it carries.
+//! Leaks between the chambers and out of chamber 1, with the enthalpy that it carries.
 
 use super::pneumatics::Device;
 use super::state::AirState;

@@ -150,7 +150,7 @@ impl<C: Carrier> Leg<'_, C> {
     }
 }
 
-/// What is implicit: air before the valve [kg].
+/// Implicit state: air before the valve [kg].
 #[derive(Debug, Clone, Copy)]
 struct Feed {
     /// In the last segment.
@@ -178,7 +178,7 @@ impl Feed {
 }
 
 impl Device {
-    /// What solves `feed = held + share * rates(feed)` at an outlet pressure of the regulator [Pa gauge].
+    /// Solution of `feed = held + share * rates(feed)` at an outlet pressure of the regulator [Pa gauge].
     fn feed(
         &self,
         hose: &Hose,

@@ -1,4 +1,4 @@
-//! What does not change in a device during a run, strict SI.
+//! Constant parameters of a device during a run, strict SI.
 
 use crate::physics::axial_load::AxialLoad;
 use crate::physics::chamber::{Chamber, Side};
@@ -43,7 +43,7 @@ pub struct DeviceParameters {
     pub seal_friction: SealFriction,
     /// The working gas.
     pub gas: Gas,
-    /// What the gas in the chambers does as it is compressed.
+    /// Process of the gas in the chambers under compression.
     pub gas_process: GasProcess,
     /// Line between regulator and valve, if it counts.
     pub hose: Option<Hose>,
@@ -51,7 +51,7 @@ pub struct DeviceParameters {
     pub lock_stiffness: f64,
     /// Air that passes seals and fittings.
     pub leakage: Leakage,
-    /// What hangs on the piston all along its stroke.
+    /// Loads on the piston all along its stroke.
     pub axial_load: AxialLoad,
     /// Cushions at the ends of the stroke.
     pub end_cushioning: EndCushioning,

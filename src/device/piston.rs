@@ -1,4 +1,4 @@
-//! What acts on the piston besides the gas: cushions, axial load, seals under pressure; and all of it together.
+//! Forces on the piston besides that of the gas: cushions, axial load, seals under pressure; and all of it together.
 
 use super::carrier::PistonMotion;
 use super::pneumatics::Device;

@@ -37,13 +37,13 @@ pub struct Device {
     pub(super) chambers: [Chamber; 2],
     pub(super) areas: PistonAreas,
     pub(super) valve: ValveParameters,
-    /// How fast its piston swings.
+    /// Rates of its piston's swing.
     pub(super) piston_rates: PistonRates,
-    /// How fast a volume comes to the pressure beside it, times that volume [m3/s].
+    /// Rate at which a volume comes to the pressure beside it, times that volume [m3/s].
     chamber_rate_volume: f64,
     /// Longest sub-step that a line, with the reservoir before it, is taken in [s].
     pub(super) line_substep: f64,
-    /// How fast a reservoir without a line is drawn from or filled [1/s].
+    /// Rate at which a reservoir without a line is drawn from or filled [1/s].
     reservoir_rate: f64,
 }
 
@@ -439,7 +439,7 @@ impl Device {
         ((stiffness(0) + stiffness(1)) / self.parameters.moving_mass).sqrt()
     }
 
-    /// How fast the smallest volume of a step comes to the pressure beside it [1/s].
+    /// Rate at which the smallest volume of a step comes to the pressure beside it [1/s].
     pub(super) fn air_rate(&self, volumes: [f64; 2]) -> f64 {
         let smallest = volumes[0].min(volumes[1]);
         let gas = &self.parameters.gas;

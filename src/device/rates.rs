@@ -1,9 +1,9 @@
-//! How fast the piston can swing on what it meets within a step, for the choice of sub-steps.
+//! Rates of the piston's swing on what it meets within a step, for the choice of sub-steps.
 
 use super::DeviceParameters;
 use super::carrier::{Carrier, PistonMotion};
 
-/// What the piston may come nearer to something in a step, beside its way at speed and under pressure [m].
+/// Approach of the piston to something in a step, beside its way at speed and under pressure [m].
 const MARGIN: f64 = 3e-4;
 
 /// Rates [1/s], and what tells how far the piston gets.

@@ -1,4 +1,4 @@
-//! What changes in a device during a run.
+//! State of a device that changes during a run.
 
 use crate::physics::line_chain::UPSTREAM;
 use crate::physics::regulator::RegulatorState;
@@ -20,13 +20,13 @@ pub struct DeviceState {
     pub seal_deflection: f64,
     /// Stroke at which that was [m].
     pub seal_stroke: f64,
-    /// What acts on it that its parameters do not describe.
+    /// Outside influences that its parameters do not describe.
     pub disturbance: Disturbance,
     /// Energy since the start.
     pub ledger: EnergyLedger,
 }
 
-/// What acts on a device that its parameters do not describe, set by whoever knows it.
+/// Outside influences on a device that its parameters do not describe, set by whoever knows them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Disturbance {
     /// Pressure added to the regulator's outlet [Pa].

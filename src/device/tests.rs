@@ -1,4 +1,4 @@
-//! What a device need not have - leaks, loads, cushions, a finite supply, a late valve - against closed forms.
+//! Optional parts of a device - leaks, loads, cushions, a finite supply, a late valve - against closed forms.
 
 use super::{Carrier, Device, DeviceParameters, PistonMotion};
 use crate::physics::axial_load::AxialLoad;

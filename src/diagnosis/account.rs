@@ -19,7 +19,7 @@ const MOST_OTHERS: usize = 3;
 /// An account: what account.txt says, and a page.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Account {
-    /// What it comes to.
+    /// Its conclusion.
     pub headline: String,
     /// Its parts, in order.
     pub sections: Vec<Section>,
@@ -28,7 +28,7 @@ pub struct Account {
 /// A part of an account.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Section {
-    /// What it is about.
+    /// Its subject.
     pub title: String,
     /// A paragraph each.
     pub paragraphs: Vec<String>,

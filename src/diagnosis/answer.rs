@@ -22,25 +22,25 @@ pub const SCHEMA: u32 = 1;
 pub struct Answer {
     /// Version of the format.
     pub schema: u32,
-    /// What it comes to.
+    /// Its conclusion.
     pub verdict: Verdict,
-    /// What the believed model lacks; nothing where nothing is missing.
+    /// Physics that the believed model lacks; nothing where nothing is missing.
     pub effects: Vec<FoundEffect>,
     /// Where the effects act.
     pub mismatch: Vec<Mismatch>,
     /// Wall time [s]; the one value that may differ between two runs.
     pub seconds: f64,
-    /// What the recordings cannot tell apart.
+    /// Explanations that the recordings cannot tell apart.
     pub alternatives: Vec<Alternative>,
-    /// What else an engineer should know, a sentence each.
+    /// Other notes for an engineer, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// What is not scored.
+    /// Details that are not scored.
     #[serde(flatten)]
     pub details: Details,
 }
 
-/// What a diagnosis comes to.
+/// Verdict of a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -69,7 +69,7 @@ pub struct FoundEffect {
     /// The law, of an effect that a user wrote.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<FoundLaw>,
-    /// What is known of physics without a name.
+    /// Knowledge of physics without a name.
     #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
     pub unlisted: Option<Box<UnlistedReport>>,
 }
@@ -108,14 +108,14 @@ impl FoundLaw {
 }
 
 impl FoundEffect {
-    /// What it is, in a line for people.
+    /// Its meaning, in a line for people.
     #[must_use]
     pub fn meaning(&self) -> String {
         let own = self.law.as_ref().map(FoundLaw::words);
         own.unwrap_or_else(|| meaning(&self.name).to_owned())
     }
 
-    /// How one of its numbers is told: words, unit, and that unit's multiples in one of SI.
+    /// Presentation of one of its numbers: words, unit, and that unit's multiples in one of SI.
     #[must_use]
     pub fn spoken(&self, name: &str) -> (String, String, f64) {
         if let Some(law) = &self.law {
@@ -190,9 +190,9 @@ pub enum AnswerError {
     /// The verdict does not go with the effects.
     #[error("the diagnosis says {verdict:?} with {count} effects named: {names}")]
     Verdict {
-        /// What it says.
+        /// Its verdict.
         verdict: Verdict,
-        /// How many effects it names.
+        /// Number of effects that it names.
         count: usize,
         /// Their names.
         names: String,

@@ -1,4 +1,4 @@
-//! What is set aside before a recording is believed, and what it shows of its own quality: wild values, lost ones, gaps, jitter, noise.
+//! Cleaning of a recording before it is believed, and its quality: wild values, lost ones, gaps, jitter, noise.
 //!
 //! A reading is wild only if it stands alone and what it says of the rig is denied by another sensor (`wild`); impacts are seen by more than one.
 
@@ -17,7 +17,7 @@ mod wild;
 /// Share of the usual step from which a longer one is a gap [1].
 const GAP: f64 = 1.5;
 
-/// What a recording shows of its own quality.
+/// Quality of a recording, by itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cleaning {
     /// Times at which a reading was wild and was set aside, by channel [s].
@@ -98,7 +98,7 @@ fn set_aside(
 }
 
 impl Cleaning {
-    /// What an engineer should know of it, a sentence each; nothing of a recording that is as it should be.
+    /// Notes on it for an engineer, a sentence each; nothing of a recording that is as it should be.
     pub fn account(&self, sheet: &[f64; CHANNELS.len()]) -> Vec<String> {
         /// Jitter below this share of a step is rounding of the stamps [1].
         const ROUNDING: f64 = 0.1;

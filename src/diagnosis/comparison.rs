@@ -1,4 +1,4 @@
-//! What is to be looked at: each recording as measured, as believed and with what was found; and what each link lacks, against the variable that says when.
+//! Comparison for the eye: each recording as measured, as believed and with what was found; and what each link lacks, against the variable that says when.
 //!
 //! Plain data: the pictures, the recording for the viewer and the page are made of it, and it is what stands in comparison.parquet and balance.parquet.
 
@@ -24,7 +24,7 @@ const OF_AIR: [&str; 5] = [
 pub struct Comparison {
     /// The recordings that were diagnosed from, then the one that was to be predicted.
     pub recordings: Vec<Compared>,
-    /// What each link lacks.
+    /// Residual of each link.
     pub balances: Vec<Balance>,
 }
 
@@ -33,7 +33,7 @@ pub struct Comparison {
 pub struct Compared {
     /// File name.
     pub name: String,
-    /// Was it kept from the fit?
+    /// Whether it was kept from the fit.
     pub unseen: bool,
     /// Sample times [s].
     pub time: Vec<f64>,
@@ -61,7 +61,7 @@ pub struct ComparedChannel {
 /// Channels of a recording.
 type Channels = [Vec<f64>; CHANNELS.len()];
 
-/// What a link lacks of closing its balance, against the variable that says when.
+/// Residual of a link's balance, against the variable that explains it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
     /// `regulator`, `piston` or `contact`; of a part of the device `output`.
@@ -72,9 +72,9 @@ pub struct Balance {
     pub variable: String,
     /// Its values [SI], one per sample; NaN where it is not known.
     pub values: Vec<f64>,
-    /// What the believed model lacks, moved within its tolerances [SI]; NaN where it does not show.
+    /// Residual of the believed model, moved within its tolerances [SI]; NaN where it does not show.
     pub before: Vec<f64>,
-    /// What the improved one lacks [SI].
+    /// Residual of the improved model [SI].
     pub after: Vec<f64>,
 }
 

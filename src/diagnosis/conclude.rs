@@ -84,7 +84,7 @@ impl Diagnosis {
         }
     }
 
-    /// What is missing, with its numbers: the one place where a diagnosis gets its effects from.
+    /// The missing effects, with their numbers: the one place where a diagnosis gets its effects from.
     fn found(&self) -> Vec<FoundEffect> {
         let effects = self.estimates.effects.iter();
         let unlisted = self.best().unlisted().map(|latent| FoundEffect {
@@ -203,13 +203,13 @@ impl Diagnosis {
         super::localise::by_channel(&self.evidence, residuals)
     }
 
-    /// Is there a part of the device alone?
+    /// Whether there is a part of the device alone.
     #[must_use]
     pub fn is_of_link(&self) -> bool {
         self.believed.chain != Chain::Whole
     }
 
-    /// What is not scored.
+    /// Details that are not scored.
     #[must_use]
     pub fn details(&self) -> Details {
         Details {
@@ -326,7 +326,7 @@ impl Diagnosis {
             .collect()
     }
 
-    /// What is left of a channel as a share of the root mean square of the channel itself [1]; of one that reads nought throughout, nothing is a share.
+    /// Remainder of a channel as a share of the root mean square of the channel itself [1]; of one that reads nought throughout, nothing is a share.
     fn share_of_channel(&self, left: &Misfit) -> f64 {
         let measured = &self.evidence.recordings[left.recording].readings[left.channel as usize];
         let own = root_mean_square(measured.iter().copied()).unwrap_or_default();
@@ -383,7 +383,7 @@ impl Diagnosis {
         })
     }
 
-    /// What says when the best explanation leaves something of a part of the device.
+    /// Variables that explain the remainder of a part of the device under the best explanation.
     pub(super) fn regimes_of_what_is_left(&self) -> Vec<Regime> {
         let Some(remaining) = &self.remaining else {
             return Vec::new();

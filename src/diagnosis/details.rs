@@ -1,4 +1,4 @@
-//! What diagnosis.json holds beyond what is scored. Sigmas are standard deviations of the sensor's noise.
+//! Content of diagnosis.json beyond what is scored. Sigmas are standard deviations of the sensor's noise.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,37 +17,37 @@ pub const IN_TURN: &str = "left out in turn";
 pub struct Details {
     /// Name of the case.
     pub case: String,
-    /// What account.txt says.
+    /// The account, as account.txt.
     pub account: Account,
-    /// What it was made with and of.
+    /// Its provenance.
     pub provenance: Provenance,
     /// Standard deviation of the noise that each channel was given, by column.
     pub noise: Vec<ChannelNoise>,
-    /// How far each channel of each recording is from the models.
+    /// Departure of each channel of each recording from the models.
     pub misfit: Vec<ChannelMisfit>,
     /// Where recordings part from the believed model moved within its tolerances.
     pub parts: Vec<super::answer::Mismatch>,
-    /// What each link of the chain leaves, and what says when.
+    /// Residual of each link of the chain, and the variable that explains it.
     pub links: Vec<LinkReport>,
     /// Share of the mismatch that is explained [1]; none where there is none.
     pub explained_share: Option<f64>,
-    /// What no law explains, where it is more than noise and everything was judged against it.
+    /// Remainder that no law explains, where it is more than noise and everything was judged against it.
     pub remaining: Option<RemainingReport>,
     /// Other explanations that were looked at: those fitted in full first, then those that fell behind earlier, the best first.
     pub considered: Vec<Considered>,
     /// Variants of the explanation of a part of the device, the best first.
     pub ruled_out: Vec<RuledOutReport>,
-    /// What each run of a contact flange shows.
+    /// Results of each run of a contact flange.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub runs: Vec<RunShown>,
-    /// What was foretold of a run of a contact flange that was not looked at.
+    /// Prediction of a run of a contact flange that was not looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub foretold: Option<ForetoldRun>,
     /// Numbers of the rig file within their tolerances.
     pub tolerated: Vec<ToleratedNumber>,
     /// Errors of prediction on what was not fitted to.
     pub prediction: Vec<PredictionError>,
-    /// What to record next.
+    /// The next recording to make.
     pub next_experiment: Option<NextExperiment>,
 }
 
@@ -58,11 +58,11 @@ pub struct ChannelNoise {
     pub channel: String,
     /// Standard deviation taken, in the column's unit: that of the sensor, or what no law explains where that is more.
     pub standard_deviation: f64,
-    /// What the recordings show, in the order of them, in the column's unit.
+    /// Values shown by the recordings, in the order of them, in the column's unit.
     pub shown: Vec<Option<f64>>,
 }
 
-/// How far a channel of a recording is from the models.
+/// Departure of a channel of a recording from the models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ChannelMisfit {
     /// File name.
@@ -93,20 +93,20 @@ pub struct ChannelMisfit {
     pub improved_share: f64,
 }
 
-/// What a link of the chain leaves, given its own measured input.
+/// Residual of a link of the chain, given its own measured input.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LinkReport {
     /// `regulator`, `piston` (chambers and force balance) or `contact` (and load cell).
     pub link: String,
     /// Robust root mean square.
     pub sigmas: f64,
-    /// Does it explain its own recording?
+    /// Whether it explains its own recording.
     pub explained: bool,
     /// Variables that say when the mismatch appears.
     pub regimes: Vec<RegimeReport>,
 }
 
-/// What no law explains.
+/// Remainder that no law explains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RemainingReport {
     /// Column.
@@ -126,7 +126,7 @@ pub struct RemainingReport {
 pub struct Considered {
     /// Its effects.
     pub effects: Vec<String>,
-    /// Was it fitted in full? Otherwise with the piston held to its measured motion, and compared with what the answer's effects came to so.
+    /// Whether it was fitted in full. Otherwise with the piston held to its measured motion, and compared with what the answer's effects came to so.
     pub in_full: bool,
     /// Its odds against the answer given, as a power of ten [1].
     pub log10_odds: f64,
@@ -145,7 +145,7 @@ pub struct RuledOutReport {
     pub parameters: Vec<(String, f64)>,
 }
 
-/// What a run of a contact flange shows.
+/// Result of a run of a contact flange.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunShown {
     /// File name.
@@ -174,7 +174,7 @@ pub struct RunShown {
     pub contact_lost: f64,
 }
 
-/// What was foretold of a run of a contact flange.
+/// Prediction of a run of a contact flange.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ForetoldRun {
     /// File name.
@@ -191,7 +191,7 @@ pub struct ForetoldRun {
     pub settling_measured_s: f64,
 }
 
-/// How much of a mismatch a variable tells.
+/// Share of a mismatch that a variable explains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RegimeReport {
     /// The variable.
@@ -225,7 +225,7 @@ pub struct PredictionError {
     pub before: f64,
     /// That by the improved one.
     pub after: f64,
-    /// What departures of the channel are compared with: its sensor's noise, or what no law explains where that is more; none of a drive's torque, of
+    /// Scale of the channel's departures: its sensor's noise, or what no law explains where that is more; none of a drive's torque, of
     /// which nobody knows it.
     #[serde(default)]
     pub noise: Option<f64>,
@@ -242,7 +242,7 @@ pub struct PredictionError {
 pub struct RemainingError {
     /// File name.
     pub recording: String,
-    /// Was it kept from the fit?
+    /// Whether it was kept from the fit.
     pub kept_back: bool,
     /// Index of the channel.
     pub channel: usize,
@@ -253,7 +253,7 @@ pub struct RemainingError {
 }
 
 impl RemainingError {
-    /// Is it more than the sensor's noise, which is known no better?
+    /// Whether it is more than the sensor's noise, which is known no better.
     #[must_use]
     pub fn is_beyond_noise(&self) -> bool {
         self.sigmas > NOISE_ALONE
@@ -292,20 +292,20 @@ pub fn remaining_errors(
     all
 }
 
-/// What to record next.
+/// The next recording to make.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NextExperiment {
     /// Name of the experiment.
     pub name: String,
-    /// What to do.
+    /// Instruction.
     pub instruction: String,
     /// The explanation that it tells ...
     pub from: Vec<String>,
     /// ... from the one found.
     pub found: Vec<String>,
-    /// How far apart they would stand after a new fit, in sigmas.
+    /// Distance between them after a new fit, in sigmas.
     pub sigmas: f64,
-    /// How long it takes [s].
+    /// Duration [s].
     pub seconds: f64,
     /// The others that were tried: name, sigmas.
     pub others: Vec<(String, f64)>,

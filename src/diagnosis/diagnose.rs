@@ -28,13 +28,13 @@ use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
 pub struct Ranked {
     /// The explanation.
     pub hypothesis: Hypothesis,
-    /// What it costs, penalty included [1].
+    /// Its cost, penalty included [1].
     pub score: f64,
     /// Its odds against the best one [1].
     pub odds: f64,
     /// Its probability among those looked at in full [1].
     pub probability: f64,
-    /// What it leaves of each recording, fitted to the others, in standard deviations, by recording and channel; none where there are no others.
+    /// Residuals of each recording, fitted to the others, in standard deviations, by recording and channel; none where there are no others.
     pub left_out: Option<Vec<[Vec<f64>; CHANNELS.len()]>>,
 }
 
@@ -50,9 +50,9 @@ impl Ranked {
 pub struct Baseline {
     /// The description.
     pub plant: PlantParameters,
-    /// What it gives.
+    /// Its prediction.
     pub prediction: Prediction,
-    /// What each link of the chain leaves, and what says when.
+    /// Residual of each link of the chain, and the variable that explains it.
     pub links: Vec<(LinkResidual, Vec<Regime>)>,
     /// Where recordings part from it.
     pub partings: Vec<Parting>,
@@ -91,20 +91,20 @@ impl ErrorSize {
     }
 }
 
-/// What was found.
+/// The finding.
 #[derive(Debug)]
 pub struct Diagnosis {
     /// Thresholds that it was made with.
     pub settings: Settings,
     /// The rig as believed.
     pub believed: PlantParameters,
-    /// What is tolerated of it.
+    /// Its tolerated quantities.
     pub tolerated: Vec<Free>,
     /// The recordings, cleaned.
     pub evidence: Evidence,
-    /// What was set aside in each of them.
+    /// Readings set aside in each of them.
     pub cleanings: Vec<Cleaning>,
-    /// What an engineer should know of the recordings, a sentence each.
+    /// Notes on the recordings for an engineer, a sentence each.
     pub notes: Vec<String>,
     /// Explanations, best first.
     pub ranked: Vec<Ranked>,
@@ -112,7 +112,7 @@ pub struct Diagnosis {
     pub looked_at: usize,
     /// Explanations that were fitted roughly on the way, the best first.
     pub roughly: Vec<RoughFit>,
-    /// What no law explains of a part of the device; none where that is noise, or where there is the whole of it.
+    /// Remainder that no law explains of a part of the device; none where that is noise, or where there is the whole of it.
     pub remaining: Option<Remaining>,
     /// Variants of the best that do worse, of a part of the device.
     pub ruled_out: Vec<RuledOut>,
@@ -122,7 +122,7 @@ pub struct Diagnosis {
     pub shape: Option<Shape>,
     /// Where its effects act.
     pub mismatch: Vec<Interval>,
-    /// What the believed model says, as it stands in the rig file.
+    /// Prediction of the believed model, as it stands in the rig file.
     pub as_believed: Prediction,
     /// The believed model, moved within its tolerances.
     pub baseline: Baseline,

@@ -1,4 +1,4 @@
-//! How sure the numbers of an explanation are.
+//! Certainty of the numbers of an explanation.
 //!
 //! The posterior is taken normal in the fit's coordinates (`super::covariance`). A number of several quantities, such as an amplitude, takes its spread
 //! along its gradient.
@@ -64,14 +64,14 @@ pub struct Number {
     pub interval: [f64; 2],
     /// End of its range at which it stands; none where it stands between them.
     pub at_limit: Option<Limit>,
-    /// Is it a part of the answer?
+    /// Whether it is a part of the answer.
     pub reported: bool,
 }
 
 /// Numbers of an explanation.
 #[derive(Debug, Clone)]
 pub struct Estimates {
-    /// What was tolerated and is still held to it, in the order of the fit.
+    /// Tolerated quantities that are still held, in the order of the fit.
     pub tolerated: Vec<Number>,
     /// Numbers of each effect.
     pub effects: Vec<(&'static Effect, Vec<Number>)>,

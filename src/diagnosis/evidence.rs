@@ -11,22 +11,22 @@ use std::sync::{Arc, Mutex};
 pub struct Measured {
     /// File name.
     pub name: String,
-    /// What drove the rig.
+    /// Inputs of the rig.
     pub inputs: PlantInputs,
     /// Readings in the order of [`CHANNELS`]; NaN where there is none or none that counts.
     pub readings: [Vec<f64>; 4],
-    /// Is there no workpiece?
+    /// Whether there is no workpiece.
     pub free: bool,
 }
 
-/// What each residual counts, of an error in time that is forgiven [s] and a piston that is held or not.
+/// Weight of each residual, given an error in time that is forgiven [s] and a piston that is held or not.
 #[derive(Debug)]
 struct Shares {
     of: (f64, bool),
     values: Arc<Vec<f64>>,
 }
 
-/// What a law leaves is alike for less than this [s]: longer than a chamber takes to follow.
+/// Time below which the residuals of a law are alike [s]: longer than a chamber takes to follow.
 const BLOCK: f64 = 0.25;
 
 /// Recordings and the noise of their channels.
@@ -38,11 +38,11 @@ pub struct Evidence {
     pub noise: [f64; 4],
     /// Time for which what a law leaves is taken to be alike at most [s].
     pub block: f64,
-    /// What a sample counts, where neighbours tell the same [1].
+    /// Weight of a sample, where neighbours tell the same [1].
     pub worth: f64,
     /// Motions measured, one per recording.
     guides: Vec<Guide>,
-    /// What was found before.
+    /// Shares found before.
     shares: Mutex<Vec<Shares>>,
 }
 
@@ -77,7 +77,7 @@ impl Evidence {
 pub struct Prediction {
     /// The description.
     pub plant: PlantParameters,
-    /// Was the piston held to its measured motion?
+    /// Whether the piston was held to its measured motion.
     pub guided: bool,
     /// One course per recording.
     pub courses: Vec<PlantCourse>,
@@ -86,7 +86,7 @@ pub struct Prediction {
 }
 
 impl Evidence {
-    /// What a description gives; trajectories are taken from `known` where only sensors differ.
+    /// Prediction of a description; trajectories are taken from `known` where only sensors differ.
     pub fn predict(
         &self,
         plant: &PlantParameters,
@@ -150,7 +150,7 @@ impl Evidence {
         (finite as f64 * self.worth) as usize
     }
 
-    /// What each residual counts when errors in time [s] are forgiven: noise over noise and slope times that error together.
+    /// Weight of each residual when errors in time [s] are forgiven: noise over noise and slope times that error together.
     pub fn shares(&self, forgiven: f64, guided: bool) -> Arc<Vec<f64>> {
         let of = (forgiven, guided);
         let mut known = self

@@ -9,13 +9,13 @@ use std::f64::consts::TAU;
 pub struct Experiment {
     /// Its name.
     pub name: &'static str,
-    /// What to do.
+    /// Instruction.
     pub instruction: String,
     /// The same for the simulator.
     pub inputs: PlantInputs,
 }
 
-/// What the device does in its recordings.
+/// Behaviour of the device in its recordings.
 struct Limits {
     /// Step of the samples [s].
     step: f64,
@@ -23,7 +23,7 @@ struct Limits {
     pressure: f64,
     /// Where the workpiece stands [m].
     surface: f64,
-    /// How far it moves to either side [m].
+    /// Reach of its motion to either side [m].
     travel: f64,
 }
 

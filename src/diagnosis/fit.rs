@@ -24,7 +24,7 @@ const MOST_TRIES: usize = 8;
 /// A fitted description.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// What was free.
+    /// Free quantities.
     pub free: Vec<Free>,
     /// Values of the free quantities.
     pub values: Vec<f64>,
@@ -43,12 +43,12 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// What the fit minimises.
+    /// The objective of the fit.
     pub fn cost(&self) -> f64 {
         self.misfit + self.prior
     }
 
-    /// What was free, to go on from where the fit is.
+    /// Free quantities, to go on from where the fit is.
     pub fn free_from_here(&self) -> Vec<Free> {
         let values = self.free.iter().zip(&self.values);
         values.map(|(f, value)| f.from(*value)).collect()
@@ -64,7 +64,7 @@ pub fn robust_sum(residuals: &[f64]) -> f64 {
         .sum()
 }
 
-/// What a residual counts beside one that is not far off [1].
+/// Weight of a residual relative to one that is not far off [1].
 pub fn robust_weight(residual: f64) -> f64 {
     (HUBER / residual.abs()).min(1.0)
 }
@@ -78,7 +78,7 @@ fn loss(residual: f64, limit: f64) -> f64 {
     }
 }
 
-/// How much each sample counts.
+/// Weights of the samples.
 struct Weighing<'a> {
     /// One over what a residual is divided by.
     shares: &'a [f64],
@@ -247,9 +247,9 @@ pub struct Stage {
     /// Errors in time that are forgiven [s]: a model that is still far off meets impacts at other times than the device, and their spikes would hold it
     /// there.
     pub forgiven: f64,
-    /// Is the piston held to its measured motion?
+    /// Whether the piston is held to its measured motion.
     pub guided: bool,
-    /// Is the loss bounded?
+    /// Whether the loss is bounded.
     pub bounded: bool,
     /// Share of the cost that an iteration must gain for the stage to go on [1].
     pub gain: f64,
@@ -298,7 +298,7 @@ pub const FULL: &[Stage] = &[
 /// Error in time that a rough fit forgives [s].
 const ROUGH_TIME: f64 = 0.006;
 
-/// How a fit goes about it.
+/// Settings of a fit.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort<'a> {
     /// Iterations at most.

@@ -24,7 +24,7 @@ pub struct Run {
     pub speed: Vec<f64>,
 }
 
-/// What a run shows.
+/// Result of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shown {
     /// Time of first contact [s].
@@ -69,7 +69,7 @@ const APPROACH: (f64, f64) = (0.06, 0.01);
 const IMPACT: f64 = 0.1;
 /// Frequencies in which the ringing is looked for: below, the arm's own control moves the force [Hz].
 const RINGING: (f64, f64) = (40.0, 300.0);
-/// How long it is looked at [s], and how long after the last bounce it begins [s].
+/// Duration of the view [s], and its delay after the last bounce [s].
 const RUNG: f64 = 0.4;
 const SOON: f64 = 0.01;
 /// Speed from which the arm moves [m/s].
@@ -100,7 +100,7 @@ pub enum NoContact {
     Short {
         /// File name.
         run: String,
-        /// How long it goes on [s].
+        /// Time that it still goes on [s].
         left: f64,
     },
     /// The arm stands as it touches: what its impact would say of mass and spring is not there.
@@ -124,7 +124,7 @@ pub enum NoContact {
 }
 
 impl Run {
-    /// What it shows.
+    /// Result of the run.
     ///
     /// # Errors
     /// There is no contact, it is there from the start, or the run ends soon after it; the arm stands as it touches; nothing is desired.

@@ -6,7 +6,7 @@ use super::details::{Details, ForetoldRun, RunShown};
 use super::flange::{AVERAGED, BAND, Shown, spread, spread_of_sizes};
 use super::words::listed;
 
-/// What is known of a flange from its runs.
+/// Knowledge of a flange from its runs.
 #[derive(Debug, Clone)]
 pub struct FlangeDiagnosis {
     /// Runs by their names, with what they show.
@@ -32,7 +32,7 @@ impl FlangeDiagnosis {
         spread_of_sizes(&values)
     }
 
-    /// What the runs show that the believed first order does not, by name; nothing of a flange that is as believed.
+    /// Departures of the runs from the believed first order, by name; nothing of a flange that is as believed.
     #[must_use]
     pub fn missing(&self) -> Vec<&'static str> {
         let limit = THERE * self.noise;

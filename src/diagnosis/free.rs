@@ -4,7 +4,7 @@ use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
 use crate::plant::Quantity;
 
-/// What is believed of a quantity before the recordings are looked at.
+/// Belief about a quantity before the recordings are looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Prior {
     /// Normal, in the quantity's unit.
@@ -21,7 +21,7 @@ pub enum Prior {
 /// A quantity that a fit may move.
 #[derive(Debug, Clone, Copy)]
 pub struct Free {
-    /// What.
+    /// The quantity.
     pub quantity: Quantity,
     /// Where it starts.
     pub start: f64,
@@ -29,7 +29,7 @@ pub struct Free {
     pub coordinate: Coordinate,
     /// Least and largest value.
     pub bounds: [f64; 2],
-    /// What is believed.
+    /// The belief.
     pub prior: Prior,
 }
 

@@ -30,12 +30,12 @@ impl Hypothesis {
         names
     }
 
-    /// Is the believed model all that it takes?
+    /// Whether the believed model is all that it takes.
     pub fn finds_nothing(&self) -> bool {
         self.effects.is_empty() && self.unlisted().is_none()
     }
 
-    /// How many of the free quantities are tolerated ones; the effects' and those of a term without a name follow.
+    /// Number of the free quantities that are tolerated ones; the effects' and those of a term without a name follow.
     pub fn tolerated(&self, believed: &PlantParameters) -> usize {
         let own: usize = self
             .effects
@@ -46,7 +46,7 @@ impl Hypothesis {
     }
 }
 
-/// Are the effects of two hypotheses the same but for laws that exclude one another?
+/// Whether the effects of two hypotheses are the same but for laws that exclude one another.
 pub(super) fn stands_for(one: &Hypothesis, other: &Hypothesis) -> bool {
     let covered = |a: &Hypothesis, b: &Hypothesis| {
         a.effects

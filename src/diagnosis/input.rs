@@ -1,4 +1,4 @@
-//! What a diagnosis is given: a rig as believed, what is tolerated of it, and recordings of what it did.
+//! Input of a diagnosis: a rig as believed, what is tolerated of it, and recordings of what it did.
 
 use super::clean::{Cleaning, clean};
 use super::evidence::{Evidence, Measured};
@@ -19,7 +19,7 @@ pub struct NamedRecording {
     pub name: String,
     /// The file, for messages.
     pub file: String,
-    /// What it holds.
+    /// Its content.
     pub recorded: Recorded,
 }
 
@@ -28,7 +28,7 @@ pub struct NamedRecording {
 pub struct DiagnosisInput {
     /// The rig as believed.
     pub believed: PlantParameters,
-    /// What is tolerated of it.
+    /// Its tolerated quantities.
     pub tolerated: Vec<Free>,
     /// Standard deviation of each sensor's noise as its sheet has it, in the order of [`CHANNELS`].
     pub noise: [f64; CHANNELS.len()],
@@ -59,7 +59,7 @@ pub fn tolerated(quantity: Quantity, value: f64, tolerance: f64) -> Free {
     }
 }
 
-/// What is never known exactly of a rig with a part of the device: where a closed chamber starts, which its first readings tell to their noise [Pa], and
+/// Quantities that are never known exactly of a rig with a part of the device: where a closed chamber starts, which its first readings tell to their noise [Pa], and
 /// how far its sensor drifts, one standard deviation [Pa/s].
 #[must_use]
 pub fn of_link(chain: Chain, noise: f64, drift: f64) -> Vec<Free> {
@@ -89,9 +89,9 @@ pub fn of_link(chain: Chain, noise: f64, drift: f64) -> Vec<Free> {
 /// Recordings made fit to be believed.
 #[derive(Debug)]
 pub struct Prepared {
-    /// What is left of them.
+    /// The evidence in them.
     pub evidence: Evidence,
-    /// What was set aside in each.
+    /// Readings set aside in each.
     pub cleanings: Vec<Cleaning>,
     /// Sentences on what was done, for people.
     pub notes: Vec<String>,

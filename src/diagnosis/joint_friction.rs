@@ -38,7 +38,7 @@ impl DriveLoad {
     }
 }
 
-/// What a joint was found to rub with.
+/// Dry friction found of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointFriction {
     /// Which, from 0.
@@ -47,7 +47,7 @@ pub struct JointFriction {
     pub friction: f64,
     /// Its standard deviation [N m].
     pub deviation: f64,
-    /// What was believed [N m].
+    /// The believed value [N m].
     pub believed: f64,
     /// Readings that count as independent.
     pub count: f64,
@@ -55,7 +55,7 @@ pub struct JointFriction {
 
 /// Speed v_0 [rad/s].
 const STILL: f64 = 1e-3;
-/// How well the friction of a joint is known that is as believed, relative to it [1]: no data sheet says more.
+/// Uncertainty of a joint's friction that is as believed, relative to it [1]: no data sheet says more.
 const KNOWN: f64 = 0.03;
 /// Sum of squares of sat(v) about its mean below which a joint hardly changed its speed, and nothing can be said.
 const LEAST_CHANGE: f64 = 5.0;
@@ -135,7 +135,7 @@ fn disagreement(recordings: &[Vec<[f64; 2]>], friction: f64) -> f64 {
 }
 
 impl JointFriction {
-    /// Does it differ from what is believed? By Schwarz's criterion, as for any effect.
+    /// Whether it differs from what is believed, by Schwarz's criterion, as for any effect.
     #[must_use]
     pub fn differs(&self) -> bool {
         let gain = ((self.friction - self.believed) / self.deviation).powi(2);

@@ -90,7 +90,7 @@ pub fn scale(port: Port) -> f64 {
         .map_or(1.0, |(_, scale, _)| *scale)
 }
 
-/// What a unit of the free quantity of an index adds to a term at a value of its variable.
+/// Contribution of a unit of the free quantity of an index to a term at a value of its variable.
 #[must_use]
 pub fn response(latent: &Latent, index: usize, at: f64) -> f64 {
     let mut unit = latent.clone();
@@ -102,7 +102,7 @@ pub fn response(latent: &Latent, index: usize, at: f64) -> f64 {
     unit.shape(at)
 }
 
-/// What is free of a latent term: of hats the level and the rises, for a curve's neighbouring values are alike until the recordings say otherwise, and
+/// Free quantities of a latent term: of hats the level and the rises, for a curve's neighbouring values are alike until the recordings say otherwise, and
 /// what is not passed through stays as beside it.
 fn free_of_latent(latent: &Latent) -> Vec<Free> {
     let scale = scale(latent.port);
@@ -149,7 +149,7 @@ fn free_of_latent(latent: &Latent) -> Vec<Free> {
     free
 }
 
-/// How many free quantities the latent term of a description has.
+/// Number of free quantities of the latent term of a description.
 pub fn count(plant: &PlantParameters) -> usize {
     plant
         .latent
@@ -194,7 +194,7 @@ fn terms(evidence: &Evidence, base: &Prediction) -> Vec<Latent> {
     all
 }
 
-/// What a variable moves through in all recordings, but for a hundredth at either end; nothing if it stands still.
+/// Range of a variable in all recordings, but for a hundredth at either end; nothing if it stands still.
 fn range(evidence: &Evidence, base: &Prediction, variable: Variable) -> Option<[f64; 2]> {
     let mut values = Vec::new();
     for (measured, course) in evidence.recordings.iter().zip(&base.courses) {

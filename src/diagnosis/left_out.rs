@@ -1,4 +1,4 @@
-//! Does an explanation predict a recording that it was not fitted to?
+//! Whether an explanation predicts a recording that it was not fitted to.
 //!
 //! ```text
 //! u_r = u - (J' W J + P)^-1 (J' W r + p)      over all recordings but r, from the optimum u of all
@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 /// Longest step in a coordinate, as in the fit [1].
 const LONGEST: f64 = 3.0;
 
-/// What a fit to the other recordings says of each: measured less predicted in standard deviations, by recording and channel. None where there are no others.
+/// Residuals of each recording by a fit to the others: measured less predicted in standard deviations, by recording and channel. None where there are no others.
 pub fn left_out(evidence: &Evidence, fit: &Fit) -> Option<Vec<[Vec<f64>; CHANNELS.len()]>> {
     if evidence.recordings.len() < 2 || fit.columns.len() != fit.free.len() {
         return None;

@@ -1,4 +1,4 @@
-//! What each link of the chain leaves, given its own measured input, and moved within the rig file's tolerances to explain its own output alone.
+//! Residual of each link of the chain, given its own measured input, and moved within the rig file's tolerances to explain its own output alone.
 //!
 //! The chain is cut at the motion: the piston is held to the measured one, so that the regulator is seen from set pressure to outlet, the piston by the force
 //! that it lacks, the contact and the load cell by the force that they should show where the tool is. What a joint fit of a model that lacks something
@@ -29,7 +29,7 @@ pub enum Link {
     Contact,
 }
 
-/// What a link leaves unexplained, one value per sample, recording by recording; NaN where it does not show.
+/// Unexplained residual of a link, one value per sample, recording by recording; NaN where it does not show.
 #[derive(Debug, Clone)]
 pub struct LinkResidual {
     /// The link.
@@ -45,7 +45,7 @@ pub struct LinkResidual {
 /// All links.
 const LINKS: [Link; 3] = [Link::Regulator, Link::Piston, Link::Contact];
 
-/// What each link leaves of a prediction with the piston held to its measured motion, after one step of Gauss and Newton of `tolerated` for that link alone.
+/// Residual of each link of a prediction with the piston held to its measured motion, after one step of Gauss and Newton of `tolerated` for that link alone.
 #[must_use]
 pub fn links(evidence: &Evidence, held: &Prediction, tolerated: &[Free]) -> Vec<LinkResidual> {
     let values: Vec<f64> = tolerated
@@ -149,7 +149,7 @@ fn unit(link: Link, evidence: &Evidence, plant: &PlantParameters) -> f64 {
     }
 }
 
-/// What a link leaves of a prediction with the piston held to its measured motion, in standard deviations; what sensors add beyond those of `plain` is
+/// Residual of a link of a prediction with the piston held to its measured motion, in standard deviations; what sensors add beyond those of `plain` is
 /// taken from the readings first.
 pub fn left_by(
     link: Link,

@@ -12,7 +12,7 @@ const HALF_WINDOW: f64 = 0.01;
 /// Root mean square, in standard deviations, up to which a channel shows its noise: that is known no better [1].
 pub const NOISE_ALONE: f64 = 1.15;
 
-/// How far a channel of a recording is from what is predicted.
+/// Departure of a channel of a recording from its prediction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Misfit {
     /// Index of the recording.
@@ -72,7 +72,7 @@ pub fn robust_rms(residuals: &[f64]) -> Option<(usize, f64)> {
     (samples > 0).then(|| (samples, (robust_sum(residuals) / samples as f64).sqrt()))
 }
 
-/// How far each channel is from a prediction; channels that were not measured are left out.
+/// Departure of each channel from a prediction; channels that were not measured are left out.
 pub fn misfits(evidence: &Evidence, residuals: &[f64]) -> Vec<Misfit> {
     let channels = by_channel(evidence, residuals);
     channels

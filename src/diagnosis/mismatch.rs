@@ -10,7 +10,7 @@ use crate::plant::{CHANNELS, Channel, PlantParameters, simulate};
 const DEVIATIONS: f64 = 3.0;
 /// Neighbours up to this far apart are one [s].
 const MERGED: f64 = 0.04;
-/// What is added at either end [s].
+/// Time added at either end [s].
 const ADDED: f64 = 0.02;
 
 /// A time in which a channel of a recording shows the effects.

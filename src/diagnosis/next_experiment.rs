@@ -19,14 +19,14 @@ const STEP: f64 = 0.03;
 /// Largest difference of a sample that counts, in standard deviations: impacts met at other times tell too easily [1].
 const MOST: f64 = 10.0;
 
-/// How well an experiment tells two explanations apart.
+/// Power of an experiment to tell two explanations apart.
 #[derive(Debug, Clone)]
 pub struct Separation {
     /// The experiment.
     pub experiment: Experiment,
     /// D^2 [1].
     pub square: f64,
-    /// How long it takes [s].
+    /// Duration [s].
     pub duration: f64,
 }
 

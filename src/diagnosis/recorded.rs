@@ -30,7 +30,7 @@ const SURFACE_GAP: usize = 5;
 /// A recording taken apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recorded {
-    /// What drove the rig.
+    /// Inputs of the rig.
     pub inputs: PlantInputs,
     /// Readings in the order of [`CHANNELS`]; NaN where there is none, all of them for a channel that was not measured.
     pub readings: [Vec<f64>; CHANNELS.len()],
@@ -54,7 +54,7 @@ pub enum RecordedError {
     Inputs {
         /// File name.
         file: String,
-        /// What does not fit.
+        /// The misfit.
         source: InputError,
     },
     /// Too short.
@@ -62,9 +62,9 @@ pub enum RecordedError {
     TooShort {
         /// File name.
         file: String,
-        /// How many.
+        /// Their number.
         found: usize,
-        /// How many there must be.
+        /// Number that there must be.
         expected: usize,
     },
     /// No measured column.
@@ -145,7 +145,7 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
 /// Takes a recording of a rig apart that has so much of the device.
 ///
 /// # Errors
-/// What drives or shows that part is absent.
+/// An input or a reading of that part is absent.
 pub fn recorded_of(
     chain: Chain,
     file: &str,

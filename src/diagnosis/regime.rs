@@ -39,7 +39,7 @@ pub const VARIABLES: [&str; 13] = [
     "phase",
 ];
 
-/// How much of a mismatch a variable tells.
+/// Share of a mismatch that a variable explains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Regime {
     /// Its name.

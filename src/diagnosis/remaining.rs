@@ -1,4 +1,4 @@
-//! What no law explains of a rig with a part of the device, and how recordings are judged against it.
+//! Remainder that no law explains of a rig with a part of the device, and how recordings are judged against it.
 //!
 //! ```text
 //! t = 1 + 2 sum rho_k   up to the first rho_k < 0.05
@@ -22,10 +22,10 @@ const INDEPENDENT: f64 = 0.05;
 const ENOUGH: usize = 6000;
 /// Samples of all recordings that a first look takes, about.
 const FIRST_LOOK: usize = 4000;
-/// What is left counts as the sensor's noise up to so many times of it [1].
+/// Multiple of the sensor's noise up to which a remainder counts as noise [1].
 const LIKE_NOISE: f64 = 1.3;
 
-/// What the best laws leave.
+/// Remainder of the best laws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Remaining {
     /// The channel.
@@ -41,7 +41,7 @@ pub struct Remaining {
 }
 
 impl Remaining {
-    /// What the best laws leave that a search can find in its evidence at a first look, with those laws.
+    /// Remainder of the best laws that a search can find in its evidence at a first look, with those laws.
     pub fn of(
         search: &Search<'_>,
         channel: Channel,
@@ -61,7 +61,7 @@ impl Remaining {
         (Self::left_by(&prediction, evidence, channel), best)
     }
 
-    /// What a model leaves.
+    /// Remainder of a model.
     pub fn left_by(prediction: &Prediction, evidence: &Evidence, channel: Channel) -> Self {
         let index = channel as usize;
         let (mut squares, mut count, mut weighted, mut seconds) = (0.0, 0.0, 0.0, 0.0);
@@ -89,12 +89,12 @@ impl Remaining {
         }
     }
 
-    /// Does it turn out to be clearly more than what was left in the end?
+    /// Whether it turns out to be clearly more than what was left in the end.
     pub fn is_more_than(&self, other: &Self) -> bool {
         self.size > LIKE_NOISE * other.size
     }
 
-    /// Is it no more than the sensor's noise?
+    /// Whether it is no more than the sensor's noise.
     pub fn is_noise(&self) -> bool {
         self.size < LIKE_NOISE * self.noise && self.alike < 2.0
     }

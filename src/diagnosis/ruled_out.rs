@@ -1,4 +1,4 @@
-//! What an explanation of a part of the device is worth: the same without each of its effects, and with the laws that could stand in an effect's place.
+//! Worth of an explanation of a part of the device: the same without each of its effects, and with the laws that could stand in an effect's place.
 
 use super::fit::{Effort, FULL, Fit, Stage, fit};
 use super::free::free_of;

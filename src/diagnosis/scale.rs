@@ -1,4 +1,4 @@
-//! What counts as noise, as adequate, and as worth a mention, on the scale of what there is to explain.
+//! Thresholds of noise, of adequacy and of a mention, on the scale of what there is to explain.
 //!
 //! A law of the catalogue is an idealisation: what it leaves of a large mismatch is large beside the noise and says nothing of other physics. So an
 //! effect beside another must gain a share of what that one gained, not only more than noise could.
@@ -41,12 +41,12 @@ impl Scale {
         }
     }
 
-    /// What chance may add to the rough cost of noise [1].
+    /// Addition of chance to the rough cost of noise [1].
     pub fn rough_spread(&self) -> f64 {
         SPREAD * (2.0 * self.noise).sqrt()
     }
 
-    /// Does a hypothesis that was fitted in full leave noise, or no more than the idealisation of its laws?
+    /// Whether a hypothesis that was fitted in full leaves noise, or no more than the idealisation of its laws.
     pub fn is_adequate(&self, hypothesis: &Hypothesis) -> bool {
         let left = hypothesis.fit.cost() - self.count;
         let chance = SPREAD * (2.0 * self.count).sqrt();
@@ -57,7 +57,7 @@ impl Scale {
         left < chance.max(idealised)
     }
 
-    /// Does a hypothesis explain the mismatch but for a small share, whatever that is? Where the piston is held counts too: impacts that are met at
+    /// Whether a hypothesis explains the mismatch but for a small share, whatever that is. Where the piston is held counts too: impacts that are met at
     /// slightly other times make a good explanation look bad.
     pub fn is_explained(&self, hypothesis: &Hypothesis) -> bool {
         let fit = &hypothesis.fit;
@@ -66,18 +66,18 @@ impl Scale {
         self.is_adequate(hypothesis) || full.min(rough) < UNEXPLAINED
     }
 
-    /// Does it explain at least half?
+    /// Whether it explains at least half.
     pub fn is_half_explained(&self, hypothesis: &Hypothesis) -> bool {
         (hypothesis.fit.rough - self.noise) < 0.5 * (self.rough - self.noise)
     }
 
-    /// Could one more effect, or a richer law, gain nothing that would be worth a mention?
+    /// Whether one more effect, or a richer law, could gain nothing that would be worth a mention.
     pub fn leaves_nothing_material(&self, hypothesis: &Hypothesis) -> bool {
         let left = hypothesis.fit.cost() - self.count;
         left < self.material_in_full(hypothesis.fit.cost())
     }
 
-    /// What one more effect must gain beside a hypothesis of a cost [1].
+    /// Least gain of one more effect beside a hypothesis of a cost [1].
     pub fn material_in_full(&self, cost: f64) -> f64 {
         IMMATERIAL * (self.full - cost).max(0.0)
     }

@@ -24,7 +24,7 @@ pub struct Search<'a> {
     pub evidence: &'a Evidence,
     /// The rig as believed.
     pub believed: PlantParameters,
-    /// What is tolerated.
+    /// Tolerated quantities.
     pub tolerated: Vec<Free>,
     /// Effects that may be at work.
     pub candidates: Vec<&'static Effect>,
@@ -379,7 +379,7 @@ struct Refined {
     full: Hypothesis,
 }
 
-/// Do two free quantities change the same number?
+/// Whether two free quantities change the same number.
 pub fn same(a: &Free, b: &Free, plant: &PlantParameters) -> bool {
     let value = b.quantity.get(plant);
     let mut changed = plant.clone();

@@ -17,22 +17,22 @@ pub struct Axes {
     pub time: Vec<f64>,
     /// Commands of each joint [rad].
     pub commands: Vec<Vec<f64>>,
-    /// What each joint's encoder read [rad]; NaN where there is no value.
+    /// Reading of each joint's encoder [rad]; NaN where there is no value.
     pub encoders: Vec<Option<Vec<f64>>>,
 }
 
-/// What the servos were found to do.
+/// Lag found of the servos.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServoLink {
     /// Bandwidth that fits best [Hz].
     pub bandwidth: f64,
     /// Its standard deviation [Hz].
     pub deviation: f64,
-    /// What it gains over the believed one, as a sum of squares [1].
+    /// Its gain over the believed one, as a sum of squares [1].
     pub gain: f64,
     /// Readings.
     pub count: usize,
-    /// How much a sum of squares counts: less than one where encoders depart from any such lag by more than their noise, and not at random [1].
+    /// Weight of a sum of squares: less than one where encoders depart from any such lag by more than their noise, and not at random [1].
     pub weight: f64,
     /// Root mean square of what it leaves of each joint, in standard deviations of the noise [1].
     pub left: Vec<f64>,
@@ -151,7 +151,7 @@ pub fn pushed_servo_link(
 }
 
 impl ServoLink {
-    /// Do the encoders show another bandwidth than the believed one? By Schwarz's criterion, as for any effect.
+    /// Whether the encoders show another bandwidth than the believed one, by Schwarz's criterion, as for any effect.
     #[must_use]
     pub fn differs(&self) -> bool {
         self.weight * self.gain > (self.count as f64).ln() + Settings::DEFAULT.look_elsewhere

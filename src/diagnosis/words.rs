@@ -97,7 +97,7 @@ pub fn in_unit(channel: Channel, size: f64) -> String {
     format!("{} {unit}", significant(size * factor, 2))
 }
 
-/// What departures are compared with: where no law explains all of them, that is more than noise.
+/// Scale of departures: where no law explains all of them, that is more than noise.
 #[must_use]
 pub fn yardstick(something_remains: bool) -> &'static str {
     if something_remains {

@@ -21,7 +21,7 @@ const SIZE: [usize; 2] = [640, 440];
 const MARGIN: f64 = 46.0;
 /// Below an edge's picture: its legend [pixel].
 const LEGEND: usize = 64;
-/// What lies this much nearer to the eye hides a piece of the edge [m].
+/// Depth by which something must lie nearer to the eye to hide a piece of the edge [m].
 const HIDDEN: f64 = 0.003;
 /// Length of the arrow of the largest force [pixel].
 const ARROW: f64 = 70.0;

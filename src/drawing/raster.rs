@@ -1,4 +1,4 @@
-//! What is seen of triangles from one side: a shaded image with outlines, and how deep each of its pixels lies.
+//! View of triangles from one side: a shaded image with outlines, and how deep each of its pixels lies.
 
 use glam::{DVec2, DVec3};
 
@@ -11,7 +11,7 @@ pub(super) struct Camera {
     pub(super) right: DVec3,
     pub(super) down: DVec3,
     pub(super) eye: DVec3,
-    /// What of the world's picture is at the image's upper left corner [m].
+    /// Point of the world's picture at the image's upper left corner [m].
     pub(super) corner: DVec2,
     /// Pixels a metre [1/m].
     pub(super) scale: f64,
@@ -152,7 +152,7 @@ impl Raster {
         f64::from(self.depth[row * self.size[0] + column])
     }
 
-    /// Does a body, or a crease of one, end between two samples?
+    /// Whether a body, or a crease of one, ends between two samples.
     fn parts(&self, one: usize, other: usize) -> bool {
         if self.body[one] != self.body[other] {
             return true;

@@ -7,9 +7,9 @@ use crate::recording::scene::Scene;
 /// Steps of the directions that are tried [degrees].
 const AZIMUTH_STEP: usize = 15;
 const ELEVATIONS: [f64; 6] = [15.0, 25.0, 35.0, 45.0, 55.0, 65.0];
-/// How far the eye must at least be on the tool's side [1]: cosine between its direction and away from the part.
+/// Least cosine between the eye's direction and that away from the part [1].
 const OUTSIDE: f64 = 0.3;
-/// How much a direction gains that is near to the viewer's own.
+/// Gain of a direction that is near to the viewer's own.
 const USUAL: f64 = 0.08;
 
 /// From the part towards the eye: of the directions on the side that the tool comes from that in which the edge looks longest, a usual one of equals.

@@ -46,13 +46,13 @@ pub struct Parameter {
     pub coordinate: Coordinate,
     /// Least and largest value.
     pub bounds: [f64; 2],
-    /// Is it a part of the answer, or only of the model?
+    /// Whether it is a part of the answer, or only of the model.
     pub reported: bool,
     /// Values between which a fit chooses, where there are no values between them; nothing for what varies continuously.
     pub choices: &'static [f64],
 }
 
-/// What is known when an effect is asked where a fit might start.
+/// Knowledge at hand when an effect is asked where a fit might start.
 pub struct Clues<'a> {
     /// The description so far.
     pub plant: &'a PlantParameters,
@@ -167,7 +167,7 @@ impl Effect {
         }
     }
 
-    /// Can it not stand beside another one?
+    /// Whether it cannot stand beside another one.
     pub fn excludes(&self, other: &Effect) -> bool {
         self.name == other.name || (self.group.is_some() && self.group == other.group)
     }

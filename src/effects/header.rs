@@ -1,4 +1,4 @@
-//! What the header comment of an effect's file says of it, for people: the one place where its physics is told.
+//! The header comment of an effect's file, read for people: the one place where its physics is told.
 //!
 //! ```text
 //! first paragraph    what it is in a sentence, then where it comes from
@@ -17,7 +17,7 @@ use super::{Effect, vocabulary};
 /// The parts of a header; a part that is missing is empty.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Header {
-    /// What the effect is, to be put into a sentence.
+    /// Meaning of the effect, to be put into a sentence.
     pub meaning: String,
     /// Where it comes from; may be empty.
     pub cause: String,
@@ -27,9 +27,9 @@ pub struct Header {
     pub legend: String,
     /// Where the equation comes from.
     pub source: String,
-    /// What it looks like in the signals.
+    /// Its look in the signals.
     pub signature: String,
-    /// What it is confused with, and how the two are told apart.
+    /// Effects with which it is confused, and how they are told apart.
     pub rivals: Vec<(String, String)>,
 }
 
@@ -61,7 +61,7 @@ pub fn meaning(effect: &str) -> &'static str {
 }
 
 impl Effect {
-    /// What its file says of it.
+    /// The header of its file.
     pub fn header(&self) -> &'static Header {
         static NONE: LazyLock<Header> = LazyLock::new(Header::default);
         HEADERS.get(self.vocabulary().0).unwrap_or(&NONE)

@@ -116,7 +116,7 @@ fn coordinate([low, high]: [f64; 2]) -> Coordinate {
     }
 }
 
-/// What the file says, and a fifth and four fifths of the way through all ranges.
+/// The values in the file, and a fifth and four fifths of the way through all ranges.
 fn starts(clues: &Clues<'_>, place: usize) -> Vec<Vec<f64>> {
     let free: Vec<&Constant> = free_of(clues.plant, place).map(|(_, c)| c).collect();
     let through = |share: f64| {

@@ -1,4 +1,4 @@
-//! What an effect is written with.
+//! Parts with which an effect is written.
 
 pub use super::effect::{Clues, Effect, Parameter, Subsystem, effect};
 pub use super::quantity::Coordinate::{self, Linear, Logarithmic};

@@ -1,6 +1,6 @@
-//! How the coordinates of a fit relate to a number of the rig's description.
+//! Relation between the coordinates of a fit and a number of the rig's description.
 
-/// How the fit's coordinate u relates to a value.
+/// Relation between the fit's coordinate u and a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coordinate {
     /// value = scale u, scale in the quantity's unit.

@@ -1,4 +1,4 @@
-//! What one filter believes: a mean and a covariance over state and considered parameters, and the two things done to them.
+//! Belief of one filter: a mean and a covariance over state and considered parameters, and the two things done to them.
 //!
 //! A sample z = h s + noise of variance R:   c = P h,  S = h' P h + R,  K = c / S on the state and 0 on the parameters (Schmidt),
 //!
@@ -20,7 +20,7 @@ pub(super) const ACCELERATION: usize = 2;
 pub(super) const ACCELERATION_BIAS: usize = 3;
 /// Regulator's outlet, gauge [Pa].
 pub(super) const OUTLET: usize = 4;
-/// What the outlet lags behind, gauge [Pa].
+/// Target that the outlet lags behind, gauge [Pa].
 pub(super) const TARGET: usize = 5;
 /// Air in chambers 1 and 2 [kg].
 pub(super) const MASSES: [usize; 2] = [6, 7];

@@ -34,7 +34,7 @@ pub(super) struct Drive {
     pub(super) acceleration: f64,
     /// Outlet, gauge [Pa].
     pub(super) outlet: f64,
-    /// What it lags behind, gauge [Pa].
+    /// Target that it lags behind, gauge [Pa].
     pub(super) target: f64,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Chambers {
     remaining: Vec<f64>,
 }
 
-/// What a chamber hangs on [Pa] and where its piston is [m].
+/// Pressure upstream of a chamber [Pa] and place of its piston [m].
 #[derive(Debug, Clone, Copy)]
 struct Surroundings {
     upstream: f64,
@@ -109,7 +109,7 @@ impl Chambers {
         ]
     }
 
-    /// Does a chamber hang on the regulator?
+    /// Whether a chamber hangs on the regulator.
     pub(super) fn is_supplied(chamber: usize, valve: ValvePosition) -> bool {
         (chamber == 0) == (valve == ValvePosition::Extend)
     }

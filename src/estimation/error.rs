@@ -1,4 +1,4 @@
-//! What an estimator can be refused for.
+//! Reasons to refuse an estimator.
 
 use thiserror::Error;
 
@@ -8,7 +8,7 @@ pub enum EstimationError {
     /// A standard deviation, period or density that must be above zero.
     #[error("estimator: {name} is {value}, but must be a finite number above 0 {unit}")]
     NotPositive {
-        /// What it is.
+        /// Its name.
         name: &'static str,
         /// As given.
         value: f64,
@@ -48,7 +48,7 @@ pub enum EstimationError {
     /// A stroke or gravity that is not a number.
     #[error("estimator: {name} is {value}, but must be a finite number")]
     NotFinite {
-        /// What it is.
+        /// Its name.
         name: &'static str,
         /// As given.
         value: f64,

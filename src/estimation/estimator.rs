@@ -53,7 +53,7 @@ pub struct Measurement {
 pub struct ContactForceEstimator {
     /// Variances of the noise on stroke, acceleration and pressure.
     noise: [f64; 3],
-    /// What each can mean.
+    /// Plausible range of each.
     plausible: [std::ops::RangeInclusive<f64>; 3],
     process: Vec<ProcessNoise>,
     chambers: Chambers,

@@ -22,7 +22,7 @@ pub(super) fn coverage_factor(fourth_powers: f64) -> f64 {
     NORMAL_FACTOR - fourth_powers * (0.119 + 0.196 * fourth_powers)
 }
 
-/// What is known after a sample.
+/// Estimate after a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// Contact force, positive when the tool presses [N].
@@ -60,7 +60,7 @@ impl Estimate {
         self.standard_deviation * self.coverage_factor / NORMAL_FACTOR
     }
 
-    /// Does the 95 % band cover a force [N]?
+    /// Whether the 95 % band covers a force [N].
     pub fn covers(&self, force: f64) -> bool {
         (force - self.force).abs() <= self.coverage_factor * self.standard_deviation
     }

@@ -1,4 +1,4 @@
-//! What an estimator is told beside the device: noise, tolerances, how fast things may change.
+//! Parameters of an estimator beside the device: noise, tolerances, how fast things may change.
 
 use super::EstimationError;
 
@@ -100,7 +100,7 @@ pub struct ProcessModel {
 pub struct EstimatorParameters {
     /// Noise of the sensors.
     pub noise: SensorNoise,
-    /// How well the device is known.
+    /// Uncertainty of the device.
     pub tolerances: Tolerances,
     /// Hypotheses that run side by side, equally likely at the start.
     pub models: Vec<ProcessModel>,

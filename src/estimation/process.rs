@@ -1,4 +1,4 @@
-//! What is believed before the first sample, and how a belief goes on from one sample to the next.
+//! Belief before the first sample, and its course from one sample to the next.
 //!
 //! ```text
 //! x <- x + v T + a T^2/2,   v <- v + a T,   a <- a + walk                             (the motion that the surface imposes)
@@ -15,7 +15,7 @@ use super::parameters::{EstimatorParameters, ProcessModel, Tolerances};
 use crate::device::DeviceParameters;
 use crate::physics::valve::ValvePosition;
 
-/// What the motion may be before the first sample, standard deviations: stroke [m], speed [m/s], acceleration [m/s2].
+/// Possible motion before the first sample, standard deviations: stroke [m], speed [m/s], acceleration [m/s2].
 const START_MOTION: [f64; 3] = [1e-3, 0.05, 1.0];
 
 /// Process noise of one model over one period.

@@ -21,7 +21,7 @@ pub(super) struct Deflection {
     pub(super) by_presliding: f64,
 }
 
-/// What the motion did, told from the believed stroke.
+/// Course of the motion, told from the believed stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Way {
     /// On in the same direction, or turned: carry the turning point along.
@@ -38,7 +38,7 @@ pub(super) struct Seals {
     friction: SealFriction,
     /// 1 extending, -1 retracting.
     direction: f64,
-    /// Has it stepped back since it went on?
+    /// Whether it has stepped back since it went on.
     halted: bool,
 }
 
@@ -65,7 +65,7 @@ impl Seals {
         }
     }
 
-    /// What a displacement from the turning point [m] means when noise can make up to `noise` [m] of a step back, and a motion that has halted
+    /// Meaning of a displacement from the turning point [m] when noise can make up to `noise` [m] of a step back, and a motion that has halted
     /// is taken to go on from `resume` [m] on.
     pub(super) fn way(&mut self, displacement: f64, noise: f64, resume: f64) -> Way {
         let onward = self.direction * displacement;

@@ -1,4 +1,4 @@
-//! What a figure is drawn on: lines, dots, areas and texts in an SVG document.
+//! Canvas of a figure: lines, dots, areas and texts in an SVG document.
 //!
 //! The drawing library counts in whole units. A unit is a tenth of a pixel here: lines are smooth
 //! and coordinates short.

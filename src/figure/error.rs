@@ -1,4 +1,4 @@
-//! What cannot be drawn.
+//! Something cannot be drawn.
 
 use thiserror::Error;
 
@@ -28,7 +28,7 @@ pub enum FigureError {
         label: String,
         /// Vertical label of its panel.
         panel: String,
-        /// What is wrong with it, with the values.
+        /// Its fault, with the values.
         reason: String,
     },
     /// The drawing library refused.
@@ -36,7 +36,7 @@ pub enum FigureError {
     Drawing {
         /// Its title.
         figure: String,
-        /// What the library said.
+        /// Message of the library.
         reason: String,
     },
 }

@@ -31,7 +31,7 @@ pub struct Panel<'a> {
     pub title: String,
     /// Name and unit of the vertical axis: `force [N]`.
     pub vertical_label: String,
-    /// What the horizontal axis is.
+    /// The horizontal axis.
     pub horizontal: Horizontal,
     /// The signals; later ones lie on top.
     pub series: Vec<Series<'a>>,
@@ -62,13 +62,13 @@ pub struct Series<'a> {
     pub values: Cow<'a, [f64]>,
     /// Decides the colour.
     pub role: Role,
-    /// How it is drawn.
+    /// Its stroke.
     pub stroke: Stroke,
     /// Whether each value holds until the next one, instead of a straight line between them.
     pub stepwise: bool,
 }
 
-/// What a signal is; each role has its colour in every figure.
+/// Role of a signal; each role has its colour in every figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// Commanded or desired value: black.
@@ -93,7 +93,7 @@ pub enum Role {
     Band,
 }
 
-/// How a series is drawn.
+/// Stroke of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
     /// A line.
@@ -106,7 +106,7 @@ pub enum Stroke {
     Truth,
     /// Dots without a line.
     Points,
-    /// What the line encloses, filled: of a band whose edges are curves, one edge there and the other back.
+    /// The area that the line encloses, filled: of a band whose edges are curves, one edge there and the other back.
     Area,
 }
 

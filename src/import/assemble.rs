@@ -17,18 +17,18 @@ const GAP: f64 = 3.0;
 pub struct Imported {
     /// The recording, at the first log's times.
     pub recording: Recording,
-    /// What its times count from, in seconds since 1970; 0 where the logs' own start [s].
+    /// Origin of its times, in seconds since 1970; 0 where it is the logs' own start [s].
     pub origin: f64,
     /// The logs, in the map's order.
     pub logs: Vec<LogNote>,
 }
 
-/// What there is to say of a log.
+/// Notes on a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogNote {
     /// Its file.
     pub file: PathBuf,
-    /// What was left out.
+    /// Data left out.
     pub remarks: Vec<Remark>,
     /// Where its clock was found against the first log's.
     pub alignment: Option<Alignment>,
@@ -41,7 +41,7 @@ pub struct LogNote {
 /// Reads the logs of a map, `files` in place of those that it names, and puts them together.
 ///
 /// # Errors
-/// What a log lacks, a clock that cannot be found, logs that do not overlap in time.
+/// Something that a log lacks, a clock that cannot be found, logs that do not overlap in time.
 pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportError> {
     let mut logs: Vec<LogNote> = Vec::new();
     let mut origin = 0.0;

@@ -1,4 +1,4 @@
-//! What makes a channel's unit or reading doubtful: what is seen, and what it looks like. Told to the user, who decides; nothing is changed.
+//! Signs that make a channel's unit or reading doubtful: what is seen, and what it looks like. Told to the user, who decides; nothing is changed.
 //!
 //! Each rule says why. None refuses: a strange recording may be right.
 
@@ -22,7 +22,7 @@ const REST: f64 = 0.02;
 const RAILS: [f64; 5] = [2.5, 3.3, 4.096, 5.0, 10.0];
 /// Ranges whose halves, quarters and so on are converters' steps [V]; 4.096 V has steps of whole millivolts, as any rounding has.
 const RANGES: [f64; 2] = [10.0, 3.3];
-/// How far a number may be from one of those, relatively.
+/// Largest distance of a number from one of those, relatively.
 const CLOSE: f64 = 1e-3;
 /// Bits of a converter, fewest and most.
 const BITS: std::ops::RangeInclusive<i32> = 8..=24;
@@ -37,7 +37,7 @@ const FAST: f64 = 1e6;
 /// Words that end names without being meant as units.
 const NO_UNITS: [&str; 2] = ["in", "min"];
 
-/// What is doubtful of a channel by itself, `values` being those that are there [SI].
+/// Doubts about a channel by itself, `values` being those that are there [SI].
 #[must_use]
 pub fn of_channel(channel: &ChannelMap, found: &Finding, values: &[f64]) -> Vec<String> {
     let mut doubts = Vec::new();

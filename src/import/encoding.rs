@@ -22,14 +22,14 @@ const ZEROS: f64 = 0.7;
 /// Bytes that are looked at for zeros, at most.
 const LOOKED_AT: usize = 1 << 16;
 
-/// How sure an encoding is, and why.
+/// Certainty of an encoding, and its reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Told {
     /// Its name, as the map has it.
     pub name: String,
     /// Why.
     pub reason: &'static str,
-    /// Could it be another one?
+    /// Whether it could be another one.
     pub is_certain: bool,
 }
 
@@ -38,7 +38,7 @@ pub(super) fn named(name: &str) -> Option<&'static Encoding> {
     Encoding::for_label(name.trim().as_bytes())
 }
 
-/// Is this the name of an encoding?
+/// Whether this is the name of an encoding.
 #[must_use]
 pub fn is_known(name: &str) -> bool {
     named(name).is_some()

@@ -1,4 +1,4 @@
-//! What can be wrong with a log and its map.
+//! Faults of a log and its map.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub enum ImportError {
     Encoding {
         /// The file.
         file: PathBuf,
-        /// What was seen.
+        /// The observation.
         seen: String,
     },
     /// The map names a column that is not there.
@@ -33,7 +33,7 @@ pub enum ImportError {
         file: PathBuf,
         /// The column.
         column: Column,
-        /// What is there.
+        /// The channels that are there.
         there: String,
     },
     /// A row with too few fields.
@@ -57,9 +57,9 @@ pub enum ImportError {
         line: u64,
         /// The column.
         column: Column,
-        /// What stands there.
+        /// The text that stands there.
         found: String,
-        /// What would be right.
+        /// The right form.
         expected: String,
     },
     /// A log that is cut off.
@@ -67,11 +67,11 @@ pub enum ImportError {
     Truncated {
         /// The file.
         file: PathBuf,
-        /// How that shows.
+        /// The sign of it.
         found: String,
-        /// What of it can be read.
+        /// The readable part of it.
         rest: String,
-        /// What would be right.
+        /// The right form.
         advice: String,
     },
     /// Times whose unit the map should give, or should not.
@@ -81,9 +81,9 @@ pub enum ImportError {
         file: PathBuf,
         /// The column.
         column: Column,
-        /// What it holds.
+        /// Its content.
         found: String,
-        /// What the map should say.
+        /// The text expected in the map.
         expected: String,
     },
     /// A column whose values are no numbers.
@@ -93,9 +93,9 @@ pub enum ImportError {
         file: PathBuf,
         /// The column.
         column: Column,
-        /// What it is.
+        /// The kind found.
         found: String,
-        /// What would be right.
+        /// The right form.
         expected: String,
     },
     /// Columns of different lengths.
@@ -129,7 +129,7 @@ pub enum ImportError {
         found: f64,
         /// The time before it [s].
         before: f64,
-        /// What it looks like, if that is known.
+        /// The likely form, if that is known.
         advice: &'static str,
     },
     /// Nothing is left.
@@ -175,7 +175,7 @@ pub enum ImportError {
         /// From when to when that goes [s].
         first: [f64; 2],
     },
-    /// What came together is no recording.
+    /// The channels together make no recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
 }

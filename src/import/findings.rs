@@ -1,4 +1,4 @@
-//! What a log turned out to hold, channel by channel: rate, gaps, range, noise, steps of its converter, and what makes its unit doubtful.
+//! Content of a log, channel by channel: rate, gaps, range, noise, steps of its converter, and what makes its unit doubtful.
 //!
 //! ```text
 //! noise = 1.4826 median |x_{i+1} - 2 x_i + x_{i-1}| / sqrt 6          white noise on a smooth course (Gasser, Sroka and Jennen-Steinmetz 1986)
@@ -24,10 +24,10 @@ const CUT: f64 = 0.005;
 /// Share of rows that two logs must have in common to be the same data.
 const SAME: f64 = 0.9;
 
-/// What a channel turned out to be.
+/// Findings about a channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// What it is.
+    /// The quantity.
     pub quantity: String,
     /// SI unit of the numbers here.
     pub unit: Unit,
@@ -49,7 +49,7 @@ pub struct Finding {
     pub quantum: Option<f64>,
     /// Values at which it is cut off.
     pub cut_off_at: Vec<f64>,
-    /// What makes its unit, or its reading, doubtful.
+    /// Signs that make its unit, or its reading, doubtful.
     pub doubts: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What kind of unit a quantity has, from the list of signals or from the last word of its name.
+//! Kind of a quantity's unit, from the list of signals or from the last word of its name.
 
 use super::map::GAUGE;
 use crate::recording::{Unit, schema};

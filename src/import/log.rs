@@ -12,14 +12,14 @@ const NANOSECONDS: i64 = 1_000_000_000;
 /// Names that a message lists, at most.
 const LISTED: usize = 12;
 
-/// What a log holds of a map's channels.
+/// Content of a log for a map's channels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
     /// One for each channel of the map, in its order.
     pub series: Vec<Series>,
     /// Whole seconds taken off its times, since 1970; 0 where they count from a start [s].
     pub epoch: f64,
-    /// What was left out, or mended, for people.
+    /// Data left out, or mended, for people.
     pub remarks: Vec<Remark>,
 }
 
@@ -73,7 +73,7 @@ pub(super) struct Rows {
     pub columns: Vec<Vec<f64>>,
     /// Where each row stands, from 1.
     pub lines: Vec<u64>,
-    /// What was left out while reading.
+    /// Data left out while reading.
     pub remarks: Vec<Remark>,
 }
 
@@ -142,7 +142,7 @@ fn seconds(map: &FileMap, times: Times) -> (Vec<f64>, f64) {
 /// Ratio from which a time may have fallen by a thousand, less some steps.
 const THOUSANDFOLD: std::ops::RangeInclusive<f64> = 900.0..=1001.0;
 
-/// What a time that goes back to a thousandth looks like: `1.000` after `999`.
+/// Pattern of a time that goes back to a thousandth: `1.000` after `999`.
 fn fallen(time: f64, before: f64) -> &'static str {
     if THOUSANDFOLD.contains(&(before / time)) {
         "; it fell to a thousandth: is its mark one of thousands (`thousands_mark` in [file.time])?"

@@ -25,13 +25,13 @@ mod write;
 pub struct Draft {
     /// The map, commented.
     pub text: String,
-    /// What could not be told, a sentence each; the map is not complete without it.
+    /// Questions that remain open, a sentence each; the map is not complete without an answer.
     pub open: Vec<String>,
     /// Quantities that were found, with their columns.
     pub found: Vec<(String, String)>,
 }
 
-/// How sure something is, and why.
+/// Certainty of something, and its reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Because {
     is_certain: bool,
@@ -70,7 +70,7 @@ struct SaidUnit {
     because: Because,
 }
 
-/// What a column's cells are.
+/// Kinds of a column's cells.
 #[derive(Debug, Clone, PartialEq)]
 enum Cells {
     /// Numbers, NaN where there is none.
@@ -83,7 +83,7 @@ enum Cells {
         distinct: usize,
         rows: usize,
         because: Because,
-        /// What cannot be told of them.
+        /// Their open question.
         problem: Option<String>,
     },
     /// Something else.
@@ -93,7 +93,7 @@ enum Cells {
 /// A column of a log.
 #[derive(Debug, Clone, PartialEq)]
 struct Seen {
-    /// How the map calls it.
+    /// Its name in the map.
     column: Column,
     /// Its name, for people and to be recognised.
     name: String,
@@ -136,10 +136,10 @@ struct Line {
 #[derive(Debug, Clone, PartialEq)]
 struct Looked {
     path: PathBuf,
-    /// What the map says of its form.
+    /// Lines of the map on its form.
     head: Vec<Line>,
     columns: Vec<Seen>,
-    /// Are the times those at which messages were logged, or their stamps?
+    /// Whether the times are those at which messages were logged, not their stamps.
     time: TimeSeen,
 }
 
@@ -153,7 +153,7 @@ enum TimeSeen {
 }
 
 impl Looked {
-    /// Is another log written in the same way, with the same columns?
+    /// Whether another log is written in the same way, with the same columns.
     fn is_like(&self, other: &Self) -> bool {
         let plain = |log: &Self| -> Vec<(&'static str, String)> {
             let head = log.head.iter();

@@ -10,7 +10,7 @@ use super::stamps::DateOrder;
 use super::units::LogUnit;
 use crate::recording::Unit;
 
-/// What a quantity ends with whose pressure is above the atmosphere.
+/// Ending of a quantity whose pressure is above the atmosphere.
 pub const GAUGE: &str = "_gauge";
 
 /// A map, checked.
@@ -22,14 +22,14 @@ pub struct ImportMap {
     pub title: String,
     /// The logs that make one recording, the one whose clock counts first.
     pub files: Vec<FileMap>,
-    /// What no log holds and does not change.
+    /// Constant quantities that no log holds.
     pub constants: Vec<Constant>,
 }
 
 /// A quantity that no log holds, with the value that it has throughout.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constant {
-    /// What it is.
+    /// The quantity.
     pub quantity: String,
     /// Its unit in SI.
     pub unit: Unit,
@@ -42,11 +42,11 @@ pub struct Constant {
 pub struct FileMap {
     /// Where it is, if the map says so.
     pub path: Option<PathBuf>,
-    /// How it is written.
+    /// Its form.
     pub form: Form,
     /// Rows left out at either end.
     pub dropped: [usize; 2],
-    /// Is what can be read of a log that is cut off to be used?
+    /// Whether the readable part of a log that is cut off is to be used.
     pub accepts_truncated: bool,
     /// Its clock.
     pub clock: Clock,
@@ -56,7 +56,7 @@ pub struct FileMap {
     pub channels: Vec<ChannelMap>,
 }
 
-/// How a log is written.
+/// Form of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Form {
     /// Text, a row a line.
@@ -69,14 +69,14 @@ pub enum Form {
     Bag,
 }
 
-/// How a text is written.
+/// Form of a text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextForm {
     /// Its encoding, if the map says so.
     pub encoding: Option<String>,
-    /// What stands between fields.
+    /// Separator of fields.
     pub separator: Separator,
-    /// What stands before the decimals.
+    /// Mark before the decimals.
     pub decimal_mark: char,
     /// A mark that stands before every third digit of its numbers and means nothing.
     pub thousands_mark: Option<char>,
@@ -86,7 +86,7 @@ pub struct TextForm {
     pub names_line: Option<usize>,
 }
 
-/// What stands between fields.
+/// Separator of fields.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Separator {
     /// A character of ASCII.
@@ -152,7 +152,7 @@ pub struct TimeMap {
 /// A log's channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelMap {
-    /// What it is; ends with `_gauge` where it is a pressure above the atmosphere.
+    /// Its quantity; ends with `_gauge` where it is a pressure above the atmosphere.
     pub quantity: String,
     /// Where.
     pub column: Column,
@@ -162,15 +162,15 @@ pub struct ChannelMap {
     pub frame: Option<String>,
     /// In what, after gain and offset.
     pub unit: &'static LogUnit,
-    /// What a number is multiplied by, as of a sensor in volts.
+    /// Factor on a number, as of a sensor in volts.
     pub gain: f64,
-    /// What is added then, in the unit.
+    /// Offset added then, in the unit.
     pub offset: f64,
-    /// Is the log's sign the other one?
+    /// Whether the log's sign is the other one.
     pub reversed: bool,
     /// Against what the log's pressure is, where it is one.
     pub pressure: Option<Pressure>,
-    /// What is added in SI: the atmosphere, or less it, where log and quantity differ [Pa].
+    /// Offset added in SI: the atmosphere, or less it, where log and quantity differ [Pa].
     pub above: f64,
 }
 
@@ -191,7 +191,7 @@ impl ChannelMap {
         self.above + if self.reversed { -value } else { value }
     }
 
-    /// Is a number taken as it stands, its unit apart?
+    /// Whether a number is taken as it stands, its unit apart.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.gain == 1.0 && self.offset == 0.0

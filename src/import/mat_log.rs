@@ -34,13 +34,13 @@ struct NamedColumn {
     values: Vec<f64>,
 }
 
-/// What a file holds.
+/// Content of a file.
 #[derive(Default)]
 struct Contents {
     columns: Vec<NamedColumn>,
     /// Arrays that hold no numbers, or none that are read.
     others: usize,
-    /// Does it end within an element?
+    /// Whether it ends within an element.
     torn: bool,
 }
 

@@ -10,7 +10,7 @@ const NOTHING: [&str; 15] = [
 /// Spaces that stand before every third digit.
 const SPACES: [char; 4] = [' ', '\u{a0}', '\u{202f}', '\u{2009}'];
 
-/// How numbers are written.
+/// Marks in numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Marks {
     /// Before the decimals.
@@ -19,7 +19,7 @@ pub(super) struct Marks {
     pub thousands: Option<char>,
 }
 
-/// What a field tells of the marks of its column.
+/// Signs in a field of the marks of its column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Seen {
     /// No number.
@@ -34,7 +34,7 @@ pub(super) enum Seen {
     Open(char),
 }
 
-/// Does a field stand for no value?
+/// Whether a field stands for no value.
 pub(super) fn is_nothing(field: &str) -> bool {
     NOTHING.contains(&field.to_ascii_lowercase().as_str())
 }
@@ -94,7 +94,7 @@ fn ungrouped(whole: &str, mark: char) -> Option<String> {
     (!is_grouped || (1..=3).contains(&first)).then_some(plain)
 }
 
-/// What a field tells of marks.
+/// Signs of marks in a field.
 pub(super) fn seen(field: &str) -> Seen {
     let body = field.trim().trim_start_matches(['+', '-']);
     let mantissa = body.split(['e', 'E']).next().unwrap_or(body);
@@ -143,7 +143,7 @@ pub(super) fn seen(field: &str) -> Seen {
     }
 }
 
-/// What would be right of a field that is no number with these marks, by what the other fields of its column, with their lines, tell.
+/// The right form of a field that is no number with these marks, by what the other fields of its column, with their lines, tell.
 pub(super) fn expected<'a>(
     field: &str,
     line: u64,

@@ -50,7 +50,7 @@ pub enum DateOrder {
 pub(super) struct Unread {
     /// Which of the stamps, from 0.
     pub index: usize,
-    /// What would be right, and what to write.
+    /// The right form, and what to write.
     pub expected: String,
 }
 
@@ -66,13 +66,13 @@ struct Stamp {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Groups {
     numbers: [u32; 3],
-    /// How many of them there are: two of a date without a year.
+    /// Number of them: two of a date without a year.
     count: usize,
     /// Which of them a name of a month is.
     named_month: Option<usize>,
     /// Which of them has four digits.
     long: Option<usize>,
-    /// Is there a point between them?
+    /// Whether there is a point between them.
     pointed: bool,
 }
 
@@ -121,12 +121,12 @@ pub(super) fn nanoseconds(
     Ok(times)
 }
 
-/// Is this a stamp, and not a plain number?
+/// Whether this is a stamp, and not a plain number.
 pub(super) fn is_stamp(text: &str) -> bool {
     parse(text).is_some()
 }
 
-/// Does a stamp have a date, and a time?
+/// Presence of a date, and of a time, in a stamp.
 pub(super) fn parts(text: &str) -> Option<[bool; 2]> {
     let stamp = parse(text)?;
     Some([
@@ -135,7 +135,7 @@ pub(super) fn parts(text: &str) -> Option<[bool; 2]> {
     ])
 }
 
-/// What would be a stamp, with what this looks like.
+/// The right form of a stamp, and what this looks like.
 fn unknown(text: &str) -> String {
     const FORMS: &str = "a stamp such as `2024-03-05T14:02:03.123Z`, `05.03.2024 14:02:03,123`, `14:02:03.123` or `T#1s250ms`";
     let is_number = text.replace(',', ".").trim().parse::<f64>().is_ok();
@@ -190,7 +190,7 @@ fn told_order(stamps: &[Stamp], year: Option<i32>) -> Result<Option<DateOrder>, 
 }
 
 impl Groups {
-    /// Can only an order tell which is the day?
+    /// Whether only an order can tell which is the day.
     fn needs_order(&self) -> bool {
         self.named_month.is_none() && self.long != Some(0)
     }

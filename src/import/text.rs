@@ -18,7 +18,7 @@ pub(super) struct Sheet {
     pub header: Vec<String>,
     /// Fields of each row, with its line from 1.
     pub rows: Vec<(u64, StringRecord)>,
-    /// Does the last line end?
+    /// Whether the last line ends.
     is_whole: bool,
     /// Fields that the last row holds to their ends.
     last_fields: usize,

@@ -16,9 +16,9 @@ pub struct LogUnit {
     pub name: &'static str,
     /// The SI unit of the same kind.
     pub si: Unit,
-    /// What a value is multiplied by.
+    /// Factor on a value.
     pub factor: f64,
-    /// What is added to a value before.
+    /// Offset added to a value before.
     pub zero: f64,
 }
 

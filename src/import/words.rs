@@ -1,6 +1,6 @@
 //! Words that stand for on and off in logs, language by language.
 
-/// What stands for 1, and what for 0.
+/// Words for 1, and words for 0.
 struct Pair {
     on: &'static str,
     off: &'static str,

@@ -15,7 +15,7 @@ use super::sensors::measured;
 use super::shown::intervals;
 use super::visibility::Eye;
 
-/// What a case is made from.
+/// Recipe of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
     /// Name.
@@ -35,9 +35,9 @@ pub struct Recipe {
 pub struct Case {
     /// The device as believed.
     pub believed: Believed,
-    /// What was done; the last one is to be predicted.
+    /// Programmes carried out; the last one is to be predicted.
     pub programmes: Vec<Programme>,
-    /// What was measured in each, in the order of [`CHANNELS`].
+    /// Readings in each, in the order of [`CHANNELS`].
     pub measured: Vec<[Vec<f64>; 4]>,
     /// The truth.
     pub sealed: SealedCase,
@@ -73,7 +73,7 @@ impl Pair {
     }
 }
 
-/// What a recipe comes to before anything is measured.
+/// Result of a recipe before anything is measured.
 struct Setting {
     believed: Believed,
     programmes: Vec<Programme>,
@@ -83,7 +83,7 @@ struct Setting {
 }
 
 impl Setting {
-    /// What really happens in the first recordings.
+    /// True courses of the first recordings.
     fn run(&self, count: usize) -> Result<Vec<Course>, LaboratoryError> {
         let programmes = self.programmes[..count].iter();
         programmes
@@ -144,7 +144,7 @@ impl Recipe {
         Ok((setting.pair.real, setting.concealed, setting.programmes))
     }
 
-    /// How strongly one effect shows at shares of its largest, with what else is in the recipe left out.
+    /// Visibility of one effect at shares of its largest size, with what else is in the recipe left out.
     ///
     /// # Errors
     /// The integrator cannot go on.

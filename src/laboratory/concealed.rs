@@ -1,4 +1,4 @@
-//! What is at work in a device that its owner's model leaves out.
+//! Effects at work in a device that its owner's model leaves out.
 
 /// Seal and guide friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,7 +96,7 @@ pub struct Concealed {
     pub crosstalk: f64,
     /// Position sensor: gain [1].
     pub stroke_gain: f64,
-    /// How late the force is stamped [s].
+    /// Delay of the force's stamps [s].
     pub force_late: f64,
 
     /// Unlisted: ripple of the outlet, zero to peak [Pa] and frequency [Hz].

@@ -17,10 +17,10 @@ const FIRST_STEP: f64 = 1e-6;
 /// Steps at most in a recording.
 const MOST_STEPS: usize = 20_000_000;
 
-/// What really happens in a recording, one value per sample time.
+/// True course of a recording, one value per sample time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Course {
-    /// What ideal sensors with the device's own errors read, in the order of [`super::CHANNELS`].
+    /// Readings of ideal sensors with the device's own errors, in the order of [`super::CHANNELS`].
     pub readings: [Vec<f64>; 4],
     /// Contact force [N].
     pub contact: Vec<f64>,
@@ -40,7 +40,7 @@ pub enum LaboratoryError {
         recording: String,
         /// When [s].
         time: f64,
-        /// What it says.
+        /// Its text.
         what: String,
     },
 }

@@ -1,11 +1,11 @@
-//! What recorders do to recordings: stamps that jitter, gaps, lost values and wild ones.
+//! Defects that recorders bring into recordings: stamps that jitter, gaps, lost values and wild ones.
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::programme::Programme;
 
-/// How dirty recordings are.
+/// Dirt of recordings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dirt {
     /// Largest departure of a stamp from the grid, in steps [1].

@@ -23,7 +23,7 @@ pub struct LabEffect {
     pub(super) conceal: fn(&mut Scene<'_>) -> Vec<(&'static str, f64)>,
 }
 
-/// What an effect is drawn from.
+/// Context from which an effect is drawn.
 pub(super) struct Scene<'a> {
     /// Random numbers.
     pub rng: &'a mut ChaCha8Rng,

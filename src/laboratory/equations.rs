@@ -70,16 +70,16 @@ const DRY_SPEED: f64 = 1e-3;
 /// Fastest exchange between cells of a line that is resolved [1/s].
 const FASTEST_CELL: f64 = 6e4;
 
-/// What commands do between two of their changes.
+/// Commands between two of their changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Leg {
-    /// Does the valve extend?
+    /// Whether the valve extends.
     pub extends: bool,
     /// Pressure that the regulator goes to [Pa gauge].
     pub target: f64,
 }
 
-/// What can be read off a state.
+/// Readings of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Reading {
     /// Outlet [Pa gauge].
@@ -110,7 +110,7 @@ pub(super) struct Equations<'a> {
     critical: f64,
 }
 
-/// What the line and its regulator do at a moment.
+/// State of the line and its regulator at a moment.
 struct Line {
     at_valve: f64,
     drawn: f64,
@@ -423,7 +423,7 @@ impl<'a> Equations<'a> {
         (elastic + self.rig.contact_damping * (speed - rate)).max(0.0)
     }
 
-    /// What can be read off a state.
+    /// Readings of a state.
     pub fn read(&self, time: f64, state: &State) -> Reading {
         let stroke = state[at::PLACE] * self.rig.stroke;
         let pressures = self.pressures(state);

@@ -1,6 +1,6 @@
 //! The laboratory: recordings of devices that are not the simulator's own.
 //!
-//! What a diagnosis finds in recordings of the simulator that it fits proves little. Here the device is written out once more, in equations of its
+//! A diagnosis of recordings from the simulator that it fits proves little. Here the device is written out once more, in equations of its
 //! own for another integrator (Dormand and Prince 5(4) with its own step control, crate `differential-equations`), and a real device's parts are richer
 //! than a model's: seals with elastoplastic presliding, a hose of many cells, walls that warm up, orifices without the model's laminar line.
 //! Formulas stand here twice on purpose: nothing here may use `physics`, `device` or `plant`.

@@ -1,4 +1,4 @@
-//! What a recording does with the rig: set pressures, valve and surface over time.
+//! Programme of a recording: set pressures, valve and surface over time.
 
 use std::f64::consts::TAU;
 
@@ -57,7 +57,7 @@ impl Programme {
         held(&self.set_pressures, time).unwrap_or(0.0)
     }
 
-    /// Is the valve told to extend at a time?
+    /// Whether the valve is told to extend at a time.
     pub fn extends(&self, time: f64) -> bool {
         held(&self.valve, time).unwrap_or(true)
     }

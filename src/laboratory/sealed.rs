@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct SealedCase {
     /// Name of the case.
     pub case: String,
-    /// What is at work.
+    /// Effects at work.
     pub effects: Vec<SealedEffect>,
     /// Standard deviation of each channel's noise, by column.
     pub noise: BTreeMap<String, f64>,
@@ -18,7 +18,7 @@ pub struct SealedCase {
     /// The believed numbers as they really are.
     #[serde(default)]
     pub true_parameters: BTreeMap<String, f64>,
-    /// How strongly the effects show beside all that is tolerated, in standard deviations [1]; 0 where it is not known.
+    /// Visibility of the effects beside all that is tolerated, in standard deviations [1]; 0 where it is not known.
     #[serde(default)]
     pub shows: f64,
     /// Seed.
@@ -30,7 +30,7 @@ pub struct SealedCase {
 pub struct SealedEffect {
     /// Name that an answer should give.
     pub name: String,
-    /// What it is.
+    /// The true effect.
     pub truth: String,
     /// Where it enters.
     pub subsystem: String,

@@ -1,4 +1,4 @@
-//! What is written down of a course: noise of each sensor, and the steps of its converter.
+//! Records of a course: noise of each sensor, and the steps of its converter.
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;

@@ -1,4 +1,4 @@
-//! How strongly an effect shows beside all that its owner tolerates.
+//! Visibility of an effect beside all that its owner tolerates.
 //!
 //! ```text
 //! D^2 = min over q of  sum w_i^2 (d_i - sum J_ij q_j)^2 + sum q_j^2,      w_i = 1 / sqrt(1 + (T s_i)^2)
@@ -20,7 +20,7 @@ use super::rig::Rig;
 const FORGIVEN: f64 = 1e-3;
 /// Step of a tolerated number, in its standard deviations [1].
 const STEP: f64 = 0.3;
-/// How many numbers are tolerated.
+/// Number of tolerated numbers.
 const TOLERATED: usize = TOLERANCES.len();
 
 /// A device without the effect, seen through its sensors and its owner's tolerances.
@@ -29,7 +29,7 @@ pub(super) struct Eye {
     courses: Vec<Course>,
     /// Weight over noise of each reading.
     weights: Vec<f64>,
-    /// What each tolerated number moves, weighted.
+    /// Changes by each tolerated number, weighted.
     columns: Vec<Vec<f64>>,
     /// J'J + 1, inverted.
     inverse: SMatrix<f64, TOLERATED, TOLERATED>,

@@ -21,7 +21,7 @@ const LAG_SHARE: f64 = 0.632;
 /// Density of air at reference conditions, ISO 8778 [kg/m3].
 const REFERENCE_DENSITY: f64 = 1.185;
 
-/// What a run is measured against.
+/// Limits against which a run is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BenchLimits {
     /// When each command was given [s], and whether it was a force.

@@ -13,7 +13,7 @@ pub struct Metric<S = Summary> {
     pub unit: &'static str,
     /// Name for people, within its part of the report.
     pub label: &'static str,
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub meaning: &'static str,
     /// Its value, if the run determines it.
     pub value: fn(&S) -> Option<f64>,

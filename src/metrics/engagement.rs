@@ -1,4 +1,4 @@
-//! How the tool meets the edge: peak of the force and time to settle.
+//! Engagement of the tool with the edge: peak of the force and time to settle.
 //!
 //! The window runs from the first touch, whatever phase it falls into, to the start of following.
 

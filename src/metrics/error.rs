@@ -1,4 +1,4 @@
-//! What can go wrong while a run is measured or compared with bounds.
+//! Errors while a run is measured or compared with bounds.
 
 /// A run that cannot be measured, or a bound that cannot be checked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -9,9 +9,9 @@ pub enum MetricsError {
     Limit {
         /// Which limit.
         what: String,
-        /// What it is, with its unit.
+        /// Its value, with its unit.
         value: String,
-        /// What it should be.
+        /// The expected value.
         expected: &'static str,
     },
     /// A channel is in another unit than its quantity has.
@@ -29,7 +29,7 @@ pub enum MetricsError {
     RepeatedPhase {
         /// Name of the phase.
         name: &'static str,
-        /// How often it occurs.
+        /// Number of times that it occurs.
         count: usize,
     },
     /// An expectation names no metric.
@@ -48,9 +48,9 @@ pub enum MetricsError {
     Bound {
         /// Name of the metric.
         metric: String,
-        /// What its bounds are.
+        /// Its bounds.
         found: String,
-        /// What they should be.
+        /// The expected bounds.
         expected: &'static str,
     },
 }

@@ -19,11 +19,11 @@ pub struct Verdict {
     pub min: Option<f64>,
     /// Largest allowed value.
     pub max: Option<f64>,
-    /// Is it within the bounds? A value that is not determined never is.
+    /// Whether it is within the bounds. A value that is not determined never is.
     pub kept: bool,
 }
 
-/// Can every expectation be checked? To be asked before a run, not after it.
+/// Checks that every expectation can be checked. To be asked before a run, not after it.
 ///
 /// # Errors
 /// Names the first metric that does not exist, with the nearest that does, or the first bounds that

@@ -5,7 +5,7 @@ use super::window::Window;
 use super::{FOLLOW_PHASE, ForceTenth, MetricsError, NARROW_BAND, Summary, TOUCH_SHARE, WIDE_BAND};
 use crate::recording::{Recording, Unit, schema};
 
-/// Is a force within a band about the desired one, given as a share of it?
+/// Whether a force is within a band about the desired one, given as a share of it.
 pub(super) fn within(force: f64, desired: f64, band: f64) -> bool {
     (force - desired).abs() <= band * desired
 }

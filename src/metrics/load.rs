@@ -1,4 +1,4 @@
-//! What the run took from the joints, and whether its air adds up; over the whole run.
+//! Use of the joints' limits, and whether the run's air adds up; over the whole run.
 
 use super::statistics::largest;
 use super::window::Window;

@@ -39,7 +39,7 @@ pub const WIDE_BAND: f64 = 0.10;
 /// Force from which the tool counts as touching, as a share of the desired force [1].
 pub const TOUCH_SHARE: f64 = 0.01;
 
-/// What a run is measured against.
+/// Limits against which a run is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SummaryLimits {
     /// Desired contact force [N].

@@ -41,7 +41,7 @@ pub struct Summary {
     pub force_peak_retract_n: Option<f64>,
     /// Largest contact force from first touch to the start of following [N].
     pub engagement_peak_n: Option<f64>,
-    /// How far that peak exceeds the desired force [%].
+    /// Excess of that peak over the desired force [%].
     pub engagement_overshoot_percent: Option<f64>,
     /// From first touch until the force stays within 5 % of the desired one [s].
     pub settling_time_s: Option<f64>,
@@ -75,12 +75,12 @@ pub struct Summary {
     pub joints: Vec<JointTorqueShare>,
     /// The force in each tenth of the followed length; empty if nothing was followed.
     pub force_by_tenth: Vec<ForceTenth>,
-    /// How long the computation took; differs from run to run.
+    /// Duration of the computation; differs from run to run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timing: Option<Timing>,
 }
 
-/// How much of a joint's effort limit a run took.
+/// Share of a joint's effort limit that a run took.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JointTorqueShare {
     /// The joint's name.
@@ -102,7 +102,7 @@ pub struct ForceTenth {
     pub force_standard_deviation_n: Option<f64>,
 }
 
-/// How long a run took to compute.
+/// Duration of a run's computation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
     /// Wall-clock time of the computation [s].

@@ -14,7 +14,7 @@ pub(crate) fn limits() -> SummaryLimits {
     }
 }
 
-/// Is a value defined and within a relative distance of the expected one?
+/// Asserts that a value is defined and within a relative distance of the expected one.
 #[track_caller]
 pub(crate) fn assert_near(value: Option<f64>, expected: f64, relative: f64) {
     let value = value.expect("a defined value");

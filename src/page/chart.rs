@@ -10,7 +10,7 @@ use crate::figure::{Horizontal, Panel, Series, Stroke};
 /// A chart.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Chart<'a> {
-    /// What is drawn.
+    /// The drawn panel.
     pub panel: Panel<'a>,
     /// Times that are shaded [s].
     pub spans: Vec<[f64; 2]>,
@@ -29,7 +29,7 @@ struct Drawn<'a> {
 }
 
 impl Chart<'_> {
-    /// What the script takes, with at most about so many samples; and of how many they are.
+    /// Data for the script, with at most about so many samples; and of how many they are.
     pub(super) fn told(&self, most: usize) -> (Value, [usize; 2]) {
         let panel = &self.panel;
         let mut drawn: Vec<Drawn<'_>> = Vec::new();

@@ -16,7 +16,7 @@ const MOST_NUMBERS: usize = 300_000;
 /// Numbers that small charts keep beside large ones: of all charts, and of one at most.
 const LEAST_NUMBERS: [usize; 2] = [150_000, 4000];
 
-/// What the parts of a page share.
+/// Resources that the parts of a page share.
 struct Budget {
     /// Share of its numbers that a chart may keep [1].
     share: f64,

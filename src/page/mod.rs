@@ -14,11 +14,11 @@ pub use thin::kept;
 /// A page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page<'a> {
-    /// What it is about: `Diagnosis of case-14`.
+    /// Its subject: `Diagnosis of case-14`.
     pub title: String,
-    /// What it comes to, in a sentence.
+    /// Its conclusion, in a sentence.
     pub verdict: String,
-    /// How that is to be taken.
+    /// Tone of that.
     pub tone: Tone,
     /// Below the verdict, a paragraph each.
     pub lead: Vec<String>,
@@ -30,7 +30,7 @@ pub struct Page<'a> {
     pub footer: String,
 }
 
-/// How a verdict is to be taken.
+/// Tone of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
     /// Said, not judged.
@@ -49,11 +49,11 @@ pub enum Tone {
 /// A key number.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Fact {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Value and unit.
     pub value: String,
-    /// What belongs to it; may be empty.
+    /// Its remark; may be empty.
     pub remark: String,
 }
 
@@ -62,7 +62,7 @@ pub struct Fact {
 pub struct Section<'a> {
     /// Heading, and name in the list of contents.
     pub title: String,
-    /// What stands in it.
+    /// Its blocks.
     pub blocks: Vec<Block<'a>>,
 }
 
@@ -89,14 +89,14 @@ pub enum Block<'a> {
     Sketches(Vec<(String, String)>),
     /// A file beside the page: its name, and what it holds.
     File(String, String),
-    /// What is folded away until it is asked for: a summary and blocks.
+    /// A part that is folded away until it is asked for: a summary and blocks.
     Folded(String, Vec<Block<'a>>),
 }
 
 /// Rows and columns.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
-    /// What it shows; may be empty.
+    /// Its caption; may be empty.
     pub caption: String,
     /// Names of the columns, and whether they hold numbers.
     pub columns: Vec<(String, bool)>,

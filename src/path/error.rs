@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// What stands in the way at a waypoint. Angles [rad], torques [N m].
+/// Obstacle at a waypoint. Angles [rad], torques [N m].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Obstacle {
     /// No joint angles reach the pose; the axis that is over or nearest its limit.
@@ -128,7 +128,7 @@ pub enum PlanError {
         edge_length: f64,
         /// Point of the edge in the world [m].
         point: DVec3,
-        /// What stands in the way.
+        /// The obstacle.
         obstacle: Obstacle,
     },
     /// A corner that turns inwards.

@@ -44,7 +44,7 @@ impl Phase {
     }
 }
 
-/// What to plan.
+/// Request of a plan.
 #[derive(Debug, Clone)]
 pub struct PlanRequest<'a> {
     /// The arm, base to flange.
@@ -151,7 +151,7 @@ pub(super) struct Leg {
     pub(super) way: Way,
 }
 
-/// How a leg's place maps to space.
+/// Map of a leg's place to space.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Way {
     /// Along the tool's axis at a fixed place of the path: backed off by `from` at place 0 and moving by `sign`.

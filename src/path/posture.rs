@@ -274,7 +274,7 @@ impl Standing<'_> {
         most.map_or_else(String::new, |joint| self.chain.joints[joint].name.clone())
     }
 
-    /// How comfortable joint angles are, 0 to 1 for the worst of: distance from singularity, from position limits, from torque limits under gravity,
+    /// Comfort of joint angles, 0 to 1 for the worst of: distance from singularity, from position limits, from torque limits under gravity,
     /// the device's included, and `tool_force` on the tool [N, world]; negative below the floor.
     fn comfort(&self, q: &[f64], tool_force: DVec3) -> f64 {
         let count = self.chain.len();

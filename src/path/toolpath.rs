@@ -12,7 +12,7 @@ use crate::workpiece::EdgeCurve;
 
 /// Path length per angle turned at a corner [m/rad].
 const CORNER_RADIUS: f64 = 0.03;
-/// How far beside a corner the edge's directions are read [m].
+/// Distance beside a corner at which the edge's directions are read [m].
 const BESIDE: f64 = 1e-6;
 
 /// A place on the path, in the world frame.
@@ -30,7 +30,7 @@ pub struct ToolStation {
     pub axis: DVec3,
 }
 
-/// What a stretch of the path is.
+/// Kind of a stretch of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stretch {
     /// Along the edge.
@@ -56,7 +56,7 @@ pub struct Section {
     pub start: f64,
     /// Its path length [m].
     pub length: f64,
-    /// What it is.
+    /// Kind of the stretch.
     pub stretch: Stretch,
 }
 

@@ -25,7 +25,7 @@ impl EndCushioning {
         length: 5e-3,
     };
 
-    /// Is there none?
+    /// Whether there is none.
     pub fn is_none(&self) -> bool {
         self.damping == 0.0
     }

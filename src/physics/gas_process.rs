@@ -1,4 +1,4 @@
-//! What the gas in a chamber does as it is compressed: stays at its temperature, or heats up and exchanges heat with the wall.
+//! Process of the gas in a chamber under compression: stays at its temperature, or heats up and exchanges heat with the wall.
 //!
 //! ```text
 //! isothermal:  p V = m R T_0                                                               (source paper, eq. 4)

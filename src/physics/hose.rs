@@ -36,11 +36,11 @@ const MOST_TRIALS: usize = 60;
 pub struct Hose {
     /// Volume [m3].
     pub volume: f64,
-    /// How the flow hangs on the pressures.
+    /// Dependence of the flow on the pressures.
     law: LineLaw,
 }
 
-/// How the flow through a line hangs on the pressures at its ends.
+/// Dependence of the flow through a line on the pressures at its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum LineLaw {
     /// In proportion to their difference.

@@ -35,7 +35,7 @@ pub struct FlowRating {
 }
 
 impl FlowRating {
-    /// What an orifice would have in its data sheet. `conductance_area` is A C_d [m2]; the critical ratio is that of eq. (11).
+    /// Data-sheet values of an orifice. `conductance_area` is A C_d [m2]; the critical ratio is that of eq. (11).
     pub fn of_orifice(conductance_area: f64, gas: &Gas) -> Self {
         let function = FlowFunction::new(gas);
         Self {

@@ -24,7 +24,7 @@ impl Leakage {
         external: 0.0,
     };
 
-    /// Does anything leak?
+    /// Whether anything leaks.
     pub fn is_none(&self) -> bool {
         *self == Self::NONE
     }

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! p_0 pressure before the line, A_0 = p_0, B_0 = 0; h_j pressure that a segment keeps from the earlier stages; r resistance of a segment [Pa s/kg].
-//! What the last segment sees is a pressure A/(1 - B) behind a resistance r/(1 - B).
+//! The last segment sees a pressure A/(1 - B) behind a resistance r/(1 - B).
 
 /// Segments of a line at most: there its step response is within 1 % of the limit of many.
 pub const MOST_SEGMENTS: usize = 8;
@@ -16,7 +16,7 @@ pub const UPSTREAM: usize = MOST_SEGMENTS - 1;
 /// An implicit step of the segments before the last.
 #[derive(Debug, Clone, Copy)]
 pub struct LineChain {
-    /// How many.
+    /// Their number.
     count: usize,
     /// Resistance of a segment [Pa s/kg].
     resistance: f64,

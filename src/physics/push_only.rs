@@ -25,7 +25,7 @@ impl PushOnly {
         }
     }
 
-    /// Does it push?
+    /// Whether it pushes.
     #[inline]
     pub fn pushes(&self, penetration: f64, rate: f64) -> bool {
         penetration > 0.0 && self.linear(penetration, rate) > 0.0

@@ -7,7 +7,7 @@
 //! p outlet pressure [Pa, gauge], p_set set pressure [Pa, gauge], K gain [1], tau time constant [s], theta dead time [s].
 //! The set pressure is held over a step, so the lag is solved exactly. The outlet cannot exceed the supply.
 //!
-//! What a real one may have besides, each off by default and exact as well: play (`hysteresis`), limited rates (`rate_limit`), and an oscillator in
+//! Further properties of a real one, each off by default and exact as well: play (`hysteresis`), limited rates (`rate_limit`), and an oscillator in
 //! place of the lag (`second_order`). Leaves out: the outlet's drop with the flow through it.
 
 mod course;
@@ -22,7 +22,7 @@ pub use hysteresis::play;
 pub use rate_limit::RateLimit;
 pub use second_order::SecondOrder;
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RegulatorParameters {
     /// Steady outlet pressure over set pressure [1].
@@ -56,7 +56,7 @@ impl Default for RegulatorParameters {
     }
 }
 
-/// What changes.
+/// The state that changes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegulatorState {
     /// Outlet pressure, gauge [Pa]; to be read, and set by `place`.
@@ -109,7 +109,7 @@ impl RegulatorState {
         }
     }
 
-    /// How the outlet moves from now on until the next set pressure arrives or another law takes over, `longest` [s] at most.
+    /// Course of the outlet from now on until the next set pressure arrives or another law takes over, `longest` [s] at most.
     pub fn course(&self, parameters: &RegulatorParameters, longest: f64) -> OutletCourse {
         let next = self.pending.front().map_or(f64::INFINITY, |p| p.0);
         let target = (parameters.gain * self.acted_on).clamp(0.0, parameters.supply);

@@ -52,7 +52,7 @@ impl SealFriction {
         pressure_coefficient: 0.0,
     };
 
-    /// Is there dry friction?
+    /// Whether there is dry friction.
     pub fn is_dry(&self) -> bool {
         self.coulomb > 0.0 || self.pressure_coefficient > 0.0
     }

@@ -1,4 +1,4 @@
-//! What acts on the piston of a recorded rig between two samples: weight and contact.
+//! Loads on the piston of a recorded rig between two samples: weight and contact.
 //!
 //! ```text
 //! M dv/dt = F_device + M g_a - c F_contact,   c the share of the contact's direction that lies along the stroke
@@ -17,7 +17,7 @@ const HELD_SWING: f64 = 0.6;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ReplayCarrier<'a> {
     pub contact: &'a ContactParameters,
-    /// Is there a workpiece?
+    /// Whether there is a workpiece.
     pub present: bool,
     /// Weight along extension and its rate [N], [N/s].
     pub weight: [f64; 2],
@@ -31,11 +31,11 @@ pub(super) struct ReplayCarrier<'a> {
     pub rate: f64,
     /// A burr on the edge and its rate: of a cell [m], [m/s]; none on a bench.
     pub burr: Option<[f64; 2]>,
-    /// Is the rate at which a burr comes up damped too?
+    /// Whether the rate at which a burr comes up is damped too.
     pub burr_damped: bool,
-    /// What swinging links do.
+    /// Motion of swinging links.
     pub swung: Swung,
-    /// What the piston is held to, if it is.
+    /// The motion to which the piston is held, if it is.
     pub hold: Option<Hold>,
     /// Further forces.
     pub terms: ForceTerms<'a>,

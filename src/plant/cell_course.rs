@@ -71,7 +71,7 @@ pub struct CellCourse {
     pub edge: Vec<EdgeStation>,
     /// The edge as the ball meets it; none where it is met along its bisector.
     pub sharp: Option<Arc<SharpEdge>>,
-    /// How it was observed.
+    /// Its observation.
     pub observed: Observation,
     /// Its middle, about which a part that does not lie where it should is turned.
     pub middle: EdgeStation,
@@ -102,7 +102,7 @@ pub struct Levers {
     pub axial: [f64; MOST_JOINTS],
 }
 
-/// What the device feels of it, one value per sample.
+/// Loads that the device feels of it, one value per sample.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Felt {
     /// Standoff s [m].
@@ -121,7 +121,7 @@ pub struct Felt {
     pub balls: Vec<DVec3>,
     /// Direction of the slide [1].
     pub slides: Vec<DVec3>,
-    /// How far the part is displaced under the ball [m].
+    /// Displacement of the part under the ball [m].
     pub aside: Vec<DVec3>,
 }
 
@@ -138,12 +138,12 @@ impl CellCourse {
         self.time.len()
     }
 
-    /// Is there no sample?
+    /// Whether there is no sample.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }
 
-    /// Does the tool rest where it is, instead of being moved along the edge?
+    /// Whether the tool rests where it is, instead of being moved along the edge.
     pub fn rests(&self, i: usize) -> bool {
         let (before, after) = (i.saturating_sub(1), (i + 1).min(self.len() - 1));
         let way = self.edge[after].station - self.edge[before].station;
@@ -174,7 +174,7 @@ impl CellCourse {
         levers
     }
 
-    /// What the device feels.
+    /// Loads that the device feels.
     pub fn felt(&self, cell: &CellParameters) -> Felt {
         let turns = self.turns(cell);
         let count = self.len();
@@ -202,7 +202,7 @@ impl CellCourse {
         felt
     }
 
-    /// How far each joint is from where the course has it.
+    /// Departure of each joint from the course.
     fn turns(&self, cell: &CellParameters) -> Vec<Turn> {
         let moved = cell.servo_bandwidth != self.bandwidth;
         let turn = |(joint, offset): (&JointCourse, f64)| {
@@ -284,7 +284,7 @@ impl CellCourse {
     }
 }
 
-/// How far a joint is from where a course has it [rad].
+/// Departure of a joint from a course [rad].
 enum Turn {
     Constant(f64),
     Course(Vec<f64>),

@@ -1,4 +1,4 @@
-//! What a cell's arm and part are like: springs in the joints, encoders that are off, a servo that lags, a part that is not where it is believed.
+//! Properties of a cell's arm and part: springs in the joints, encoders that are off, a servo that lags, a part that is not where it is believed.
 
 use super::cell_course::EdgeStation;
 use glam::DVec3;
@@ -19,13 +19,13 @@ pub struct CellParameters {
     pub joint_friction: [f64; MOST_JOINTS],
     /// Damping over stiffness of each joint, a time [s].
     pub joint_damping: f64,
-    /// What each joint's encoder reads beyond the truth [rad].
+    /// Offset of each joint's encoder from the truth [rad].
     pub encoder_offset: [f64; MOST_JOINTS],
     /// Friction of the tool along the edge [1].
     pub friction: f64,
     /// Stroke at which a recording starts [m].
     pub start_stroke: f64,
-    /// How far the part stands out along the bisector at the middle of its edge [m].
+    /// Distance by which the part stands out along the bisector at the middle of its edge [m].
     pub part_shift: f64,
     /// Slope of that along the edge [m/m].
     pub part_tilt: f64,
@@ -33,12 +33,12 @@ pub struct CellParameters {
     pub burr: Burr,
 }
 
-/// How a part's surface under the ball is off where its mesh has it.
+/// Offset of a part's surface under the ball from its mesh.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Relief {
-    /// How far the part is from where it should be [m].
+    /// Displacement of the part from where it should be [m].
     pub aside: DVec3,
-    /// How far the surface stands out along its normal [m].
+    /// Distance by which the surface stands out along its normal [m].
     pub height: f64,
     /// Gradient of that along the part [m/m].
     pub gradient: DVec3,
@@ -79,13 +79,13 @@ impl Burr {
 }
 
 impl CellParameters {
-    /// How far the part is from where it should be at one of its points [m], `middle` being the middle of its edge.
+    /// Displacement of the part from where it should be at one of its points [m], `middle` being the middle of its edge.
     pub fn aside(&self, middle: &EdgeStation, point: DVec3) -> DVec3 {
         let turn = middle.tangent.cross(middle.bisector) * self.part_tilt;
         middle.bisector * self.part_shift + turn.cross(point - middle.point)
     }
 
-    /// How the part is off at a station of its edge.
+    /// Displacement of the part at a station of its edge.
     pub fn relief(&self, middle: &EdgeStation, station: &EdgeStation) -> Relief {
         Relief {
             aside: self.aside(middle, station.point),

@@ -87,7 +87,7 @@ impl ContactParameters {
         }
     }
 
-    /// How far the surface stands beyond where the robot says [m] at a time [s], and the rate of that [m/s].
+    /// Distance of the surface beyond where the robot says [m] at a time [s], and the rate of that [m/s].
     pub fn deviation(&self, time: f64) -> (f64, f64) {
         let (mut deviation, mut rate) = (self.surface_offset, 0.0);
         for periodic in [&self.runout, &self.waviness] {
@@ -117,7 +117,7 @@ impl ContactParameters {
         elastic + self.damping * rate
     }
 
-    /// Does it push?
+    /// Whether it pushes.
     pub fn pushes(&self, penetration: f64, rate: f64) -> bool {
         penetration > 0.0 && self.pushing(penetration, rate) > 0.0
     }

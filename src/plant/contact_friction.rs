@@ -13,7 +13,7 @@ use glam::DVec3;
 /// tool and part besides, which gives mostly that way. Between 0.8 and 6 the running cell is met within 0.06 of the force's noise.
 const TANGENTIAL_SHARE: f64 = 2.0;
 
-/// What has been deflected.
+/// State of deflection.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ContactFriction {
     deflection: DVec3,
@@ -29,9 +29,9 @@ pub(super) struct AxialFriction {
     pub start: f64,
     /// Stroke then [m].
     pub stroke: f64,
-    /// What it grows with the stroke while the ball sticks [N/m].
+    /// Its growth with the stroke while the ball sticks [N/m].
     pub stiffness: f64,
-    /// What it cannot exceed [N].
+    /// Its largest value [N].
     pub most: f64,
 }
 

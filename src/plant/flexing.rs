@@ -39,7 +39,7 @@ pub(super) struct Flexing<'a> {
     inverse: Option<(Key, Vec<f64>)>,
 }
 
-/// What an inverse goes with.
+/// Conditions of an inverse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Key {
     inertia: usize,
@@ -60,7 +60,7 @@ pub(super) struct Bending {
     pub damping: f64,
     /// Friction on the ball [N], of which what acts across the edge is taken.
     pub friction: DVec3,
-    /// What the device pushes the moving mass with, its weight included [N].
+    /// Force of the device on the moving mass, its weight included [N].
     pub push: f64,
     /// Stroke [m].
     pub stroke: f64,
@@ -68,12 +68,12 @@ pub(super) struct Bending {
     pub speed: f64,
 }
 
-/// What swinging does over a step.
+/// Effect of swinging over a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Swung {
     /// Where the surface goes, seen along the slide: coefficients of 1, t, t2 [m].
     pub surface: [f64; 3],
-    /// What the share of the contact force along the slide loses by the slide's turning [1].
+    /// Loss of the contact force's share along the slide by the slide's turning [1].
     pub turned: f64,
     /// Acceleration of the slide along its axis [m/s2].
     pub acceleration: f64,
@@ -120,7 +120,7 @@ impl<'a> Flexing<'a> {
         }
     }
 
-    /// How far the swing takes the ball at a stroke [m].
+    /// Displacement of the ball by the swing at a stroke [m].
     pub fn away(&self, i: usize, stroke: f64) -> DVec3 {
         (0..self.count)
             .map(|j| self.swing(i, j, stroke) * self.deflection[j])

@@ -26,7 +26,7 @@ pub struct Guide {
     pub stroke: Vec<f64>,
     /// Its rate [m/s].
     pub speed: Vec<f64>,
-    /// How firmly the piston is held, 0 to 1: hardly where the acceleration jumps, because how an impact ends decides how the seals are left.
+    /// Firmness with which the piston is held, 0 to 1: hardly where the acceleration jumps, because how an impact ends decides how the seals are left.
     pub firmness: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What drives a rig in a recording: set pressure, valve, surface.
+//! Inputs of a rig in a recording: set pressure, valve, surface.
 
 use super::cell_course::CellCourse;
 use super::measured_motion::MeasuredMotion;
@@ -12,7 +12,7 @@ pub struct PlantInputs {
     pub time: Vec<f64>,
     /// Set pressure [Pa gauge], held from its sample to the next.
     pub set_pressure: Vec<f64>,
-    /// Does the 5/2 valve extend? Held likewise.
+    /// Whether the 5/2 valve extends. Held likewise.
     pub extends: Vec<bool>,
     /// Where the surface stands along the stroke [m], a smooth motion; NaN where there is no workpiece.
     pub surface: Vec<f64>,
@@ -30,15 +30,15 @@ pub enum InputError {
     Length {
         /// Which input.
         quantity: &'static str,
-        /// How many.
+        /// Their number.
         found: usize,
-        /// How many times there are.
+        /// Number of times.
         expected: usize,
     },
     /// Less than two samples.
     #[error("{found} samples, expected at least 2")]
     TooShort {
-        /// How many.
+        /// Their number.
         found: usize,
     },
     /// Time stands still or goes back.

@@ -49,7 +49,7 @@ impl Port {
         Self::PressureReading,
     ];
 
-    /// Does it change what a sensor says, and nothing else?
+    /// Whether it changes what a sensor says, and nothing else.
     pub fn is_reading(self) -> bool {
         matches!(
             self,
@@ -190,7 +190,7 @@ pub struct Latent {
     pub port: Port,
     /// On what it depends.
     pub variable: Variable,
-    /// Does it act with the direction of motion?
+    /// Whether it acts with the direction of motion.
     pub directed: bool,
     /// Functions.
     pub basis: Basis,

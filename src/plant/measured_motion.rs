@@ -26,9 +26,9 @@ const NARROWEST: f64 = 3.5;
 const WIDEST: f64 = 400.0;
 /// Each half-width over the one before.
 const WIDER: f64 = 1.2;
-/// How much worse than the best a half-width may foretell [1].
+/// Largest factor over the best that a half-width may foretell [1].
 const ABOUT_AS_WELL: f64 = 1.03;
-/// How much worse than the best ends the search [1].
+/// Factor over the best that ends the search [1].
 const FAR_WORSE: f64 = 2.0;
 /// Readings that a cubic needs at least.
 const LEAST: usize = 6;
@@ -139,7 +139,7 @@ fn foretelling_error(known: &[(f64, f64)], width: f64, every: usize) -> f64 {
 struct Cubic {
     /// Place [m], speed [m/s] and acceleration [m/s2].
     motion: [f64; 3],
-    /// What a reading at that time counts for the place [1].
+    /// Weight of a reading at that time for the place [1].
     leverage: f64,
 }
 

@@ -1,17 +1,17 @@
-//! How a cell was observed: what the columns of its recordings are of, and how a recording begins.
+//! Observation of a cell: what the columns of its recordings are of, and how a recording begins.
 
-/// What differs between cells of which there are recordings, beside their numbers.
+/// Differences between cells of which there are recordings, beside their numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Observation {
-    /// Does the load cell measure along the slide, not along the bisector of the edge?
+    /// Whether the load cell measures along the slide, not along the bisector of the edge.
     pub force_along_slide: bool,
-    /// Does a recording start with the slide out on its stop, at the pressure set, not retracted without pressure?
+    /// Whether a recording starts with the slide out on its stop, at the pressure set, not retracted without pressure.
     pub starts_pressing: bool,
-    /// Do the joints' springs carry gravity, not only what accelerates?
+    /// Whether the joints' springs carry gravity, not only what accelerates.
     pub gravity_on_joints: bool,
-    /// Do the encoders say where the motors went, not the commands and the servos' bandwidth?
+    /// Whether the encoders say where the motors went, not the commands and the servos' bandwidth.
     pub motors_by_encoders: bool,
-    /// Does the ball meet the edge as the mesh has it, not along its bisector?
+    /// Whether the ball meets the edge as the mesh has it, not along its bisector.
     pub sharp_edge: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What does not change in a rig while it is recorded.
+//! Constant parameters of a rig while it is recorded.
 
 use super::cell_parameters::CellParameters;
 use super::chain::{Chain, LinkParameters};
@@ -11,9 +11,9 @@ use crate::device::DeviceParameters;
 /// A rig: device, contact, sensors; of a cell its arm and part too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlantParameters {
-    /// How much of the device there is.
+    /// The share of the device that there is.
     pub chain: Chain,
-    /// What single links of it have besides.
+    /// Further properties of its single links.
     pub links: LinkParameters,
     /// The device.
     pub device: DeviceParameters,
@@ -23,7 +23,7 @@ pub struct PlantParameters {
     pub contact: ContactParameters,
     /// Arm and part of a cell.
     pub cell: CellParameters,
-    /// What the sensors do to what they measure.
+    /// Errors of the sensors.
     pub sensors: SensorErrors,
     /// A term without a name.
     pub latent: Option<Latent>,
@@ -52,7 +52,7 @@ impl PlantParameters {
         }
     }
 
-    /// Does the rig move as another one does where there is no workpiece?
+    /// Whether the rig moves as another one does where there is no workpiece.
     pub fn moves_freely_as(&self, other: &Self) -> bool {
         self.chain == other.chain
             && self.links == other.links
@@ -76,7 +76,7 @@ impl PlantParameters {
         self.own.iter().filter(moves)
     }
 
-    /// Does the rig move as another one does, whatever its sensors say?
+    /// Whether the rig moves as another one does, whatever its sensors say.
     pub fn moves_as(&self, other: &Self) -> bool {
         self.moves_freely_as(other) && self.contact == other.contact
     }

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::sensors::SensorErrors;
 
-/// What sensors read at a moment.
+/// Readings of the sensors at a moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SensorReadings {
     /// Load cell [N].
@@ -44,7 +44,7 @@ impl RunningSensors {
         }
     }
 
-    /// What is read at a time [s], later than the last, from what is then; acceleration along extension [m/s2].
+    /// Readings at a time [s], later than the last, from what is then; acceleration along extension [m/s2].
     pub fn read(&mut self, time: f64, truth: &SensorReadings, acceleration: f64) -> SensorReadings {
         let errors = self.errors;
         let mut signal = truth.force + errors.crosstalk_mass * acceleration;

@@ -1,4 +1,4 @@
-//! What the sensors of a rig do to what they measure, before their noise.
+//! Errors of a rig's sensors, before their noise.
 //!
 //! ```text
 //! force:   F_m = clip( g L(F + m_x a) + b + d t ),   at the time of its stamp less a delay;   L: 1/(T s + 1)
@@ -22,7 +22,7 @@ pub struct SensorErrors {
     pub force_lag: f64,
     /// Reading at which it clips [N].
     pub force_limit: f64,
-    /// How late it is stamped [s].
+    /// Delay of its stamp [s].
     pub force_delay: f64,
     /// Mass beyond the load cell [kg].
     pub crosstalk_mass: f64,

@@ -19,7 +19,7 @@ pub struct Followed {
     pub acceleration: Vec<f64>,
 }
 
-/// What a servo of a bandwidth [Hz] makes of commands [rad] at times [s], from rest on the first one; one of no lag obeys.
+/// Response of a servo of a bandwidth [Hz] to commands [rad] at times [s], from rest on the first one; one of no lag obeys.
 pub fn follow(time: &[f64], command: &[f64], bandwidth: f64) -> Followed {
     if bandwidth.is_infinite() {
         return Followed {
@@ -73,7 +73,7 @@ const UNMOVED: f64 = 2.0;
 /// Time over which the motor is taken to where its encoder has it on average while it does not leave that noise [s].
 const SETTLED: f64 = 0.06;
 
-/// What an encoder [rad] with noise of a standard deviation [rad] shows that a motor did, which a servo without loads would have moved as `led`: its
+/// Motion of a motor shown by an encoder [rad] with noise of a standard deviation [rad], which a servo without loads would have moved as `led`: its
 /// departure from that fitted by a parabola about each sample (Savitzky, Golay, Anal. Chem. 36, 1964), and followed with as much play as noise makes, forward
 /// and backward in time, so that what follows is not late on the mean. Values that are absent count for nothing.
 pub fn shown(time: &[f64], led: &Followed, encoder: &[f64], noise: f64) -> Followed {

@@ -35,7 +35,7 @@ pub const CHANNELS: [Channel; 4] = [
     Channel::Acceleration,
 ];
 
-/// What really happens in a rig, one value per sample time.
+/// True course of a rig, one value per sample time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trajectory {
     /// Outlet of the regulator [Pa gauge].
@@ -61,9 +61,9 @@ pub struct Trajectory {
 /// A simulated recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlantCourse {
-    /// What really happens.
+    /// The true course.
     pub truth: Trajectory,
-    /// What the sensors read, without noise, in the order of [`CHANNELS`].
+    /// Readings of the sensors, without noise, in the order of [`CHANNELS`].
     pub readings: [Vec<f64>; 4],
 }
 
@@ -74,7 +74,7 @@ pub fn simulate(plant: &PlantParameters, inputs: &PlantInputs) -> PlantCourse {
     PlantCourse { truth, readings }
 }
 
-/// What the sensors read, in the order of [`CHANNELS`].
+/// Readings of the sensors, in the order of [`CHANNELS`].
 pub fn readings(
     plant: &PlantParameters,
     inputs: &PlantInputs,

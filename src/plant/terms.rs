@@ -1,4 +1,4 @@
-//! What acts at the ports of a rig beside its device, contact and sensors: a term without a name, and laws of a user's own.
+//! Terms at the ports of a rig beside its device, contact and sensors: a term without a name, and laws of a user's own.
 
 use super::latent::{Moment, Port};
 use super::parameters::PlantParameters;
@@ -35,18 +35,18 @@ impl<'a> ForceTerms<'a> {
 }
 
 impl PlantParameters {
-    /// Does anything act there?
+    /// Whether anything acts there.
     pub fn acts_at(&self, port: Port) -> bool {
         let latent = self.latent.as_ref().is_some_and(|l| l.port == port);
         latent || self.own.iter().any(|law| law.acts && law.text.port == port)
     }
 
-    /// Does anything act at any port?
+    /// Whether anything acts at any port.
     pub fn has_terms(&self) -> bool {
         self.latent.is_some() || self.own.iter().any(|law| law.acts)
     }
 
-    /// What acts at a port at a moment, in the port's unit.
+    /// Sum of the terms at a port at a moment, in the port's unit.
     pub fn term(&self, port: Port, moment: &Moment) -> f64 {
         let latent = self.latent.iter().filter(|latent| latent.port == port);
         let own = self.own.iter().filter(|law| law.text.port == port);
@@ -54,7 +54,7 @@ impl PlantParameters {
             + own.map(|law| law.at(moment)).sum::<f64>()
     }
 
-    /// What acts on the device over a step, held at its value in the middle; `moment` is the step's start and `step` its length [s].
+    /// Sum of the terms on the device over a step, held at its value in the middle; `moment` is the step's start and `step` its length [s].
     pub fn disturbance(&self, moment: &Moment, step: f64) -> Disturbance {
         let middle = moment.ahead(0.5 * step);
         Disturbance {
@@ -64,7 +64,7 @@ impl PlantParameters {
         }
     }
 
-    /// What it adds to the readings of pressure, stroke and force at a moment.
+    /// Its additions to the readings of pressure, stroke and force at a moment.
     pub fn reading_terms(&self, moment: &Moment) -> [f64; 3] {
         [
             Port::PressureReading,

@@ -60,7 +60,7 @@ fn false_alarms(text: &mut String, outcomes: &[Outcome]) {
     text.push('\n');
 }
 
-/// How many of how many.
+/// Count of hits, and of all.
 fn tally(outcomes: &[&Outcome], hit: impl Fn(&Outcome) -> bool) -> String {
     let hits = outcomes.iter().filter(|o| hit(o)).count();
     format!("{hits}/{}", outcomes.len())

@@ -1,4 +1,4 @@
-//! What can go wrong with a proof, apart from its score.
+//! Errors of a proof, apart from its score.
 
 use std::path::{Path, PathBuf};
 
@@ -43,9 +43,9 @@ pub enum ProofError {
     OtherPlan {
         /// The outcome.
         path: PathBuf,
-        /// What it says.
+        /// The text found.
         found: String,
-        /// What was asked for.
+        /// The request.
         expected: String,
     },
     /// The laboratory.

@@ -1,6 +1,6 @@
 //! The proof of a diagnosis: cases of the laboratory, whose truth is sealed, diagnosed and scored.
 //!
-//! What is scored is an answer that stands already: the sealed file of a case is opened only after its diagnosis has been written.
+//! An answer is scored that stands already: the sealed file of a case is opened only after its diagnosis has been written.
 
 mod binomial;
 mod confusion;

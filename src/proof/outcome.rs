@@ -1,4 +1,4 @@
-//! What became of one case of a sweep; a small file each, so that a sweep goes on where it was stopped.
+//! Outcome of one case of a sweep; a small file each, so that a sweep goes on where it was stopped.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,11 @@ use super::score::CaseScore;
 /// A case of a sweep and its score.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// How it was made: what must agree for a sweep to go on.
+    /// Its making: what must agree for a sweep to go on.
     pub made: Made,
     /// The effect's share of the largest that is plausible [1]; 0 where nothing is concealed.
     pub share: f64,
-    /// How strongly it shows beside all that is tolerated, in standard deviations [1].
+    /// Its visibility beside all that is tolerated, in standard deviations [1].
     pub shows: f64,
     /// Its numbers by name.
     pub parameters: BTreeMap<String, f64>,
@@ -21,14 +21,14 @@ pub struct Outcome {
     pub score: CaseScore,
 }
 
-/// How a case of a sweep was made.
+/// Making of a case of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Made {
     /// The effect; none where nothing is concealed.
     pub effect: Option<String>,
     /// Its size: 0 is the largest.
     pub size: usize,
-    /// How many sizes there are.
+    /// Number of sizes.
     pub sizes: usize,
     /// Seed of device, programmes and noise.
     pub seed: u64,
@@ -54,7 +54,7 @@ impl std::fmt::Display for Made {
 }
 
 impl Outcome {
-    /// Was the effect named, alone or with others?
+    /// Whether the effect was named, alone or with others.
     pub fn seen(&self) -> bool {
         let sought = if self.score.unlisted {
             Some("unlisted")
@@ -65,7 +65,7 @@ impl Outcome {
         sought.is_some_and(|sought| answered.into_iter().any(|name| name == sought))
     }
 
-    /// What was answered, in a word.
+    /// The answer, in a word.
     pub fn answered(&self) -> String {
         match &self.score.answered {
             None => "no answer".to_owned(),

@@ -12,28 +12,28 @@ use serde::{Deserialize, Serialize};
 use crate::diagnosis::answer::{Answer, UNLISTED, Verdict};
 use crate::laboratory::{CHANNELS, Known, SealedCase, SealedEffect};
 
-/// What a case came to.
+/// Score of a case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseScore {
     /// Name of the case.
     pub case: String,
-    /// What is at work, by what it is.
+    /// Effects at work, each by its meaning.
     pub truth: Vec<String>,
-    /// What was answered; none where there was no answer.
+    /// Effects answered; none where there was no answer.
     pub answered: Option<Vec<String>>,
-    /// Is an unlisted effect at work?
+    /// Whether an unlisted effect is at work.
     pub unlisted: bool,
-    /// Is what is at work named, and nothing else?
+    /// Whether the effects at work are named, and nothing else.
     pub named_exactly: bool,
-    /// Does the verdict go with what is at work?
+    /// Whether the verdict goes with the effects at work.
     pub verdict_right: bool,
-    /// Of an unlisted effect: were its subsystem and all that it depends on given?
+    /// Of an unlisted effect: whether its subsystem and all that it depends on were given.
     pub placed: bool,
     /// Relative errors of the parameters of what was named.
     pub errors: Vec<f64>,
     /// Half-widths of their intervals, relative to the truth.
     pub half_widths: Vec<f64>,
-    /// How many intervals hold the truth.
+    /// Number of intervals that hold the truth.
     pub covered: usize,
     /// Overlap of claimed and true intervals [1].
     pub overlap: f64,
@@ -128,7 +128,7 @@ pub fn judge(answer: &Answer, truth: &SealedCase, prediction: Option<f64>) -> Ca
     score
 }
 
-/// Does an answer give the subsystem of an unlisted effect, and at most three variables with all that it depends on?
+/// Whether an answer gives the subsystem of an unlisted effect, and at most three variables with all that it depends on.
 fn places(answer: &Answer, effect: &SealedEffect) -> bool {
     let Some(Known::Names(wanted)) = effect.parameters.get("depends_on") else {
         return true;

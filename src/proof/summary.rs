@@ -1,4 +1,4 @@
-//! What all cases of a proof came to, and what is claimed of them.
+//! Results of all cases of a proof, and the claims about them.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::score::CaseScore;
 
-/// What a proof must reach.
+/// Claims that a proof must reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Claims {
     /// Share of listed effects, or pairs of them, that are named exactly.
@@ -107,7 +107,7 @@ impl Summary {
         }
     }
 
-    /// What falls short of what is claimed, a sentence each.
+    /// Results that fall short of the claims, a sentence each.
     pub fn shortfalls(&self, claims: &Claims) -> Vec<String> {
         let mut short = Vec::new();
         let mut share = |what: &str, [hits, of]: [usize; 2], least: f64| {

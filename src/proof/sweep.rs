@@ -19,7 +19,7 @@ const SEEDS_PER_DRAW: u64 = 10_000_000;
 /// Folder of the outcomes.
 const OUTCOMES: &str = "outcomes";
 
-/// What a sweep tries.
+/// Plan of a sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepPlan {
     /// Effects by name; none for all of the vocabulary.
@@ -84,7 +84,7 @@ impl SweepPlan {
         Ok(tasks)
     }
 
-    /// Can it be done?
+    /// Checks that it can be done.
     ///
     /// # Errors
     /// An effect that there is not.

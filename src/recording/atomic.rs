@@ -15,7 +15,7 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::RecordingError;
 
-/// What the names of temporary files and folders begin with.
+/// Beginning of the names of temporary files and folders.
 const UNFINISHED: &str = ".unfinished-";
 
 /// A file being written; it gets its name when the writing has succeeded.
@@ -59,7 +59,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), RecordingError> {
     write_atomic(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// What is being written now: temporary files and folders, and folders that were made and may be empty yet. While the lock is held nothing is begun and
+/// Files and folders being written now: temporary files and folders, and folders that were made and may be empty yet. While the lock is held nothing is begun and
 /// nothing put in its place, so that files that belong together are never parted.
 static BEGUN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
@@ -117,7 +117,7 @@ pub fn abandon() {
     std::mem::forget(begun);
 }
 
-/// Removes a temporary file or folder, or a folder that is empty; is it gone, or to stay as it holds something whole?
+/// Removes a temporary file or folder, or a folder that is empty. Whether it is gone, or to stay as it holds something whole.
 fn abandoned(path: &Path) -> bool {
     let is_temporary = |name: &OsStr| name.to_string_lossy().starts_with(UNFINISHED);
     if path.file_name().is_some_and(is_temporary) {

@@ -9,17 +9,17 @@ use super::scene::Scene;
 pub struct Board {
     /// Its name.
     pub title: String,
-    /// What it comes to, in Markdown.
+    /// Its conclusion, in Markdown.
     pub text: String,
     /// Quantities against one another.
     pub clouds: Vec<Cloud>,
     /// Signals against time, a sheet for each recording.
     pub sheets: Vec<Sheet>,
-    /// What it looks like in space.
+    /// Its look in space.
     pub scene: Option<Scene>,
 }
 
-/// What a line or a cloud shows; each has its colour in every picture.
+/// Role of a line or a cloud; each has its colour in every picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoardRole {
     /// As a sensor read it.
@@ -63,7 +63,7 @@ pub struct SheetPlot {
 pub struct BoardLine {
     /// Its name in the legend, unit included.
     pub label: String,
-    /// What it shows.
+    /// Its role.
     pub role: BoardRole,
     /// Its values; NaN where there is none.
     pub values: Vec<f64>,
@@ -72,7 +72,7 @@ pub struct BoardLine {
 /// States of one thing over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Lane {
-    /// What it is about.
+    /// Its subject.
     pub name: String,
     /// Start, end [s] and state, in order and without overlap.
     pub spans: Vec<(f64, f64, String)>,
@@ -87,7 +87,7 @@ pub struct Cloud {
     pub horizontal: String,
     /// The quantity, unit included.
     pub vertical: String,
-    /// What is drawn, the last on top.
+    /// The drawn groups, the last on top.
     pub groups: Vec<CloudGroup>,
 }
 
@@ -96,10 +96,10 @@ pub struct Cloud {
 pub struct CloudGroup {
     /// Its name.
     pub label: String,
-    /// What it shows.
+    /// Its role.
     pub role: BoardRole,
     /// Variable and quantity.
     pub points: Vec<[f64; 2]>,
-    /// Are they joined by a line?
+    /// Whether they are joined by a line.
     pub joined: bool,
 }

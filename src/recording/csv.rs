@@ -1,6 +1,6 @@
 //! Recordings of a real rig as comma-separated values: one header line, SI units, pressures gauge, an empty field where there is no value.
 //!
-//! What is wrong is refused with file, line and column: no number where there must be one, time that does not increase, values that are implausible as SI
+//! Faults are refused with file, line and column: no number where there must be one, time that does not increase, values that are implausible as SI
 //! (bar for pascal, mm for m). Single readings may be implausible, as sensors go wild; a whole column may not. A line that repeats the one before it is left out.
 
 use std::path::Path;

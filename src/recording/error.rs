@@ -1,4 +1,4 @@
-//! What can go wrong while a recording is built, written or read.
+//! Errors while a recording is built, written or read.
 
 use std::path::{Path, PathBuf};
 
@@ -79,9 +79,9 @@ pub enum RecordingError {
     Scene {
         /// The part of the scene.
         what: String,
-        /// What it is.
+        /// The kind found.
         found: String,
-        /// What it should be.
+        /// The expected value.
         expected: String,
     },
     /// A file could not be written; nothing was left in its place.
@@ -115,9 +115,9 @@ pub enum RecordingError {
         line: u64,
         /// The column's name.
         column: String,
-        /// What was found there.
+        /// The content found there.
         found: String,
-        /// What was expected.
+        /// Expected value or form.
         expected: String,
     },
     /// A line of a text file has not as many fields as there are columns.
@@ -139,9 +139,9 @@ pub enum RecordingError {
         path: PathBuf,
         /// The column's name.
         column: String,
-        /// What was found there.
+        /// The content found there.
         found: String,
-        /// What was expected.
+        /// Expected value or form.
         expected: String,
     },
 }

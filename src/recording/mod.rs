@@ -33,7 +33,7 @@ use std::ops::Range;
 /// One signal, sampled at the recording's times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// What was recorded, without its unit: `contact_force`.
+    /// The recorded quantity, without its unit: `contact_force`.
     pub quantity: String,
     /// Unit of `values`.
     pub unit: Unit,

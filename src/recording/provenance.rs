@@ -1,4 +1,4 @@
-//! What a result was made with and of: programs by version, files by their hash (SHA-256), seeds.
+//! Origin of a result: programs by version, files by their hash (SHA-256), seeds.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -58,7 +58,7 @@ impl Provenance {
 }
 
 impl Provenance {
-    /// What the result is made of, however its files were called and wherever they stood.
+    /// Its sources, however the files were called and wherever they stood.
     #[must_use]
     pub fn content(&self) -> String {
         let mut content = format!("{} {}", self.program, self.libraries.join(" "));

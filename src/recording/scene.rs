@@ -1,4 +1,4 @@
-//! What a recording looks like in space: bodies, their poses, the edge and the contact force.
+//! Look of a recording in space: bodies, their poses, the edge and the contact force.
 //!
 //! Plain data, in world coordinates and SI units; whoever runs the cell fills it in, and
 //! [`super::rerun`] draws it. Frames may be fewer than samples: 50 a second look smooth.

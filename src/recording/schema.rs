@@ -60,7 +60,7 @@ pub const SEAL_FORCE: &str = "seal_force";
 pub const ACCELERATION: &str = "acceleration";
 /// Where the load's surface stands along the stroke.
 pub const SURFACE_POSITION: &str = "surface_position";
-/// Is the 5/2 valve in its extending position?
+/// Whether the 5/2 valve is in its extending position.
 pub const VALVE_EXTENDS: &str = "valve_extends";
 /// Contact force as the load cell's software reads it, filtered.
 pub const MEASURED_FORCE: &str = "measured_force";
@@ -111,7 +111,7 @@ pub struct SignalDefinition {
     pub group: Option<PlotGroup>,
     /// Name in the plot's legend.
     pub label: &'static str,
-    /// What it is, in one sentence.
+    /// Its meaning, in one sentence.
     pub meaning: &'static str,
 }
 
@@ -225,7 +225,7 @@ pub enum JointSignal {
     Velocity,
     /// Torque of the drive.
     Torque,
-    /// What the encoder reads, on the motor's side.
+    /// Reading of the encoder, on the motor's side.
     Encoder,
 }
 
@@ -239,7 +239,7 @@ impl JointSignal {
         Self::Encoder,
     ];
 
-    /// What stands behind the joint's number.
+    /// The words behind the joint's number.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -261,7 +261,7 @@ impl JointSignal {
         }
     }
 
-    /// What it is, in one sentence.
+    /// Its meaning, in one sentence.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {
@@ -300,7 +300,7 @@ pub fn definition(quantity: &str) -> Option<&'static SignalDefinition> {
         .find(|signal| signal.quantity == quantity)
 }
 
-/// What a quantity is, in one sentence; `None` if the list does not know it.
+/// Meaning of a quantity, in one sentence; `None` if the list does not know it.
 #[must_use]
 pub fn meaning(quantity: &str) -> Option<&'static str> {
     match quantity {

@@ -12,7 +12,7 @@ use arrow::datatypes::{DataType, Float64Type, Int64Type, TimeUnit};
 
 use super::RecordingError;
 
-/// What a Parquet file starts and ends with.
+/// First and last bytes of a Parquet file.
 const MAGIC: [u8; 4] = *b"PAR1";
 
 /// A Parquet table, its columns not read yet.

@@ -1,10 +1,10 @@
 //! Numbers that fell to a thousandth because a mark before every third digit was read as a decimal mark: 998, 999, 1.000, 1.001 for 1000 and 1001.
 //!
-//! What that leaves is plain: nothing goes beyond a level, and where the course would, it falls to a thousandth of it, again and again.
+//! The rest is plain: nothing goes beyond a level, and where the course would, it falls to a thousandth of it, again and again.
 
 /// Ratio of neighbours from which a jump from near the level is one that no course makes.
 const JUMP: f64 = 300.0;
-/// How near, and how far a course may go from one sample to the next, as shares of the level.
+/// Nearness to the level, and largest change from one sample to the next, as shares of the level.
 const NEAR: f64 = 0.5;
 /// Rounding of what was written, as a share.
 const ROUNDING: f64 = 1e-3;

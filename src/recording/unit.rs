@@ -56,7 +56,7 @@ impl Unit {
         Self::One,
     ];
 
-    /// What follows the quantity and an underscore in a column name.
+    /// Part of a column name behind the quantity and an underscore.
     #[must_use]
     pub const fn suffix(self) -> &'static str {
         match self {

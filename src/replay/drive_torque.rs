@@ -1,4 +1,4 @@
-//! What the drives of a cell's arm had to give, by its model: the torque of each but for its joint's dry friction; where the tool moves along the edge, or
+//! Torques that the drives of a cell's arm had to give, by its model: the torque of each but for its joint's dry friction; where the tool moves along the edge, or
 //! is off it.
 //!
 //! ```text
@@ -17,7 +17,7 @@ use crate::plant::CellCourse;
 pub struct Drive {
     /// Torque that it gave [N m].
     pub torque: Vec<f64>,
-    /// What it had to give but for dry friction [N m].
+    /// Torque that it had to give but for dry friction [N m].
     pub expected: Vec<f64>,
     /// Speed of its motor [rad/s].
     pub rate: Vec<f64>,

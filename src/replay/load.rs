@@ -39,7 +39,7 @@ impl LoadedCell {
     /// Loads what the file names.
     ///
     /// # Errors
-    /// What is wrong with the arm, the mesh or the choice of the edge; joints that are not served alike.
+    /// A fault of the arm, the mesh or the choice of the edge; joints that are not served alike.
     pub fn new(scenario: RecordedCell) -> Result<Self, CellError> {
         let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         let joints: Vec<String> = arm.chain.joints.iter().map(|j| j.name.clone()).collect();

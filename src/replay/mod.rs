@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 const _: () = assert!(MAX_JOINTS == MOST_JOINTS);
 
-/// What does not change between the recordings of a cell.
+/// Constants between the recordings of a cell.
 #[derive(Debug, Clone)]
 pub struct ReplayCell {
     /// The arm up to its flange.
@@ -45,7 +45,7 @@ pub struct ReplayCell {
     pub encoder_noise: f64,
     /// The edge as the ball meets it; none where it is met along its bisector.
     pub sharp: Option<Arc<SharpEdge>>,
-    /// How it is observed.
+    /// Its observation.
     pub observed: Observation,
 }
 
@@ -58,7 +58,7 @@ pub struct Commands<'a> {
     pub joints: &'a [Vec<f64>],
     /// The edge where the commands have the ball.
     pub edge: &'a [EdgeStation],
-    /// What the encoders of the joints read [rad], where the course is to be theirs; in place of it the commands' where there is none.
+    /// Readings of the joints' encoders [rad], where the course is to be theirs; in place of it the commands' where there is none.
     pub encoders: Option<&'a [Option<Vec<f64>>]>,
 }
 

@@ -24,7 +24,7 @@ const fn column(
     LevelColumn { name, unit, value }
 }
 
-/// What is told of each command, in a row.
+/// Columns on each command, in a row.
 #[rustfmt::skip]
 pub const LEVELS: [LevelColumn; 8] = [
     column("at", "s", |level| Some(level.start_s)),
@@ -46,7 +46,7 @@ fn rows(summary: &BenchSummary) -> impl Iterator<Item = (&'static Metric<BenchSu
         .filter_map(|metric| (metric.value)(summary).map(|value| (metric, value)))
 }
 
-/// What is to be said of a force that is not the desired one.
+/// Remark on a force that is not the desired one.
 fn far_of(summary: &BenchSummary) -> Option<String> {
     far_from_desired(
         summary.desired_force_n?,

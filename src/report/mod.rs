@@ -1,4 +1,4 @@
-//! What a person reads after a run: a table for the terminal, and the same as Markdown.
+//! Text for a person after a run: a table for the terminal, and the same as Markdown.
 
 mod bench;
 mod markdown;

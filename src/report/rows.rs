@@ -80,7 +80,7 @@ pub fn shown(value: Option<f64>, unit: &str) -> String {
     }
 }
 
-/// What is to be said where a force is far from the desired one, however its bounds are; none within 5 % of it.
+/// Remark where a force is far from the desired one, however its bounds are; none within 5 % of it.
 #[must_use]
 pub fn far_from_desired(desired: f64, mean: f64, rms_error_percent: f64) -> Option<String> {
     if rms_error_percent <= 100.0 * NARROW_BAND {
@@ -120,7 +120,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<Row> {
         .collect()
 }
 
-/// What says more beside a value than its meaning.
+/// Note beside a value that says more than its meaning.
 fn fact(name: &str, summary: &Summary) -> Option<String> {
     let of = |value, unit| with_unit(value, unit);
     Some(match name {
@@ -189,7 +189,7 @@ fn bound(verdict: &Verdict) -> String {
     }
 }
 
-/// How many bounds were kept, in one line.
+/// Number of bounds that were kept, in one line.
 pub(super) fn tally(verdicts: &[Verdict]) -> String {
     let kept = verdicts.iter().filter(|verdict| verdict.kept).count();
     match verdicts.len() {

@@ -9,7 +9,7 @@ use crate::quantity::{UNKNOWN, column};
 
 const WIDTH: usize = 80;
 
-/// How the table is printed.
+/// Style of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
     /// Without colours, for files and pipes.
@@ -67,7 +67,7 @@ pub fn text(title: &str, summary: &Summary, verdicts: &[Verdict], style: Style) 
     out
 }
 
-/// What is to be said of a force that is not the desired one.
+/// Remark on a force that is not the desired one.
 pub(super) fn far_of(summary: &Summary) -> Option<String> {
     far_from_desired(
         summary.desired_force_n,

@@ -1,4 +1,4 @@
-//! What acts on the piston of a bench rig: weight, load, hand.
+//! Loads on the piston of a bench rig: weight, load, hand.
 //!
 //! ```text
 //! M dv/dt = F_device + M g_a - F_load - F_hand
@@ -46,7 +46,7 @@ fn parabola(course: [f64; 3], time: f64) -> f64 {
 }
 
 impl<'a> BenchCarrier<'a> {
-    /// What acts on the piston from `time` [s] on.
+    /// Loads on the piston from `time` [s] on.
     pub fn at(scenario: &BenchScenario, time: f64) -> Self {
         let mass = scenario.device.parameters.moving_mass;
         let (contact, surface) = match scenario.load {

@@ -1,4 +1,4 @@
-//! What can stop a bench run.
+//! Errors that can stop a bench run.
 
 /// A bench run that ended early.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -11,7 +11,7 @@ pub enum RigError {
     NotFinite {
         /// Time [s].
         time: f64,
-        /// What.
+        /// The quantity.
         quantity: &'static str,
         /// Its value, SI.
         value: f64,

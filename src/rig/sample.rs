@@ -1,4 +1,4 @@
-//! What a bench rig records at each step.
+//! Record of a bench rig at each step.
 
 use super::carrier::BenchCarrier;
 use super::simulation::{Rig, RigTruth};
@@ -38,7 +38,7 @@ const CHANNELS: [&str; 25] = [
     schema::ESTIMATED_FORCE_DEVIATION,
 ];
 
-/// What there is to record at a moment.
+/// Recorded quantities at a moment.
 pub(super) struct RigSample<'a> {
     pub rig: &'a Rig,
     pub device: &'a DeviceState,

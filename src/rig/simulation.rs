@@ -19,11 +19,11 @@ use crate::sensing::{Readings, SensorChain, Truth};
 /// A bench rig with its job: all that does not change during a run.
 #[derive(Debug, Clone)]
 pub struct Rig {
-    /// What to do, with the rig as it is.
+    /// The job, with the rig as it is.
     pub scenario: BenchScenario,
     /// The device.
     pub device: Device,
-    /// What answers forces with set pressures, as it is at the start.
+    /// Controller that answers forces with set pressures, as it is at the start.
     pub controller: ForceController,
     /// The rig's physics as one description, as it is.
     pub plant: PlantParameters,
@@ -91,7 +91,7 @@ impl Rig {
     }
 }
 
-/// What the rig really does at a moment, as no sensor shows it.
+/// True state of the rig at a moment, as no sensor shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigTruth {
     /// Time [s].
@@ -114,7 +114,7 @@ pub struct RigSimulation<'a> {
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
-    /// What the sensors do to what they measure.
+    /// Errors of the sensors.
     errors: RunningSensors,
     sensors: SensorChain,
     readings: Readings,
@@ -176,7 +176,7 @@ impl<'a> RigSimulation<'a> {
         self.total_steps
     }
 
-    /// Is the job done?
+    /// Whether the job is done.
     pub fn done(&self) -> bool {
         self.steps >= self.total_steps
     }
@@ -201,7 +201,7 @@ impl<'a> RigSimulation<'a> {
         self.log.count()
     }
 
-    /// What was recorded from a sample on, with all channels.
+    /// Recorded values from a sample on, with all channels.
     ///
     /// # Errors
     /// Nothing was.
@@ -209,7 +209,7 @@ impl<'a> RigSimulation<'a> {
         self.log.since(first)
     }
 
-    /// What was recorded so far.
+    /// The record so far.
     ///
     /// # Errors
     /// Nothing was.
@@ -220,7 +220,7 @@ impl<'a> RigSimulation<'a> {
     /// One step: command -> controller -> set value -> device and piston under the load -> sensors -> sample.
     ///
     /// # Errors
-    /// What stopped the run.
+    /// The reason why the run stopped.
     pub fn step(&mut self) -> Result<(), RigError> {
         let scenario = &self.rig.scenario;
         let time = self.time();
@@ -294,7 +294,7 @@ impl<'a> RigSimulation<'a> {
         }
     }
 
-    /// What acts on the piston now.
+    /// Loads on the piston now.
     fn carrier(&self) -> BenchCarrier<'_> {
         let carrier = BenchCarrier::at(&self.rig.scenario, self.time());
         if self.rig.plant.has_terms() {
@@ -305,7 +305,7 @@ impl<'a> RigSimulation<'a> {
         }
     }
 
-    /// What the rig does now.
+    /// True state of the rig now.
     pub fn truth(&self) -> RigTruth {
         let scenario = &self.rig.scenario;
         let carrier = self.carrier();

@@ -40,13 +40,13 @@ pub struct BenchScenario {
     pub gravity_along_extension: f64,
     /// Stroke at the start [m], unless the weight rests on the retracted stop.
     pub start_stroke: f64,
-    /// What the tool meets.
+    /// Load that the tool meets.
     pub load: LoadScenario,
     /// A hand that pushes against extension.
     pub hand: Option<HandScenario>,
     /// Physics beyond the believed device, with all its numbers.
     pub effects: Vec<PresentEffect>,
-    /// What is commanded, in order of time.
+    /// Commands, in order of time.
     pub command: CommandScenario,
     /// Positions of the 5/2 valve, in order of time: time [s], position. Extending before the first.
     pub valve: Vec<(f64, ValvePosition)>,
@@ -56,15 +56,15 @@ pub struct BenchScenario {
     pub substeps: usize,
     /// Seed of all noise.
     pub seed: u64,
-    /// What lies between controller and device.
+    /// Sensing between controller and device.
     pub sensing: SensingParameters,
-    /// What the sensors of a rig file do to what they measure, ahead of that chain.
+    /// Errors of a rig file's sensors, ahead of that chain.
     pub sensor_errors: SensorErrors,
     /// A term without a name that the rig file has.
     pub latent: Option<Latent>,
     /// Laws of a user's own that the rig file has.
     pub own: Vec<OwnLaw>,
-    /// What sets the regulator's pressure where forces are commanded.
+    /// Controller of the regulator's pressure where forces are commanded.
     pub controller: ControllerScenario,
     /// Estimator of the contact force, set up as it believes noise and device to be.
     pub estimator: Option<ContactForceEstimator>,
@@ -72,7 +72,7 @@ pub struct BenchScenario {
     pub expect: Vec<Expectation>,
 }
 
-/// What the tool meets.
+/// Load that the tool meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadScenario {
     /// Nothing.
@@ -83,7 +83,7 @@ pub enum LoadScenario {
         position: f64,
         /// Contact, and where the surface really stands.
         contact: ContactParameters,
-        /// How it moves; not at all on a load cell.
+        /// Its motion; none on a load cell.
         motion: Option<SurfaceMotion>,
     },
 }
@@ -311,7 +311,7 @@ fn simulation(
     ))
 }
 
-/// What the tool meets; `contact` is that of the rig, of which the keys given change a part.
+/// Load that the tool meets; `contact` is that of the rig, of which the keys given change a part.
 fn load(
     section: &Section<'_>,
     keys: &LoadKeys,

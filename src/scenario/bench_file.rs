@@ -9,7 +9,7 @@ use super::estimator::EstimatorKeys;
 use super::file::{BoundKeys, DeviceKeys};
 use super::sensing::keys::SensingKeys;
 
-/// What a file describes; a cell if it does not say.
+/// Kind of scenario in a file; a cell if it does not say.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Kind {
@@ -80,7 +80,7 @@ pub(super) struct BenchKeys {
     pub start_stroke_mm: Option<f64>,
 }
 
-/// What the tool meets.
+/// Load that the tool meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum LoadKind {

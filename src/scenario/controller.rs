@@ -1,6 +1,6 @@
 //! `[controller]` of a scenario of either kind: which force controller, how often it works, and those of its values that the file gives.
 //!
-//! What is left out is tuned to the device where the controller is built (`crate::control::force`), for the rules stand there; so does the check that the
+//! Values that are left out are tuned to the device where the controller is built (`crate::control::force`), for the rules stand there; so does the check that the
 //! loop is stable, which refuses through [`ControllerScenario::refuse`].
 
 use std::ops::RangeInclusive;
@@ -127,7 +127,7 @@ pub enum ForceLaw {
         tracking_frequency: Option<f64>,
         /// The seals as they are believed to be; the device's own when nothing is said.
         seals: Option<SealFriction>,
-        /// How uncertain the believed dry friction is [1].
+        /// Uncertainty of the believed dry friction [1].
         friction_uncertainty: Option<f64>,
     },
 }
@@ -149,7 +149,7 @@ impl ControllerScenario {
         }
     }
 
-    /// Does the file give a key?
+    /// Whether the file gives a key.
     pub fn gives(&self, key: &str) -> bool {
         self.places.iter().any(|(name, _)| name == key)
     }

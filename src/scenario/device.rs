@@ -104,7 +104,7 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// What the values must be to each other.
+    /// Conditions between the values.
     fn check(&self) -> Result<(), ScenarioError> {
         let compare = |number, words: &str, other, reason: &str| {
             let (_, key, value) = self.given(other)?;

@@ -271,7 +271,7 @@ fn expected_of_missing(key: &str, field: &str, sections: &Sections) -> String {
     }
 }
 
-/// What serde expected, in words for people.
+/// Type that serde expected, in words for people.
 fn expected_value(expected: &str, key: &str) -> String {
     let number = |kind: &str| {
         let name = key.rsplit('.').next().unwrap_or(key);

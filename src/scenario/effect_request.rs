@@ -24,7 +24,7 @@ impl EffectRequest {
     /// `NAME` or `NAME:KEY=VALUE,..`, as in `tool_runout:amplitude_mm=0.1,frequency_hz=120` or `joint_friction:joint=3`.
     ///
     /// # Errors
-    /// What is wrong with it, for people.
+    /// Its fault, for people.
     pub fn parse(text: &str) -> Result<Self, String> {
         let (name, given) = text.split_once(':').unwrap_or((text, ""));
         let names: Vec<&str> = every().map(|effect| effect.vocabulary().0).collect();
@@ -55,7 +55,7 @@ impl EffectRequest {
         Ok(request)
     }
 
-    /// Is it about one joint, and of which it does not say?
+    /// Whether it is about one joint, and does not say of which.
     pub fn wants_joint(&self) -> bool {
         self.joint.is_none() && self.is_of_joint()
     }

@@ -1,4 +1,4 @@
-//! What can be wrong with a scenario file or a device model file.
+//! Faults of a scenario file or a device model file.
 
 use std::fmt;
 use std::ops::Range;
@@ -11,7 +11,7 @@ pub struct Place {
     pub file: PathBuf,
     /// Line and column, both from 1; none for a value that the file leaves to its default.
     pub position: Option<(u32, u32)>,
-    /// What stands there.
+    /// The text that stands there.
     pub excerpt: Option<Box<Excerpt>>,
 }
 
@@ -49,7 +49,7 @@ pub enum ScenarioError {
     Read {
         /// The file.
         file: PathBuf,
-        /// What the operating system says.
+        /// Message of the operating system.
         source: std::io::Error,
     },
     /// The file is not TOML.
@@ -57,7 +57,7 @@ pub enum ScenarioError {
     Syntax {
         /// Where.
         place: Place,
-        /// What is wrong and what was expected.
+        /// The fault and the expected form.
         reason: String,
     },
     /// A scenario of the other kind.
@@ -97,7 +97,7 @@ pub enum ScenarioError {
         place: Place,
         /// The key.
         key: String,
-        /// What it should hold.
+        /// Its expected content.
         expected: String,
     },
     /// A value of another type, not among the choices, or at odds with another one.
@@ -109,7 +109,7 @@ pub enum ScenarioError {
         key: String,
         /// The value as written, unit included.
         found: String,
-        /// What was expected.
+        /// Expected value or form.
         expected: String,
     },
     /// A law of a user's own that cannot be.
@@ -119,7 +119,7 @@ pub enum ScenarioError {
         place: Place,
         /// The key.
         key: String,
-        /// What is wrong with which part of it.
+        /// The fault, and the part of it that has it.
         reason: String,
     },
     /// A key that only has a meaning together with another one.

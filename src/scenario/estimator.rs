@@ -51,7 +51,7 @@ pub(super) struct EstimatorKeys {
     pub gravity_tolerance_m_per_s2: Option<f64>,
 }
 
-/// What an estimator of a bench is set up from.
+/// Basis of a bench's estimator.
 pub(super) struct EstimatorBase<'a> {
     pub device: &'a DeviceParameters,
     pub sensing: &'a SensingParameters,

@@ -85,13 +85,13 @@ pub struct Scenario {
     pub workpiece: WorkpieceScenario,
     /// Contact between tool and workpiece.
     pub contact: ContactScenario,
-    /// What the cell is to do.
+    /// Process of the cell.
     pub process: ProcessScenario,
-    /// How it is simulated.
+    /// Settings of its simulation.
     pub simulation: SimulationScenario,
-    /// What lies between controller and device.
+    /// Sensing between controller and device.
     pub sensing: SensingParameters,
-    /// What sets the regulator's pressure.
+    /// Controllers of the regulator's pressure.
     pub controller: ControllerScenario,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
@@ -133,7 +133,7 @@ pub struct LimitOverride {
     pub velocity: Option<f64>,
 }
 
-/// What the drive of one joint is like.
+/// Properties of one joint's drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveScenario {
     /// Joint name.
@@ -157,7 +157,7 @@ pub struct ServoScenario {
     pub damping_ratio: f64,
     /// Time constant of the integral action [s]; none when infinite.
     pub integral_time: f64,
-    /// Is the torque of the contact force (from the device's pressures) fed forward?
+    /// Whether the torque of the contact force (from the device's pressures) is fed forward.
     pub contact_feed_forward: bool,
     /// Bandwidth of the critically damped lag with which the drives take their commands [Hz]; infinite for none.
     pub lag_bandwidth: f64,
@@ -172,7 +172,7 @@ pub struct DeviceScenario {
     pub model: PathBuf,
     /// Pneumatics.
     pub parameters: DeviceParameters,
-    /// Is the slide clamped at the working stroke?
+    /// Whether the slide is clamped at the working stroke.
     pub locked: bool,
     /// Centre of the moving mass from the flange at zero stroke, along the axis [m].
     pub moving_centre_of_mass: f64,
@@ -225,7 +225,7 @@ pub enum EdgeSelection {
     Loop(usize),
 }
 
-/// How the part really lies, about the middle of the followed edge.
+/// True place of the part, about the middle of the followed edge.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Misplacement {
     /// Shift along the edge's outward bisector at its middle, towards the tool [m].
@@ -313,7 +313,7 @@ pub struct ProcessScenario {
     pub settle_time: f64,
 }
 
-/// How to simulate.
+/// Settings of a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulationScenario {
     /// Rigid-body step [s].

@@ -107,11 +107,11 @@ pub struct RecordedCell {
     pub noise: [f64; 3],
     /// Relative tolerance of the device's and the contact's numbers [1].
     pub tolerance: f64,
-    /// How far off its retracted stop the slide may start [m].
+    /// Largest distance of the slide's start from its retracted stop [m].
     pub start_stroke_tolerance: f64,
-    /// How it is observed.
+    /// Its observation.
     pub observed: Observation,
-    /// Does its file tell a job, so that it can be run?
+    /// Whether its file tells a job, so that it can be run.
     pub has_job: bool,
     /// Samples per second of its sensors, if they are fewer than the recording's rows [Hz].
     pub sample_rate: f64,

@@ -11,7 +11,7 @@ use super::load::device;
 use super::rig_file::load_rig;
 use crate::plant::{ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors, registry};
 
-/// What a device brings to a bench.
+/// Parts of a device on a bench.
 pub(super) struct BenchDevice {
     pub device: DeviceScenario,
     /// Component of gravity along extension [m/s2], unless the bench gives another.
@@ -31,7 +31,7 @@ pub(super) static USUAL_CONTACT: ContactParameters = ContactParameters::linear(
     registry::CONTACT_DAMPING.default,
 );
 
-/// Is it a rig file? Whatever is wrong with it is said when it is read as what it is.
+/// Whether it is a rig file. Whatever is wrong with it is said when it is read as what it is.
 pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, SCHEMA)?;

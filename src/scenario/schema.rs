@@ -16,7 +16,7 @@ use super::bench_file::BenchFile;
 use super::file::{ModelFile, ScenarioFile};
 use super::recorded_cell::RecordedCellFile;
 
-/// What is known of a key besides its type.
+/// Knowledge of a key besides its type.
 #[derive(Debug, Default)]
 pub(crate) struct Described {
     /// A sentence or two.

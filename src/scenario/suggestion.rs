@@ -100,7 +100,7 @@ fn split(key: &str) -> (String, &str) {
     (table, name)
 }
 
-/// Is it the right key but for its unit, as in `force` or `force_kn` for `force_n`?
+/// Whether it is the right key but for its unit, as in `force` or `force_kn` for `force_n`.
 fn differs_in_unit(name: &str, right: &str) -> bool {
     let stem = stem(right);
     if Unit::of_key(right).is_one() || !name.starts_with(stem) {

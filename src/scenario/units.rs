@@ -114,7 +114,7 @@ impl Unit {
             .fold(symbol, |symbol, (from, to)| symbol.replace(from, to))
     }
 
-    /// Is it the pure number?
+    /// Whether it is the pure number.
     pub fn is_one(self) -> bool {
         self.suffix.is_empty()
     }

@@ -10,7 +10,7 @@
 
 use super::noise::Noise;
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdcParameters {
     /// Bits, 1 to 24.

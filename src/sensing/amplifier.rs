@@ -8,7 +8,7 @@
 //! The source paper shows no amplifier, but a 5 V PWM through an RC cannot give its 8 V: 1.6 is the gain that does.
 //! The circuit is judged: it is the one stage that has this gain without turning the sign.
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AmplifierParameters {
     /// Gain meant, which the software assumes [1], above 1.

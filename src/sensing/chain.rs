@@ -10,7 +10,7 @@ use super::parameters::{CommandChain, SensingParameters};
 use super::sample_clock::SampleClock;
 use super::set_value::SetValueState;
 
-/// What is so.
+/// True values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Truth {
     /// Contact force along the device's axis, positive when it presses [N].
@@ -23,7 +23,7 @@ pub struct Truth {
     pub regulator_pressure: f64,
 }
 
-/// What the software reads.
+/// Readings of the software.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Readings {
     /// Contact force along the device's axis, filtered [N].
@@ -50,7 +50,7 @@ pub struct SensorChain {
     acceleration_noise: Noise,
     pressure_noise: Noise,
     held: Readings,
-    /// Was the last call one that took a sample?
+    /// Whether the last call took a sample.
     sampled: bool,
 }
 
@@ -112,7 +112,7 @@ impl SensorChain {
 }
 
 impl SensorChain {
-    /// Did the last call of `measure` take a sample?
+    /// Whether the last call of `measure` took a sample.
     pub fn sampled(&self) -> bool {
         self.sampled
     }

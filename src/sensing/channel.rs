@@ -12,7 +12,7 @@ pub trait Sensor {
     fn read(&self, truth: f64, noise: &mut Noise) -> f64;
 }
 
-/// How a quantity is measured.
+/// Measurement of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Channel<S> {
     /// The truth.

@@ -7,7 +7,7 @@
 //! V_in bridge voltage [V], V_ref voltage at its reference pin [V], R_G gain resistor [ohm].
 //! Leaves out: its bandwidth, and its own offset and noise, for which the cell's zero offset and noise stand.
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InstrumentationAmplifierParameters {
     /// Gain resistor that is fitted [ohm], above 0.

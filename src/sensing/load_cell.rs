@@ -14,7 +14,7 @@ use super::channel::Sensor;
 use super::instrumentation_amplifier::InstrumentationAmplifierParameters;
 use super::noise::Noise;
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoadCellParameters {
     /// Capacity [N], above 0.

@@ -1,4 +1,4 @@
-//! What lies between the controller and the device: the chain of the source paper's section 3, each stage ideal or real.
+//! Sensing between the controller and the device: the chain of the source paper's section 3, each stage ideal or real.
 //!
 //! ```text
 //! set pressure -> PWM -> RC -> amplifier -> regulator          set_value, of pwm_filter and amplifier

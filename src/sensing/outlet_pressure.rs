@@ -12,7 +12,7 @@ use super::adc::AdcParameters;
 use super::channel::Sensor;
 use super::noise::Noise;
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutletPressureParameters {
     /// Pressure at the full voltage, gauge [Pa], above 0.

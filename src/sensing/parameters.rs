@@ -24,7 +24,7 @@ use super::set_value::SetValueParameters;
 /// Standard gravity [m/s2], with which a capacity in kg is a force.
 const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// How the set pressure reaches the regulator.
+/// Way of the set pressure to the regulator.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum CommandChain {
     /// As it is wanted.
@@ -34,7 +34,7 @@ pub enum CommandChain {
     Real(SetValueParameters),
 }
 
-/// What does not change during a run. The default is ideal.
+/// Constant parameters during a run. The default is ideal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SensingParameters {
     /// From the controller to the regulator.

@@ -10,7 +10,7 @@
 use super::channel::{Sensor, quantised};
 use super::noise::Noise;
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionSensorParameters {
     /// Reading over stroke [1], above 0.

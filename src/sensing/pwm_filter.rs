@@ -10,7 +10,7 @@
 //! Mode"); the pulse stands at the period's start and not in its middle, which shifts the ripple and changes neither mean nor size.
 //! Leaves out: the load on the capacitor, the output's resistance.
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PwmFilterParameters {
     /// High level [V], above 0.
@@ -25,7 +25,7 @@ pub struct PwmFilterParameters {
     pub capacitance: f64,
 }
 
-/// What changes.
+/// The state that changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PwmFilterState {
     /// Voltage of the capacitor [V].

@@ -31,7 +31,7 @@ impl SampleClock {
         }
     }
 
-    /// Is a sample due at a time [s]? Times do not go back.
+    /// Whether a sample is due at a time [s]. Times do not go back.
     pub fn is_due(&mut self, time: f64) -> bool {
         let half_step = 0.5 * (time - self.time).max(0.0);
         self.time = time;

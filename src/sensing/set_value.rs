@@ -11,7 +11,7 @@
 use super::amplifier::AmplifierParameters;
 use super::pwm_filter::{PwmFilterParameters, PwmFilterState};
 
-/// What does not change during a run.
+/// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetValueParameters {
     /// Pressure that the regulator gives at its full input, gauge [Pa], above 0.
@@ -24,7 +24,7 @@ pub struct SetValueParameters {
     pub amplifier: AmplifierParameters,
 }
 
-/// What changes.
+/// The state that changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetValueState {
     filter: PwmFilterState,

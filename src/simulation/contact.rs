@@ -23,7 +23,7 @@ use super::world::ToolBall;
 use crate::plant::Relief;
 use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
 
-/// How far ahead of touching a contact is offered to the slide [m].
+/// Distance ahead of touching at which a contact is offered to the slide [m].
 const REACH: f64 = 1e-3;
 /// Natural frequency of a contact that carries a given force [rad/s].
 const CARRIER_RATE: f64 = 0.1;
@@ -33,9 +33,9 @@ const CARRIER_RATE: f64 = 0.1;
 pub struct Touch {
     /// Unit normal out of the part, in the world.
     pub normal: DVec3,
-    /// How deep the ball is in the part; negative when apart [m].
+    /// Depth of the ball in the part; negative when apart [m].
     pub penetration: f64,
-    /// How fast it goes deeper with the slide held [m/s].
+    /// Rate at which it goes deeper with the slide held [m/s].
     pub rate: f64,
     /// Share of the slide's motion that goes into the part [1].
     pub share: f64,

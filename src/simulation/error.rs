@@ -1,6 +1,6 @@
 //! Why a run was stopped by its physics.
 
-/// What stopped a run; the recording up to there is kept.
+/// Reason why a run stopped; the recording up to there is kept.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// The slide ran into an end of its stroke.
@@ -36,7 +36,7 @@ pub enum SimulationError {
     /// A state is not a number any more, or an amount of air is negative.
     #[error("{quantity} became {value:.3e} at {time:.3} s in phase {phase}; step_ms = {} is too long for this cell, or device_substeps are too few, or a parameter is far out of range", 1e3 * step)]
     NotFinite {
-        /// What.
+        /// The quantity.
         quantity: &'static str,
         /// Its value.
         value: f64,

@@ -1,4 +1,4 @@
-//! What is recorded at each step, and how it becomes a recording.
+//! Record at each step, and its conversion to a recording.
 
 use glam::DVec3;
 use glamx::DPose3;

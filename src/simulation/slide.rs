@@ -17,7 +17,7 @@ use crate::plant::{ContactParameters, ForceTerms};
 /// Share of its motion below which a slide says nothing of the force at a touch beside it [1].
 const LEAST_SHARE: f64 = 1e-6;
 
-/// What acts on the slide over a step from outside the device.
+/// Loads on the slide over a step from outside the device.
 #[derive(Debug, Clone, Copy)]
 pub struct SlideCarrier<'a> {
     /// Law between tool and part.
@@ -32,7 +32,7 @@ pub struct SlideCarrier<'a> {
     pub weight: f64,
     /// Fastest rate of the moving mass on the contact [1/s].
     pub rate: f64,
-    /// How far the surface stands beyond where the part has it, along extension [m].
+    /// Distance of the surface beyond where the part has it, along extension [m].
     pub beyond: f64,
     /// Further forces on the slide.
     pub terms: ForceTerms<'a>,
@@ -106,7 +106,7 @@ impl Carrier for SlideCarrier<'_> {
     }
 }
 
-/// What the slide did over a step.
+/// Motion of the slide over a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlideStep {
     /// Where it ended, as far as it knows.

@@ -52,11 +52,11 @@ pub struct Simulation<'a> {
     world: World,
     device: DeviceState,
     servo: Servo,
-    /// What each axis's drive makes of its command, where the drives lag.
+    /// Response of each axis's drive to its command, where the drives lag.
     lags: Vec<CommandLag>,
     /// The motor of each axis that does not move with its link, with the law of its drive over the last step.
     motors: Vec<Option<(Motor, JointLaw)>>,
-    /// What each encoder read last [rad], and their noise.
+    /// Last reading of each encoder [rad], and their noise.
     encoders: [f64; MAX_JOINTS],
     encoder_noise: Noise,
     /// Where the plan is now.
@@ -64,7 +64,7 @@ pub struct Simulation<'a> {
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
-    /// What the sensors do to what they measure.
+    /// Errors of the sensors.
     errors: RunningSensors,
     sensors: SensorChain,
     readings: Readings,
@@ -183,12 +183,12 @@ impl<'a> Simulation<'a> {
         self.stopped || self.steps >= self.total_steps
     }
 
-    /// What was recorded so far.
+    /// The record so far.
     pub fn logs(&self) -> (&SampleLog, &FrameLog) {
         (&self.log, &self.frames)
     }
 
-    /// What was recorded so far, and the end of the run.
+    /// The record so far, and the end of the run.
     pub fn into_logs(self) -> (SampleLog, FrameLog) {
         (self.log, self.frames)
     }
@@ -196,7 +196,7 @@ impl<'a> Simulation<'a> {
     /// One step of the coupled cell.
     ///
     /// # Errors
-    /// What stopped the run; the last sample is recorded if it is finite.
+    /// The reason why the run stopped; the last sample is recorded if it is finite.
     pub fn step(&mut self) -> Result<(), SimulationError> {
         self.step_timed(None)
     }
@@ -270,7 +270,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// What acts on the slide from now on, at a time [s].
+    /// Loads on the slide from now on, at a time [s].
     fn carrier(&self, time: f64) -> SlideCarrier<'_> {
         let mass = self.cell.device.parameters().moving_mass;
         let contact = &self.cell.plant.contact;
@@ -366,7 +366,7 @@ impl<'a> Simulation<'a> {
         self.carried = gained - (self.slide_force - slide.load) / mass;
     }
 
-    /// What the drives are told: the reference, as far as they lag behind it.
+    /// Commands of the drives: the reference, as far as they lag behind it.
     fn told(&mut self, reference: &Reference, dt: f64) -> Reference {
         let mut told = *reference;
         for (axis, lag) in self.lags.iter_mut().enumerate() {

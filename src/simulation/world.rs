@@ -35,7 +35,7 @@ pub struct ToolBall {
     pub centre_in_link: DVec3,
 }
 
-/// What the world is built from.
+/// Description from which the world is built.
 pub struct WorldDescription<'a> {
     /// Arm with the slide as its last joint.
     pub chain: &'a Chain,

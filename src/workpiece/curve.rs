@@ -66,7 +66,7 @@ pub struct EdgePoint {
     pub bisector: DVec3,
 }
 
-/// What a curve is made from; see the fields of [`EdgeCurve`].
+/// Parts of a curve; see the fields of [`EdgeCurve`].
 pub(crate) struct CurveParts {
     pub(crate) id: String,
     pub(crate) patch: u32,

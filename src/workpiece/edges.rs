@@ -14,7 +14,7 @@ use super::edge_list::EdgeList;
 use super::mesh::TriangleMesh;
 use super::topology::{end_of, next_in_triangle, start_of, triangle_of};
 
-/// What counts as an edge, and as a corner on it.
+/// Criteria of an edge, and of a corner on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgeSearch {
     /// Smallest angle between the normals of two faces that makes their edge sharp [rad].

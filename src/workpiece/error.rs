@@ -1,4 +1,4 @@
-//! What can be wrong with a part's mesh file, an edge that is asked for, or a burr.
+//! Faults of a part's mesh file, an edge that is asked for, or a burr.
 
 use std::path::PathBuf;
 
@@ -72,7 +72,7 @@ pub enum WorkpieceError {
     Read {
         /// File.
         file: PathBuf,
-        /// What the operating system says.
+        /// Message of the operating system.
         source: std::io::Error,
     },
     /// The file's name does not end in a format that is read here.
@@ -86,7 +86,7 @@ pub enum WorkpieceError {
     Malformed {
         /// File.
         file: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
     /// The file states something that is not honoured, so that it is refused.
@@ -94,9 +94,9 @@ pub enum WorkpieceError {
     Unsupported {
         /// File.
         file: PathBuf,
-        /// What the file asks for.
+        /// Feature that the file asks for.
         feature: String,
-        /// What to do instead.
+        /// The remedy.
         remedy: &'static str,
     },
     /// The mesh was read but cannot stand for a part.
@@ -104,7 +104,7 @@ pub enum WorkpieceError {
     Mesh {
         /// File.
         file: PathBuf,
-        /// What is wrong with it.
+        /// Its fault.
         fault: MeshFault,
     },
     /// A number is out of its range.
@@ -114,7 +114,7 @@ pub enum WorkpieceError {
         quantity: &'static str,
         /// Value found.
         value: f64,
-        /// What is allowed.
+        /// The allowed values.
         expected: String,
     },
     /// No edge has this id.
@@ -132,7 +132,7 @@ pub enum WorkpieceError {
         file: PathBuf,
         /// Line, counted from 1.
         line: u64,
-        /// What is wrong and what was expected.
+        /// The fault and the expected form.
         reason: String,
     },
     /// A burr table is shorter than the path it lies on, or a bump lies beside it.
@@ -147,7 +147,7 @@ pub enum WorkpieceError {
         to: f64,
         /// Path length [m].
         length: f64,
-        /// What it was expected to do with the path, a verb.
+        /// The intended use of the path, a verb.
         expected: &'static str,
     },
 }

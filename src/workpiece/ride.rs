@@ -1,4 +1,4 @@
-//! How far a ball is lifted that rolls over a burr.
+//! Lift of a ball that rolls over a burr.
 //!
 //! The centre of a ball of radius r that touches a profile h from above runs along its envelope
 //! (a morphological dilation by the ball): `L(s) = max over |u| <= r of h(s + u) + sqrt(r^2 - u^2) - r`.

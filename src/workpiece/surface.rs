@@ -15,14 +15,14 @@ use super::bvh::{Bounds, Bvh};
 use super::mesh::TriangleMesh;
 use super::topology::{next_in_triangle, start_of, triangle_of};
 
-/// How far a point may lie beyond a border and still count as on it [m].
+/// Distance at which a point may lie beyond a border and still count as on it [m].
 const BORDER_TOLERANCE: f64 = 1e-9;
 
 /// Contacts whose normals differ by less than this angle's cosine are one contact: in a concave arc
 /// the ball touches two facets at once wherever it passes from one to the next (3 degrees).
 const SAME_CONTACT_COSINE: f64 = 0.998_629_534_754_574;
 
-/// What part of a triangle a contact lies on.
+/// Part of a triangle on which a contact lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SurfaceFeature {
     /// Inside the triangle.
@@ -39,7 +39,7 @@ pub struct SurfaceContact {
     /// Triangle, as in [`TriangleMesh::triangles`]; of several with the same contact one that has
     /// the point inside, else the lowest.
     pub triangle: u32,
-    /// What part of that triangle.
+    /// Part of that triangle.
     pub feature: SurfaceFeature,
     /// Point on the surface [m].
     pub point: DVec3,
@@ -57,7 +57,7 @@ struct Facet {
     triangle: u32,
 }
 
-/// What lies around a triangle; edge `k` runs from corner `k` to corner `k + 1`.
+/// Neighbours of a triangle; edge `k` runs from corner `k` to corner `k + 1`.
 #[derive(Debug, Clone)]
 struct Surroundings {
     /// For each edge the unit vector in the neighbour's plane from the edge into the neighbour.

@@ -18,7 +18,7 @@ fn more(bench: &Bench, lines: &str) {
     edit(bench, command, &format!("{command}{lines}"));
 }
 
-/// Has the set value go through its chain: 0 to 8 V for 0 to 5 bar.
+/// The set value goes through its chain: 0 to 8 V for 0 to 5 bar.
 fn chain(bench: &Bench) {
     more(
         bench,

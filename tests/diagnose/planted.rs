@@ -19,7 +19,7 @@ pub const TRUE_OFFSET: f64 = -20.0;
 const RECORDINGS: &str =
     "\n[recordings]\nfit = [\"press.csv\", \"free.csv\"]\npredict = \"predict.csv\"\n";
 
-/// What is wrong with the recordings.
+/// Faults of the recordings.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Dirt {
     None,

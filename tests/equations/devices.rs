@@ -92,7 +92,7 @@ pub const fn still(stroke: f64) -> PistonMotion {
     PistonMotion { stroke, speed: 0.0 }
 }
 
-/// What pushes on a piston that moves: a constant force along extension, and a load.
+/// Loads on a piston that moves: a constant force along extension, and a load.
 #[derive(Debug, Clone, Copy)]
 pub struct Outside {
     /// Weight and the like, along extension [N].

@@ -22,7 +22,7 @@ fn nervous() -> DeviceParameters {
     }
 }
 
-/// How often a quantity changes its sign; below `rounding` it has none.
+/// Number of sign changes of a quantity; below `rounding` it has none.
 fn sign_changes(values: &[f64], rounding: f64) -> usize {
     let signs = values
         .iter()

@@ -23,7 +23,7 @@ const CHANNELS: [&str; 7] = [
 ];
 const ATMOSPHERE: f64 = 101_325.0;
 
-/// What a device of the laboratory did, with something concealed in it.
+/// Readings of a device of the laboratory, with something concealed in it.
 fn truth() -> Recording {
     let ride = project("assets/proof/cases/case-02/ride.csv");
     read_csv(&ride).unwrap().recording
@@ -40,7 +40,7 @@ struct Dialect {
     decimals: [usize; 7],
     /// The file's content.
     content: fn(&Table) -> Vec<u8>,
-    /// What a draft cannot tell, and what its owner writes instead.
+    /// Open questions of a draft, and its owner's answers.
     edit: Option<(&'static str, &'static str)>,
 }
 

@@ -23,7 +23,7 @@ pub const START: u64 = 1_714_740_000;
 const AREA: f64 = 4.9e-4;
 const FRICTION: f64 = 6.0;
 
-/// What a device did at a row: times [ms] and strokes [um] are whole numbers, so that every form holds them exactly.
+/// Values of a device at a row: times [ms] and strokes [um] are whole numbers, so that every form holds them exactly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truth {
     /// Time [s].

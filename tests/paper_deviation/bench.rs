@@ -58,7 +58,7 @@ pub enum Edit {
     Commands(f64, f64),
 }
 
-/// What a run shows at a level.
+/// Result of a run at a level.
 #[derive(Debug, Clone)]
 pub struct Shown {
     /// Outlet as read, steady [Pa gauge].
@@ -160,7 +160,7 @@ pub fn run(scenario: &str, edits: &[Edit]) -> Vec<Shown> {
         .collect()
 }
 
-/// What the four levels show with edits.
+/// Results of the four levels with edits.
 pub fn run_all(edits: &[Edit]) -> Vec<Shown> {
     let mut shown = run("paper_step", edits);
     shown.extend(run("paper_stairstep", edits));

@@ -1,4 +1,4 @@
-//! What a difference between the delays of the apparatus and of the simulation makes.
+//! Effect of a difference between the delays of the apparatus and of the simulation.
 
 use super::bench::{Edit, LEVELS, Level, Shown, run, run_all};
 use super::{ROUNDING, heading};

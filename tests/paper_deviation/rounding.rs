@@ -1,4 +1,4 @@
-//! What resistors of a tolerance and the chain's rounding make, and a proportional term on top of it.
+//! Effect of the resistors' tolerance and of the chain's rounding, and of a proportional term on top.
 
 use super::bench::{Edit, LEVELS, run_all};
 use super::{ROUNDING, heading, quick};

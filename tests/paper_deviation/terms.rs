@@ -3,7 +3,7 @@
 use super::bench::{Edit, Level, Shown};
 use Edit::{Commands, Count, Key, Text};
 
-/// What the deviation is seen in.
+/// Quantity in which the deviation is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Seen {
     /// The outlet's pressure as read.
@@ -16,11 +16,11 @@ pub enum Seen {
 
 /// One term, of any size.
 pub struct Term {
-    /// What it is.
+    /// Its name.
     pub name: &'static str,
     /// The keys that give it its size.
     pub key: &'static str,
-    /// What the deviation is seen in.
+    /// Quantity in which the deviation is seen.
     pub seen: Seen,
     /// Whether the actual value is the higher or the lower one.
     pub sign: f64,
@@ -32,7 +32,7 @@ pub struct Term {
     pub nominal: f64,
     /// Size as text.
     pub text: fn(f64) -> String,
-    /// What is known of such parts.
+    /// Knowledge of such parts.
     pub plausible: &'static str,
 }
 
@@ -232,7 +232,7 @@ pub const TERMS: &[Term] = &[
     },
 ];
 
-/// What changes no steady value, at any size: each is changed at will here.
+/// Parameters that change no steady value, at any size: each is changed at will here.
 #[rustfmt::skip] // A table.
 pub const NEVER: &[(&str, &[Edit])] = &[
     ("supply orifice halved", &[Key("device.override.supply_orifice_mm2", 1.25)]),

@@ -1,4 +1,4 @@
-//! What Rapier makes of the robots: mass matrix and gravity torques of its multibody against Pinocchio.
+//! Rapier's results for the robots: mass matrix and gravity torques of its multibody against Pinocchio.
 
 use glam::DVec3;
 use glamx::DPose3;

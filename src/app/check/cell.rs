@@ -98,7 +98,7 @@ fn arm(report: &mut Report, arm: &ArmScenario, axes: usize) {
     report.number("axes", axes);
 }
 
-/// What the scenario changes of the device's model.
+/// Changes of the scenario to the device's model.
 pub(super) fn overrides(report: &mut Report, file: &Path) -> Result<(), AppError> {
     let keys = keys_given(file, "device.override")?;
     if !keys.is_empty() {

@@ -1,4 +1,4 @@
-//! What is told of a file: facts by name, numbers for programs, the files that it needs and what to do next.
+//! Report on a file: facts by name, numbers for programs, the files that it needs and what to do next.
 
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
@@ -17,19 +17,19 @@ const LABEL: usize = 12;
 pub(super) struct Report {
     /// The file, or folder.
     file: PathBuf,
-    /// What it is.
+    /// Its kind.
     kind: &'static str,
     /// Its title, where it has one.
     title: Option<String>,
-    /// What it says, one sentence or less each, by label.
+    /// Facts by label, one sentence or less each.
     facts: Vec<(&'static str, String)>,
-    /// What programs want to know, units in the names.
+    /// Facts for programs, units in the names.
     numbers: serde_json::Map<String, serde_json::Value>,
     /// Files that it refers to.
     files: Vec<FileNote>,
-    /// What a user may not expect.
+    /// Notes on what a user may not expect.
     notes: Vec<String>,
-    /// What can be done with it.
+    /// Next step for the user.
     next: String,
 }
 
@@ -92,7 +92,7 @@ impl Report {
         }
     }
 
-    /// How much is simulated and written.
+    /// Amount simulated and written.
     pub(super) fn extent(&mut self, duration: f64, step: f64, samples: f64, bytes_per_sample: f64) {
         let bytes = samples * bytes_per_sample;
         let text = format!(

@@ -24,7 +24,7 @@ pub struct ScenarioEvaluator {
     scenarios: Vec<(String, ScenarioTemplate)>,
 }
 
-/// What a design does in one scenario.
+/// Results of a design in one scenario.
 struct Run {
     metrics: BTreeMap<String, f64>,
     force_range: [f64; 2],

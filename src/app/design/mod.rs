@@ -31,7 +31,7 @@ pub(super) struct PreparedStudy {
 
 /// A study that was done.
 pub(super) struct FinishedStudy {
-    /// What is printed.
+    /// The printed table.
     pub table: String,
     /// design.json.
     pub document: String,
@@ -148,7 +148,7 @@ fn document(
     struct Document<'a> {
         study: String,
         scenarios: Vec<String>,
-        /// What was varied, and within what.
+        /// Variables, and their bounds.
         variables: Vec<Varied<'a>>,
         #[serde(flatten)]
         result: &'a StudyResult,

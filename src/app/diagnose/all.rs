@@ -16,7 +16,7 @@ use crate::case::is_cell_case;
 use crate::diagnosis::answer::{Answer, Verdict};
 use crate::replay::LoadedCell;
 
-/// What became of a case.
+/// Outcome of a case.
 struct Outcome {
     name: String,
     result: Result<Done, String>,
@@ -24,7 +24,7 @@ struct Outcome {
 
 struct Done {
     answer: Answer,
-    /// Did it stand there already?
+    /// Whether it stood there already.
     kept: bool,
 }
 

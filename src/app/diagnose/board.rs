@@ -222,7 +222,7 @@ fn lanes(answer: &Answer, recording: &Compared, start: f64) -> Vec<Lane> {
     lanes.filter(|lane| !lane.spans.is_empty()).collect()
 }
 
-/// What a link lacks against the variable that says when, before and after.
+/// Residual of a link against the variable that explains it, before and after.
 fn of_balance(balance: &Balance) -> Cloud {
     let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
     let (words, of, scale) = variable(&balance.variable);

@@ -31,14 +31,14 @@ const FRAME_INTERVAL: f64 = 0.02;
 const PALE: Colour = [225, 230, 240, 90];
 /// The arm of the believed model.
 const AMBER: Colour = [235, 165, 60, 90];
-/// How far the recorded tool is drawn from the simulated one, at most about [m].
+/// Largest distance at which the recorded tool is drawn from the simulated one, about [m].
 const SEEN: f64 = 0.03;
 /// Departures are drawn this many times as large [1], the largest that keeps within that.
 const SCALES: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 /// Segments of the edge.
 const SEGMENTS: usize = 200;
 
-/// What is drawn of a recording.
+/// Drawn part of a recording.
 pub(super) struct Drawn<'a> {
     /// Commands and encoders.
     pub axes: &'a Axes,
@@ -126,7 +126,7 @@ pub(super) fn cell_scene(
     })
 }
 
-/// How many times as large departures are drawn [1], of which the largest is `apart` [m].
+/// Factor by which departures are drawn enlarged [1], of which the largest is `apart` [m].
 fn scale(apart: f64) -> f64 {
     let scale = SCALES.into_iter().rfind(|scale| scale * apart <= SEEN);
     scale.unwrap_or(SCALES[0])
@@ -145,7 +145,7 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, f64::max)
 }
 
-/// How far the last links of two arms are apart at most [m].
+/// Largest distance between the last links of two arms [m].
 fn largest_departure(one: &[Vec<DPose3>], other: &[Vec<DPose3>]) -> f64 {
     let last = |links: &Vec<DPose3>| links.last().map(|pose| pose.translation);
     let pairs = one.iter().zip(other);

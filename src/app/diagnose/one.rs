@@ -23,7 +23,7 @@ pub(super) struct Prepared {
 
 /// A case that was diagnosed; its files are written.
 pub(super) struct Finished {
-    /// What was found.
+    /// The finding.
     pub answer: Answer,
     /// diagnosis.json.
     pub document: String,
@@ -33,7 +33,7 @@ pub(super) struct Finished {
     pub names: Vec<&'static str>,
 }
 
-/// Is this a folder with a case?
+/// Whether this is a folder with a case.
 pub(super) fn is_case(folder: &Path) -> bool {
     folder.join(RIG).is_file()
 }
@@ -108,7 +108,7 @@ impl Prepared {
     }
 }
 
-/// What there is to do with the improved file.
+/// Next steps with the improved file.
 fn how_to_run(cell: Option<&LoadedCell>, improved: &str) -> String {
     match cell {
         Some(cell) if cell.scenario.has_job => format!(

@@ -40,15 +40,15 @@ pub(super) const NAMES: [&str; 10] = [
     DIAGNOSIS,
 ];
 
-/// Does a folder hold what every diagnosis has?
+/// Whether a folder holds the files of every diagnosis.
 pub(super) fn stands_complete(folder: &Path) -> bool {
     let all = [ACCOUNT, IMPROVED, COMPARISON, BALANCE, BOARD, DIAGNOSIS];
     all.iter().all(|name| folder.join(name).is_file())
 }
 
-/// What a diagnosis leaves behind.
+/// Files of a diagnosis.
 pub(super) struct Outputs<'a> {
-    /// What was found.
+    /// The finding.
     pub answer: Answer,
     /// improved.toml.
     pub improved: &'a str,
@@ -60,7 +60,7 @@ pub(super) struct Outputs<'a> {
     pub fit_picture: Option<&'a str>,
     /// Recordings beside models.
     pub comparison: &'a Comparison,
-    /// What a cell looks like.
+    /// Scene of a cell.
     pub scene: Option<Scene>,
 }
 

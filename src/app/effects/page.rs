@@ -1,4 +1,4 @@
-//! What there is to say of an effect, for a terminal, a program and docs/EFFECTS.md.
+//! Description of an effect, for a terminal, a program and docs/EFFECTS.md.
 
 use std::fmt::Write as _;
 
@@ -35,7 +35,7 @@ pub(super) struct Explained {
     /// A run that shows it.
     #[serde(skip_serializing_if = "Option::is_none")]
     command: Option<String>,
-    /// What a file says of it.
+    /// Lines of a file.
     lines: Vec<String>,
     picture: String,
 }
@@ -48,11 +48,11 @@ struct Number {
     usual: f64,
     /// That of the picture.
     shown: f64,
-    /// Is it a part of a diagnosis's answer?
+    /// Whether it is a part of a diagnosis's answer.
     told: bool,
 }
 
-/// What an effect is confused with.
+/// An effect with which another is confused.
 #[derive(Debug, Serialize)]
 struct Rival {
     name: &'static str,

@@ -6,7 +6,7 @@ use super::scene::{self, Signal, Stage};
 use crate::effects::Effect;
 use crate::figure::{Figure, Panel, Role, Series, Stroke, svg};
 
-/// How far a line with fewer points may lie beside the one with all, as a share of its panel's height: a third of a pixel.
+/// Largest distance of a line with fewer points from the one with all, as a share of its panel's height: a third of a pixel.
 const BESIDE_LINE: f64 = 2e-3;
 
 /// A picture, and how much of it the effect is.

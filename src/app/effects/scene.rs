@@ -37,7 +37,7 @@ static STROKES: Shipped = shipped!("strokes");
 static EDGE: Shipped = shipped!("edge");
 static DRAW: Shipped = shipped!("draw");
 
-/// What the scenarios name, with its path in the project.
+/// Subjects of the scenarios, with their paths in the project.
 const BESIDE: [(&str, &[u8]); 3] = [
     (
         "models/arm/arm10.urdf",
@@ -71,7 +71,7 @@ impl Scene {
     }
 }
 
-/// How an effect is shown.
+/// Presentation of an effect.
 pub(super) struct Shown {
     /// Where.
     pub scene: Scene,
@@ -98,7 +98,7 @@ const fn size(asked: &'static str, key: &'static str, value: f64) -> Option<Size
     Some(Size { asked, key, value })
 }
 
-/// How an effect is shown: by its row, or as a step is.
+/// Presentation of an effect: by its row, or as a step is.
 #[rustfmt::skip] // A table: one effect a line.
 pub(super) fn of(effect: &Effect) -> Shown {
     let whole = [0.0, f64::INFINITY];
@@ -164,7 +164,7 @@ fn part(chain: Chain, size: Option<Size>) -> Shown {
     }
 }
 
-/// What `--with` is given for it to be shown.
+/// Argument of `--with` for it to be shown.
 pub(super) fn asked(effect: &Effect) -> String {
     let name = effect.vocabulary().0;
     let size = of(effect).size;
@@ -186,7 +186,7 @@ pub(super) fn sizes(effect: &Effect, believed: &PlantParameters) -> Vec<f64> {
         .collect()
 }
 
-/// Does only a rig with a part of the device show it?
+/// Whether only a rig with a part of the device shows it.
 pub(super) fn is_of_part(effect: &Effect) -> bool {
     LINK_EFFECTS.iter().any(|own| own.name == effect.name)
 }
@@ -196,7 +196,7 @@ pub(super) fn is_of_part(effect: &Effect) -> bool {
 pub(super) struct Signal {
     /// By which it is chosen.
     pub key: &'static str,
-    /// What it is.
+    /// Its title.
     pub title: String,
     /// The same on an axis.
     pub axis: &'static str,
@@ -205,7 +205,7 @@ pub(super) struct Signal {
     pub values: Vec<f64>,
 }
 
-/// What a run's sensors read.
+/// Readings of a run's sensors.
 #[derive(Debug, Clone)]
 pub(super) struct Signals {
     pub time: Vec<f64>,
@@ -217,7 +217,7 @@ pub(super) struct Signals {
 /// A scene that is ready to be run.
 pub(super) struct Stage {
     kind: Kind,
-    /// What is believed there.
+    /// Believed parameters there.
     pub believed: PlantParameters,
     /// The joint that shows most, from 1.
     pub telling: usize,
@@ -378,7 +378,7 @@ fn of_recording(recording: &Recording, atmosphere: f64) -> Signals {
     }
 }
 
-/// What a joint's drive and encoder tell.
+/// Readings of a joint's drive and encoder.
 fn of_joint(recording: &Recording, joint: usize) -> Vec<Signal> {
     let values = |signal| {
         let channel = recording.channel(&joint_quantity(joint, signal));
@@ -424,7 +424,7 @@ fn believed_part(chain: Chain, device: &PlantParameters) -> PlantParameters {
     part
 }
 
-/// What drives it.
+/// Its inputs.
 fn inputs_of(chain: Chain, name: &str) -> PlantInputs {
     let times = |duration: f64| -> Vec<f64> {
         let count = (duration / 0.01).round() as usize;

@@ -1,4 +1,4 @@
-//! What was understood of logs, for programs: `--json`. Numbers are in SI.
+//! Interpretation of logs, for programs: `--json`. Numbers are in SI.
 
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ struct RecordingReport {
     samples: usize,
     from_s: f64,
     to_s: f64,
-    /// What its times count from, in seconds since 1970; none where the logs' own start.
+    /// Origin of its times, in seconds since 1970; none where it is the logs' own start.
     origin_unix_s: Option<f64>,
     logs: Vec<LogReport>,
     channels: Vec<ChannelReport>,

@@ -1,4 +1,4 @@
-//! What was understood of a log, for people.
+//! Interpretation of a log, for people.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use crate::import::{ImportMap, Imported, LogNote, Remark};
 /// Gaps and rows that are listed, at most.
 const LISTED: usize = 3;
 
-/// What was understood of a recording.
+/// Interpretation of a recording.
 pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
     let mut text = String::new();
     let time = imported.recording.time();
@@ -133,7 +133,7 @@ fn shown(value: f64) -> String {
     crate::quantity::significant(value, 4)
 }
 
-/// What there is to say of a log's rows and clock.
+/// Remarks on a log's rows and clock.
 pub(super) fn remarks(log: &LogNote) -> Vec<String> {
     let rows = |lines: &[u64]| {
         let first: Vec<String> = lines.iter().take(LISTED).map(u64::to_string).collect();

@@ -11,7 +11,7 @@ use crate::page::Chart;
 /// Standard deviations to either end of a 95 % band [1].
 const BAND: f64 = 1.959_964;
 
-/// What is taken from the times of a recording [s]: nothing, unless they are those of a clock, which single precision cannot tell apart.
+/// Origin subtracted from the times of a recording [s]: nothing, unless they are those of a clock, which single precision cannot tell apart.
 pub(super) fn origin(recording: &Compared) -> f64 {
     const CLOCK: f64 = 100.0;
     let start = recording.time.first().copied().unwrap_or(0.0);
@@ -22,7 +22,7 @@ pub(super) fn origin(recording: &Compared) -> f64 {
     }
 }
 
-/// What its axis says.
+/// The time axis with its label.
 fn time_axis(origin: f64) -> Horizontal {
     match origin {
         0.0 => Horizontal::Time,
@@ -145,7 +145,7 @@ pub(in crate::app) fn most_of(values: &[f64]) -> Option<[f64; 2]> {
     (room > 0.0).then_some([low - room, high + room])
 }
 
-/// What a link lacks, in words.
+/// Residual of a link, in words.
 pub(in crate::app) fn lacking(balance: &Balance) -> &'static str {
     match balance.link.as_str() {
         "regulator" => "pressure at the regulator's outlet",
@@ -155,7 +155,7 @@ pub(in crate::app) fn lacking(balance: &Balance) -> &'static str {
     }
 }
 
-/// What a link lacks against the variable that says when, before and after.
+/// Residual of a link against the variable that explains it, before and after.
 pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
     let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
     let (words, of, scale) = variable(&balance.variable);

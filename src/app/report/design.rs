@@ -72,7 +72,7 @@ fn limit_words(limit: &str) -> String {
     format!("{name} {rest}").trim_end().to_owned()
 }
 
-/// What the study did for what it minimised.
+/// Improvement of the objective by the study.
 fn verdict(document: &Value) -> String {
     let minimised = text(&document["objectives"]["minimised"]);
     let (name, unit) = named(minimised);
@@ -234,7 +234,7 @@ fn bare(svg: &str) -> &str {
     &svg[svg.find("<svg").unwrap_or(0)..]
 }
 
-/// What keeps the objective from being lower.
+/// Bounds and limits that keep the objective from being lower.
 fn binding<'a>(document: &Value) -> Section<'a> {
     let (objective, _) = named(text(&document["objectives"]["minimised"]));
     let tried = |key: &Value| {

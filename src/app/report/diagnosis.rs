@@ -18,7 +18,7 @@ use crate::quantity::significant;
 /// Recordings that are shown at once; the others are folded away.
 const SHOWN: usize = 2;
 
-/// What the account of a contact flange says of it.
+/// Sentences on a contact flange from its account.
 const OF_FLANGE: [&str; 5] = [
     "Impact",
     "Ringing",
@@ -70,7 +70,7 @@ fn told<'a>(answer: &Answer, title: &str, heading: &str) -> Option<Section<'a>> 
     Some(Section::new(heading, blocks.collect()))
 }
 
-/// What each effect is, in words.
+/// Meaning of each effect, in words.
 fn lead(answer: &Answer) -> Vec<String> {
     let said = |effect: &FoundEffect| {
         let words = effect.meaning();

@@ -33,7 +33,7 @@ pub(in super::super) struct Label {
     pub name: String,
     /// Its unit; empty for a plain number.
     pub unit: &'static str,
-    /// What it is.
+    /// Its meaning.
     pub meaning: &'static str,
 }
 
@@ -106,7 +106,7 @@ pub(super) fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
     }
 }
 
-/// What is to be said of a force that is not the desired one.
+/// Remark on a force that is not the desired one.
 fn far(run: &RunResult<'_>) -> Option<String> {
     far_from_desired(
         run.metric("desired_force_n")?,
@@ -115,7 +115,7 @@ fn far(run: &RunResult<'_>) -> Option<String> {
     )
 }
 
-/// How far the force is from the desired one.
+/// Departure of the force from the desired one.
 fn tone_of_force(run: &RunResult<'_>, near: Tone) -> Tone {
     match run.metric("force_rms_error_percent") {
         Some(off) if run.metric("desired_force_n").is_some() && off > 100.0 * WIDE_BAND => {
@@ -230,7 +230,7 @@ fn facts(run: &RunResult<'_>) -> Vec<Fact> {
     first.chain(others).chain(peak(run)).collect()
 }
 
-/// What was asked for: a force, or a pressure.
+/// The command: a force, or a pressure.
 fn desired(run: &RunResult<'_>) -> Option<Fact> {
     if let Some(desired) = run.metric("desired_force_n") {
         return Some(Fact {
@@ -296,7 +296,7 @@ fn pictures<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     (!pictures.is_empty()).then(|| Section::new(title, vec![Block::Sketches(pictures)]))
 }
 
-/// What came of each command of a bench.
+/// Result of each command of a bench.
 fn levels<'a>(run: &RunResult<'_>) -> Option<Section<'a>> {
     let levels = run.document["summary"]["levels"].clone();
     let levels: Vec<LevelSummary> = serde_json::from_value(levels).ok()?;

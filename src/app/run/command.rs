@@ -1,4 +1,4 @@
-//! What `idc run` is asked, and one run.
+//! Arguments of `idc run`, and one run.
 
 use std::path::PathBuf;
 
@@ -112,7 +112,7 @@ pub(in super::super) fn run(arguments: &RunArguments) -> Result<ExitCode, AppErr
     one(arguments, scenario, Some((&template, alone)))
 }
 
-/// What the effects that are asked for change of a scenario.
+/// Changes of a scenario by the effects that are asked for.
 pub(in super::super) fn put_in(
     requests: &[EffectRequest],
     template: &ScenarioTemplate,

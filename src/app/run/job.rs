@@ -30,30 +30,30 @@ pub(super) enum Job {
     Bench(Box<Rig>),
 }
 
-/// How it is run.
+/// Settings of a run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Manner {
-    /// Is recording.rrd written?
+    /// Whether recording.rrd is written.
     pub recorded: bool,
-    /// How recording.rrd opens.
+    /// First view of recording.rrd.
     pub opening: Opening,
-    /// How tables are printed.
+    /// Style of the tables.
     pub style: Style,
 }
 
 /// A run that has ended, its files written.
 pub(super) struct Ended {
-    /// What summary.json holds.
+    /// Content of summary.json.
     pub document: String,
     /// Its numbers for people.
     pub table: String,
     /// Names of the files.
     pub names: Vec<&'static str>,
-    /// What is to be said on standard error: what stopped it, or which results lie outside their bounds.
+    /// Message on standard error: what stopped it, or which results lie outside their bounds.
     pub told: Vec<String>,
-    /// What became of it.
+    /// Its exit code.
     pub code: ExitCode,
-    /// What only the whole run tells a viewer: the scene, and the numbers.
+    /// Parts of a viewer's content that only the whole run gives: the scene, and the numbers.
     pub shown: (Scene, String),
 }
 
@@ -78,7 +78,7 @@ impl Job {
         })
     }
 
-    /// What is to be noted before it begins.
+    /// Notes before it begins.
     pub(super) fn notes(&self) -> &[String] {
         match self {
             Self::Cell(cell) => &cell.notes,
@@ -86,7 +86,7 @@ impl Job {
         }
     }
 
-    /// Does a run of it write the file of this name, of those that a run may write?
+    /// Whether a run of it writes the file of this name, of those that a run may write.
     pub(super) fn writes(&self, name: &str, recorded: bool) -> bool {
         match name {
             RECORDING => recorded,

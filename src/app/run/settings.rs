@@ -41,7 +41,7 @@ impl Setting {
 /// One of the runs.
 #[derive(Debug, Clone)]
 pub(super) struct Variant {
-    /// What it has in place of the scenario's values, in the order of the flags.
+    /// Its values in place of the scenario's, in the order of the flags.
     pub edits: Vec<KeyValue>,
     /// Name of its folder: what differs between the runs; empty where there is one alone.
     pub name: String,

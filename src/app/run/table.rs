@@ -175,7 +175,7 @@ fn word(run: &Done) -> &'static str {
     }
 }
 
-/// What stopped a run, or which of its results lie outside their bounds, as one run says it.
+/// Reason of a stop, or results outside their bounds, as one run says it.
 pub(super) fn outside(document: &Value) -> Vec<String> {
     if let Some(stop) = document["stopped"].as_str() {
         return vec![format!("stopped: {stop}")];

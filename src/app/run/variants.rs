@@ -22,21 +22,21 @@ use crate::scenario::ScenarioTemplate;
 
 /// The page beside the folders.
 const PAGE: &str = "compare.html";
-/// What the progress counts of each run.
+/// Count of each run's progress.
 const PARTS: usize = 1000;
 
 /// A variant that has been run.
 pub(super) struct Done {
     /// Its folder.
     folder: PathBuf,
-    /// What it has in place of the scenario's values, and what it is called.
+    /// Its values in place of the scenario's, and its name.
     pub variant: Variant,
-    /// What summary.json holds.
+    /// Content of summary.json.
     pub document: Value,
 }
 
 impl Done {
-    /// What became of it.
+    /// Its exit code.
     pub(super) fn code(&self) -> ExitCode {
         let verdicts = self.document["expectations"].as_array();
         let outside = |verdict: &Value| verdict["kept"] == false;

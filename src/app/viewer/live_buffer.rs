@@ -9,7 +9,7 @@ struct Content {
     complete: bool,
 }
 
-/// What has been written so far.
+/// Bytes written so far.
 #[derive(Default)]
 pub(in crate::app) struct LiveBuffer {
     content: Mutex<Content>,

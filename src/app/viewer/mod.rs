@@ -11,7 +11,7 @@ pub(super) use watch::{PART_INTERVAL, Viewing, Watch};
 
 use crate::recording::rerun::{RrdFault, viewer_version};
 
-/// What keeps a recording from being looked at.
+/// Reasons why a recording cannot be looked at.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewerError {
     /// The file.
@@ -82,9 +82,9 @@ pub enum ViewerError {
         "--view={text} is not where a viewer listens: {reason}; expected `native`, `web`, `web:PORT`, HOST:PORT or rerun+http://HOST:PORT/proxy"
     )]
     Address {
-        /// What was given.
+        /// The text given.
         text: String,
-        /// What is wrong with it.
+        /// Its fault.
         reason: String,
     },
     /// An address at which nobody listens.

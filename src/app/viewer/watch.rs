@@ -16,7 +16,7 @@ use crate::recording::{Recording, RecordingError};
 
 /// Simulated time between two parts that are sent [s].
 pub(in crate::app) const PART_INTERVAL: f64 = 0.2;
-/// How long a viewer elsewhere may take to answer.
+/// Longest time that a viewer elsewhere may take to answer.
 const PATIENCE: Duration = Duration::from_secs(3);
 /// Stands in the summary's place until there is one.
 const NOT_OVER: &str = "*The run is not over yet.*";
@@ -32,7 +32,7 @@ pub(in crate::app) enum Viewing {
 }
 
 impl Viewing {
-    /// What `--view` says: nothing (native where it is installed, otherwise as a web page), `native`, `web`, `web:PORT` or an address.
+    /// Meanings of `--view`: nothing (native where it is installed, otherwise as a web page), `native`, `web`, `web:PORT` or an address.
     pub(in crate::app) fn parse(text: &str) -> Result<Self, ViewerError> {
         let refuse = |reason: String| ViewerError::Address {
             text: text.to_owned(),
@@ -70,7 +70,7 @@ impl Viewing {
     }
 }
 
-/// Does anybody listen there?
+/// Checks that somebody listens there.
 fn reach(host: &str, port: u16) -> Result<(), ViewerError> {
     let nobody = |reason: String| ViewerError::NobodyListens {
         address: format!("{host}:{port}"),
@@ -88,7 +88,7 @@ fn reach(host: &str, port: u16) -> Result<(), ViewerError> {
     Err(nobody(last))
 }
 
-/// What is handed over to the thread that sends.
+/// Message to the thread that sends.
 enum Part {
     /// Samples and frames that have come since the last part.
     Samples(Box<Recording>, Box<Scene>),

@@ -10,7 +10,7 @@ pub enum ArmError {
     Unreadable {
         /// The URDF file.
         file: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         source: std::io::Error,
     },
     /// The file is no URDF, or not all of one.
@@ -18,7 +18,7 @@ pub enum ArmError {
     Incomplete {
         /// The URDF file.
         file: PathBuf,
-        /// What it lacks.
+        /// Its fault, in words.
         fault: &'static str,
     },
     /// The file is not URDF.
@@ -26,7 +26,7 @@ pub enum ArmError {
     Malformed {
         /// The URDF file.
         file: PathBuf,
-        /// What the parser says.
+        /// Message of the parser.
         source: urdf_rs::UrdfError,
     },
     /// The file holds something that cannot be honoured.
@@ -34,12 +34,12 @@ pub enum ArmError {
     Refused {
         /// The URDF file.
         file: PathBuf,
-        /// What and why.
+        /// The refused part and the reason.
         refusal: Box<Refusal>,
     },
 }
 
-/// What in a URDF file cannot be honoured, by name.
+/// Parts of a URDF file that cannot be honoured, by name.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what each field is
 pub enum Refusal {

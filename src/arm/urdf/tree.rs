@@ -163,7 +163,7 @@ pub(super) fn unit_axis(joint: &Joint) -> Result<DVec3, Refusal> {
     })
 }
 
-/// How a joint moves; none if it is fixed.
+/// Motion of a joint; none if it is fixed.
 pub(super) fn kind_of(joint: &Joint) -> Result<Option<JointKind>, Refusal> {
     let refused = |kind| {
         Err(Refusal::JointType {

@@ -1,4 +1,4 @@
-//! What the file says to draw: shapes, their poses and colours.
+//! Shapes in the file that are drawn, their poses and colours.
 
 use super::mesh::{self, MeshPart};
 use super::tree::{Placed, Tree};

@@ -218,7 +218,7 @@ impl ChamberModel {
         (outlet - self.gas.atmosphere).clamp(0.0, self.supply)
     }
 
-    /// How far the outlet may stand off [Pa], below and above, the pressure that will hold chamber 1 at `goal` [Pa absolute], and still be back there by
+    /// Allowed offsets of the outlet [Pa], below and above, from the pressure that will hold chamber 1 at `goal` [Pa absolute], for it to be back there by
     /// the time that the chamber arrives.
     ///
     /// A regulator of time constant tau comes down no faster than p/tau and up no faster than (p_s - p)/tau. While an excess D runs off at the rate r,

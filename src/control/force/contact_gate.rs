@@ -1,11 +1,11 @@
-//! Is the tool on the part? Without contact there is no force to feed back, and an integral would only wind up for the impact.
+//! Whether the tool is on the part. Without contact there is no force to feed back, and an integral would only wind up for the impact.
 
 /// Share of the desired force above which the tool counts as pressing [1].
 const SHARE: f64 = 0.1;
 /// Force below which nothing counts, three times a load cell's noise [N].
 const LEAST: f64 = 3.0;
 
-/// Does a measured force [N] say that the tool presses, when `desired` [N] is wanted?
+/// Whether a measured force [N] shows that the tool presses, when `desired` [N] is wanted.
 pub(super) fn presses(measured: f64, desired: f64) -> bool {
     measured > (SHARE * desired).max(LEAST)
 }

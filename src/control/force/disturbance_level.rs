@@ -1,4 +1,4 @@
-//! How much of the believed dry friction there is, and what else disturbs the force: a Kalman filter with two states.
+//! Estimates of the share of the believed dry friction and of other disturbances of the force: a Kalman filter with two states.
 //!
 //! ```text
 //! y = o - k f + noise,   o and k walk at random

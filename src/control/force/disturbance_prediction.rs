@@ -1,4 +1,4 @@
-//! What disturbs the force is estimated, foretold over the dead time, and cancelled through the inverted regulator and chamber.
+//! Disturbances of the force are estimated, foretold over the dead time, and cancelled through the inverted regulator and chamber.
 //!
 //! ```text
 //! F = F_gas(p_1, p_2) - k f(z) - b v + m g_a - m a + o                       p_1, p_2 and f from models, o and k estimated

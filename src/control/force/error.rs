@@ -1,4 +1,4 @@
-//! What can be wrong with a controller's parameters.
+//! Faults of a controller's parameters.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ pub enum ControllerError {
         key: &'static str,
         /// Its value, strict SI.
         value: f64,
-        /// What would do.
+        /// Values that would do.
         expected: &'static str,
     },
     /// A parameter with which the loop is unstable.
@@ -28,7 +28,7 @@ pub enum ControllerError {
         frequency: f64,
         /// The loop's gain there [1].
         gain: f64,
-        /// What the loop was taken to be, if not the device as described; starts with a space.
+        /// Assumption on the loop, if not the device as described; starts with a space.
         assumption: &'static str,
         /// Up to where it would be stable.
         limit: StabilityLimit,

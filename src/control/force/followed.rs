@@ -1,4 +1,4 @@
-//! What the controllers with a model know of the device from its measurements: regulator, chambers and motion.
+//! Knowledge of the controllers with a model about the device, from its measurements: regulator, chambers and motion.
 
 use super::ForceObservation;
 use super::chamber_model::ChamberModel;
@@ -58,7 +58,7 @@ impl Followed {
         self.outlet = Some(outlet);
     }
 
-    /// What will be after the dead time, at a speed [m/s] until then.
+    /// Prediction after the dead time, at a speed [m/s] until then.
     pub fn ahead(&self, observation: &ForceObservation, speed: f64) -> Ahead {
         let stroke = self.motion.stroke;
         let mut chambers = self.chambers.clone();

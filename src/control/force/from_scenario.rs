@@ -75,7 +75,7 @@ fn delayed(device: &DeviceParameters, delay: f64) -> DeviceParameters {
     delayed
 }
 
-/// What is given, and the rest tuned to the device.
+/// Parameters as given, the others tuned to the device.
 fn parameters(law: &ForceLaw, device: &DeviceParameters) -> ControllerParameters {
     match *law {
         ForceLaw::OpenLoop => ControllerParameters::OpenLoop,

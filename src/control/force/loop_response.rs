@@ -109,7 +109,7 @@ impl LinearPlant {
         }
     }
 
-    /// What is left of it when a controller's model carries the lags of regulator, line and chambers: the dead time and the contact.
+    /// The part of it that remains when a controller's model carries the lags of regulator, line and chambers: the dead time and the contact.
     pub(super) fn without_lags(self) -> Self {
         Self {
             time_constant: 0.0,

@@ -1,4 +1,4 @@
-//! What sets the regulator's pressure.
+//! Controllers of the regulator's pressure.
 //!
 //! `ForceController` is the seam: a controller sees what a real one could see and answers with a set pressure, once each control period; whoever calls
 //! it holds the answer in between. One controller a file:
@@ -42,7 +42,7 @@ use disturbance_prediction::DisturbancePrediction;
 use feedback_linearisation::FeedbackLinearisation;
 use proportional_integral::ProportionalIntegral;
 
-/// What a force controller may look at.
+/// Measurements open to a force controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceObservation {
     /// Time [s].

@@ -80,7 +80,7 @@ pub struct DisturbancePredictionParameters {
     pub tracking_frequency: f64,
     /// The seals as they are believed to be.
     pub seals: SealFriction,
-    /// How uncertain the believed dry friction is, as a share of it [1]; 0 to 1.
+    /// Uncertainty of the believed dry friction, as a share of it [1]; 0 to 1.
     pub friction_uncertainty: f64,
 }
 

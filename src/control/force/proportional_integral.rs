@@ -20,7 +20,7 @@ pub struct ProportionalIntegral {
     gains: ProportionalIntegralParameters,
     map: PressureMap,
     regulator: RegulatorParameters,
-    /// What the regulator makes of the map alone.
+    /// Outlet pressure by the map alone.
     expected: Option<RegulatorState>,
     /// Force of one pascal of set pressure [N/Pa].
     force_per_pressure: f64,

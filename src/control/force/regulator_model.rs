@@ -9,7 +9,7 @@
 //! Olbrot 1979, finite spectrum assignment), and there the lag is inverted: over a period T the outlet closes the share of its distance to p_goal that a
 //! lag of T_r would. The supply bounds what is asked for, so a large step takes as long as the supply needs.
 //!
-//! What the outlet does otherwise than foreseen over a period, taken as a set pressure too high or too low and slowly followed, is added to both: so a gain
+//! The outlet's departure from the prediction over a period, taken as a set pressure too high or too low and slowly followed, is added to both: so a gain
 //! that is a little off leaves no lasting error.
 
 use std::collections::VecDeque;

@@ -78,7 +78,7 @@ impl Surface {
     }
 }
 
-/// What acts on the piston during a period that began at `time`.
+/// Loads on the piston during a period that began at `time`.
 struct Load {
     surface: Surface,
     time: f64,
@@ -213,7 +213,7 @@ impl Bench {
         (0..12).map(|_| self.random.random::<f64>()).sum::<f64>() - 6.0
     }
 
-    /// What the controller sees.
+    /// Measurements of the controller.
     pub fn observe(&mut self, desired: f64) -> ForceObservation {
         let sensors = self.sensors;
         let stepped = |value: f64, step: f64| {

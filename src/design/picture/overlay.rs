@@ -1,4 +1,4 @@
-//! What lies over the data: limits with their words, the starting and the chosen design with their values.
+//! The overlay of the data: limits with their words, the starting and the chosen design with their values.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -15,9 +15,9 @@ type Corners = [(i32, i32); 2];
 pub(super) struct LimitLine {
     words: String,
     line: Corners,
-    /// What it forbids.
+    /// Corners of the region that it forbids.
     forbidden: Corners,
-    /// Anchor of its words, and do they end there?
+    /// Anchor of its words, and whether they end there.
     place: ((i32, i32), bool),
 }
 

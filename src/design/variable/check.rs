@@ -34,7 +34,7 @@ pub(in crate::design) fn variable(
     })
 }
 
-/// Is it a key of a device, or one of the controller? The latter depend on its kind and are checked when the scenario is made.
+/// Checks that it is a key of a device, or one of the controller. The latter depend on its kind and are checked when the scenario is made.
 fn check_key(document: &Document<'_>, key: &str) -> Result<(), ScenarioError> {
     if key
         .strip_prefix("controller.")

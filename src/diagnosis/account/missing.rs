@@ -1,4 +1,4 @@
-//! What is missing, how much of the mismatch it explains, and what is left.
+//! The missing physics, its share of the mismatch, and the rest.
 
 use super::super::answer::FoundLaw;
 use super::super::details::{IN_TURN, PredictionError, RemainingError};
@@ -144,12 +144,12 @@ impl Diagnosis {
         )
     }
 
-    /// What departures are compared with.
+    /// Scale of departures.
     pub(super) fn yardstick(&self) -> &'static str {
         yardstick(self.remaining.is_some())
     }
 
-    /// What no law explains of a part of the device.
+    /// Remainder that no law explains of a part of the device.
     fn unexplained(&self) -> Option<String> {
         let remaining = self.remaining.as_ref()?;
         let (unit, factor) = CHANNEL_UNITS[remaining.channel as usize];

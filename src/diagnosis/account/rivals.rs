@@ -1,4 +1,4 @@
-//! What the recordings do not tell apart, and what to record next.
+//! Explanations that the recordings do not tell apart, and the next recording to make.
 
 use super::super::details::Considered;
 use super::super::diagnose::{Diagnosis, Ranked, names_of};
@@ -11,13 +11,13 @@ use crate::quantity::significant;
 const TELLS: f64 = 28.0;
 
 impl Considered {
-    /// Is it ruled out: fitted in full, and at odds below 1 to 100?
+    /// Whether it is ruled out: fitted in full, and at odds below 1 to 100.
     #[must_use]
     pub fn is_ruled_out(&self) -> bool {
         self.in_full && self.log10_odds < Settings::DEFAULT.least_odds.log10()
     }
 
-    /// May it be as good as the explanation given, by what was fitted?
+    /// Whether it may be as good as the explanation given, by what was fitted.
     #[must_use]
     pub fn is_close(&self) -> bool {
         self.log10_odds >= Settings::DEFAULT.least_odds.log10()
@@ -106,7 +106,7 @@ impl Diagnosis {
     }
 }
 
-/// How near the nearest of the other explanations comes.
+/// Distance of the nearest of the other explanations.
 fn nearest(considered: &[Considered], looked_at: usize) -> String {
     let by_odds = |a: &&Considered, b: &&Considered| a.log10_odds.total_cmp(&b.log10_odds);
     let Some(nearest) = considered.iter().max_by(by_odds) else {

@@ -1,4 +1,4 @@
-//! What is said of physics without a name: where it enters, on what it depends, its shape, and what known physics is near.
+//! Words on physics without a name: where it enters, on what it depends, its shape, and what known physics is near.
 
 use std::fmt::Write as _;
 
@@ -89,7 +89,7 @@ impl Diagnosis {
         text
     }
 
-    /// What to look at to find what a term is; nothing where there is none.
+    /// Hints to what a term is; nothing where there are none.
     pub(super) fn what_to_check(&self) -> String {
         self.shape.as_ref().map_or_else(String::new, |shape| {
             let check = known(&shape.latent, shape.form).check;
@@ -137,7 +137,7 @@ fn fixed(value: f64, digits: usize) -> String {
     }
 }
 
-/// What the known effects come to, beside the term's share.
+/// Result of the known effects, beside the term's share.
 fn near(effects: &[NearEffects], term: Option<f64>) -> String {
     let Some(best) = effects.first() else {
         return "No known effect was found to explain a part of it.".to_owned();

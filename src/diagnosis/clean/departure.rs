@@ -1,4 +1,4 @@
-//! How far a reading departs from its neighbours: from the cubic through the two on either side, at the times of their stamps.
+//! Departure of a reading from its neighbours: from the cubic through the two on either side, at the times of their stamps.
 //!
 //! ```text
 //! e_i = x_i - sum w_j x_j,     z_i = e_i / sqrt(1 + sum w_j^2)

@@ -19,7 +19,7 @@ const ALONE: f64 = 0.2;
 const AROUND: usize = 12;
 /// Share of what it says that a sensor must show at least if it were true [1].
 const SHOWN: f64 = 0.25;
-/// What it says, in standard deviations of the sensor that denies it, from which that one can [1].
+/// Its size, in standard deviations of the sensor that denies it, from which that one can [1].
 const POWER: f64 = 10.0;
 /// As `POWER`, for a change of speed, which a sensor of positions denies less surely.
 const SPEED_POWER: f64 = 25.0;
@@ -32,7 +32,7 @@ const STROKE: usize = 1;
 const FORCE: usize = 2;
 const ACCELERATION: usize = 3;
 
-/// What is looked at.
+/// The examined readings.
 struct Sight<'a> {
     time: &'a [f64],
     readings: &'a [Vec<f64>; CHANNELS.len()],
@@ -68,7 +68,7 @@ pub(super) fn wild(
 }
 
 impl Sight<'_> {
-    /// Is a reading far from its neighbours, which go on as if it were not there?
+    /// Whether a reading is far from its neighbours, which go on as if it were not there.
     fn stands_alone(&self, channel: usize, index: usize) -> bool {
         let departures = &self.departures[channel];
         let size = departures[index].abs();
@@ -99,7 +99,7 @@ impl Sight<'_> {
         })
     }
 
-    /// Does another sensor deny what a reading says?
+    /// Whether another sensor denies a reading.
     fn denied(&self, channel: usize, index: usize) -> bool {
         let said = self.departures[channel][index].abs();
         match channel {
@@ -110,7 +110,7 @@ impl Sight<'_> {
         }
     }
 
-    /// Does the accelerometer show nothing like an acceleration [m/s2]?
+    /// Whether the accelerometer shows nothing like an acceleration [m/s2].
     fn acceleration_denies(&self, index: usize, said: f64) -> bool {
         let departures = &self.departures[ACCELERATION];
         let near = index.saturating_sub(1)..(index + 2).min(departures.len());
@@ -122,7 +122,7 @@ impl Sight<'_> {
             && shown < SHOWN * said
     }
 
-    /// Does the stroke show no change of speed at a reading of the accelerometer beyond what the others say?
+    /// Whether the stroke shows no change of speed at a reading of the accelerometer beyond what the others say.
     fn stroke_denies(&self, index: usize) -> bool {
         const SIDE: usize = 4;
         if index < SIDE || index + SIDE >= self.time.len() {

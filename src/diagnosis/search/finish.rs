@@ -275,7 +275,7 @@ impl Search<'_> {
         }
     }
 
-    /// Does a hypothesis foretell recordings that were left out better than a simpler one? Where there are none, nothing speaks against it.
+    /// Whether a hypothesis foretells recordings that were left out better than a simpler one. Where there are none, nothing speaks against it.
     fn foretells(
         &self,
         more: &Hypothesis,

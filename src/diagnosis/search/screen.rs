@@ -28,7 +28,7 @@ const WAY: Free = Free {
     bounds: [-3.0, 3.0],
     prior: Prior::Flat,
 };
-/// How many get a second look.
+/// Number of effects that get a second look.
 const LOOKED_AT: usize = 7;
 /// Cost over the least beyond which they get none [1].
 const LOOKED_BEHIND: f64 = 10.0;
@@ -36,7 +36,7 @@ const LOOKED_BEHIND: f64 = 10.0;
 /// An effect and where it may start.
 type Start = (&'static Effect, Vec<f64>);
 
-/// What an effect promises.
+/// Promise of an effect.
 #[derive(Debug, Clone)]
 struct Promise {
     effect: &'static Effect,
@@ -47,7 +47,7 @@ struct Promise {
 }
 
 impl Search<'_> {
-    /// What more each effect could explain, roughly: columns of what is free already are taken as they are. Best first; without those that by their
+    /// Further gain of each effect, roughly: columns of what is free already are taken as they are. Best first; without those that by their
     /// derivatives cost more than `most`.
     pub fn screen(&self, from: &Hypothesis, stages: &[Stage], most: f64) -> Vec<Hypothesis> {
         let periodic = spectrum::strongest(self.evidence, &from.fit.prediction);
@@ -101,7 +101,7 @@ impl Search<'_> {
         looked
     }
 
-    /// What was free and still is beside an effect, with its columns.
+    /// Free quantities that stay free beside an effect, with their columns.
     fn beside(&self, from: &Hypothesis, new: &[Free]) -> (Vec<Free>, Vec<Vec<f64>>) {
         let fitted = from
             .fit
@@ -116,7 +116,7 @@ impl Search<'_> {
             .unzip()
     }
 
-    /// What a hypothesis gives with one more effect at a start.
+    /// Prediction of a hypothesis with one more effect at a start.
     fn started(&self, from: &Hypothesis, (effect, start): &Start, stage: &Stage) -> Prediction {
         let new = free_of(effect, &self.believed, start);
         let known = &from.fit.prediction;
@@ -124,7 +124,7 @@ impl Search<'_> {
         self.evidence.predict(&plant, stage.guided, Some(known))
     }
 
-    /// What one more effect promises on the straight way to a start and beyond, without a simulation more; none where only derivatives tell: of what has
+    /// Promise of one more effect on the straight way to a start and beyond, without a simulation more; none where only derivatives tell: of what has
     /// a phase, of a start that changes nothing, such as a force of zero, and of sensors, whose derivatives are cheap.
     fn secant(
         &self,
@@ -164,7 +164,7 @@ impl Search<'_> {
         })
     }
 
-    /// What one more effect promises by one step from a start.
+    /// Promise of one more effect by one step from a start.
     fn glance(
         &self,
         from: &Hypothesis,
@@ -223,7 +223,7 @@ impl Search<'_> {
         }
     }
 
-    /// What an effect may be told when it is asked where to start.
+    /// Knowledge given to an effect that is asked where to start.
     pub(super) fn clues<'b>(
         &self,
         from: &'b Hypothesis,

@@ -1,4 +1,4 @@
-//! What would close the balance at a term's port, straight from the recordings, with the term taken out of the improved model.
+//! Residual of the balance at a term's port, straight from the recordings, with the term taken out of the improved model.
 //!
 //! ```text
 //! force on the piston:   M a_m - W + F_m - P,   the piston held to its measured motion
@@ -30,7 +30,7 @@ const MOVING: f64 = 6e-3;
 pub struct Needed {
     /// Value of the variable, or time within a period [SI].
     pub at: f64,
-    /// What is needed there [SI].
+    /// The required value there [SI].
     pub value: f64,
 }
 
@@ -50,7 +50,7 @@ pub fn visited(evidence: &Evidence, hypothesis: &Hypothesis, latent: &Latent) ->
     (ends[0] < ends[1]).then_some(ends)
 }
 
-/// What would close the balance over a range of the variable; nothing where no reading shows it.
+/// Residual of the balance over a range of the variable; nothing where no reading shows it.
 #[must_use]
 pub fn needed(
     evidence: &Evidence,

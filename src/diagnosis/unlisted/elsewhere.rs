@@ -1,4 +1,4 @@
-//! What a term says of recordings that it was not fitted to, the piston held to its measured motion.
+//! Prediction by a term of recordings that it was not fitted to, the piston held to its measured motion.
 //!
 //! Fitted anew to the others, not stepped there: a force over the stroke works like a spring, and one step of Gauss and Newton goes astray.
 

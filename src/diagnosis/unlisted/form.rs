@@ -1,4 +1,4 @@
-//! What kind of curve a term is, in words that physics is known by.
+//! Kind of a term's curve, in words that physics is known by.
 
 use crate::plant::{Basis, Latent};
 

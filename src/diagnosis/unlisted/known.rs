@@ -1,4 +1,4 @@
-//! What known physics has a shape like that, and where to look for it: a table from port, variable, direction of motion and form to words. The first row
+//! Known physics of a similar shape, and where to look for it: a table from port, variable, direction of motion and form to words. The first row
 //! that fits counts.
 
 use super::form::Form::{self, Even, Localised, Monotonic, Odd, Periodic};
@@ -15,9 +15,9 @@ use crate::plant::Variable::{
 /// Known physics that a term may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Known {
-    /// What it may be.
+    /// Physics that it may be.
     pub resembles: &'static str,
-    /// What to look at, or to try.
+    /// Thing to look at, or to try.
     pub check: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! What diagnosis.json says of a term without a name.
+//! Part of diagnosis.json on a term without a name.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub struct UnlistedReport {
     pub port: String,
     /// On what it depends.
     pub variable: String,
-    /// Does it turn with the direction of motion?
+    /// Whether it turns with the direction of motion.
     pub directed: bool,
     /// `periodic`, `localised`, `odd`, `even`, `monotonic` or `broad`.
     pub form: String,
@@ -51,9 +51,9 @@ pub struct ShapeRow {
 /// Known physics beside it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Nearest {
-    /// What has such a shape.
+    /// Physics of such a shape.
     pub resembles: String,
-    /// What to look at.
+    /// Thing to look at.
     pub check: String,
     /// Known effects that came nearest.
     pub effects: Vec<NearEffects>,
@@ -66,12 +66,12 @@ pub struct NearEffects {
     pub effects: Vec<String>,
     /// Share of the mismatch that they explain [1].
     pub share_explained: Option<f64>,
-    /// How far behind they are: twice the logarithm of the odds against them [1].
+    /// Distance behind the best: twice the logarithm of the odds against them [1].
     pub behind: f64,
 }
 
 impl Diagnosis {
-    /// What is said of a term without a name, if there is one.
+    /// Words on a term without a name, if there is one.
     #[must_use]
     pub fn unlisted_report(&self) -> Option<UnlistedReport> {
         let shape = self.shape.as_ref()?;

@@ -44,7 +44,7 @@ pub struct Row {
 pub struct Shape {
     /// The term.
     pub latent: Latent,
-    /// What kind of curve it is.
+    /// Kind of curve.
     pub form: Form,
     /// One period with the half width of its 95 % interval [s], of a periodic term.
     pub period: Option<[f64; 2]>,
@@ -56,7 +56,7 @@ pub struct Shape {
     pub table: Vec<Row>,
     /// Between which values of its variable it acts.
     pub acts: [f64; 2],
-    /// What would close the balance, by the recordings; empty where no reading shows it.
+    /// Residual of the balance, by the recordings; empty where no reading shows it.
     pub needed: Vec<Needed>,
     /// Largest less smallest value [SI].
     pub peak_to_peak: f64,

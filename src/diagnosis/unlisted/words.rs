@@ -13,7 +13,7 @@ pub struct Shown {
     pub factor: f64,
 }
 
-/// What is added at a port.
+/// Quantity added at a port.
 #[must_use]
 pub fn port(port: Port) -> Shown {
     let (words, unit, factor) = match port {

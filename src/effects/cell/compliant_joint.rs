@@ -17,7 +17,7 @@
 
 use super::*;
 
-/// What a joint that is believed rigid may be [N m/rad].
+/// Stiffness range of a joint that is believed rigid [N m/rad].
 const RIGID: [f64; 2] = [1e3, 1e8];
 
 /// Of which joint is to be said.

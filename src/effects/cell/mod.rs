@@ -1,4 +1,4 @@
-//! What a robot cell's model may lack beside its device: effects of the arm and of the part.
+//! Effects that a robot cell's model may lack beside its device: those of the arm and of the part.
 
 mod burr;
 mod compliant_joint;

@@ -73,7 +73,7 @@ pub fn noise(device: &DeviceParameters) -> SensorNoise {
     }
 }
 
-/// What happens in a run.
+/// Motion in a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Motion {
     /// Force that the outlet pressure gives at rest at the start, friction aside [N].
@@ -88,7 +88,7 @@ pub struct Motion {
     pub frequency: f64,
     /// Component of gravity along extension [m/s2].
     pub gravity: f64,
-    /// How long [s].
+    /// Duration [s].
     pub duration: f64,
 }
 
@@ -103,7 +103,7 @@ pub struct Sample {
     pub pressures: [f64; 2],
 }
 
-/// How one device deviates from its data, in shares of the tolerances: -1..=1.
+/// Deviation of one device from its data, in shares of the tolerances: -1..=1.
 #[derive(Debug, Clone, Copy)]
 pub struct Deviation {
     shares: [f64; 11],

@@ -1,4 +1,4 @@
-//! What cannot be meant is refused by name.
+//! Parameters that cannot be meant are refused by name.
 
 use super::ensemble::parameters;
 use super::plant::{PERIOD, device};

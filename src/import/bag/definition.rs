@@ -7,7 +7,7 @@ use super::store::There;
 /// Reads the definition of a topic's messages.
 ///
 /// # Errors
-/// What its messages are instead of such that can be read.
+/// Its messages are of a kind that cannot be read.
 pub(super) fn definition(owner: &There) -> Result<Definition, String> {
     let Some((name, encoding, data)) = &owner.schema else {
         return Err("of messages without a definition".to_owned());

@@ -13,7 +13,7 @@ const MOST_NAMED: usize = 64;
 /// Depth of a message in messages that nobody has.
 const DEEPEST: usize = 32;
 
-/// What a topic's messages are.
+/// Definition of a topic's messages.
 pub(super) struct Definition {
     schema: MessageSchema,
 }
@@ -31,7 +31,7 @@ enum Step {
     Index(usize),
 }
 
-/// What a field holds.
+/// Kind of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A number, or true or false.
@@ -69,18 +69,18 @@ const JOINT_NAMES: [&str; 2] = ["name", "joint_names"];
 pub(super) struct Message(Value);
 
 impl Definition {
-    /// Do its messages name joints, beside lists with an element for each?
+    /// Whether its messages name joints, beside lists with an element for each.
     pub fn has_joints(&self) -> bool {
         let names = |list: &&&str| self.field(&format!("{list}[0]")).is_some();
         JOINT_NAMES.iter().find(names).is_some()
     }
 
-    /// Do its messages have a frame?
+    /// Whether its messages have a frame.
     pub fn has_frames(&self) -> bool {
         self.field("header.frame_id").is_some()
     }
 
-    /// Is the field of a path true or false?
+    /// Whether the field of a path is true or false.
     pub fn is_bool(&self, path: &str) -> bool {
         // A field within another message is seldom a flag.
         let own = self.schema.spec.fields.iter().find(|f| f.name == path);

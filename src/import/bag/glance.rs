@@ -8,11 +8,11 @@ use super::open;
 use super::store::Scan;
 use crate::import::error::ImportError;
 
-/// What a bag holds.
+/// Overview of a bag.
 pub(in crate::import) struct Glance {
     /// Its fields.
     pub fields: Vec<FieldSeen>,
-    /// Has every message a stamp?
+    /// Whether every message has a stamp.
     pub stamped: bool,
 }
 
@@ -26,7 +26,7 @@ pub(in crate::import) struct FieldSeen {
     pub path: String,
     /// The joint that it is of.
     pub joint: Option<String>,
-    /// Is it true or false?
+    /// Whether it is true or false.
     pub is_bool: bool,
     /// Frames that its messages are of.
     pub frames: Vec<String>,

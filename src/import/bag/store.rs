@@ -28,7 +28,7 @@ pub(super) struct Message<'a> {
     /// When it was logged and published [ns].
     pub logged: u64,
     pub published: u64,
-    /// What it says.
+    /// Its bytes.
     pub data: &'a [u8],
 }
 
@@ -126,7 +126,7 @@ fn number(file: &Path) -> u64 {
     number.and_then(Result::ok).unwrap_or(0)
 }
 
-/// What a bag holds, up to where it breaks off.
+/// Content of a bag, up to where it breaks off.
 #[derive(Default)]
 pub(super) struct Scan {
     /// Topics that have messages, in the order of their names.
@@ -158,7 +158,7 @@ impl Scan {
         scan
     }
 
-    /// What can be read of it.
+    /// The readable part of it.
     pub fn rest(&self) -> String {
         match self.logged {
             Some([first, last]) => format!(

@@ -7,7 +7,7 @@ use crate::recording::{Unit, schema};
 
 /// Share of the samples that do not move from the one before in what is commanded.
 const HELD: f64 = 0.8;
-/// What a word, a letter and a unit are worth.
+/// Worth of a word, a letter and a unit.
 const WORD: i32 = 6;
 const WEAK: i32 = 2;
 
@@ -71,7 +71,7 @@ pub(super) fn assign(columns: &[Seen], taken: &[usize]) -> Vec<Pick> {
     chosen
 }
 
-/// What a column may be taken for.
+/// Quantity that a column may be taken for.
 fn pick(place: usize, column: &Seen) -> Option<Pick> {
     let said = names::said(&column.name);
     let unit = column.unit.as_ref().map(|said| said.unit.si);
@@ -196,13 +196,13 @@ fn is_held(values: &[f64]) -> bool {
     still as f64 > HELD * values.len() as f64
 }
 
-/// Are the numbers 0 and 1, and both of them?
+/// Whether the numbers are 0 and 1, and both of them.
 fn is_two_states(values: &[f64]) -> bool {
     let has = |wanted: f64| values.contains(&wanted);
     has(0.0) && has(1.0) && is_of_states(values)
 }
 
-/// Are the numbers 0 or 1 throughout?
+/// Whether the numbers are 0 or 1 throughout.
 fn is_of_states(values: &[f64]) -> bool {
     let fits = |value: &f64| value.is_nan() || *value == 0.0 || *value == 1.0;
     values.iter().all(fits)

@@ -3,7 +3,7 @@
 
 use crate::recording::Unit;
 
-/// What a column is of.
+/// Quantity of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Thing {
     Time,
@@ -17,12 +17,12 @@ pub(super) enum Thing {
     Other,
 }
 
-/// What a name says beside that.
+/// Role that a name gives beside that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
-    /// What is commanded.
+    /// Commanded value.
     Set,
-    /// What is measured.
+    /// Measured value.
     Actual,
     /// Another pressure than the regulator's.
     Elsewhere,
@@ -61,16 +61,16 @@ const ROLES: [(Role, &[&str]); 3] = [
     (Role::Actual, &["act", "actual", "ist", "meas", "measured", "gemessen", "mess", "mesure", "misurat", "medid", "feedback", "fb", "out", "outlet"]),
 ];
 
-/// What a name says.
+/// Content of a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Said {
     /// The thing, if it says one, and the word that does.
     pub thing: Option<(Thing, &'static str)>,
-    /// Is that but a letter?
+    /// Whether that is but a letter.
     pub by_letter: bool,
     /// The roles, each with its word.
     pub roles: Vec<(Role, &'static str)>,
-    /// Is it of an axis across that of the tool?
+    /// Whether it is of an axis across that of the tool.
     pub across: bool,
 }
 
@@ -80,7 +80,7 @@ impl Said {
     }
 }
 
-/// What a name says, its unit apart.
+/// Content of a name, its unit apart.
 pub(super) fn said(name: &str) -> Said {
     let parts = parts(name);
     let whole = parts.concat();

@@ -27,7 +27,7 @@ const UNDERSTOOD: f64 = 0.6;
 /// Rows in a row that make a beginning.
 const RUN: usize = 3;
 
-/// What a column's fields are.
+/// Kind of a column's fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Empty,
@@ -113,7 +113,7 @@ pub(super) fn look(path: &Path) -> Result<Looked, ImportError> {
     })
 }
 
-/// Is this a number, a word of two states, a stamp or nothing?
+/// Kind of a field: a number, a word of two states, a stamp or nothing.
 fn kind(field: &str) -> Kind {
     if numbers::is_nothing(field) {
         return Kind::Empty;
@@ -167,7 +167,7 @@ fn separator(text: &str) -> Option<(Separator, &'static str, f64, Vec<Kind>)> {
     best
 }
 
-/// What most of a column's fields are.
+/// Kind of most of a column's fields.
 fn usual_kind(rows: &[&Vec<String>], column: usize) -> Kind {
     let of = |wanted: Kind| {
         let own = rows.iter().filter(|row| kind(&row[column]) == wanted);

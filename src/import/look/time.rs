@@ -14,13 +14,13 @@ const TRIED: [&str; 4] = ["s", "ms", "us", "ns"];
 /// Share of the stamps that must differ from one another for them to be the times of samples.
 const DISTINCT: f64 = 0.5;
 
-/// What the map says of the times.
+/// Statement of the map on the times.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TimeChoice {
     /// Keys and values of its table.
     pub keys: Vec<(&'static str, String)>,
     pub because: Because,
-    /// What could not be told.
+    /// The open question.
     pub open: Option<String>,
     /// Places of the columns that it takes.
     pub places: Vec<usize>,
@@ -85,7 +85,7 @@ pub(super) fn choose(looked: &Looked, logs: usize) -> Option<TimeChoice> {
     Some(choice)
 }
 
-/// How well a column serves as times.
+/// Aptness of a column as times.
 fn worth(place: usize, column: &Seen, logs: usize) -> Option<i32> {
     let name = said(&column.name);
     let named = name.thing.is_some_and(|(thing, _)| thing == Thing::Time);
@@ -114,7 +114,7 @@ fn worth(place: usize, column: &Seen, logs: usize) -> Option<i32> {
     }
 }
 
-/// Do numbers rise throughout, but for the beginnings of further logs; with their usual step.
+/// Whether numbers rise throughout, but for the beginnings of further logs; with their usual step.
 fn rises(values: &[f64], logs: usize) -> Option<(bool, f64)> {
     if values.iter().any(|value| !value.is_finite()) || values.len() < 3 {
         return None;

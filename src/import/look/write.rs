@@ -13,7 +13,7 @@ use crate::recording::{Unit, schema};
 /// Column at which comments begin.
 const COMMENT: usize = 44;
 
-/// What a whole device is driven by, and what to do about one that the logs lack.
+/// Inputs of a whole device, and the remedy for one that the logs lack.
 const DRIVING: [(&str, &str, &str); 3] = [
     (
         schema::SET_PRESSURE_GAUGE,
@@ -280,7 +280,7 @@ fn unused(page: &mut Page, looked: &Looked, taken: &[usize], picks: &[Pick]) {
     }
 }
 
-/// What drives a whole device and no log holds.
+/// Inputs of a whole device that no log holds.
 fn constants(page: &mut Page) {
     let found: Vec<&String> = page.found.iter().map(|(quantity, _)| quantity).collect();
     let measured = QUANTITIES

@@ -2,7 +2,7 @@
 
 use super::second_order::SecondOrder;
 
-/// How a pressure moves.
+/// Law of a pressure's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Law {
     /// Exponentially to the target, at one over the time constant [1/s].
@@ -23,7 +23,7 @@ pub struct OutletCourse {
     /// The highest there can be, gauge [Pa].
     pub(super) supply: f64,
     pub(super) law: Law,
-    /// How long it holds [s].
+    /// Duration for which it holds [s].
     pub duration: f64,
 }
 
@@ -43,7 +43,7 @@ impl OutletCourse {
         self.start.clamp(0.0, self.supply)
     }
 
-    /// How far the outlet moves in its first time [s] [Pa]; of a lag and a ramp as fast as it begins, which costs no exponential.
+    /// Way of the outlet in its first time [s] [Pa]; of a lag and a ramp as fast as it begins, which costs no exponential.
     #[inline]
     pub fn travel(&self, time: f64) -> f64 {
         match self.law {

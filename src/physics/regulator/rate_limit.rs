@@ -43,7 +43,7 @@ impl RateLimit {
         }
     }
 
-    /// What holds from a pressure [Pa] on its way to a target [Pa] by a lag of a rate [1/s], and for how long [s].
+    /// Law from a pressure [Pa] on its way to a target [Pa] by a lag of a rate [1/s], and for how long [s].
     pub(super) fn of_lag(&self, start: f64, target: f64, lag: f64) -> (Law, f64) {
         let limit = self.towards(target - start);
         let until = target - limit / lag;
@@ -55,7 +55,7 @@ impl RateLimit {
         }
     }
 
-    /// What holds from a pressure [Pa] and rate [Pa/s] on about a target [Pa], and for how long [s], `longest` [s] at most.
+    /// Law from a pressure [Pa] and rate [Pa/s] on about a target [Pa], and for how long [s], `longest` [s] at most.
     pub(super) fn of_oscillator(
         &self,
         start: f64,

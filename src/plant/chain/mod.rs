@@ -22,7 +22,7 @@ use super::simulate::{Channel, Trajectory};
 
 pub use parameters::LinkParameters;
 
-/// How much of the device a rig has.
+/// Share of the device that a rig has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Chain {
     /// All of it, from set pressure to contact force.
@@ -72,13 +72,13 @@ impl Chain {
         }
     }
 
-    /// Is the motion of the piston recorded and taken as it is?
+    /// Whether the motion of the piston is recorded and taken as it is.
     pub fn takes_motion(self) -> bool {
         matches!(self, Self::MovedPiston | Self::DrivenSlide)
     }
 }
 
-/// What really happens in a rig with a part of the device; none of a whole one.
+/// True course of a rig with a part of the device; none of a whole one.
 pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Option<Trajectory> {
     Some(match plant.chain {
         Chain::Whole => return None,

@@ -1,4 +1,4 @@
-//! What a link of the chain may have that the whole device's description leaves out.
+//! Properties of a link of the chain that the whole device's description leaves out.
 
 /// Parameters of single links; [`LinkParameters::NONE`] changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,7 +13,7 @@ pub struct LinkParameters {
     pub load_share: f64,
     /// Time in which that load fills [s].
     pub load_time: f64,
-    /// What a closed chamber loses.
+    /// Leak of a closed chamber.
     pub leak: ChamberLeak,
     /// Pressure that a freshly filled chamber loses as its air cools [Pa].
     pub cooling: f64,
@@ -21,11 +21,11 @@ pub struct LinkParameters {
     pub cooling_time: f64,
     /// Time after the start of the recording until which a closed chamber is still fed [s].
     pub shut_time: f64,
-    /// How far the start of a closed chamber is from its first readings [Pa].
+    /// Difference of a closed chamber's start from its first readings [Pa].
     pub start_error: f64,
 }
 
-/// What a closed chamber loses, by its volume. Rates are of the pressure, whose fall is what shows.
+/// Leak of a closed chamber, by its volume. Rates are of the pressure, whose fall is what shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChamberLeak {
     /// Through an orifice: equivalent area by volume [1/m].

@@ -20,7 +20,7 @@ use winnow::{ModalResult, Parser};
 
 use super::unit::Unit;
 
-/// What is wrong with an expression, and where in its text.
+/// A fault of an expression, and its place in the text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{reason}")]
 pub struct ExpressionError {
@@ -127,7 +127,7 @@ impl PartialEq for Expression {
     }
 }
 
-/// What an expression says of the unit of one of its parts.
+/// Statement of an expression on the unit of one of its parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Told {
     /// A number as written: of any unit beside a sum, of none in a product.
@@ -170,7 +170,7 @@ impl Expression {
         value(&self.root, values)
     }
 
-    /// Does it use the name of this place?
+    /// Whether it uses the name of this place.
     #[must_use]
     pub fn uses(&self, place: usize) -> bool {
         uses(&self.root, place)

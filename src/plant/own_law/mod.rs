@@ -77,7 +77,7 @@ pub struct Constant {
     pub range: Option<[f64; 2]>,
 }
 
-/// What is written of a law.
+/// Text of a law.
 #[derive(Debug, PartialEq)]
 pub struct LawText {
     /// Its name.
@@ -93,9 +93,9 @@ pub struct LawText {
 /// A law in a rig's description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnLaw {
-    /// What is written of it.
+    /// Its text.
     pub text: Arc<LawText>,
-    /// Does it act? One that a diagnosis is to look for does not, to begin with.
+    /// Whether it acts. One that a diagnosis is to look for does not, to begin with.
     pub acts: bool,
     /// Values of its constants [SI].
     pub values: [f64; MOST_CONSTANTS],
@@ -203,7 +203,7 @@ impl OwnLaw {
         if found.is_finite() { found } else { 0.0 }
     }
 
-    /// Does it need to know where the surface stands?
+    /// Whether it needs to know where the surface stands.
     pub fn uses_surface(&self) -> bool {
         let place = SYMBOLS.iter().position(|symbol| symbol.name == "x_s");
         place.is_some_and(|place| self.text.expression.uses(place))

@@ -1,4 +1,4 @@
-//! What single links of a device have besides, in recordings of them alone.
+//! Further properties of single links of a device, in recordings of them alone.
 
 use super::{ANY, Number, numbers};
 

@@ -30,7 +30,7 @@ pub use sensors::*;
 pub struct Number {
     /// Name with its SI unit; of a number of the rig file its dotted key there.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub meaning: &'static str,
     /// Key of the device model file, which ends with the unit there.
     pub device_key: Option<&'static str>,

@@ -1,4 +1,4 @@
-//! What a device need not have, or what the description keeps in another form than its file: reading the file makes the part of all its numbers.
+//! Optional parts of a device, and parts that the description keeps in another form than its file: reading the file makes the part of all its numbers.
 
 use super::{Number, numbers};
 use crate::physics::gas_process::GasProcess;
@@ -53,7 +53,7 @@ numbers! { PARTS:
     WAY = "way", super::ANY, (nothing, keep);
 }
 
-/// What stands nowhere in the description.
+/// Numbers that stand nowhere in the description.
 fn nothing(_: &PlantParameters, _: usize) -> f64 {
     0.0
 }

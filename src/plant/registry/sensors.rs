@@ -1,4 +1,4 @@
-//! What sensors do to what they measure.
+//! Errors of sensors.
 
 use super::{ANY, Number, numbers};
 

@@ -16,7 +16,7 @@ pub struct CellRecording {
     pub path: Vec<f64>,
     /// Commanded angles of each joint, base first [rad].
     pub commands: Vec<Vec<f64>>,
-    /// What each joint's encoder read [rad]; none where the file lacks it.
+    /// Reading of each joint's encoder [rad]; none where the file lacks it.
     pub encoders: Vec<Option<Vec<f64>>>,
     /// Torque of each joint's drive [N m]; none where it was not recorded.
     pub torques: Vec<Option<Vec<f64>>>,

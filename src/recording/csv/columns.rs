@@ -15,9 +15,9 @@ pub(super) struct Column {
     pub quantity: &'static str,
     /// Its unit.
     pub unit: Unit,
-    /// Does it drive the rig? It cannot be absent then.
+    /// Whether it drives the rig. It cannot be absent then.
     pub is_input: bool,
-    /// Is it held from its sample to the next? Then it cannot be empty at the start.
+    /// Whether it is held from its sample to the next. Then it cannot be empty at the start.
     pub is_held: bool,
     /// Least and largest plausible value.
     pub range: [f64; 2],

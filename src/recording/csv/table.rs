@@ -5,7 +5,7 @@ use std::path::Path;
 use super::super::RecordingError;
 use super::columns::{Column, TIME};
 
-/// What a file holds.
+/// Content of a file.
 pub(super) struct Table {
     /// Sample times [s], increasing.
     pub time: Vec<f64>,
@@ -129,7 +129,7 @@ fn places(
     })
 }
 
-/// What a column's name says besides its unit: `force` of `force_n`, `force_kN` and `Force`.
+/// Part of a column's name besides its unit: `force` of `force_n`, `force_kN` and `Force`.
 fn stem(name: &str) -> String {
     const STEMS: [&str; 8] = [
         "time",

@@ -1,4 +1,4 @@
-//! Is a file a whole `.rrd` of our version? Looked at before a viewer is asked to open it, as it would say less, later.
+//! Checks that a file is a whole `.rrd` of our version. Looked at before a viewer is asked to open it, as it would say less, later.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -128,7 +128,7 @@ fn check_head(head: &[u8], file: &str, length: u64) -> Result<(), RrdFault> {
     }
 }
 
-/// Does the footer say where, within the file, its tables lie?
+/// Checks that the footer says where, within the file, its tables lie.
 fn check_foot(foot: &[u8], length: u64) -> Option<()> {
     let footer = StreamFooter::from_rrd_bytes(foot).ok()?;
     let end = length.checked_sub(StreamFooter::ENCODED_SIZE_BYTES as u64)?;

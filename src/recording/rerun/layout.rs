@@ -29,14 +29,14 @@ const CELL_EYE_RADII: f64 = 1.8;
 /// Distance of the eye from the edge: with room for the tool above it.
 const EDGE_EYE_RADII: f64 = 3.2;
 
-/// What the layout depends on.
+/// Quantities that the layout depends on.
 pub(super) struct LayoutInput<'a> {
     pub(super) plots: &'a [Plot],
-    /// What the cell's bodies fill.
+    /// Box of the cell's bodies.
     pub(super) cell: Option<ViewBox>,
-    /// What the edge path fills.
+    /// Box of the edge path.
     pub(super) edge: Option<ViewBox>,
-    /// How the edge path is coloured; none while its force errors are not known.
+    /// Colours of the edge path; none while its force errors are not known.
     pub(super) scale: Option<ErrorScale>,
     /// From the middle of what is shown towards the eye.
     pub(super) eye_direction: DVec3,

@@ -46,7 +46,7 @@ pub struct LiveRecording {
 }
 
 impl LiveRecording {
-    /// Is this an address at which a viewer could listen? Gives its host and port.
+    /// Checks that this is an address at which a viewer could listen. Gives its host and port.
     ///
     /// # Errors
     /// Says what is wrong with it.

@@ -46,20 +46,20 @@ const FOLLOW_PHASE: &str = "follow";
 /// Entity of the summary.
 const SUMMARY: &str = "/summary";
 
-/// How a recording is drawn.
+/// Options for drawing a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RerunOptions {
     /// Text of the summary panel, in Markdown; without it there is no such panel.
     pub summary_markdown: String,
     /// Length of the force arrow per force [m/N].
     pub arrow_metres_per_newton: f64,
-    /// What the viewer does when it opens the file.
+    /// Action of the viewer when it opens the file.
     pub opening: Opening,
     /// From the middle of what a 3D view shows towards the eye, in the world.
     pub eye_direction: DVec3,
 }
 
-/// What the viewer does when it opens a file.
+/// Action of the viewer when it opens a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Opening {
     /// It stands in the middle of following; at the start of a recording that has no such phase.

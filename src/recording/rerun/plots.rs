@@ -51,7 +51,7 @@ impl Plot {
     }
 }
 
-/// How a group of signals is shown.
+/// Style of a group of signals.
 struct Style {
     group: PlotGroup,
     title: &'static str,

@@ -20,7 +20,7 @@ use ::rerun::{
     AsComponents, EntityPath, SerializationError, SerializedComponentColumn, StoreId, StoreKind,
 };
 
-/// How long a viewer that listens may take to answer.
+/// Longest time that a viewer that listens may take to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Name under which the viewer groups our recordings and keeps their layout.

@@ -1,4 +1,4 @@
-//! What part of space a 3D view has to show.
+//! Part of space that a 3D view has to show.
 
 use glam::DVec3;
 use glamx::DPose3;
@@ -40,7 +40,7 @@ impl ViewBox {
     }
 }
 
-/// What the bodies fill at the middle frame.
+/// Box of the bodies at the middle frame.
 pub(super) fn cell_box(scene: &Scene) -> Option<ViewBox> {
     let corners = scene.bodies.iter().flat_map(|body| {
         let world_from_body = match &body.world_from_body {

@@ -28,7 +28,7 @@ pub(in super::super) struct ModelKeys {
     pub gas_process: Option<GasProcessKind>,
 }
 
-/// What the gas does as it is compressed.
+/// Process of the gas under compression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(in super::super) enum GasProcessKind {
@@ -38,7 +38,7 @@ pub(in super::super) enum GasProcessKind {
     WallHeat,
 }
 
-/// Is its number a whole one?
+/// Whether its number is a whole one.
 fn is_count(key: &str) -> bool {
     registry::CYLINDER_COUNT.device_key == Some(key)
 }

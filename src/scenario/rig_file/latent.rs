@@ -3,7 +3,7 @@
 //! ```text
 //! port = "piston_force"            where it enters
 //! variable = "stroke_m"            on what it depends
-//! directed = false                 does it turn with the motion?
+//! directed = false                 whether it turns with the motion
 //! from_m = 0.021                   first and last of evenly spaced knots, in the variable's unit, and the value at each in the port's unit;
 //! to_m = 0.034                     linear between them, constant beyond
 //! value_n = [0.1, -3.2, ...]

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
-/// What a number may look like, in serde's messages and ours.
+/// Forms of a number, in serde's messages and ours.
 pub(in super::super) const NUMBER_OR_TABLE: &str = "a number or { value, tolerance }";
 
 /// A number with what is known of its accuracy.

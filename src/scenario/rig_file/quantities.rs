@@ -61,7 +61,7 @@ pub(super) fn needs(chain: Chain, key: &str) -> bool {
 pub(in super::super) struct Described {
     pub table: &'static str,
     pub key: &'static str,
-    /// What it is, with its unit and its range.
+    /// Its meaning, with its unit and its range.
     pub text: String,
     /// Least and largest plausible value.
     pub range: [f64; 2],

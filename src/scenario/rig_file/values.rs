@@ -65,7 +65,7 @@ pub(super) fn base(
 /// A mass that makes no force [kg].
 const LIGHT: f64 = 1e-3;
 
-/// How much of the device there is.
+/// The share of the device that there is.
 fn chain(document: &Document<'_>, keys: &RigKeys) -> Result<Chain, ScenarioError> {
     let Some(name) = &keys.rig.chain else {
         return Ok(Chain::Whole);
@@ -205,7 +205,7 @@ pub(super) fn tolerance(section: &Section<'_>, number: &Number) -> Result<f64, S
         .unwrap_or(0.0))
 }
 
-/// What the values must be to each other.
+/// Conditions between the values.
 pub(super) fn check_together(
     document: &Document<'_>,
     plant: &PlantParameters,

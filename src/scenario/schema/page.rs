@@ -32,7 +32,7 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Is it about this key, alone or with others?
+    /// Whether it is about this key, alone or with others.
     #[cfg(feature = "import")]
     pub(crate) fn names(&self, key: &str) -> bool {
         self.cells[0].contains(&format!("`{key}`"))

@@ -24,7 +24,7 @@ pub(in crate::scenario) struct SensingKeys {
     pub filter: Option<FilterKeys>,
 }
 
-/// What the stages are that do not say it themselves.
+/// Kind of the stages that do not say it themselves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(in crate::scenario) enum Preset {
@@ -37,7 +37,7 @@ pub(in crate::scenario) enum Preset {
     White,
 }
 
-/// What the command's way is.
+/// Kind of the command's way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(in crate::scenario) enum CommandChainKind {
@@ -47,7 +47,7 @@ pub(in crate::scenario) enum CommandChainKind {
     Real,
 }
 
-/// What a sensor is.
+/// Kind of a sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(in crate::scenario) enum SensorKind {

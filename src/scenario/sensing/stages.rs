@@ -40,7 +40,7 @@ pub struct Sensor<'a> {
     pub section: Section<'a>,
     /// Kind that it gives itself.
     pub given: Option<SensorKind>,
-    /// What gives the kind otherwise.
+    /// Source of the kind otherwise.
     pub preset: Preset,
 }
 
@@ -269,7 +269,7 @@ pub fn filter(section: &Section<'_>, keys: &FilterKeys, rate: f64) -> Result<Fil
     })
 }
 
-/// How two voltages must lie to each other.
+/// Required order of two voltages.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Order {
     Strict,

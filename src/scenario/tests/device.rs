@@ -1,4 +1,4 @@
-//! What a device need not have, by its keys: each reaches its field in SI, and what cannot be is refused.
+//! Optional parts of a device, by their keys: each reaches its field in SI, and what cannot be is refused.
 
 use super::{MINIMAL_BENCH, message, read_bench};
 use crate::device::DeviceParameters;

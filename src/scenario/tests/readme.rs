@@ -27,7 +27,7 @@ struct Row {
     meaning: String,
 }
 
-/// Does a key of a chapter of the README belong to a format?
+/// Whether a key of a chapter of the README belongs to a format.
 fn belongs(key: &str, chapter: &str, format: Format) -> bool {
     let of_both = ["schema", "kind", "title"].contains(&key) || key.starts_with("device.");
     match chapter {
@@ -73,7 +73,7 @@ fn rows(format: Format) -> BTreeMap<String, Row> {
     rows
 }
 
-/// What a key needs beside it, and the key itself if it is needed there.
+/// Keys that a key needs beside it, and the key itself if it is needed there.
 fn beside(key: &str) -> String {
     let (table, name) = key.rsplit_once('.').unwrap_or(("", key));
     match (table, name) {
@@ -159,7 +159,7 @@ fn slot<'a>(mut table: &'a mut Table, key: &'a str) -> (&'a mut Table, &'a str) 
     (table, name)
 }
 
-/// What comes of a key with a value: the scenario, or the message.
+/// Result of a key with a value: the scenario, or the message.
 fn outcome(format: Format, key: &str, value: Option<Value>) -> Result<String, String> {
     let mut table = base(format, key);
     let (holder, name) = slot(&mut table, key);

@@ -220,7 +220,7 @@ fn named(item: &mut Item, name: &str) -> usize {
     tables.len() - 1
 }
 
-/// What is put where nothing stands: the value comes, or a table for it.
+/// Item put where nothing stands: the value comes, or a table for it.
 fn empty(rest: &[Step], inline: bool) -> Item {
     if rest.is_empty() {
         Item::Value(Value::from(0))

@@ -11,7 +11,7 @@
 
 use std::f64::consts::PI;
 
-/// What the filter remembers.
+/// State of the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BesselFilter {
     warped: f64,

@@ -7,7 +7,7 @@
 //!
 //! T sample period [s], tau time constant [s].
 
-/// What the lag remembers.
+/// State of the lag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstOrderFilter {
     share: f64,

@@ -1,4 +1,4 @@
-//! What stops a run: numbers that cannot be, an axis that is lost, a stroke that ran out.
+//! Reasons to stop a run: numbers that cannot be, an axis that is lost, a stroke that ran out.
 
 use super::Simulation;
 use crate::path::{Phase, Reference};

@@ -11,7 +11,7 @@ fn moving_surface() -> BenchScenario {
     load_bench(&path).unwrap()
 }
 
-/// What comes of a law on the bench of the moving surface.
+/// Result of a law on the bench of the moving surface.
 fn built(law: ForceLaw) -> Result<ForceController, ScenarioError> {
     let bench = moving_surface();
     let mut choice = bench.controller;

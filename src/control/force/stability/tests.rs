@@ -11,7 +11,7 @@ use crate::physics::regulator::RegulatorState;
 
 const PERIODS: [f64; 2] = [1e-3, 4e-3];
 
-/// How much larger the force's error is in the last of four seconds than in the second, after a touch of 0.05 N.
+/// Ratio of the force's error in the last of four seconds to that in the second, after a touch of 0.05 N.
 fn growth(controller: ForceController, period: f64) -> f64 {
     // Near full stroke, for which the limit is computed, and small, for the orifice is taken as laminar.
     let surface = Surface {

@@ -16,7 +16,7 @@ pub(super) const ROOM: [f64; 4] = [210.0, 60.0, 130.0, 190.0];
 const MARGIN: f64 = 0.06;
 /// Numbers on an axis, about.
 const TICKS: f64 = 6.0;
-/// How far the viewer writes below a point what belongs to it.
+/// Distance at which the viewer writes below a point what belongs to it.
 const BELOW: f32 = 28.0;
 const GRID: Colour = [150, 150, 150, 70];
 

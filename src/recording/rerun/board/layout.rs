@@ -72,7 +72,7 @@ pub(super) fn time_panel() -> TimePanelBlueprint {
         .with_play_state(PlayState::Paused)
 }
 
-/// Do all recordings last about as long?
+/// Whether all recordings last about as long.
 fn are_alike(sheets: &[Sheet]) -> bool {
     let lengths = || {
         let ends = |sheet: &Sheet| Some(sheet.time.last()? - sheet.time.first()?);
