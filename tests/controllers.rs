@@ -73,7 +73,7 @@ impl Errors {
     }
 
     /// Remainder of these errors, those of a constant set pressure, when they are cancelled a dead time late [N].
-    fn bound(&self, device: &DeviceParameters) -> f64 {
+    fn persistence_error(&self, device: &DeviceParameters) -> f64 {
         let period = self.time[1] - self.time[0];
         dead_time_error(&self.error, period, device.regulator.dead_time)
     }
@@ -156,8 +156,10 @@ fn on_the_moved_surface_prediction_is_best_and_beats_what_waits() {
         println!("| {name} | {} |", shown.join(" | "));
         errors
     });
-    let bounds = found[0].each_ref().map(|open| open.bound(&device()));
-    let shown = bounds.map(|bound| format!("{bound:.3} N"));
+    let references = found[0]
+        .each_ref()
+        .map(|open| open.persistence_error(&device()));
+    let shown = references.map(|error| format!("{error:.3} N"));
     println!("| one dead time late | {} |", shown.join(" | "));
     let rms = found
         .each_ref()
@@ -166,16 +168,16 @@ fn on_the_moved_surface_prediction_is_best_and_beats_what_waits() {
     for case in 0..cases.len() {
         assert!(predicted[case] < integral[case] && integral[case] < linearised[case]);
         assert!(linearised[case] < 0.4 * open[case]);
-        // Without knowing what comes none is better than the bound.
-        assert!(integral[case] > 2.0 * bounds[case]);
+        // Without knowing what comes none is better than the persistence reference.
+        assert!(integral[case] > 2.0 * references[case]);
         // A controller that diverged would be at the regulator's limits, hundreds of newtons off.
         assert!(found.iter().all(|errors| errors[case].largest() < 20.0));
     }
     // Asked for: 5. Found: 12.
     assert!(open[0] / predicted[0] > 10.0, "{}", predicted[0]);
-    // What is foreseen beats the bound, clearly so without noise.
-    assert!(predicted[1] < bounds[1]);
-    assert!(predicted[2] < 0.25 * bounds[2] && predicted[3] < 0.25 * bounds[3]);
+    // What is foreseen beats the reference, clearly so without noise.
+    assert!(predicted[1] < references[1]);
+    assert!(predicted[2] < 0.25 * references[2] && predicted[3] < 0.25 * references[3]);
 }
 
 #[test]
@@ -255,7 +257,7 @@ fn in_the_cell_each_takes_out_the_friction() {
     let rms: Vec<f64> = rms.collect();
     println!(
         "| at best | {:.3} N | {unavoidable:.0} % | {least:.3} s |",
-        open[1].bound(&device)
+        open[1].persistence_error(&device)
     );
     // The slide hardly moves: there is little to foretell, and the simplest is the quietest.
     assert!(rms[0] / rms[1] > 20.0 && rms[1] < rms[2] && rms[1] < rms[3]);

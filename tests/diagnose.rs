@@ -97,7 +97,7 @@ fn a_planted_force_is_found_told_of_and_kept() {
     let words = account.split_whitespace().collect::<Vec<_>>().join(" ");
     for said in [
         "case: missing: axial_force_offset",
-        "parts from the believed model",
+        "differs from the believed model",
         "The regulator explains its own recording",
         "Along its measured motion the piston lacks a force of",
         "Force -20.",
@@ -185,7 +185,7 @@ fn dirt_is_told_of_and_does_no_harm() {
     let words = outcome.out.split_whitespace().collect::<Vec<_>>().join(" ");
     for said in [
         "free.csv: acceleration_m_per_s2 was not measured",
-        "press.csv: 1 wild value of force_n set aside, at 1.6",
+        "press.csv: 1 outlier of force_n set aside, at 1.6",
         "values of stroke_m lost",
         "1 gap, the longest of 0.084",
         "time stamps jitter",

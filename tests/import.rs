@@ -1,4 +1,4 @@
-//! `idc import`: a planted course in every form of log comes back; what does not fit is refused by one line.
+//! `idc import`: a planted trajectory in every form of log comes back; what does not fit is refused by one line.
 
 mod bags;
 mod dialects;
@@ -95,7 +95,7 @@ fn channel(quantity: &str, column: &str, unit: &str) -> String {
     )
 }
 
-/// Asks a recording for the planted course, to the rounding of its unit's factor.
+/// Asks a recording for the planted trajectory, to the rounding of its unit's factor.
 fn assert_planted(recording: &Recording, what: &[Planted]) {
     assert_eq!(recording.sample_count(), ROWS);
     let start = recording.time()[0] - truth(0).time;
@@ -291,16 +291,16 @@ fn a_topic_without_a_stamp_has_the_times_at_which_it_was_logged() {
 #[test]
 fn a_clock_that_is_off_by_what_nobody_knows_is_set_right() {
     let folder = Folder::new();
-    let course =
+    let trajectory =
         |t: f64| (-(t - 1.4f64).powi(2) / 0.01).exp() - 0.7 * (-(t - 1.6f64).powi(2) / 0.003).exp();
     files::text(&folder.path("force.csv"), "", |row| {
         let time = truth(row).time;
-        format!("{time},{}", 80.0 * course(time))
+        format!("{time},{}", 80.0 * trajectory(time))
     });
     // It rises and falls with the force, and its clock is 0.2347 s ahead.
     files::text(&folder.path("stroke.csv"), "", |row| {
         let time = 1.1 + 0.0013 * row as f64;
-        format!("{},{}", time + 0.2347, 3.0 + 5.0 * course(time))
+        format!("{},{}", time + 0.2347, 3.0 + 5.0 * trajectory(time))
     });
     let time = "form = \"text\"\ntime = { column = 1, unit = \"s\" }\n";
     let clock =
@@ -325,7 +325,7 @@ fn a_clock_that_is_off_by_what_nobody_knows_is_set_right() {
         .zip(stroke)
         .filter(|(_, s)| s.is_finite());
     let worst = off
-        .map(|(t, s)| (s - 5e-3 * course(*t) - 3e-3).abs())
+        .map(|(t, s)| (s - 5e-3 * trajectory(*t) - 3e-3).abs())
         .fold(0.0, f64::max);
     assert!(worst < 2e-5, "{worst}");
 }

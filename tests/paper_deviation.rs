@@ -205,7 +205,7 @@ fn the_estimate_is_the_closed_form() {
     const LAG: f64 = 0.5;
     for (shown, level) in run_all(&[]).iter().zip(&LEVELS) {
         // From the end of the dead time to the last sample; the lag's rest over the last second.
-        let risen = 1e-3 * (shown.course.len() - 1) as f64 - 0.5;
+        let risen = 1e-3 * (shown.trajectory.len() - 1) as f64 - 0.5;
         let rest = LAG * (-risen / LAG).exp() * (1.0 / LAG).exp_m1();
         let expected = level.pressure - (level.pressure - level.before) * rest;
         assert!((shown.outlet_read / 1e5 / expected - 1.0).abs() < 2e-6);

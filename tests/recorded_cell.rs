@@ -148,13 +148,13 @@ fn record(
 ) -> Vec<Vec<f64>> {
     let made = commands(program);
     let bandwidth = plant.cell.servo_bandwidth;
-    let course = cell.course(&made.time, &made.path, &made.joints, bandwidth);
+    let trajectory = cell.trajectory(&made.time, &made.path, &made.joints, bandwidth);
     let inputs = PlantInputs {
         time: made.time.clone(),
         set_pressure: made.set_pressure.clone(),
         extends: vec![true; made.time.len()],
-        surface: course.felt(&plant.cell).surface(),
-        cell: Some(std::sync::Arc::new(course)),
+        surface: trajectory.contact_kinematics(&plant.cell).surface(),
+        cell: Some(std::sync::Arc::new(trajectory)),
         motion: None,
     };
     let readings = simulate(plant, &inputs).readings;
@@ -405,7 +405,7 @@ fn the_laboratory_s_nothing_is_nothing() {
     let loaded = LoadedCell::new(load_recorded_cell(&scenario).unwrap()).unwrap();
     assert_eq!(loaded.joints.len(), 6);
     let middle = loaded
-        .course(&[0.0, 2e-3], &[0.15; 2], &vec![vec![0.0; 2]; 6], 25.0)
+        .trajectory(&[0.0, 2e-3], &[0.15; 2], &vec![vec![0.0; 2]; 6], 25.0)
         .edge[0];
     assert!((middle.point - glam::DVec3::new(0.75, 0.0, -0.10)).length() < 1e-7);
     let bisector = glam::DVec3::new(-1.0, 0.0, 1.0).normalize();

@@ -218,14 +218,14 @@ fn drives(cell: &LoadedCell, recording: &CellRecording) -> Vec<DriveLoad> {
     if recording.torques.iter().any(Option::is_none) {
         return Vec::new();
     }
-    let course = cell.course_of(
+    let trajectory = cell.trajectory_of(
         &recording.time,
         &recording.path,
         &recording.commands,
         Some(&recording.encoders),
         cell.scenario.servo_bandwidth,
     );
-    let drives = cell.drives(&course, &recording.torques, stroke, force);
+    let drives = cell.drives(&trajectory, &recording.torques, stroke, force);
     let load = |drive: Drive| DriveLoad {
         torque: drive.torque,
         expected: drive.expected,
@@ -259,12 +259,12 @@ fn recorded(
         ..
     } = recording;
     let filled = hold(&mut set_pressure);
-    let course = cell.course_of(&time, &path, &commands, Some(&encoders), bandwidth);
+    let trajectory = cell.trajectory_of(&time, &path, &commands, Some(&encoders), bandwidth);
     let inputs = PlantInputs {
         set_pressure,
         extends: vec![true; time.len()],
-        surface: course.felt(&cell.plant().cell).surface(),
-        cell: Some(Arc::new(course)),
+        surface: trajectory.contact_kinematics(&cell.plant().cell).surface(),
+        cell: Some(Arc::new(trajectory)),
         motion: None,
         time,
     };
@@ -291,7 +291,9 @@ fn forget_what_friction_holds(
     inputs: &PlantInputs,
     scenario: &RecordedCell,
 ) {
-    let Some(course) = &inputs.cell else { return };
+    let Some(trajectory) = &inputs.cell else {
+        return;
+    };
     let [_, stroke, force, _] = readings;
     let touches = |i: usize| {
         let (from, to) = (i.saturating_sub(HELD), (i + HELD + 1).min(force.len()));
@@ -301,11 +303,14 @@ fn forget_what_friction_holds(
     let pressed: Vec<f64> = (0..force.len()).map(touches).collect();
     let [_, _, noise] = scenario.noise;
     for (i, pressed) in pressed.into_iter().enumerate() {
-        if !course.rests(i) || pressed < TOUCHING {
+        if !trajectory.rests(i) || pressed < TOUCHING {
             continue;
         }
         stroke[i] = f64::NAN;
-        let lean = course.edge[i].bisector.cross(course.slide[i]).length();
+        let lean = trajectory.edge[i]
+            .bisector
+            .cross(trajectory.slide[i])
+            .length();
         if scenario.contact.friction * pressed * lean > noise {
             force[i] = f64::NAN;
         }

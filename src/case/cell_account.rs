@@ -101,7 +101,7 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
     let mut places = Vec::new();
     let bare = without_effects(&diagnosis.believed, diagnosis.best());
     for (recording, measured) in diagnosis.evidence.recordings.iter().enumerate() {
-        let Some(course) = &measured.inputs.cell else {
+        let Some(trajectory) = &measured.inputs.cell else {
             continue;
         };
         let plant = &diagnosis.best().fit.prediction.plant;
@@ -124,7 +124,8 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
                     let time = &measured.inputs.time;
                     let first = time.partition_point(|t| *t < interval.start);
                     let last = time.partition_point(|t| *t <= interval.end).max(1) - 1;
-                    let [from, to] = [first.min(last), last].map(|i| 1e3 * course.edge[i].station);
+                    let [from, to] =
+                        [first.min(last), last].map(|i| 1e3 * trajectory.edge[i].station);
                     format!(
                         "{from:.1} to {to:.1} mm ({:.2} to {:.2} s)",
                         interval.start, interval.end
@@ -142,7 +143,7 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
                 COLUMNS[index],
                 spans.join(", "),
                 factor * moved(largest),
-                1e3 * course.edge[largest].station,
+                1e3 * trajectory.edge[largest].station,
                 measured.inputs.time[largest]
             ));
         }

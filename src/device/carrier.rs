@@ -47,9 +47,9 @@ pub trait Carrier {
 }
 
 /// A piston that somebody else moves: at the same speed throughout.
-pub(super) struct Foretold;
+pub(super) struct Predicted;
 
-impl Carrier for Foretold {
+impl Carrier for Predicted {
     const MOVES: bool = false;
 
     fn force(&self, _: f64, _: PistonMotion, _: bool) -> f64 {

@@ -11,7 +11,7 @@ use super::carrier::{Carrier, PistonMotion};
 use super::pneumatics::Device;
 use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
 use crate::physics::orifice::LAMINAR_RATIO;
-use crate::physics::regulator::OutletCourse;
+use crate::physics::regulator::OutletTrajectory;
 use crate::physics::valve::ValvePosition;
 
 /// Largest sub-step times the fastest rate of the pneumatics [1]; the method is stable to 2.78 and damps to a third here.
@@ -87,8 +87,8 @@ pub(super) struct Leg<'a, C> {
     pub(super) device: &'a Device,
     carrier: &'a C,
     pub(super) valve: ValvePosition,
-    pub(super) course: OutletCourse,
-    /// Start of the course in the step [s].
+    pub(super) trajectory: OutletTrajectory,
+    /// Start of the trajectory in the step [s].
     pub(super) course_start: f64,
     /// Deflection of the seals at the start of the sub-step [m].
     deflection: f64,
@@ -122,17 +122,17 @@ impl Device {
         let mut time = 0.0;
         while time < dt {
             let until_switching = state.spool.remaining();
-            let course = state
+            let trajectory = state
                 .regulator
-                .course(regulator, (dt - time).min(until_switching));
+                .trajectory(regulator, (dt - time).min(until_switching));
             // A hair's breadth less than one more sub-step is rounding.
-            let count = (course.duration / longest - 1e-9).ceil().max(0.0);
-            let h = course.duration / count.max(1.0);
+            let count = (trajectory.duration / longest - 1e-9).ceil().max(0.0);
+            let h = trajectory.duration / count.max(1.0);
             let mut leg = Leg {
                 device: self,
                 carrier,
                 valve: state.spool.position(state.valve),
-                course,
+                trajectory,
                 course_start: time,
                 deflection: state.seal_deflection,
                 disturbance: state.disturbance,
@@ -144,14 +144,14 @@ impl Device {
                 leg.advance::<LEDGER>(&mut flow, time + h * i as f64, h);
             }
             state.seal_deflection = leg.deflection;
-            state.regulator.follow(regulator, &course);
-            state.spool.advance(course.duration);
+            state.regulator.follow(regulator, &trajectory);
+            state.spool.advance(trajectory.duration);
             if let Some(reservoir) = &self.parameters.supply_reservoir {
                 let gas = &self.parameters.gas;
                 let stored = reservoir.pressure(gas, flow.air.reservoir_mass);
                 state.regulator.starve(stored - gas.atmosphere);
             }
-            time += course.duration;
+            time += trajectory.duration;
         }
         state.air = flow.air;
         state.ledger = flow.ledger;
@@ -194,7 +194,7 @@ impl Device {
 }
 
 impl<C: Carrier> Leg<'_, C> {
-    /// Advances over the first sub-step of a course. Where the outlet leaves the chamber's pressure, the flow begins with the root of time, which a step
+    /// Advances over the first sub-step of a trajectory. Where the outlet leaves the chamber's pressure, the flow begins with the root of time, which a step
     /// of whatever order meets with an error of its length to the power 1.5 alone: that sub-step is halved towards its start.
     fn begin<const LEDGER: bool>(&mut self, flow: &mut Flow, start: f64, h: f64) {
         let halvings = self.halvings(flow, h);
@@ -206,13 +206,13 @@ impl<C: Carrier> Leg<'_, C> {
         }
     }
 
-    /// Number of times that the first sub-step of a course is halved until the outlet moves in it by no more than it is away from the chamber's pressure already,
+    /// Number of times that the first sub-step of a trajectory is halved until the outlet moves in it by no more than it is away from the chamber's pressure already,
     /// or than the orifice passes in proportion.
     #[inline]
     fn halvings(&self, flow: &Flow, h: f64) -> i32 {
         let parameters = &self.device.parameters;
-        let travel = self.course.travel(h);
-        let outlet = parameters.gas.atmosphere + self.course.start() + self.disturbance.outlet;
+        let travel = self.trajectory.travel(h);
+        let outlet = parameters.gas.atmosphere + self.trajectory.start() + self.disturbance.outlet;
         let proportional = (1.0 - LAMINAR_RATIO) * outlet;
         // The end of a line moves smoothly.
         if travel < 2.0 * proportional || parameters.hose.is_some() {
@@ -295,7 +295,7 @@ impl<C: Carrier> Leg<'_, C> {
 
     /// Pressure at the regulator's outlet at a time in the step [Pa gauge].
     pub(super) fn outlet(&self, time: f64) -> f64 {
-        self.course.at(time - self.course_start) + self.disturbance.outlet
+        self.trajectory.at(time - self.course_start) + self.disturbance.outlet
     }
 
     /// One Runge-Kutta step.

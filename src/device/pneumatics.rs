@@ -1,6 +1,6 @@
 //! The device's equations put together: flows between its parts and the force on its piston, at a state.
 
-use super::carrier::{Foretold, PistonMotion};
+use super::carrier::{PistonMotion, Predicted};
 use super::leaks::LeakFlows;
 use super::rates::PistonRates;
 use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
@@ -17,11 +17,11 @@ use crate::physics::valve::{ValveParameters, ValvePosition};
 /// Force of the device on its moving part over a step, for a solver that treats it implicitly:
 ///
 /// ```text
-/// F(x, v) = force - damping (v - v_foretold) - stiffness (x - x_foretold)          at the end of the step
+/// F(x, v) = force - damping (v - v_predicted) - stiffness (x - x_predicted)          at the end of the step
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeviceForce {
-    /// Mean force along extension on the foretold motion [N].
+    /// Mean force along extension on the predicted motion [N].
     pub force: f64,
     /// Damping of stops, cushions and seals [N s/m].
     pub damping: f64,
@@ -170,7 +170,7 @@ impl Device {
         }
     }
 
-    /// Advances by `dt` [s] while the piston moves as foretold, and returns the force on the moving part. `set_pressure` [Pa gauge] is commanded at
+    /// Advances by `dt` [s] while the piston moves as predicted, and returns the force on the moving part. `set_pressure` [Pa gauge] is commanded at
     /// the start of the step and held. `substeps` is the least number of pneumatic sub-steps; stiff parts get more.
     pub fn advance(
         &self,
@@ -183,7 +183,7 @@ impl Device {
         self.drag_seals(state, motion);
         let mut moved = motion;
         let impulse = self
-            .integrate::<_, true>(state, &mut moved, set_pressure, &Foretold, dt, substeps)
+            .integrate::<_, true>(state, &mut moved, set_pressure, &Predicted, dt, substeps)
             .gas;
         let seals = self.seals_over([(&state.air, motion.stroke + motion.speed * dt)]);
         let deflection =
@@ -315,7 +315,7 @@ impl Device {
         valve: ValvePosition,
         outlet: f64,
         motion: PistonMotion,
-        strays: [f64; 2],
+        disturbance_flows: [f64; 2],
     ) -> AirRates {
         let parameters = &self.parameters;
         let gas = &parameters.gas;
@@ -357,7 +357,7 @@ impl Device {
                 flows[i] *= (gas.temperature / upstream).sqrt();
                 let enthalpy = gas.specific_heat_pressure() * upstream * flows[i]
                     + leaks.enthalpies[i]
-                    + gas.specific_heat_pressure() * gas.temperature * strays[i];
+                    + gas.specific_heat_pressure() * gas.temperature * disturbance_flows[i];
                 let heat = conductance * (gas.temperature - own);
                 let work = pressures[i] * self.chambers[i].growth() * motion.speed;
                 rates.energies[i] = enthalpy + heat - work;
@@ -368,14 +368,14 @@ impl Device {
             let rt = gas.specific_gas_constant * gas.temperature;
             for i in 0..2 {
                 let work = pressures[i] * self.chambers[i].growth() * motion.speed;
-                let flow = flows[i] + leaks.masses[i] + strays[i];
+                let flow = flows[i] + leaks.masses[i] + disturbance_flows[i];
                 ledger.enthalpy_in += gas.specific_heat_pressure() * gas.temperature * flow;
                 ledger.heat_in += work - rt * flow;
             }
         }
         rates.masses = [
-            flows[0] + leaks.masses[0] + strays[0],
-            flows[1] + leaks.masses[1] + strays[1],
+            flows[0] + leaks.masses[0] + disturbance_flows[0],
+            flows[1] + leaks.masses[1] + disturbance_flows[1],
         ];
         let from_regulator = match &self.parameters.hose {
             None => flows[supplied],
@@ -408,7 +408,7 @@ impl Device {
         if let Some(reservoir) = reservoir {
             rates.reservoir_mass = reservoir.compressed(stored) - from_regulator.max(0.0);
         }
-        let [first, second] = strays;
+        let [first, second] = disturbance_flows;
         let all = [from_regulator, flows[vented], leaks.external, first, second];
         for flow in all {
             rates.entered += flow.max(0.0);

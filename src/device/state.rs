@@ -95,7 +95,7 @@ impl AirState {
 /// M v^2/2                = M v_0^2/2 + chamber_work - atmosphere_work - seal_work - stop_work - cushion_work + axial_work + carrier_work
 /// ```
 ///
-/// `Device::advance` moves the piston as foretold, at one speed throughout its step: there the second has no change on its left, and the carrier's
+/// `Device::advance` moves the piston as predicted, at one speed throughout its step: there the second has no change on its left, and the carrier's
 /// work is what the foreteller puts in to hold that speed, the negative of the returned force times the way. What the mass gains from one step to
 /// the next is the foreteller's own account.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

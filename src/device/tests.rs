@@ -154,9 +154,9 @@ fn the_axial_load_moves_the_piston_to_where_it_balances_the_gas() {
         "{motion:?} {balance}"
     );
     assert!(device.piston_force(&state, motion).abs() < 1e-3);
-    let foretold = device.advance(&mut state, 5e4, motion, 1e-3, 2);
-    assert_eq!(foretold.stiffness, 2500.0);
-    assert!(foretold.force.abs() < 1e-2, "{foretold:?}");
+    let predicted = device.advance(&mut state, 5e4, motion, 1e-3, 2);
+    assert_eq!(predicted.stiffness, 2500.0);
+    assert!(predicted.force.abs() < 1e-2, "{predicted:?}");
     let stored = 0.5 * 2500.0 * balance * balance + 20.0 * balance;
     assert!((state.ledger.axial_work / stored + 1.0).abs() < 1e-4);
 }

@@ -1,8 +1,8 @@
 //! The account: what an engineer can act on.
 
+mod difference;
 mod link;
 mod missing;
-mod parting;
 mod rivals;
 mod unlisted;
 
@@ -13,7 +13,7 @@ use super::details::RemainingError;
 use super::diagnose::{Diagnosis, names_of};
 use super::words::{listed, wrapped};
 
-/// Other channels that part from the model, named at most.
+/// Other channels that differ from the model, named at most.
 const MOST_OTHERS: usize = 3;
 
 /// An account: what account.txt says, and a page.

@@ -14,7 +14,7 @@ use crate::plant::LawText;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
 
-/// Version of the format.
+/// Version of the form that diagnoses are scored by; what goes beyond it is in `details`, which has a version of its own.
 pub const SCHEMA: u32 = 1;
 
 /// A diagnosis.
@@ -154,7 +154,7 @@ impl Estimate {
     }
 }
 
-/// Where a recording parts from the model without the effects.
+/// Where a recording differs from the model without the effects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Mismatch {
     /// File name.

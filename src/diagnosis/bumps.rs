@@ -13,7 +13,7 @@ const MOST: usize = 3;
 pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<f64> {
     let mut sums: Vec<(f64, f64)> = Vec::new();
     let mut at = 0;
-    for (measured, course) in evidence.recordings.iter().zip(&prediction.courses) {
+    for (measured, trajectory) in evidence.recordings.iter().zip(&prediction.trajectories) {
         let n = measured.inputs.time.len();
         let stroke = &prediction.residuals[at + n..at + 2 * n];
         at += 4 * n;
@@ -23,7 +23,7 @@ pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<f64> {
         for (i, left) in stroke.iter().enumerate() {
             // Where the tool stands still it rests on one place for long.
             let moves = i > 0 && cell.edge[i].station != cell.edge[i - 1].station;
-            if !moves || course.truth.contact_force[i] <= 0.0 || !left.is_finite() {
+            if !moves || trajectory.truth.contact_force[i] <= 0.0 || !left.is_finite() {
                 continue;
             }
             let index = (cell.edge[i].station / CELL).max(0.0) as usize;

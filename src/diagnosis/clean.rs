@@ -1,4 +1,4 @@
-//! Cleaning of a recording before it is believed, and its quality: wild values, lost ones, gaps, jitter, noise.
+//! Cleaning of a recording before it is believed, and its quality: outliers, lost ones, gaps, jitter, noise.
 //!
 //! A reading is wild only if it stands alone and what it says of the rig is denied by another sensor (`wild`); impacts are seen by more than one.
 
@@ -10,9 +10,9 @@ pub(super) use departure::lagrange;
 use departure::{departures, noise_of};
 
 mod departure;
+mod outlier;
 #[cfg(test)]
 mod tests;
-mod wild;
 
 /// Share of the usual step from which a longer one is a gap [1].
 const GAP: f64 = 1.5;
@@ -21,7 +21,7 @@ const GAP: f64 = 1.5;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cleaning {
     /// Times at which a reading was wild and was set aside, by channel [s].
-    pub wild: [Vec<f64>; CHANNELS.len()],
+    pub outliers: [Vec<f64>; CHANNELS.len()],
     /// Readings that were never there, by channel, in channels that have others.
     pub lost: [usize; CHANNELS.len()],
     /// Gaps: time of the last sample before and the first after each [s].
@@ -34,7 +34,7 @@ pub struct Cleaning {
     pub noise: [Option<f64>; CHANNELS.len()],
 }
 
-/// Sets wild readings aside (they become NaN); `noise` is what the sensors' sheets say, in the order of [`CHANNELS`], `mass` the moving mass [kg].
+/// Sets outliers aside (they become NaN); `noise` is what the sensors' sheets say, in the order of [`CHANNELS`], `mass` the moving mass [kg].
 pub fn clean(
     time: &[f64],
     readings: &mut [Vec<f64>; CHANNELS.len()],
@@ -62,19 +62,19 @@ pub fn clean(
         for (value, time) in values.iter_mut().zip(time) {
             if !value.is_nan() && !(low..=high).contains(value) {
                 *value = f64::NAN;
-                cleaning.wild[channel].push(*time);
+                cleaning.outliers[channel].push(*time);
             }
         }
     }
     set_aside(time, readings, noise, mass, &mut cleaning);
     for (channel, values) in readings.iter().enumerate() {
         cleaning.noise[channel] = noise_of(&departures(time, values, cleaning.step));
-        cleaning.wild[channel].sort_by(f64::total_cmp);
+        cleaning.outliers[channel].sort_by(f64::total_cmp);
     }
     cleaning
 }
 
-/// Looks for wild readings until there are no more: one may hide behind another.
+/// Looks for outliers until there are no more: one may hide behind another.
 fn set_aside(
     time: &[f64],
     readings: &mut [Vec<f64>; CHANNELS.len()],
@@ -84,14 +84,14 @@ fn set_aside(
 ) {
     const MOST_PASSES: usize = 4;
     for _ in 0..MOST_PASSES {
-        let found = wild::wild(time, readings, noise, mass, cleaning.step);
+        let found = outlier::outlier(time, readings, noise, mass, cleaning.step);
         if found.iter().all(Vec::is_empty) {
             return;
         }
         for (channel, indices) in found.into_iter().enumerate() {
             for index in indices {
                 readings[channel][index] = f64::NAN;
-                cleaning.wild[channel].push(time[index]);
+                cleaning.outliers[channel].push(time[index]);
             }
         }
     }
@@ -106,12 +106,12 @@ impl Cleaning {
         const OTHER_NOISE: f64 = 1.5;
         let mut sentences = Vec::new();
         for (channel, column) in COLUMNS.into_iter().enumerate() {
-            let wild = &self.wild[channel];
-            if !wild.is_empty() {
-                let times: Vec<String> = wild.iter().map(|time| format!("{time:.3}")).collect();
+            let outliers = &self.outliers[channel];
+            if !outliers.is_empty() {
+                let times: Vec<String> = outliers.iter().map(|time| format!("{time:.3}")).collect();
                 sentences.push(format!(
                     "{} of {column} set aside, at {} s",
-                    counted(wild.len(), "wild value"),
+                    counted(outliers.len(), "outlier"),
                     times.join(", ")
                 ));
             }

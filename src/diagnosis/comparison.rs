@@ -184,13 +184,13 @@ impl Diagnosis {
         };
         let best = &self.best().fit.prediction;
         let before = of(&self.baseline.prediction.residuals);
-        let telling = regimes(&self.evidence, &best.plant, &best.courses, &before);
+        let telling = regimes(&self.evidence, &best.plant, &best.trajectories, &before);
         // A slide that a motor drives has no air, whatever its numbers say.
         let airless = self.believed.chain == Chain::DrivenSlide;
         let mut known = telling.iter().map(|regime| regime.variable);
         let known = known.find(|name| !airless || !OF_AIR.contains(name));
         let variable = known.unwrap_or(TIME);
-        let values = values_of(variable, &self.evidence, &best.plant, &best.courses)?;
+        let values = values_of(variable, &self.evidence, &best.plant, &best.trajectories)?;
         let noise = self.evidence.noise[channel as usize];
         let after = of(&best.residuals);
         let shown = ("output", channel, variable);
@@ -207,7 +207,7 @@ impl Diagnosis {
             |(link, regimes): &(super::links::LinkResidual, Vec<super::regime::Regime>)| {
                 // A link that no variable tells of is shown over time, so that every number said of it is in the file.
                 let variable = regimes.first().map_or(TIME, |regime| regime.variable);
-                let values = values_of(variable, &self.evidence, improved, &held.courses)?;
+                let values = values_of(variable, &self.evidence, improved, &held.trajectories)?;
                 let after = left_by(link.link, &self.evidence, &held, &self.believed);
                 let channel = match link.link {
                     Link::Regulator => Channel::RegulatorPressure,

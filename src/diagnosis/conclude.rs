@@ -4,8 +4,8 @@ use super::answer::{
     Alternative, Answer, Estimate, FoundEffect, FoundLaw, Mismatch, SCHEMA, UNLISTED, Verdict,
 };
 use super::details::{
-    ChannelMisfit, ChannelNoise, Considered, Details, IN_TURN, LinkReport, NextExperiment,
-    PredictionError, RegimeReport, RemainingError, RemainingReport, RuledOutReport,
+    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Details, IN_TURN, LinkReport,
+    NextExperiment, PredictionError, RegimeReport, RemainingError, RemainingReport, RuledOutReport,
     ToleratedNumber, remaining_errors,
 };
 use super::diagnose::{Diagnosis, ErrorSize, Unseen, names_of, spoken_name};
@@ -213,18 +213,19 @@ impl Diagnosis {
     #[must_use]
     pub fn details(&self) -> Details {
         Details {
+            schema: DETAILS_SCHEMA,
             account: self.account(),
             noise: self.noises(),
             misfit: self.misfits(),
-            parts: self
+            differences: self
                 .baseline
-                .partings
+                .differences
                 .iter()
-                .map(|parting| Mismatch {
-                    recording: self.evidence.recordings[parting.recording].name.clone(),
-                    channel: COLUMNS[parting.channel as usize].to_owned(),
-                    start_s: parting.span[0],
-                    end_s: parting.span[1],
+                .map(|difference| Mismatch {
+                    recording: self.evidence.recordings[difference.recording].name.clone(),
+                    channel: COLUMNS[difference.channel as usize].to_owned(),
+                    start_s: difference.span[0],
+                    end_s: difference.span[1],
                 })
                 .collect(),
             links: self.link_reports(),
@@ -357,7 +358,7 @@ impl Diagnosis {
                         .take(named)
                         .map(|regime| RegimeReport {
                             variable: regime.variable.to_owned(),
-                            share: regime.share,
+                            share: regime.correlation_ratio,
                         })
                         .collect(),
                 }
@@ -372,12 +373,12 @@ impl Diagnosis {
             channel: COLUMNS[remaining.channel as usize].to_owned(),
             rms: remaining.size,
             sensor_noise: remaining.noise,
-            alike_s: remaining.time,
+            autocorrelation_time_s: remaining.time,
             regimes: regimes
                 .take(MOST_REGIMES)
                 .map(|regime| RegimeReport {
                     variable: regime.variable.to_owned(),
-                    share: regime.share,
+                    share: regime.correlation_ratio,
                 })
                 .collect(),
         })
@@ -394,7 +395,7 @@ impl Diagnosis {
         let left: Vec<f64> = own
             .flat_map(|(_, _, residuals)| residuals.to_vec())
             .collect();
-        regimes(&self.evidence, &best.plant, &best.courses, &left)
+        regimes(&self.evidence, &best.plant, &best.trajectories, &left)
     }
 
     fn tolerated(&self) -> Vec<ToleratedNumber> {

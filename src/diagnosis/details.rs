@@ -11,10 +11,15 @@ use crate::recording::provenance::Provenance;
 /// Stands for each recording in turn.
 pub const IN_TURN: &str = "left out in turn";
 
+/// Version of the details: 2 since names followed the field's terms (`predicted`, `differences`, `autocorrelation_time_s`); 0 in files that are older.
+pub const DETAILS_SCHEMA: u32 = 2;
+
 /// All of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Details {
+    /// Version of the details.
+    pub schema: u32,
     /// Name of the case.
     pub case: String,
     /// The account, as account.txt.
@@ -25,8 +30,8 @@ pub struct Details {
     pub noise: Vec<ChannelNoise>,
     /// Departure of each channel of each recording from the models.
     pub misfit: Vec<ChannelMisfit>,
-    /// Where recordings part from the believed model moved within its tolerances.
-    pub parts: Vec<super::answer::Mismatch>,
+    /// Where recordings differ from the believed model moved within its tolerances.
+    pub differences: Vec<super::answer::Mismatch>,
     /// Residual of each link of the chain, and the variable that explains it.
     pub links: Vec<LinkReport>,
     /// Share of the mismatch that is explained [1]; none where there is none.
@@ -42,7 +47,7 @@ pub struct Details {
     pub runs: Vec<RunShown>,
     /// Prediction of a run of a contact flange that was not looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub foretold: Option<ForetoldRun>,
+    pub predicted: Option<PredictedRun>,
     /// Numbers of the rig file within their tolerances.
     pub tolerated: Vec<ToleratedNumber>,
     /// Errors of prediction on what was not fitted to.
@@ -116,7 +121,7 @@ pub struct RemainingReport {
     /// Standard deviation of the sensor's noise, in the column's unit.
     pub sensor_noise: f64,
     /// Time for which it is alike [s].
-    pub alike_s: f64,
+    pub autocorrelation_time_s: f64,
     /// Variables that say when it appears.
     pub regimes: Vec<RegimeReport>,
 }
@@ -176,16 +181,16 @@ pub struct RunShown {
 
 /// Prediction of a run of a contact flange.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ForetoldRun {
+pub struct PredictedRun {
     /// File name.
     pub recording: String,
     /// Its speed of approach.
     pub approach_m_per_s: f64,
-    /// Peak foretold.
+    /// Peak predicted.
     pub peak_n: f64,
     /// Peak measured.
     pub peak_measured_n: f64,
-    /// Settling foretold.
+    /// Settling predicted.
     pub settling_s: f64,
     /// Settling measured.
     pub settling_measured_s: f64,

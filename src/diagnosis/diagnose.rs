@@ -10,7 +10,7 @@ use super::hypothesis::{Hypothesis, stands_for};
 use super::input::{DiagnosisInput, NamedRecording, Prepared};
 use super::left_out::{self, left_out};
 use super::links::{LinkResidual, links};
-use super::localise::{Parting, partings, robust_rms, root_mean_square};
+use super::localise::{Difference, differences, robust_rms, root_mean_square};
 use super::mismatch::{Interval, intervals};
 use super::next_experiment::{Separation, separations};
 use super::progress::{Observer, Step};
@@ -54,8 +54,8 @@ pub struct Baseline {
     pub prediction: Prediction,
     /// Residual of each link of the chain, and the variable that explains it.
     pub links: Vec<(LinkResidual, Vec<Regime>)>,
-    /// Where recordings part from it.
-    pub partings: Vec<Parting>,
+    /// Where recordings differ from it.
+    pub differences: Vec<Difference>,
 }
 
 /// Errors of prediction of a channel of a recording that was not fitted to.
@@ -333,12 +333,12 @@ fn baseline(search: &Search<'_>, best: &Hypothesis) -> Baseline {
         _ => Vec::new(),
     };
     let links = links.into_iter().map(|link| {
-        let regimes = regimes(evidence, &plant, &held.courses, &link.sigmas);
+        let regimes = regimes(evidence, &plant, &held.trajectories, &link.sigmas);
         (link, regimes)
     });
     Baseline {
         links: links.collect(),
-        partings: partings(evidence, &prediction.residuals),
+        differences: differences(evidence, &prediction.residuals),
         plant,
         prediction,
     }

@@ -1,7 +1,8 @@
 //! Recordings as a fit sees them: inputs, readings, their noise, and which samples count.
 
 use crate::plant::{
-    CHANNELS, Guide, PlantCourse, PlantInputs, PlantParameters, Trajectory, readings, trajectory,
+    CHANNELS, Nudging, PlantInputs, PlantParameters, PlantTrajectory, Trajectory, readings,
+    true_trajectory,
 };
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
@@ -41,7 +42,7 @@ pub struct Evidence {
     /// Weight of a sample, where neighbours tell the same [1].
     pub worth: f64,
     /// Motions measured, one per recording.
-    guides: Vec<Guide>,
+    nudgings: Vec<Nudging>,
     /// Shares found before.
     shares: Mutex<Vec<Shares>>,
 }
@@ -49,10 +50,10 @@ pub struct Evidence {
 impl Evidence {
     /// Recordings with the standard deviation of each channel's noise, in the order of [`CHANNELS`].
     pub fn new(recordings: Vec<Measured>, noise: [f64; 4]) -> Self {
-        let guide = |measured: &Measured| {
+        let nudging = |measured: &Measured| {
             let force = &measured.readings[2];
             let touching = |i: usize| force[i].abs() > 6.0 * noise[2];
-            Guide::new(
+            Nudging::new(
                 &measured.inputs.time,
                 &measured.readings[1],
                 &measured.readings[3],
@@ -62,7 +63,7 @@ impl Evidence {
             )
         };
         Self {
-            guides: recordings.iter().map(guide).collect(),
+            nudgings: recordings.iter().map(nudging).collect(),
             recordings,
             noise,
             block: BLOCK,
@@ -79,8 +80,8 @@ pub struct Prediction {
     pub plant: PlantParameters,
     /// Whether the piston was held to its measured motion.
     pub guided: bool,
-    /// One course per recording.
-    pub courses: Vec<PlantCourse>,
+    /// One trajectory per recording.
+    pub trajectories: Vec<PlantTrajectory>,
     /// Measured less simulated, in standard deviations of the noise; recording by recording, channel by channel; NaN where nothing counts.
     pub residuals: Vec<f64>,
 }
@@ -104,31 +105,36 @@ impl Evidence {
                     || (measured.free && plant.moves_freely_as(&known.plant))
             })
         };
-        let course = |(index, measured): (usize, &Measured)| {
+        let trajectory = |(index, measured): (usize, &Measured)| {
             let truth: Trajectory = match reusable(measured) {
-                Some(known) => known.courses[index].truth.clone(),
-                None => trajectory(plant, &measured.inputs, guided.then(|| &self.guides[index])),
+                Some(known) => known.trajectories[index].truth.clone(),
+                None => true_trajectory(
+                    plant,
+                    &measured.inputs,
+                    guided.then(|| &self.nudgings[index]),
+                ),
             };
             let readings = readings(plant, &measured.inputs, &truth);
-            PlantCourse { truth, readings }
+            PlantTrajectory { truth, readings }
         };
-        let courses: Vec<PlantCourse> = self.recordings.iter().enumerate().map(course).collect();
+        let trajectories: Vec<PlantTrajectory> =
+            self.recordings.iter().enumerate().map(trajectory).collect();
         Prediction {
             plant: plant.clone(),
             guided,
-            residuals: self.residuals(&courses),
-            courses,
+            residuals: self.residuals(&trajectories),
+            trajectories,
         }
     }
 
-    fn residuals(&self, courses: &[PlantCourse]) -> Vec<f64> {
+    fn residuals(&self, trajectories: &[PlantTrajectory]) -> Vec<f64> {
         let mut all = Vec::new();
-        for (measured, course) in self.recordings.iter().zip(courses) {
+        for (measured, trajectory) in self.recordings.iter().zip(trajectories) {
             for channel in 0..CHANNELS.len() {
                 let noise = self.noise[channel];
                 let pairs = measured.readings[channel]
                     .iter()
-                    .zip(&course.readings[channel]);
+                    .zip(&trajectory.readings[channel]);
                 all.extend(pairs.map(|(measured, simulated)| (measured - simulated) / noise));
             }
         }

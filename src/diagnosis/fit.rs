@@ -417,7 +417,7 @@ pub fn fit(
 }
 
 /// Cost that a description could come to in a stage by one step, and where, by the derivatives known, without a simulation more.
-pub fn foretold(
+pub fn linearised_cost(
     evidence: &Evidence,
     there: &Prediction,
     free: &[Free],

@@ -409,8 +409,8 @@ mod tests {
         assert!((shown.decay.unwrap() / 12.0 - 1.0).abs() < 0.1, "{shown:?}");
         assert!((shown.steady - 1.5).abs() < 0.05, "{shown:?}");
         let other = run(0.25, 2).shown().unwrap();
-        let foretold = other.before + other.approach * shown.impedance();
-        assert!((foretold / other.peak - 1.0).abs() < 0.05);
+        let predicted = other.before + other.approach * shown.impedance();
+        assert!((predicted / other.peak - 1.0).abs() < 0.05);
     }
 
     #[test]

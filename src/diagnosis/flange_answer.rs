@@ -2,7 +2,7 @@
 
 use super::account::Account;
 use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
-use super::details::{Details, ForetoldRun, RunShown};
+use super::details::{DETAILS_SCHEMA, Details, PredictedRun, RunShown};
 use super::flange::{AVERAGED, BAND, Shown, spread, spread_of_sizes};
 use super::words::listed;
 
@@ -11,7 +11,7 @@ use super::words::listed;
 pub struct FlangeDiagnosis {
     /// Runs by their names, with what they show.
     pub runs: Vec<(String, Shown)>,
-    /// The run to be foretold: its speed of approach, force before and after contact, and what it shows.
+    /// The run to be predicted: its speed of approach, force before and after contact, and what it shows.
     pub unseen: Option<(String, Shown)>,
     /// Moving mass [kg].
     pub mass: f64,
@@ -65,7 +65,7 @@ impl FlangeDiagnosis {
     }
 
     /// Peak [N] and settling [s] of a run at another speed.
-    fn foretold(&self, shown: &Shown) -> (f64, f64) {
+    fn predicted(&self, shown: &Shown) -> (f64, f64) {
         let peak = shown.before + shown.approach * self.impedance()[0];
         // What settles is the flange's control: as in the runs of the nearest desired force.
         let away = |s: &Shown| (s.desired / shown.desired).ln().abs();
@@ -176,15 +176,16 @@ impl FlangeDiagnosis {
                 .into_iter()
                 .collect(),
             details: Details {
+                schema: DETAILS_SCHEMA,
                 account: self.account(),
                 runs: self
                     .runs
                     .iter()
                     .map(|(name, shown)| report(name, shown))
                     .collect(),
-                foretold: self.unseen.as_ref().map(|(name, shown)| {
-                    let (peak, settling) = self.foretold(shown);
-                    ForetoldRun {
+                predicted: self.unseen.as_ref().map(|(name, shown)| {
+                    let (peak, settling) = self.predicted(shown);
+                    PredictedRun {
                         recording: name.clone(),
                         approach_m_per_s: shown.approach,
                         peak_n: peak,
@@ -282,12 +283,12 @@ impl FlangeDiagnosis {
             );
         }
         if let Some((name, shown)) = &self.unseen {
-            let (peak, settling) = self.foretold(shown);
+            let (peak, settling) = self.predicted(shown);
             part(
                 "",
                 "A run that it never saw",
                 &format!(
-                    "{name} comes at {:.3} m/s. Foretold: a peak of {peak:.0} N, settled after {settling:.2} s; measured: {:.0} N ({:+.0} %) and {:.2} s ({:+.0} %).",
+                    "{name} comes at {:.3} m/s. Predicted: a peak of {peak:.0} N, settled after {settling:.2} s; measured: {:.0} N ({:+.0} %) and {:.2} s ({:+.0} %).",
                     shown.approach,
                     shown.peak,
                     100.0 * (peak / shown.peak - 1.0),

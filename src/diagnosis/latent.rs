@@ -2,7 +2,7 @@
 //! turn; the evidence says which.
 //!
 //! ```text
-//! score = 1/2 (S + L),   S = cost + n ln N,   L = cost of each recording as foretold by a term fitted to the others
+//! score = 1/2 (S + L),   S = cost + n ln N,   L = cost of each recording as predicted by a term fitted to the others
 //! ```
 //!
 //! S is Schwarz's estimate of -2 ln p(all recordings), L the sum of -2 ln p(one recording | the others). Hats over time fit whatever happens in one
@@ -197,9 +197,9 @@ fn terms(evidence: &Evidence, base: &Prediction) -> Vec<Latent> {
 /// Range of a variable in all recordings, but for a hundredth at either end; nothing if it stands still.
 fn range(evidence: &Evidence, base: &Prediction, variable: Variable) -> Option<[f64; 2]> {
     let mut values = Vec::new();
-    for (measured, course) in evidence.recordings.iter().zip(&base.courses) {
+    for (measured, trajectory) in evidence.recordings.iter().zip(&base.trajectories) {
         for i in 0..measured.inputs.time.len() {
-            let value = course.truth.moment(&measured.inputs, i).of(variable);
+            let value = trajectory.truth.moment(&measured.inputs, i).of(variable);
             if value.is_finite() {
                 values.push(value);
             }

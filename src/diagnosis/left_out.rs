@@ -39,7 +39,7 @@ pub fn left_out(evidence: &Evidence, fit: &Fit) -> Option<Vec<[Vec<f64>; CHANNEL
     Some(all)
 }
 
-/// Robust sum of squares of what is left of recordings, each foretold by a fit to the others; nothing where there are no others.
+/// Robust sum of squares of what is left of recordings, each predicted by a fit to the others; nothing where there are no others.
 pub fn cost(evidence: &Evidence, fit: &Fit) -> Option<f64> {
     Some(sum(&left_out(evidence, fit)?))
 }

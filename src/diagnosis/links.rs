@@ -9,7 +9,7 @@ use super::fit::with_values;
 use super::free::Free;
 use super::localise::{by_channel, robust_rms};
 use super::settings::HUBER;
-use crate::plant::{CHANNELS, Channel, PlantCourse, PlantParameters, Trajectory, readings};
+use crate::plant::{CHANNELS, Channel, PlantParameters, PlantTrajectory, Trajectory, readings};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -164,13 +164,13 @@ pub fn left_by(
     if link == Link::Regulator || plain.sensors == held.plant.sensors {
         return residuals(link, evidence, held);
     }
-    let without = |(measured, course): (&Measured, &PlantCourse)| {
+    let without = |(measured, trajectory): (&Measured, &PlantTrajectory)| {
         let mut measured = measured.clone();
-        let plain = readings(&plain, &measured.inputs, &course.truth);
+        let plain = readings(&plain, &measured.inputs, &trajectory.truth);
         for ((corrected, read), plain) in measured
             .readings
             .iter_mut()
-            .zip(&course.readings)
+            .zip(&trajectory.readings)
             .zip(&plain)
         {
             for ((corrected, read), plain) in corrected.iter_mut().zip(read).zip(plain) {
@@ -179,7 +179,7 @@ pub fn left_by(
         }
         measured
     };
-    let recordings = evidence.recordings.iter().zip(&held.courses);
+    let recordings = evidence.recordings.iter().zip(&held.trajectories);
     let corrected = Evidence::new(recordings.map(without).collect(), evidence.noise);
     residuals(link, &corrected, held)
 }
@@ -224,10 +224,10 @@ fn on_the_piston(evidence: &Evidence, held: &Prediction, deviation: f64) -> Vec<
     let shares = evidence.shares(ROUGH_TIME, false);
     let mut all = Vec::new();
     let mut first = 0;
-    for (measured, course) in evidence.recordings.iter().zip(&held.courses) {
+    for (measured, trajectory) in evidence.recordings.iter().zip(&held.trajectories) {
         let count = measured.inputs.time.len();
         for i in 0..count {
-            let lacking = lacking(measured, &course.truth, plant, i);
+            let lacking = lacking(measured, &trajectory.truth, plant, i);
             let share = shares[first + 2 * count + i].min(shares[first + 3 * count + i]);
             all.push(share * lacking / deviation);
         }

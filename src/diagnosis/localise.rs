@@ -1,4 +1,4 @@
-//! Where recordings part from a model: by recording and channel, and as intervals.
+//! Where recordings differ from a model: by recording and channel, and as intervals.
 
 use super::evidence::Evidence;
 use super::fit::robust_sum;
@@ -27,9 +27,9 @@ pub struct Misfit {
     pub rms: f64,
 }
 
-/// A time in which a channel parts from a model.
+/// A time in which a channel differs from a model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parting {
+pub struct Difference {
     /// Index of the recording.
     pub recording: usize,
     /// The channel.
@@ -90,8 +90,8 @@ pub fn misfits(evidence: &Evidence, residuals: &[f64]) -> Vec<Misfit> {
         .collect()
 }
 
-/// Where channels part from a prediction: where means over a short time are larger than noise ever gives, or but once in a hundred such cases.
-pub fn partings(evidence: &Evidence, residuals: &[f64]) -> Vec<Parting> {
+/// Where channels differ from a prediction: where means over a short time are larger than noise ever gives, or but once in a hundred such cases.
+pub fn differences(evidence: &Evidence, residuals: &[f64]) -> Vec<Difference> {
     // Of N normal numbers, the chance that one exceeds z is below N exp(-z^2/2).
     let limit = (2.0 * (residuals.len() as f64 / FALSE_ALARM).ln()).sqrt();
     let mut found = Vec::new();
@@ -105,7 +105,7 @@ pub fn partings(evidence: &Evidence, residuals: &[f64]) -> Vec<Parting> {
             count > 0.0 && sum.abs() > limit * count.sqrt()
         };
         let spans = merged(time, parts);
-        found.extend(spans.into_iter().map(|span| Parting {
+        found.extend(spans.into_iter().map(|span| Difference {
             recording,
             channel,
             span,

@@ -1,14 +1,14 @@
-//! Which variable says when a mismatch appears: the share of its variance that lies between bins of each.
+//! Which variable says when a mismatch appears: the correlation_ratio of its variance that lies between bins of each.
 //!
 //! ```text
-//! eta^2 = SS_between / SS,     share = (eta^2 - e) / (1 - e)
+//! eta^2 = SS_between / SS,     correlation_ratio = (eta^2 - e) / (1 - e)
 //! ```
 //!
-//! e what the variable has by chance: the mean of eta^2 over mismatches shifted in time against it, round about. They have the same course, so that nothing
+//! e what the variable has by chance: the mean of eta^2 over mismatches shifted in time against it, round about. They have the same trajectory, so that nothing
 //! need be known of how far neighbouring samples depend on each other; the test of F would. A variable is named if few shifts have as much.
 
 use super::evidence::Evidence;
-use crate::plant::{PlantCourse, PlantParameters};
+use crate::plant::{PlantParameters, PlantTrajectory};
 
 /// Bins of a continuous variable.
 const BINS: usize = 10;
@@ -45,26 +45,29 @@ pub struct Regime {
     /// Its name.
     pub variable: &'static str,
     /// Share of the variance [1].
-    pub share: f64,
+    pub correlation_ratio: f64,
 }
 
 /// Variables that tell when a mismatch appears, the most telling first. `mismatch` has a value per sample, recording by recording.
 pub fn regimes(
     evidence: &Evidence,
     plant: &PlantParameters,
-    courses: &[PlantCourse],
+    trajectories: &[PlantTrajectory],
     mismatch: &[f64],
 ) -> Vec<Regime> {
-    let values = variables(evidence, plant, courses);
+    let values = variables(evidence, plant, trajectories);
     let mut found: Vec<Regime> = VARIABLES
         .into_iter()
         .zip(&values)
         .filter_map(|(variable, values)| {
-            let share = share(values, mismatch)?;
-            Some(Regime { variable, share })
+            let correlation_ratio = correlation_ratio(values, mismatch)?;
+            Some(Regime {
+                variable,
+                correlation_ratio,
+            })
         })
         .collect();
-    found.sort_by(|a, b| b.share.total_cmp(&a.share));
+    found.sort_by(|a, b| b.correlation_ratio.total_cmp(&a.correlation_ratio));
     found
 }
 
@@ -73,25 +76,25 @@ pub fn values_of(
     variable: &str,
     evidence: &Evidence,
     plant: &PlantParameters,
-    courses: &[PlantCourse],
+    trajectories: &[PlantTrajectory],
 ) -> Option<Vec<f64>> {
     let place = VARIABLES.iter().position(|name| *name == variable)?;
-    Some(variables(evidence, plant, courses).swap_remove(place))
+    Some(variables(evidence, plant, trajectories).swap_remove(place))
 }
 
 /// Values of the variables, in their order.
 fn variables(
     evidence: &Evidence,
     plant: &PlantParameters,
-    courses: &[PlantCourse],
+    trajectories: &[PlantTrajectory],
 ) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::new(); VARIABLES.len()];
     let device = &plant.device;
     let area = f64::from(device.cylinder_count) * std::f64::consts::FRAC_PI_4 * device.bore.powi(2);
     let energy = device.gas.specific_gas_constant * device.gas.temperature;
-    for (measured, course) in evidence.recordings.iter().zip(courses) {
+    for (measured, trajectory) in evidence.recordings.iter().zip(trajectories) {
         let inputs = &measured.inputs;
-        let truth = &course.truth;
+        let truth = &trajectory.truth;
         let mass = |i: usize| {
             let volume = device.dead_volume + area * truth.stroke[i];
             truth.pressures[0][i] * volume / energy
@@ -133,7 +136,7 @@ fn variables(
 }
 
 /// Share of the variance between bins of a variable; none where it is no more than chance gives.
-fn share(variable: &[f64], mismatch: &[f64]) -> Option<f64> {
+fn correlation_ratio(variable: &[f64], mismatch: &[f64]) -> Option<f64> {
     let pairs = variable.iter().copied().zip(mismatch.iter().copied());
     let (variable, mut mismatch): (Vec<f64>, Vec<f64>) = pairs
         .filter(|(x, y)| x.is_finite() && y.is_finite())
@@ -208,9 +211,12 @@ mod tests {
         let other: Vec<f64> = (0..count).map(|_| normal()).collect();
         // Variance 4 of the sign, 1 of noise.
         let mismatch: Vec<f64> = sign.iter().map(|s| 2.0 * s + normal()).collect();
-        let of_sign = share(&sign, &mismatch).unwrap();
+        let of_sign = correlation_ratio(&sign, &mismatch).unwrap();
         assert!((of_sign - 0.8).abs() < 0.01, "{of_sign}");
-        assert!(share(&other, &mismatch).is_none_or(|share| share < 0.01));
+        assert!(
+            correlation_ratio(&other, &mismatch)
+                .is_none_or(|correlation_ratio| correlation_ratio < 0.01)
+        );
     }
 
     #[test]
@@ -219,7 +225,7 @@ mod tests {
         let wave = |period: f64, i: i32| (f64::from(i) * std::f64::consts::TAU / period).sin();
         let mismatch: Vec<f64> = (0..4000).map(|i| wave(1300.0, i)).collect();
         let other: Vec<f64> = (0..4000).map(|i| wave(910.0, i)).collect();
-        assert_eq!(share(&other, &mismatch), None);
-        assert!(share(&mismatch, &mismatch).unwrap() > 0.9);
+        assert_eq!(correlation_ratio(&other, &mismatch), None);
+        assert!(correlation_ratio(&mismatch, &mismatch).unwrap() > 0.9);
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! rho_k correlation of what is left with itself k samples later, t samples that tell as much as one. A part on a laboratory's bench is seen through one good
 //! sensor at close distances of samples: what the best laws leave is large beside its noise and alike for many samples, so that any effect would gain
-//! something against noise alone. So the laws are first let loose to see what they leave; then the search is done with that as the noise, and t samples
+//! something against noise alone. So effects are first taken in by greedy forward selection, to see what they leave; then the search is done with that as the noise, and t samples
 //! count for one. The last fit is to all samples.
 
 use super::evidence::{Evidence, Measured, Prediction};
@@ -35,7 +35,7 @@ pub struct Remaining {
     /// Standard deviation of the sensor's noise, in the channel's unit.
     pub noise: f64,
     /// Samples that tell as much as one [1].
-    pub alike: f64,
+    pub autocorrelation_samples: f64,
     /// The same as a time [s].
     pub time: f64,
 }
@@ -65,8 +65,10 @@ impl Remaining {
     pub fn left_by(prediction: &Prediction, evidence: &Evidence, channel: Channel) -> Self {
         let index = channel as usize;
         let (mut squares, mut count, mut weighted, mut seconds) = (0.0, 0.0, 0.0, 0.0);
-        for (measured, course) in evidence.recordings.iter().zip(&prediction.courses) {
-            let pairs = measured.readings[index].iter().zip(&course.readings[index]);
+        for (measured, trajectory) in evidence.recordings.iter().zip(&prediction.trajectories) {
+            let pairs = measured.readings[index]
+                .iter()
+                .zip(&trajectory.readings[index]);
             let left: Vec<f64> = pairs
                 .map(|(m, p)| m - p)
                 .filter(|r| r.is_finite())
@@ -76,15 +78,15 @@ impl Remaining {
             count += own;
             let time = &measured.inputs.time;
             let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-            let alike = alike(&left);
-            weighted += own * alike;
-            seconds += own * alike * step;
+            let autocorrelation_samples = integrated_autocorrelation_time(&left);
+            weighted += own * autocorrelation_samples;
+            seconds += own * autocorrelation_samples * step;
         }
         Self {
             channel,
             size: (squares / count.max(1.0)).sqrt(),
             noise: evidence.noise[index],
-            alike: weighted / count.max(1.0),
+            autocorrelation_samples: weighted / count.max(1.0),
             time: seconds / count.max(1.0),
         }
     }
@@ -96,7 +98,7 @@ impl Remaining {
 
     /// Whether it is no more than the sensor's noise.
     pub fn is_noise(&self) -> bool {
-        self.size < LIKE_NOISE * self.noise && self.alike < 2.0
+        self.size < LIKE_NOISE * self.noise && self.autocorrelation_samples < 2.0
     }
 
     /// Noise of the channels where what is left counts as it.
@@ -108,12 +110,13 @@ impl Remaining {
 
     /// The evidence against what is left, in which as many samples as are alike count for one.
     pub fn independent(&self, evidence: &Evidence) -> Evidence {
-        let every = (evidence.count() / ENOUGH).clamp(1, self.alike.ceil() as usize);
-        let alike = (self.alike / every as f64).max(1.0);
+        let every =
+            (evidence.count() / ENOUGH).clamp(1, self.autocorrelation_samples.ceil() as usize);
+        let autocorrelation_samples = (self.autocorrelation_samples / every as f64).max(1.0);
         let mut noise = self.taken_as_noise(evidence);
-        noise[self.channel as usize] *= alike.sqrt();
+        noise[self.channel as usize] *= autocorrelation_samples.sqrt();
         let mut thinned = thinned(evidence, every, noise);
-        thinned.worth = 1.0 / alike;
+        thinned.worth = 1.0 / autocorrelation_samples;
         thinned
     }
 
@@ -142,7 +145,7 @@ fn thinned(evidence: &Evidence, every: usize, noise: [f64; CHANNELS.len()]) -> E
 }
 
 /// Samples that tell as much as one.
-fn alike(left: &[f64]) -> f64 {
+fn integrated_autocorrelation_time(left: &[f64]) -> f64 {
     let count = left.len();
     let mean = left.iter().sum::<f64>() / count.max(1) as f64;
     let at = |lag: usize| -> f64 {
@@ -219,7 +222,7 @@ fn exchanged(search: &Search<'_>, best: &Hypothesis) -> Option<Hypothesis> {
 
 #[cfg(test)]
 mod tests {
-    use super::alike;
+    use super::integrated_autocorrelation_time;
     use rand::{Rng, SeedableRng};
 
     #[test]
@@ -228,7 +231,7 @@ mod tests {
         let white: Vec<f64> = (0..40_000)
             .map(|_| random.random_range(-1.0..1.0))
             .collect();
-        assert!((alike(&white) - 1.0).abs() < 0.1);
+        assert!((integrated_autocorrelation_time(&white) - 1.0).abs() < 0.1);
         // First order with decay a: (1 + a)/(1 - a).
         let decay = 0.9;
         let mut state = 0.0;
@@ -241,9 +244,9 @@ mod tests {
             .collect();
         let expected = (1.0 + decay) / (1.0 - decay);
         assert!(
-            (alike(&smooth) / expected - 1.0).abs() < 0.15,
+            (integrated_autocorrelation_time(&smooth) / expected - 1.0).abs() < 0.15,
             "{}",
-            alike(&smooth)
+            integrated_autocorrelation_time(&smooth)
         );
     }
 }

@@ -95,13 +95,16 @@ fn described(
 ) -> RuledOut {
     let index = channel as usize;
     let (mut squares, mut count) = (0.0, 0.0);
-    let courses = search
+    let trajectories = search
         .evidence
         .recordings
         .iter()
-        .zip(&best.prediction.courses);
-    for (measured, course) in courses {
-        for (m, p) in measured.readings[index].iter().zip(&course.readings[index]) {
+        .zip(&best.prediction.trajectories);
+    for (measured, trajectory) in trajectories {
+        for (m, p) in measured.readings[index]
+            .iter()
+            .zip(&trajectory.readings[index])
+        {
             if (m - p).is_finite() {
                 squares += (m - p).powi(2);
                 count += 1.0;

@@ -32,7 +32,7 @@ pub struct ServoLink {
     pub gain: f64,
     /// Readings.
     pub count: usize,
-    /// Weight of a sum of squares: less than one where encoders depart from any such lag by more than their noise, and not at random [1].
+    /// Weight of a sum of squares: less than one where encoders differ from any such lag by more than their noise, and not at random [1].
     pub weight: f64,
     /// Root mean square of what it leaves of each joint, in standard deviations of the noise [1].
     pub left: Vec<f64>,

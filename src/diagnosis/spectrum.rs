@@ -22,13 +22,13 @@ pub fn strongest_in(evidence: &Evidence, prediction: &Prediction, channel: usize
     let mut times = Vec::new();
     let mut left = Vec::new();
     let mut at = 0;
-    for (measured, course) in evidence.recordings.iter().zip(&prediction.courses) {
+    for (measured, trajectory) in evidence.recordings.iter().zip(&prediction.trajectories) {
         let n = measured.inputs.time.len();
         let left_over = &prediction.residuals[at + channel * n..at + (channel + 1) * n];
         at += 4 * n;
         for (i, &value) in left_over.iter().enumerate() {
             let touching =
-                course.truth.contact_force[i] > 0.0 && measured.inputs.surface[i].is_finite();
+                trajectory.truth.contact_force[i] > 0.0 && measured.inputs.surface[i].is_finite();
             if value.is_finite() && (touching || channel != 2) {
                 times.push(measured.inputs.time[i]);
                 left.push(value.clamp(-20.0, 20.0));

@@ -1,4 +1,4 @@
-//! Belief before the first sample, and its course from one sample to the next.
+//! Belief before the first sample, and its trajectory from one sample to the next.
 //!
 //! ```text
 //! x <- x + v T + a T^2/2,   v <- v + a T,   a <- a + walk                             (the motion that the surface imposes)

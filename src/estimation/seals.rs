@@ -21,7 +21,7 @@ pub(super) struct Deflection {
     pub(super) by_presliding: f64,
 }
 
-/// Course of the motion, told from the believed stroke.
+/// Trajectory of the motion, told from the believed stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Way {
     /// On in the same direction, or turned: carry the turning point along.

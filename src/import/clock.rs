@@ -122,16 +122,16 @@ mod tests {
     }
 
     /// Bumps that do not repeat.
-    fn course(t: f64) -> f64 {
+    fn trajectory(t: f64) -> f64 {
         (-(t - 3.0).powi(2)).exp() + 0.6 * (-4.0 * (t - 5.2).powi(2)).exp()
             - 0.8 * (-2.0 * (t - 8.0).powi(2)).exp()
     }
 
     #[test]
     fn a_planted_offset_comes_back_to_a_tenth_of_a_sample() {
-        let first = series(500.0, 0.0, 10.0, course);
+        let first = series(500.0, 0.0, 10.0, trajectory);
         // Its clock is 1.2345 s behind, and it starts later.
-        let own = series(800.0, -0.5, 8.0, |t| -3.0 * course(t + 1.2345) + 7.0);
+        let own = series(800.0, -0.5, 8.0, |t| -3.0 * trajectory(t + 1.2345) + 7.0);
         let found = align(&first, &own, 4.0).unwrap();
         assert!((found.offset - 1.2345).abs() < 2e-4, "{found:?}");
         assert!(found.correlation < -0.999, "{found:?}");

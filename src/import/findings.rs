@@ -1,7 +1,7 @@
 //! Content of a log, channel by channel: rate, gaps, range, noise, steps of its converter, and what makes its unit doubtful.
 //!
 //! ```text
-//! noise = 1.4826 median |x_{i+1} - 2 x_i + x_{i-1}| / sqrt 6          white noise on a smooth course (Gasser, Sroka and Jennen-Steinmetz 1986)
+//! noise = 1.4826 median |x_{i+1} - 2 x_i + x_{i-1}| / sqrt 6          white noise on a smooth trajectory (Gasser, Sroka and Jennen-Steinmetz 1986)
 //! ```
 
 use super::assemble::{Imported, LogNote};
@@ -113,7 +113,7 @@ pub(super) fn finding(series: &Series, channel: &ChannelMap) -> Finding {
     found
 }
 
-/// Standard deviation of white noise on a smooth course.
+/// Standard deviation of white noise on a smooth trajectory.
 #[must_use]
 pub fn noise(values: &[f64]) -> Option<f64> {
     let mut bends: Vec<f64> = values

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use super::CHANNELS;
 use super::concealed::Concealed;
-use super::course::{Course, LaboratoryError, run};
 use super::dirt::Dirt;
 use super::draw::{Believed, TOLERANCES, stream, toleranced};
 use super::effects::{LabEffect, Scene, effect};
@@ -13,6 +12,7 @@ use super::rig::Rig;
 use super::sealed::{Known, SealedCase, SealedEffect, SealedInterval};
 use super::sensors::measured;
 use super::shown::intervals;
+use super::trajectory::{LaboratoryError, LaboratoryTrajectory, run};
 use super::visibility::Eye;
 
 /// Recipe of a case.
@@ -83,8 +83,8 @@ struct Setting {
 }
 
 impl Setting {
-    /// True courses of the first recordings.
-    fn run(&self, count: usize) -> Result<Vec<Course>, LaboratoryError> {
+    /// True trajectories of the first recordings.
+    fn run(&self, count: usize) -> Result<Vec<LaboratoryTrajectory>, LaboratoryError> {
         let programmes = self.programmes[..count].iter();
         programmes
             .map(|p| run(&self.pair.real, &self.concealed, p))
@@ -210,8 +210,8 @@ impl Recipe {
         }
         let mut all: Vec<f64> = Vec::new();
         for programme in &programmes[..programmes.len() - 1] {
-            let course = run(rig, &Concealed::default(), programme)?;
-            all.extend(&course.readings[2]);
+            let trajectory = run(rig, &Concealed::default(), programme)?;
+            all.extend(&trajectory.readings[2]);
         }
         all.sort_by(f64::total_cmp);
         // Impacts reach higher for a moment.
@@ -229,17 +229,19 @@ impl Recipe {
     fn shown(
         &self,
         setting: &Setting,
-        real: &[Course],
+        real: &[LaboratoryTrajectory],
     ) -> Result<(Vec<SealedInterval>, f64), LaboratoryError> {
         if self.effects.is_empty() {
             return Ok((Vec::new(), 0.0));
         }
         let eye = Self::eye(setting)?;
         let mut found = Vec::new();
-        for ((programme, with), without) in setting.programmes.iter().zip(real).zip(eye.courses()) {
+        for ((programme, with), without) in
+            setting.programmes.iter().zip(real).zip(eye.trajectories())
+        {
             for (channel, name) in CHANNELS.iter().enumerate() {
                 let noise = setting.pair.real.noise[channel];
-                let readings = [with, without].map(|course| &course.readings[channel]);
+                let readings = [with, without].map(|trajectory| &trajectory.readings[channel]);
                 let runs = intervals(&programme.times, readings[0], readings[1], noise);
                 found.extend(runs.into_iter().map(|[start_s, end_s]| SealedInterval {
                     recording: programme.name.clone(),
@@ -249,24 +251,24 @@ impl Recipe {
                 }));
             }
         }
-        let seen = eye.courses().len();
+        let seen = eye.trajectories().len();
         Ok((found, eye.visibility(&real[..seen])))
     }
 
-    fn measure(&self, rig: &Rig, courses: &[Course]) -> Vec<[Vec<f64>; 4]> {
+    fn measure(&self, rig: &Rig, trajectories: &[LaboratoryTrajectory]) -> Vec<[Vec<f64>; 4]> {
         let (noise, spoil) = (&mut stream(self.seed, 6), &mut stream(self.seed, 7));
-        let last = courses.len() - 1;
-        let of = |(index, course): (usize, &Course)| {
+        let last = trajectories.len() - 1;
+        let of = |(index, trajectory): (usize, &LaboratoryTrajectory)| {
             [0, 1, 2, 3].map(|channel| {
                 let deviation = rig.noise[channel];
-                let mut values = measured(&course.readings[channel], deviation, noise);
+                let mut values = measured(&trajectory.readings[channel], deviation, noise);
                 if let Some(dirt) = self.dirt.filter(|_| index < last) {
                     dirt.on_values(&mut values, deviation, spoil);
                 }
                 values
             })
         };
-        courses.iter().enumerate().map(of).collect()
+        trajectories.iter().enumerate().map(of).collect()
     }
 }
 

@@ -17,7 +17,7 @@ pub struct Dirt {
     /// Share of values that are lost [1].
     pub lost: f64,
     /// Share of values that are wild [1].
-    pub wild: f64,
+    pub outliers: f64,
 }
 
 impl Dirt {
@@ -27,7 +27,7 @@ impl Dirt {
         gaps: 2,
         gap: 0.06,
         lost: 0.01,
-        wild: 0.003,
+        outliers: 0.003,
     };
 
     /// Samples at other times: some jitter, some are gone. Commands move to the samples in which they are seen.
@@ -78,7 +78,7 @@ impl Dirt {
         for value in values {
             if rng.random_bool(self.lost) {
                 *value = f64::NAN;
-            } else if rng.random_bool(self.wild) {
+            } else if rng.random_bool(self.outliers) {
                 let sign = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
                 let off = sign * noise * rng.random_range(30.0..200.0);
                 *value = ((*value + off) / step).round() * step;

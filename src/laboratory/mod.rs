@@ -11,7 +11,6 @@
 
 mod case;
 mod concealed;
-mod course;
 mod dirt;
 mod draw;
 mod effects;
@@ -22,12 +21,12 @@ mod rig;
 mod sealed;
 mod sensors;
 mod shown;
+mod trajectory;
 mod visibility;
 mod write;
 
 pub use case::{Case, Recipe};
 pub use concealed::{Concealed, Seals, Swing};
-pub use course::{Course, LaboratoryError, run};
 pub use dirt::Dirt;
 pub use draw::{Believed, TOLERANCES};
 pub use effects::{EFFECTS, LabEffect, UNLISTED_EFFECTS};
@@ -35,6 +34,7 @@ pub use programme::{Programme, Surface, Wave};
 pub use recipes::{LOST, shipped, sizes};
 pub use rig::{AIR, Gas, Rig};
 pub use sealed::{Known, SealedCase, SealedEffect, SealedInterval};
+pub use trajectory::{LaboratoryError, LaboratoryTrajectory, run};
 pub use write::write_case;
 
 /// Columns of the measured channels, in the order of all arrays of four here.

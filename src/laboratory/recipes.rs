@@ -1,8 +1,8 @@
 //! Which cases there are: those that the project ships, and the sizes of a sweep.
 
 use super::case::Recipe;
-use super::course::LaboratoryError;
 use super::dirt::Dirt;
+use super::trajectory::LaboratoryError;
 
 /// Visibility of an effect at its least size, beside all that is tolerated, in standard deviations [1]. A test that looks for one number in ten thousand
 /// readings, and at dozens of effects, asks for some 20 of twice the log-likelihood (Schwarz's ln n, and as much for having looked at so many): 4^2 is

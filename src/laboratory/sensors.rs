@@ -1,4 +1,4 @@
-//! Records of a course: noise of each sensor, and the steps of its converter.
+//! Records of a trajectory: noise of each sensor, and the steps of its converter.
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;

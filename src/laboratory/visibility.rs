@@ -11,10 +11,10 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::concealed::Concealed;
-use super::course::{Course, LaboratoryError, run};
 use super::draw::{TOLERANCES, toleranced};
 use super::programme::Programme;
 use super::rig::Rig;
+use super::trajectory::{LaboratoryError, LaboratoryTrajectory, run};
 
 /// Error in time that is forgiven [s].
 const FORGIVEN: f64 = 1e-3;
@@ -26,7 +26,7 @@ const TOLERATED: usize = TOLERANCES.len();
 /// A device without the effect, seen through its sensors and its owner's tolerances.
 pub(super) struct Eye {
     /// Its readings, recording by recording.
-    courses: Vec<Course>,
+    trajectories: Vec<LaboratoryTrajectory>,
     /// Weight over noise of each reading.
     weights: Vec<f64>,
     /// Changes by each tolerated number, weighted.
@@ -43,19 +43,19 @@ impl Eye {
         tolerances: &[f64; TOLERATED],
         programmes: &[Programme],
     ) -> Result<Self, LaboratoryError> {
-        let all = |rig: &Rig| -> Result<Vec<Course>, LaboratoryError> {
+        let all = |rig: &Rig| -> Result<Vec<LaboratoryTrajectory>, LaboratoryError> {
             let nothing = Concealed::default();
             programmes.iter().map(|p| run(rig, &nothing, p)).collect()
         };
-        let courses = all(bare)?;
+        let trajectories = all(bare)?;
         let mut weights = Vec::new();
-        for (course, programme) in courses.iter().zip(programmes) {
-            for (values, noise) in course.readings.iter().zip(bare.noise) {
+        for (trajectory, programme) in trajectories.iter().zip(programmes) {
+            for (values, noise) in trajectory.readings.iter().zip(bare.noise) {
                 weights.extend(weight(&programme.times, values, noise));
             }
         }
         let mut eye = Self {
-            courses,
+            trajectories,
             weights,
             columns: Vec::new(),
             inverse: SMatrix::identity(),
@@ -81,13 +81,13 @@ impl Eye {
     }
 
     /// The readings without the effect.
-    pub fn courses(&self) -> &[Course] {
-        &self.courses
+    pub fn trajectories(&self) -> &[LaboratoryTrajectory] {
+        &self.trajectories
     }
 
     /// D of what these readings differ by.
-    pub fn visibility(&self, courses: &[Course]) -> f64 {
-        let off = self.differences(courses);
+    pub fn visibility(&self, trajectories: &[LaboratoryTrajectory]) -> f64 {
+        let off = self.differences(trajectories);
         let all: f64 = off.iter().map(|value| value * value).sum();
         let along = SVector::<f64, TOLERATED>::from_fn(|j, _| {
             self.columns[j].iter().zip(&off).map(|(a, b)| a * b).sum()
@@ -95,12 +95,16 @@ impl Eye {
         (all - along.dot(&(self.inverse * along))).max(0.0).sqrt()
     }
 
-    fn differences(&self, courses: &[Course]) -> Vec<f64> {
-        let readings = |courses: &[Course]| -> Vec<f64> {
-            let all = courses.iter().flat_map(|course| &course.readings);
+    fn differences(&self, trajectories: &[LaboratoryTrajectory]) -> Vec<f64> {
+        let readings = |trajectories: &[LaboratoryTrajectory]| -> Vec<f64> {
+            let all = trajectories
+                .iter()
+                .flat_map(|trajectory| &trajectory.readings);
             all.flatten().copied().collect()
         };
-        let pairs = readings(courses).into_iter().zip(readings(&self.courses));
+        let pairs = readings(trajectories)
+            .into_iter()
+            .zip(readings(&self.trajectories));
         let weighted = pairs.zip(&self.weights);
         weighted
             .map(|((with, without), weight)| weight * (with - without))

@@ -10,17 +10,17 @@
 //! Further properties of a real one, each off by default and exact as well: play (`hysteresis`), limited rates (`rate_limit`), and an oscillator in
 //! place of the lag (`second_order`). Leaves out: the outlet's drop with the flow through it.
 
-mod course;
 mod hysteresis;
 mod rate_limit;
 mod second_order;
+mod trajectory;
 
 use std::collections::VecDeque;
 
-pub use course::OutletCourse;
 pub use hysteresis::play;
 pub use rate_limit::RateLimit;
 pub use second_order::SecondOrder;
+pub use trajectory::OutletTrajectory;
 
 /// Constant parameters during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,8 +109,8 @@ impl RegulatorState {
         }
     }
 
-    /// Course of the outlet from now on until the next set pressure arrives or another law takes over, `longest` [s] at most.
-    pub fn course(&self, parameters: &RegulatorParameters, longest: f64) -> OutletCourse {
+    /// Trajectory of the outlet from now on until the next set pressure arrives or another law takes over, `longest` [s] at most.
+    pub fn trajectory(&self, parameters: &RegulatorParameters, longest: f64) -> OutletTrajectory {
         let next = self.pending.front().map_or(f64::INFINITY, |p| p.0);
         let target = (parameters.gain * self.acted_on).clamp(0.0, parameters.supply);
         let free = (next - self.time).clamp(0.0, longest);
@@ -121,7 +121,7 @@ impl RegulatorState {
                 limit.of_oscillator(self.pilot, self.rate, target, oscillator, free)
             }
         };
-        OutletCourse {
+        OutletTrajectory {
             start: self.pilot,
             target,
             supply: parameters.supply,
@@ -130,13 +130,13 @@ impl RegulatorState {
         }
     }
 
-    /// Goes to the end of a course and takes what arrives there.
-    pub fn follow(&mut self, parameters: &RegulatorParameters, course: &OutletCourse) {
-        (self.pilot, self.rate) = course.state_at(course.duration);
+    /// Goes to the end of a trajectory and takes what arrives there.
+    pub fn follow(&mut self, parameters: &RegulatorParameters, trajectory: &OutletTrajectory) {
+        (self.pilot, self.rate) = trajectory.state_at(trajectory.duration);
         self.outlet = self.pilot.clamp(0.0, parameters.supply);
-        self.time += course.duration;
+        self.time += trajectory.duration;
         while let Some(&(arrival, set_pressure)) = self.pending.front() {
-            // The course was cut at the arrival: what is left of it is rounding.
+            // The trajectory was cut at the arrival: what is left of it is rounding.
             if arrival > self.time + 1e-12 {
                 break;
             }
@@ -155,9 +155,9 @@ impl RegulatorState {
     pub fn advance(&mut self, parameters: &RegulatorParameters, dt: f64) -> f64 {
         let mut left = dt;
         while left > 0.0 {
-            let course = self.course(parameters, left);
-            self.follow(parameters, &course);
-            left -= course.duration;
+            let trajectory = self.trajectory(parameters, left);
+            self.follow(parameters, &trajectory);
+            left -= trajectory.duration;
         }
         self.outlet
     }

@@ -6,7 +6,7 @@
 
 use super::contact::ContactParameters;
 use super::contact_friction::AxialFriction;
-use super::flexing::Swung;
+use super::joint_deflections::DeflectedContact;
 use super::terms::ForceTerms;
 use crate::device::{Carrier, FINE_SWING, PistonMotion};
 
@@ -34,7 +34,7 @@ pub(super) struct ReplayCarrier<'a> {
     /// Whether the rate at which a burr comes up is damped too.
     pub burr_damped: bool,
     /// Motion of swinging links.
-    pub swung: Swung,
+    pub deflected: DeflectedContact,
     /// The motion to which the piston is held, if it is.
     pub hold: Option<Hold>,
     /// Further forces.
@@ -83,7 +83,7 @@ impl ReplayCarrier<'_> {
             // Of a ball that is met along the bisector its own motion is damped, whatever the shape that it meets.
             rate = if self.burr_damped { rate - rise } else { 0.0 };
         }
-        let [lift, lifting, more] = self.swung.surface;
+        let [lift, lifting, more] = self.deflected.surface;
         let surface = a + lift + time * (b + lifting + time * (c + more + time * d));
         let speed = b + lifting + time * (2.0 * (c + more) + 3.0 * time * d);
         (
@@ -94,7 +94,7 @@ impl ReplayCarrier<'_> {
 
     /// Share of the contact force along the stroke [1].
     pub fn axial_share(&self) -> f64 {
-        self.share - self.swung.turned
+        self.share - self.deflected.turned
     }
 
     /// Weight along extension [N].
@@ -163,8 +163,8 @@ impl Carrier for ReplayCarrier<'_> {
         // What the cubic can move by in the step.
         let [a, b, c, d] = self.surface;
         let burr = self.burr.map_or(0.0, |[height, _]| height.abs());
-        let nearest = a - burr / self.share + self.swung.surface[0]
-            - dt * self.swung.surface[1].abs()
+        let nearest = a - burr / self.share + self.deflected.surface[0]
+            - dt * self.deflected.surface[1].abs()
             + self.contact.least_deviation() / self.share
             - dt * (b.abs() + dt * (c.abs() + dt * d.abs()));
         if motion.stroke + reach < nearest {

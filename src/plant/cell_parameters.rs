@@ -1,6 +1,6 @@
 //! Properties of a cell's arm and part: springs in the joints, encoders that are off, a servo that lags, a part that is not where it is believed.
 
-use super::cell_course::EdgeStation;
+use super::arm_trajectory::EdgeStation;
 use glam::DVec3;
 
 /// Most joints that an arm may have.

@@ -1,6 +1,6 @@
 //! Inputs of a rig in a recording: set pressure, valve, surface.
 
-use super::cell_course::CellCourse;
+use super::arm_trajectory::ArmTrajectory;
 use super::measured_motion::MeasuredMotion;
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub struct PlantInputs {
     /// Where the surface stands along the stroke [m], a smooth motion; NaN where there is no workpiece.
     pub surface: Vec<f64>,
     /// The arm that carries the device, if it is one of a cell: it says where the surface stands, and how the device is carried.
-    pub cell: Option<Arc<CellCourse>>,
+    pub cell: Option<Arc<ArmTrajectory>>,
     /// The motion of the piston, where a rig or a drive moves it; the set pressure is then that in chamber 1, as it was measured.
     pub motion: Option<Arc<MeasuredMotion>>,
 }

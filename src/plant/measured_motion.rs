@@ -32,7 +32,7 @@ const ABOUT_AS_WELL: f64 = 1.03;
 const FAR_WORSE: f64 = 2.0;
 /// Readings that a cubic needs at least.
 const LEAST: usize = 6;
-/// Share of the readings, away from the ends, that are foretold to choose a half-width: one in so many, for the long recordings.
+/// Share of the readings, away from the ends, that are predicted to choose a half-width: one in so many, for the long recordings.
 const JUDGED: usize = 4000;
 
 impl MeasuredMotion {
@@ -118,7 +118,7 @@ fn best_width(known: &[(f64, f64)], usual: f64) -> f64 {
     good.map_or(NARROWEST * usual, |(width, _)| *width)
 }
 
-/// Root mean square error with which readings are foretold from the others about them; the largest hundredth, such as of jolts, does not count.
+/// Root mean square error with which readings are predicted from the others about them; the largest hundredth, such as of jolts, does not count.
 fn foretelling_error(known: &[(f64, f64)], width: f64, every: usize) -> f64 {
     let mut squares: Vec<f64> = (known.iter().step_by(every))
         .filter_map(|(t, x)| {

@@ -9,17 +9,17 @@
 //! The device is that of every other simulation ([`crate::device`]); contact and sensors have their own errors here, because a recording shows them
 //! only through each other.
 
+mod arm_trajectory;
 mod carrier;
-mod cell_course;
 mod cell_parameters;
 mod chain;
 mod contact;
 mod contact_friction;
-mod flexing;
-mod guide;
 mod inputs;
+mod joint_deflections;
 mod latent;
 mod measured_motion;
+mod nudging;
 mod observation;
 mod own_law;
 mod parameters;
@@ -32,14 +32,16 @@ mod sharp_edge;
 mod simulate;
 mod terms;
 
-pub use cell_course::{CellCourse, EdgeStation, Felt, INERTIA_EVERY, JointCourse, Levers};
+pub use arm_trajectory::{
+    ArmTrajectory, ContactJacobian, ContactKinematics, EdgeStation, INERTIA_EVERY, JointTrajectory,
+};
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS, Relief};
 pub use chain::{Chain, LinkParameters};
 pub use contact::{ContactLaw, ContactParameters, Periodic};
-pub use guide::Guide;
 pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
 pub use measured_motion::MeasuredMotion;
+pub use nudging::Nudging;
 pub use observation::Observation;
 pub use own_law::{
     Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, OwnLaw, SYMBOLS, Symbol, Unit,
@@ -51,5 +53,7 @@ pub use running_sensors::{RunningSensors, SensorReadings};
 pub use sensors::SensorErrors;
 pub use servo::{Followed, follow, shown};
 pub use sharp_edge::{SharpEdge, Touch};
-pub use simulate::{CHANNELS, Channel, PlantCourse, Trajectory, readings, simulate, trajectory};
+pub use simulate::{
+    CHANNELS, Channel, PlantTrajectory, Trajectory, readings, simulate, true_trajectory,
+};
 pub use terms::ForceTerms;

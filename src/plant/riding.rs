@@ -6,8 +6,8 @@
 //!
 //! On a sharp edge c and s are those of the tangent plane of the distance at the present stroke; over a sample they err by its curvature alone.
 
+use super::arm_trajectory::{ArmTrajectory, ContactKinematics};
 use super::carrier::hermite;
-use super::cell_course::{CellCourse, Felt};
 use super::sharp_edge::SharpEdge;
 use glam::DVec3;
 
@@ -23,29 +23,31 @@ pub(super) struct Riding {
 }
 
 impl Riding {
-    /// From sample `i` on over `h` [s], the slide about a stroke [m], its links swung away by a displacement [m].
+    /// From sample `i` on over `h` [s], the slide about a stroke [m], its links deflected away by a displacement [m].
     pub fn on(
-        course: &CellCourse,
+        trajectory: &ArmTrajectory,
         sharp: &SharpEdge,
-        felt: &Felt,
+        kinematics: &ContactKinematics,
         i: usize,
         h: f64,
         stroke: f64,
         away: DVec3,
     ) -> Self {
-        let last = course.len() - 1;
+        let last = trajectory.len() - 1;
         let next = (i + 1).min(last);
         // Seen from the part where it is.
-        let centre = |j: usize| felt.balls[j] + felt.slides[j] * stroke - felt.aside[j];
+        let centre =
+            |j: usize| kinematics.balls[j] + kinematics.slides[j] * stroke - kinematics.aside[j];
         let middle = 0.5 * (centre(i) + centre(next)) + away;
-        let touch = sharp.touch(middle, course.edge[i].station);
+        let touch = sharp.touch(middle, trajectory.edge[i].station);
         let normal = touch.normal;
-        let share = -normal.dot(0.5 * (felt.slides[i] + felt.slides[next]));
+        let share = -normal.dot(0.5 * (kinematics.slides[i] + kinematics.slides[next]));
         let from = middle - normal * touch.distance;
-        let at = |j: usize| stroke + (normal.dot(centre(j) - from) - course.ball_radius) / share;
+        let at =
+            |j: usize| stroke + (normal.dot(centre(j) - from) - trajectory.ball_radius) / share;
         let slope = |j: usize| {
             let (before, after) = (j.saturating_sub(1), (j + 1).min(last));
-            (at(after) - at(before)) / (course.time[after] - course.time[before])
+            (at(after) - at(before)) / (trajectory.time[after] - trajectory.time[before])
         };
         let surface = hermite(h, [at(i), at(next)], [slope(i), slope(next)]);
         Self {

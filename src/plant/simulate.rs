@@ -1,13 +1,13 @@
 //! A rig run on the inputs of a recording.
 
+use super::arm_trajectory::ContactKinematics;
 use super::carrier::{Hold, ReplayCarrier, hermite};
-use super::cell_course::Felt;
 use super::chain;
 use super::contact_friction::{AxialFriction, ContactFriction};
-use super::flexing::{Bending, Flexing, Swung};
-use super::guide::Guide;
 use super::inputs::PlantInputs;
+use super::joint_deflections::{Bending, DeflectedContact, JointDeflections};
 use super::latent::{Moment, Port};
+use super::nudging::Nudging;
 use super::parameters::PlantParameters;
 use super::riding::Riding;
 use super::terms::ForceTerms;
@@ -35,7 +35,7 @@ pub const CHANNELS: [Channel; 4] = [
     Channel::Acceleration,
 ];
 
-/// True course of a rig, one value per sample time.
+/// True trajectory of a rig, one value per sample time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trajectory {
     /// Outlet of the regulator [Pa gauge].
@@ -60,18 +60,18 @@ pub struct Trajectory {
 
 /// A simulated recording.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PlantCourse {
-    /// The true course.
+pub struct PlantTrajectory {
+    /// The true trajectory.
     pub truth: Trajectory,
     /// Readings of the sensors, without noise, in the order of [`CHANNELS`].
     pub readings: [Vec<f64>; 4],
 }
 
 /// Runs a rig and reads its sensors.
-pub fn simulate(plant: &PlantParameters, inputs: &PlantInputs) -> PlantCourse {
-    let truth = trajectory(plant, inputs, None);
+pub fn simulate(plant: &PlantParameters, inputs: &PlantInputs) -> PlantTrajectory {
+    let truth = true_trajectory(plant, inputs, None);
     let readings = readings(plant, inputs, &truth);
-    PlantCourse { truth, readings }
+    PlantTrajectory { truth, readings }
 }
 
 /// Readings of the sensors, in the order of [`CHANNELS`].
@@ -119,44 +119,49 @@ pub fn readings(
 }
 
 /// Runs a rig from rest on the retracted stop, both chambers and the regulator's outlet at the atmosphere. A rig that is out of all proportion
-/// gives values that are not finite. A guide holds the piston to a measured motion.
+/// gives values that are not finite. A nudging holds the piston to a measured motion.
 #[expect(
     clippy::too_many_lines,
     reason = "the loop of all fits: its state stays in registers"
 )]
-pub fn trajectory(
+pub fn true_trajectory(
     plant: &PlantParameters,
     inputs: &PlantInputs,
-    guide: Option<&Guide>,
+    nudging: Option<&Nudging>,
 ) -> Trajectory {
-    if let Some(truth) = chain::trajectory(plant, inputs) {
+    if let Some(truth) = chain::true_trajectory(plant, inputs) {
         return truth;
     }
     let device = Device::new(plant.device.clone());
     let mass = plant.device.moving_mass;
-    let felt = inputs.cell.as_ref().map(|course| course.felt(&plant.cell));
-    let moved = felt.as_ref().map(Felt::surface);
+    let kinematics = inputs
+        .cell
+        .as_ref()
+        .map(|trajectory| trajectory.contact_kinematics(&plant.cell));
+    let moved = kinematics.as_ref().map(ContactKinematics::surface);
     let surface = moved.as_ref().unwrap_or(&inputs.surface);
     let pull = |i: usize| {
-        let felt = felt.as_ref().map(|felt| felt.pull[i]);
-        mass * felt.unwrap_or(plant.gravity_along_extension)
+        let kinematics = kinematics.as_ref().map(|kinematics| kinematics.pull[i]);
+        mass * kinematics.unwrap_or(plant.gravity_along_extension)
     };
     let pressing = inputs
         .cell
         .as_ref()
         .is_some_and(|c| c.observed.starts_pressing);
     let (mut motion, mut state) = at_rest(plant, &device, inputs, pressing, pull(0));
-    let mut flexing = inputs
+    let mut joint_deflections = inputs
         .cell
         .as_ref()
-        .and_then(|course| Flexing::new(course, &plant.cell));
-    if let (true, Some(flexing), Some(felt)) = (pressing, &mut flexing, &felt) {
-        let push = device.piston_force(&state, motion) + pull(0) + felt.carried[0];
-        flexing.settle(0, push);
+        .and_then(|trajectory| JointDeflections::new(trajectory, &plant.cell));
+    if let (true, Some(joint_deflections), Some(kinematics)) =
+        (pressing, &mut joint_deflections, &kinematics)
+    {
+        let push = device.piston_force(&state, motion) + pull(0) + kinematics.carried[0];
+        joint_deflections.settle(0, push);
     }
-    let sharp = inputs.cell.as_ref().and_then(|course| {
-        let sharp = course.sharp.as_ref()?;
-        Some((course, sharp))
+    let sharp = inputs.cell.as_ref().and_then(|trajectory| {
+        let sharp = trajectory.sharp.as_ref()?;
+        Some((trajectory, sharp))
     });
     let count = inputs.time.len();
     let mut truth = Trajectory::default();
@@ -185,7 +190,7 @@ pub fn trajectory(
             share: 1.0,
             burr: None,
             burr_damped: sharp.is_some(),
-            swung: Swung::default(),
+            deflected: DeflectedContact::default(),
             start: inputs.time[i],
             surface: [0.0; 4],
             rate: if present { rate } else { 0.0 },
@@ -193,19 +198,19 @@ pub fn trajectory(
             terms: ForceTerms::default(),
             friction: AxialFriction::default(),
         };
-        if let Some(felt) = &felt {
-            carrier.share = felt.share[i];
-            let rise = (felt.burr[next] - felt.burr[i]) / h;
-            carrier.burr = Some([felt.burr[i], rise]);
+        if let Some(kinematics) = &kinematics {
+            carrier.share = kinematics.share[i];
+            let rise = (kinematics.burr[next] - kinematics.burr[i]) / h;
+            carrier.burr = Some([kinematics.burr[i], rise]);
         }
-        if let Some(guide) = guide {
-            let (stiffness, damping) = Guide::hold(mass);
+        if let Some(nudging) = nudging {
+            let (stiffness, damping) = Nudging::gains(mass);
             let gain = plant.sensors.stroke_gain;
             let pair = |values: &[f64]| [values[i] / gain, values[next] / gain];
             carrier.hold = Some(Hold {
-                stroke: hermite(h, pair(&guide.stroke), pair(&guide.speed)),
-                stiffness: guide.firmness[i] * stiffness,
-                damping: guide.firmness[i] * damping,
+                stroke: hermite(h, pair(&nudging.stroke), pair(&nudging.speed)),
+                stiffness: nudging.gain[i] * stiffness,
+                damping: nudging.gain[i] * damping,
             });
         }
         if present {
@@ -216,25 +221,29 @@ pub fn trajectory(
             );
         }
         let mut normal = None;
-        if let (Some((course, sharp)), Some(felt)) = (sharp, &felt) {
+        if let (Some((trajectory, sharp)), Some(kinematics)) = (sharp, &kinematics) {
             let stroke = motion.stroke + 0.5 * h * motion.speed;
-            let away = flexing.as_ref().map(|flexing| flexing.away(i, stroke));
+            let away = joint_deflections
+                .as_ref()
+                .map(|joint_deflections| joint_deflections.away(i, stroke));
             let away = away.unwrap_or_default();
-            let riding = Riding::on(course, sharp, felt, i, h, stroke, away);
+            let riding = Riding::on(trajectory, sharp, kinematics, i, h, stroke, away);
             carrier.share = riding.share;
             carrier.surface = riding.surface;
             normal = Some(riding.normal);
-            let centre = felt.balls[i] + felt.slides[i] * motion.stroke - felt.aside[i] + away;
+            let centre = kinematics.balls[i] + kinematics.slides[i] * motion.stroke
+                - kinematics.aside[i]
+                + away;
             let force = carrier.contact_force(0.0, motion);
-            let give = flexing.as_ref().map_or(0.0, |flexing| {
-                h * flexing.mobility(i, motion.stroke, riding.normal)
+            let give = joint_deflections.as_ref().map_or(0.0, |joint_deflections| {
+                h * joint_deflections.mobility(i, motion.stroke, riding.normal)
             });
             carrier.friction = contact_friction.advance(
                 centre,
                 (riding.normal, force),
                 (plant.cell.friction, plant.contact.stiffness_at(force)),
                 give,
-                (felt.slides[i], motion.stroke),
+                (kinematics.slides[i], motion.stroke),
             );
         }
         if plant.has_terms() {
@@ -253,9 +262,9 @@ pub fn trajectory(
             state.disturbance = plant.disturbance(&moment, h);
             carrier.terms = ForceTerms::over(plant, &moment);
         }
-        if let Some(flexing) = &mut flexing {
-            flexing.face(i, normal);
-            carrier.swung = flexing.now(i, motion.stroke, carrier.share);
+        if let Some(joint_deflections) = &mut joint_deflections {
+            joint_deflections.face(i, normal);
+            carrier.deflected = joint_deflections.now(i, motion.stroke, carrier.share);
         }
         truth.note(&device, &state, motion, &carrier);
         truth.mass_flow.push((state.air.entered - entered) / usual);
@@ -264,7 +273,7 @@ pub fn trajectory(
             break;
         }
         // Over a gap in the recording the inputs are held, in steps of the usual length.
-        let least = if flexing.is_some() {
+        let least = if joint_deflections.is_some() {
             FLEXING_PARTS
         } else {
             1.0
@@ -275,21 +284,26 @@ pub fn trajectory(
             if part > 0 {
                 leg.move_start(h * part as f64 / parts);
             }
-            if let (Some(flexing), Some(felt)) = (&mut flexing, &felt) {
-                leg.swung = flexing.now(i, motion.stroke, leg.share);
+            if let (Some(joint_deflections), Some(kinematics)) =
+                (&mut joint_deflections, &kinematics)
+            {
+                leg.deflected = joint_deflections.now(i, motion.stroke, leg.share);
                 let contact = leg.contact_force(0.0, motion);
                 let forces = Bending {
                     contact,
                     stiffness: plant.contact.stiffness_at(contact),
                     damping: plant.contact.damping,
                     friction: leg.friction.force,
-                    push: device.piston_force(&state, motion) + leg.weight[0] + felt.carried[i],
+                    push: device.piston_force(&state, motion)
+                        + leg.weight[0]
+                        + kinematics.carried[i],
                     stroke: motion.stroke,
                     speed: motion.speed,
                 };
-                let swung = flexing.advance(felt, i, h / parts, leg.share, forces);
-                leg.swung = swung;
-                leg.weight[0] -= mass * swung.acceleration;
+                let deflected =
+                    joint_deflections.advance(kinematics, i, h / parts, leg.share, forces);
+                leg.deflected = deflected;
+                leg.weight[0] -= mass * deflected.acceleration;
             }
             device.advance_carried_unaudited(
                 &mut state,

@@ -1,14 +1,14 @@
 //! Numbers that fell to a thousandth because a mark before every third digit was read as a decimal mark: 998, 999, 1.000, 1.001 for 1000 and 1001.
 //!
-//! The rest is plain: nothing goes beyond a level, and where the course would, it falls to a thousandth of it, again and again.
+//! The rest is plain: nothing goes beyond a level, and where the trajectory would, it falls to a thousandth of it, again and again.
 
-/// Ratio of neighbours from which a jump from near the level is one that no course makes.
+/// Ratio of neighbours from which a jump from near the level is one that no trajectory makes.
 const JUMP: f64 = 300.0;
 /// Nearness to the level, and largest change from one sample to the next, as shares of the level.
 const NEAR: f64 = 0.5;
 /// Rounding of what was written, as a share.
 const ROUNDING: f64 = 1e-3;
-/// Falls and rises that there must be, and different values behind them: what is switched between two is no course.
+/// Falls and rises that there must be, and different values behind them: what is switched between two is no trajectory.
 const LEAST: usize = 2;
 
 /// Falls to a thousandth.
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn a_course_beyond_a_thousand_is_seen_when_its_marks_were_misread() {
-        let course: Vec<f64> = (0..400)
+        let trajectory: Vec<f64> = (0..400)
             .map(|i| 900.0 + 200.0 * (0.05 * f64::from(i)).sin())
             .collect();
         let misread = |v: &f64| {
@@ -66,10 +66,10 @@ mod tests {
                 *v
             }
         };
-        let wild: Vec<f64> = course.iter().map(misread).collect();
+        let wild: Vec<f64> = trajectory.iter().map(misread).collect();
         let found = thousandfold(&wild).unwrap();
         assert!(found.count > 4 && wild[found.first] < 1.1, "{found:?}");
-        assert_eq!(thousandfold(&course), None);
+        assert_eq!(thousandfold(&trajectory), None);
         // In other units the ratio is the same.
         let metres: Vec<f64> = wild.iter().map(|v| v * 1e-3).collect();
         assert_eq!(thousandfold(&metres), Some(found));
@@ -78,14 +78,14 @@ mod tests {
     #[test]
     fn a_steep_course_is_seen_as_well() {
         // A pressure that is switched, read in millibars.
-        let course = |i: u32| 1500.0 * (0.5 + 0.5 * (0.35 * f64::from(i)).sin());
+        let trajectory = |i: u32| 1500.0 * (0.5 + 0.5 * (0.35 * f64::from(i)).sin());
         let wild: Vec<f64> = (0..200)
-            .map(course)
+            .map(trajectory)
             .map(|v| if v >= 1000.0 { v / 1000.0 } else { v })
             .collect();
         assert!(thousandfold(&wild).is_some());
         assert_eq!(
-            thousandfold(&(0..200).map(course).collect::<Vec<_>>()),
+            thousandfold(&(0..200).map(trajectory).collect::<Vec<_>>()),
             None
         );
     }

@@ -10,7 +10,7 @@
 
 use super::{LoadedCell, ReplayCell};
 use crate::arm::dynamics::inverse_dynamics;
-use crate::plant::CellCourse;
+use crate::plant::ArmTrajectory;
 
 /// A drive over samples of a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -32,7 +32,7 @@ impl LoadedCell {
     /// The drives of a recording; none for a joint whose torque was not recorded.
     pub fn drives(
         &self,
-        course: &CellCourse,
+        trajectory: &ArmTrajectory,
         torques: &[Option<Vec<f64>>],
         stroke: &[f64],
         force: &[f64],
@@ -41,21 +41,21 @@ impl LoadedCell {
             .iter()
             .map(|torque| torque.as_ref().map(|_| Drive::default()))
             .collect();
-        let count = course.len();
+        let count = trajectory.len();
         for i in 1..count.saturating_sub(1) {
             if !(force[i].is_finite() && stroke[i].is_finite()) {
                 continue;
             }
             let touches = force[i] > TOUCHING;
             // A tool that rests holds on to the edge by as much as friction lets it, which nothing shows.
-            if touches && course.rests(i) {
+            if touches && trajectory.rests(i) {
                 continue;
             }
             let pressed = if touches { force[i] } else { 0.0 };
             let friction = self.scenario.contact.friction;
             let (rates, expected) = self
                 .cell
-                .torques_at(course, i, stroke[i], pressed, friction);
+                .torques_at(trajectory, i, stroke[i], pressed, friction);
             for (j, drive) in drives.iter_mut().enumerate() {
                 if let (Some(drive), Some(torque)) = (drive, &torques[j])
                     && torque[i].is_finite()
@@ -74,20 +74,20 @@ impl ReplayCell {
     /// Speeds of the motors and what their drives have to give at a sample, at a stroke [m] and a force along the slide [N].
     fn torques_at(
         &self,
-        course: &CellCourse,
+        trajectory: &ArmTrajectory,
         i: usize,
         stroke: f64,
         force: f64,
         friction: f64,
     ) -> (Vec<f64>, Vec<f64>) {
-        let span = course.time[i + 1] - course.time[i - 1];
-        let joints = &course.joints;
+        let span = trajectory.time[i + 1] - trajectory.time[i - 1];
+        let joints = &trajectory.joints;
         let q: Vec<f64> = joints.iter().map(|j| j.angle[i]).collect();
         let rates: Vec<f64> = joints
             .iter()
             .map(|j| (j.angle[i + 1] - j.angle[i - 1]) / span)
             .collect();
-        let bends: Vec<f64> = joints.iter().map(|j| j.bend[i]).collect();
+        let bends: Vec<f64> = joints.iter().map(|j| j.acceleration[i]).collect();
         let mut torques = vec![0.0; q.len()];
         inverse_dynamics(
             &self.loaded(stroke),
@@ -98,14 +98,14 @@ impl ReplayCell {
             &bends,
             &mut torques,
         );
-        let edge = &course.edge[i];
-        let centre = |i: usize| course.ball[i] + course.slide[i] * stroke;
-        let normal = match &course.sharp {
+        let edge = &trajectory.edge[i];
+        let centre = |i: usize| trajectory.ball[i] + trajectory.slide[i] * stroke;
+        let normal = match &trajectory.sharp {
             Some(sharp) => sharp.touch(centre(i), edge.station).normal,
             None => edge.bisector,
         };
         let speed = (centre(i + 1) - centre(i - 1)).dot(edge.tangent) / span;
-        let pressed = force / -normal.dot(course.slide[i]);
+        let pressed = force / -normal.dot(trajectory.slide[i]);
         let drag = friction * pressed * (speed / SLIDING).clamp(-1.0, 1.0);
         let on_tool = normal * pressed - edge.tangent * drag;
         let point = centre(i) - normal * self.ball_radius;

@@ -5,7 +5,7 @@ use crate::arm::chain::JointKind;
 use crate::arm::load_arm;
 use crate::cell::{CellError, arm_options, choose_edge, station};
 use crate::plant::{
-    CellCourse, CellParameters, EdgeStation, MOST_JOINTS, PlantParameters, SharpEdge,
+    ArmTrajectory, CellParameters, EdgeStation, MOST_JOINTS, PlantParameters, SharpEdge,
 };
 use crate::scenario::{RecordedCell, load_recorded_cell};
 use crate::workpiece::{EdgeCurve, load_mesh};
@@ -125,26 +125,26 @@ impl LoadedCell {
         frictions
     }
 
-    /// The arm's course in a recording: times [s], commanded places along the edge [m] and angles of the joints [rad], servos of a bandwidth [Hz].
-    pub fn course(
+    /// The arm's trajectory in a recording: times [s], commanded places along the edge [m] and angles of the joints [rad], servos of a bandwidth [Hz].
+    pub fn trajectory(
         &self,
         time: &[f64],
         path: &[f64],
         joints: &[Vec<f64>],
         bandwidth: f64,
-    ) -> CellCourse {
-        self.course_of(time, path, joints, None, bandwidth)
+    ) -> ArmTrajectory {
+        self.trajectory_of(time, path, joints, None, bandwidth)
     }
 
     /// The same where the encoders' readings [rad], of a cell whose motors do not keep to a law that is known, say where the joints went.
-    pub fn course_of(
+    pub fn trajectory_of(
         &self,
         time: &[f64],
         path: &[f64],
         joints: &[Vec<f64>],
         encoders: Option<&[Option<Vec<f64>>]>,
         bandwidth: f64,
-    ) -> CellCourse {
+    ) -> ArmTrajectory {
         let world_from_part = self.scenario.workpiece.world_from_part;
         let station = |place: &f64| station(&self.edge, world_from_part, *place);
         let edge: Vec<EdgeStation> = path.iter().map(station).collect();
@@ -154,7 +154,7 @@ impl LoadedCell {
             edge: &edge,
             encoders: encoders.filter(|_| self.scenario.observed.motors_by_encoders),
         };
-        self.cell.course(commands, bandwidth)
+        self.cell.trajectory(commands, bandwidth)
     }
 }
 

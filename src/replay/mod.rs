@@ -1,4 +1,4 @@
-//! From the commands of a recorded cell to what its device feels: the arm's course along the part's edge.
+//! From the commands of a recorded cell to what its device feels: the arm's trajectory along the part's edge.
 
 mod drive_torque;
 mod load;
@@ -10,8 +10,8 @@ use crate::arm::chain::{BodyInertia, Chain, MAX_JOINTS};
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::link_poses;
 use crate::plant::{
-    CellCourse, EdgeStation, INERTIA_EVERY, JointCourse, MOST_JOINTS, Observation, SharpEdge,
-    follow, shown,
+    ArmTrajectory, EdgeStation, INERTIA_EVERY, JointTrajectory, MOST_JOINTS, Observation,
+    SharpEdge, follow, shown,
 };
 use glam::{DMat3, DVec3};
 use glamx::DPose3;
@@ -58,13 +58,13 @@ pub struct Commands<'a> {
     pub joints: &'a [Vec<f64>],
     /// The edge where the commands have the ball.
     pub edge: &'a [EdgeStation],
-    /// Readings of the joints' encoders [rad], where the course is to be theirs; in place of it the commands' where there is none.
+    /// Readings of the joints' encoders [rad], where the trajectory is to be theirs; in place of it the commands' where there is none.
     pub encoders: Option<&'a [Option<Vec<f64>>]>,
 }
 
 impl ReplayCell {
-    /// The arm's course on commands, its servos of a bandwidth [Hz].
-    pub fn course(&self, commands: Commands<'_>, bandwidth: f64) -> CellCourse {
+    /// The arm's trajectory on commands, its servos of a bandwidth [Hz].
+    pub fn trajectory(&self, commands: Commands<'_>, bandwidth: f64) -> ArmTrajectory {
         let count = commands.time.len();
         let moved = |(joint, command): (usize, &Vec<f64>)| {
             let led = follow(commands.time, command, bandwidth);
@@ -78,18 +78,18 @@ impl ReplayCell {
         let usual_stroke = 0.5 * self.full_stroke;
         let loaded = self.loaded(usual_stroke);
         let joints = self.chain.len();
-        let mut course = CellCourse {
+        let mut trajectory = ArmTrajectory {
             time: commands.time.to_vec(),
             joints: followed
                 .iter()
                 .zip(commands.joints)
-                .map(|(followed, command)| JointCourse {
+                .map(|(followed, command)| JointTrajectory {
                     command: command.clone(),
                     angle: followed.angle.clone(),
                     axis: Vec::with_capacity(count),
                     origin: Vec::with_capacity(count),
                     torque: Vec::with_capacity(count),
-                    bend: followed.acceleration.clone(),
+                    acceleration: followed.acceleration.clone(),
                 })
                 .collect(),
             bandwidth,
@@ -100,7 +100,7 @@ impl ReplayCell {
             observed: self.observed,
             middle: self.middle,
             ball_radius: self.ball_radius,
-            levers: Vec::with_capacity(count),
+            jacobians: Vec::with_capacity(count),
             inertia: Vec::with_capacity(count / INERTIA_EVERY + 1),
             moving_mass: self.moving_mass,
             mass_behind_ball: self.ball_centre - self.mass_centre,
@@ -138,7 +138,7 @@ impl ReplayCell {
             let flange = last * self.chain.tip_from_last;
             let slide = flange.rotation * DVec3::Z;
             let ball = flange.translation + slide * self.ball_centre;
-            for (j, joint) in course.joints.iter_mut().enumerate() {
+            for (j, joint) in trajectory.joints.iter_mut().enumerate() {
                 let axis = poses[j].rotation * self.chain.joints[j].axis;
                 levers[j] = axis.cross(ball - poses[j].translation).dot(slide);
                 joint.axis.push(axis);
@@ -149,13 +149,13 @@ impl ReplayCell {
                 mass_matrix(&loaded, &q, &mut masses);
                 // The slide lets the moving mass go its own way along its axis.
                 let own = &levers * levers.transpose() * self.moving_mass;
-                course.inertia.push(&masses - own);
+                trajectory.inertia.push(&masses - own);
             }
-            course.ball.push(ball);
-            course.slide.push(slide);
-            course.levers.push(course.levers_of(i));
+            trajectory.ball.push(ball);
+            trajectory.slide.push(slide);
+            trajectory.jacobians.push(trajectory.jacobian_at(i));
         }
-        course
+        trajectory
     }
 
     /// The arm with the device's moving mass fixed at a stroke [m].

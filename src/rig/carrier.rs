@@ -11,7 +11,7 @@ use crate::device::{Carrier, PistonMotion};
 use crate::plant::{ContactParameters, ForceTerms, Moment, PlantParameters, Port};
 use crate::scenario::bench::{BenchScenario, LoadScenario};
 
-/// Load and other forces over one step, during which the surface's and the hand's courses are taken as parabolas.
+/// Load and other forces over one step, during which the surface's and the hand's trajectories are taken as parabolas.
 #[derive(Debug, Clone, Copy)]
 pub struct BenchCarrier<'a> {
     mass: f64,
@@ -41,8 +41,8 @@ fn swing(peak: f64, frequency: f64, start: f64, time: f64) -> [f64; 3] {
     ]
 }
 
-fn parabola(course: [f64; 3], time: f64) -> f64 {
-    course[0] + time * (course[1] + 0.5 * time * course[2])
+fn parabola(trajectory: [f64; 3], time: f64) -> f64 {
+    trajectory[0] + time * (trajectory[1] + 0.5 * time * trajectory[2])
 }
 
 impl<'a> BenchCarrier<'a> {

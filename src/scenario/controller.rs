@@ -50,7 +50,7 @@ pub(super) enum ControllerKind {
     ProportionalIntegral,
     /// The chamber's equation inverted.
     FeedbackLinearisation,
-    /// Disturbances foretold and cancelled.
+    /// Disturbances predicted and cancelled.
     DisturbancePrediction,
 }
 
@@ -117,7 +117,7 @@ pub enum ForceLaw {
         /// Integral gain [1/s].
         integral_gain: Option<f64>,
     },
-    /// Disturbances foretold over the dead time and cancelled.
+    /// Disturbances predicted over the dead time and cancelled.
     DisturbancePrediction {
         /// Time constant of the pressure's approach [s].
         response_time: Option<f64>,

@@ -1,4 +1,4 @@
-//! Conserved quantities over the bench rig's courses: the mass of the air, and energy by both balances of `EnergyLedger`.
+//! Conserved quantities over the bench rig's trajectories: the mass of the air, and energy by both balances of `EnergyLedger`.
 
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::axial_load::AxialLoad;
@@ -14,8 +14,8 @@ use idc_cell::physics::valve::ValvePosition;
 
 use super::devices::{Outside, reached, still, usual};
 
-/// A course of scenarios/: times [s] with set pressures [Pa gauge] and with positions of the valve.
-struct Course {
+/// A trajectory of scenarios/: times [s] with set pressures [Pa gauge] and with positions of the valve.
+struct Trajectory {
     name: &'static str,
     commands: &'static [(f64, f64)],
     valve: &'static [(f64, ValvePosition)],
@@ -24,8 +24,8 @@ struct Course {
     late_regulator: bool,
 }
 
-const COURSES: [Course; 3] = [
-    Course {
+const COURSES: [Trajectory; 3] = [
+    Trajectory {
         name: "paper_step",
         commands: &[(0.5, 1.8e5)],
         valve: &[],
@@ -33,7 +33,7 @@ const COURSES: [Course; 3] = [
         load_cell: Some(0.04),
         late_regulator: true,
     },
-    Course {
+    Trajectory {
         name: "paper_stairstep",
         commands: &[(0.5, 1.2e5), (5.5, 2.1e5), (10.5, 3e5)],
         valve: &[],
@@ -41,7 +41,7 @@ const COURSES: [Course; 3] = [
         load_cell: Some(0.04),
         late_regulator: true,
     },
-    Course {
+    Trajectory {
         name: "retract",
         commands: &[(0.2, 1e5)],
         valve: &[(2.5, ValvePosition::Retract), (4.5, ValvePosition::Extend)],
@@ -65,14 +65,14 @@ fn held<T: Copy>(steps: &[(f64, T)], time: f64) -> Option<T> {
     due.map(|step| step.1)
 }
 
-/// Runs a course by milliseconds, and shows each to `look`.
+/// Runs a trajectory by milliseconds, and shows each to `look`.
 fn run(
-    course: &Course,
+    trajectory: &Trajectory,
     mut parameters: DeviceParameters,
     substeps: usize,
     look: &mut dyn FnMut(&Device, &DeviceState, PistonMotion),
 ) {
-    if course.late_regulator {
+    if trajectory.late_regulator {
         parameters.regulator = RegulatorParameters {
             time_constant: 0.5,
             dead_time: 0.5,
@@ -80,15 +80,15 @@ fn run(
         };
     }
     let device = Device::new(parameters);
-    let outside = course
+    let outside = trajectory
         .load_cell
         .map_or(Outside::NOTHING, Outside::load_cell);
     let (mut state, mut motion) = (device.at_rest(0.0, 0.0), still(0.0));
     look(&device, &state, motion);
-    for step in 0..(course.duration * 1e3).round() as usize {
+    for step in 0..(trajectory.duration * 1e3).round() as usize {
         let time = step as f64 * 1e-3;
-        state.valve = held(course.valve, time).unwrap_or(ValvePosition::Extend);
-        let set = held(course.commands, time).unwrap_or(0.0);
+        state.valve = held(trajectory.valve, time).unwrap_or(ValvePosition::Extend);
+        let set = held(trajectory.commands, time).unwrap_or(0.0);
         device.advance_carried(&mut state, &mut motion, set, &outside, 1e-3, substeps);
         look(&device, &state, motion);
     }
@@ -99,7 +99,7 @@ fn run(
 fn air_is_neither_made_nor_lost() {
     let hose = Some(Hose::tube(2.0, 0.004, &Gas::default()));
     let mut largest = 0.0f64;
-    for course in &COURSES {
+    for trajectory in &COURSES {
         for hose in [None, hose] {
             for gas_process in [
                 GasProcess::Isothermal,
@@ -111,7 +111,7 @@ fn air_is_neither_made_nor_lost() {
                     ..usual()
                 };
                 let (mut first, mut worst, mut moved) = (f64::NAN, 0.0f64, 0.0);
-                run(course, parameters, 1, &mut |_, state, _| {
+                run(trajectory, parameters, 1, &mut |_, state, _| {
                     let air = &state.air;
                     if first.is_nan() {
                         first = air.held();
@@ -122,7 +122,7 @@ fn air_is_neither_made_nor_lost() {
                 });
                 println!(
                     "{}, line {}, {gas_process:?}: {worst:.1e}",
-                    course.name,
+                    trajectory.name,
                     hose.is_some()
                 );
                 assert!(moved > first, "air went through: {moved} kg");
@@ -133,7 +133,7 @@ fn air_is_neither_made_nor_lost() {
     reached("mass of the air", largest, 1e-9);
 }
 
-/// Largest gaps of the balances over a course.
+/// Largest gaps of the balances over a trajectory.
 struct Gaps {
     /// Of the air, of its work on the piston summed without its sign [1].
     air: f64,
@@ -163,12 +163,12 @@ fn accounts(state: &DeviceState) -> [f64; 9] {
     ]
 }
 
-fn energy_gaps(course: &Course, parameters: DeviceParameters, substeps: usize) -> Gaps {
+fn energy_gaps(trajectory: &Trajectory, parameters: DeviceParameters, substeps: usize) -> Gaps {
     let (mut first, mut before) = (f64::NAN, [0.0; 9]);
     let (mut air, mut piston, mut whole) = (0.0f64, 0.0f64, 0.0f64);
     let (mut work, mut turned_over) = (0.0, 0.0);
     run(
-        course,
+        trajectory,
         parameters,
         substeps,
         &mut |device, state, motion| {
@@ -218,7 +218,7 @@ fn energy_gaps(course: &Course, parameters: DeviceParameters, substeps: usize) -
 fn energy_balances_over_extension_retraction_extension() {
     let mut worst = [0.0f64; 4];
     let heated = GasProcess::WallHeat { conductance: 0.5 };
-    for course in &COURSES {
+    for trajectory in &COURSES {
         for (seal_friction, gas_process) in [
             (SealFriction::NONE, GasProcess::Isothermal),
             (SealFriction::NONE, heated),
@@ -231,14 +231,14 @@ fn energy_balances_over_extension_retraction_extension() {
                 ..usual()
             };
             // Two a millisecond are the bench's default.
-            let gaps = [2, 4, 8, 16].map(|n| energy_gaps(course, parameters.clone(), n));
+            let gaps = [2, 4, 8, 16].map(|n| energy_gaps(trajectory, parameters.clone(), n));
             let shown: Vec<_> = gaps
                 .iter()
                 .map(|gap| format!("{:.1e}", gap.piston))
                 .collect();
             println!(
                 "{}, seals {} N, {gas_process:?}: work {:.1} J of {:.0} J turned over; air {:.1e}, piston by 2, 4, 8, 16 sub-steps {}",
-                course.name,
+                trajectory.name,
                 seal_friction.coulomb,
                 gaps[0].work,
                 gaps[0].turned_over,
@@ -277,9 +277,9 @@ fn energy_balances_over_extension_retraction_extension() {
 // Catches: an enthalpy or heat that both sides of the first balance book alike: here each is held against what it must be.
 #[test]
 fn isothermal_air_brings_c_p_t_and_takes_the_heat_of_its_work() {
-    let course = &COURSES[2];
+    let trajectory = &COURSES[2];
     let mut largest = 0.0f64;
-    run(course, usual(), 1, &mut |device, state, _| {
+    run(trajectory, usual(), 1, &mut |device, state, _| {
         let gas = &device.parameters().gas;
         let brought = state.air.entered - state.air.left;
         let enthalpy = 1.4 / 0.4 * 287.05 * 293.15 * brought;
@@ -337,7 +337,7 @@ fn every_effect_keeps_both_accounts() {
     let hose = Some(Hose::tube(1.0, 0.004, &Gas::default()));
     let heated = GasProcess::WallHeat { conductance: 0.5 };
     let mut worst = [0.0f64; 3];
-    for course in &COURSES {
+    for trajectory in &COURSES {
         for (gas_process, hose) in [
             (GasProcess::Isothermal, None),
             (GasProcess::Isothermal, hose),
@@ -347,7 +347,7 @@ fn every_effect_keeps_both_accounts() {
             let parameters = burdened(gas_process, hose);
             let (mut first, mut gap) = (f64::NAN, 0.0f64);
             let (mut last, mut lowest) = (f64::NAN, f64::INFINITY);
-            run(course, parameters.clone(), 1, &mut |_, state, _| {
+            run(trajectory, parameters.clone(), 1, &mut |_, state, _| {
                 let air = &state.air;
                 if first.is_nan() {
                     first = air.held();
@@ -357,10 +357,10 @@ fn every_effect_keeps_both_accounts() {
                 gap = gap.max((air.held() - first - (air.entered - air.left)).abs() / air.held());
             });
             assert!(lowest < 0.9, "the reservoir was drawn from: {lowest}");
-            let energy = energy_gaps(course, parameters, 4);
+            let energy = energy_gaps(trajectory, parameters, 4);
             println!(
                 "{}, line {}, {gas_process:?}: air {gap:.1e}, its energy {:.1e}, the piston's {:.1e} of {:.0} J",
-                course.name,
+                trajectory.name,
                 hose.is_some(),
                 energy.air,
                 energy.piston,
@@ -434,8 +434,12 @@ fn a_foretold_piston_keeps_the_same_books() {
         let of_air = device.internal_energy(&state) - first - (enthalpy + heat - chamber);
         let of_piston = chamber + axial + carrier - atmosphere - seal - stop - cushion;
         println!("{gas_process:?}: {turned_over:.0} J turned over");
-        reached("air of a foretold piston", of_air.abs() / turned_over, 1e-9);
-        reached("a foretold piston", of_piston.abs() / turned_over, 1e-12);
+        reached(
+            "air of a predicted piston",
+            of_air.abs() / turned_over,
+            1e-9,
+        );
+        reached("a predicted piston", of_piston.abs() / turned_over, 1e-12);
         reached(
             "work of the foreteller against force times way",
             (carrier - given).abs() / turned_over,

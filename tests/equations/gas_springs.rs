@@ -49,7 +49,7 @@ fn errors_of_a_swing(process: GasProcess, exponent: f64) -> [f64; 3] {
         turned = turned.max(work.abs());
         errors[2] = errors[2].max((state.ledger.chamber_work - work).abs());
     }
-    assert!(lowest < 0.012, "it swung: {lowest}");
+    assert!(lowest < 0.012, "it deflected: {lowest}");
     errors[2] /= turned;
     errors
 }

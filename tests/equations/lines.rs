@@ -44,7 +44,7 @@ impl Carrier for Counting {
 
 /// Runs out onto a load cell at 4 bar, is pulled back and let out again. Chamber pressures over 6 bar and stroke over 50 mm by milliseconds, and the
 /// sub-steps that it took for each.
-fn course(parameters: &DeviceParameters, substeps: usize) -> (Vec<[f64; 3]>, f64) {
+fn trajectory(parameters: &DeviceParameters, substeps: usize) -> (Vec<[f64; 3]>, f64) {
     let device = Device::new(parameters.clone());
     let carrier = Counting {
         outside: Outside::load_cell(0.04),
@@ -95,8 +95,8 @@ fn a_line_of_any_size_is_accurate_in_few_substeps() {
                 gas_process,
                 ..with_tube(length, diameter)
             };
-            let (coarse, cost) = course(&parameters, 2);
-            let (fine, _) = course(&parameters, 40);
+            let (coarse, cost) = trajectory(&parameters, 2);
+            let (fine, _) = trajectory(&parameters, 40);
             let off = |i: usize| {
                 let pairs = coarse.iter().zip(&fine);
                 pairs.map(|(a, b)| (a[i] - b[i]).abs()).fold(0.0, f64::max)
@@ -169,8 +169,8 @@ fn a_line_in_segments_keeps_its_air_and_many_are_one_tube_of_evenly_spread_resis
         hose: Some(Hose::evenly_spread(1.2e-4, 8e7)),
         ..usual()
     };
-    let (coarse, _) = course(&even, 2);
-    let (fine, _) = course(&even, 40);
+    let (coarse, _) = trajectory(&even, 2);
+    let (fine, _) = trajectory(&even, 40);
     let apart = |a: &[[f64; 3]], b: &[[f64; 3]]| {
         let pairs = a.iter().zip(b);
         pairs.map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max)
@@ -181,8 +181,8 @@ fn a_line_in_segments_keeps_its_air_and_many_are_one_tube_of_evenly_spread_resis
         1e-4,
     );
     // The error of lumps falls in proportion to their number: four have a quarter of it.
-    let (one, _) = course(&in_segments(1), 2);
-    let (four, _) = course(&in_segments(4), 2);
+    let (one, _) = trajectory(&in_segments(1), 2);
+    let (four, _) = trajectory(&in_segments(4), 2);
     let (far, near) = (apart(&one, &coarse), apart(&four, &coarse));
     println!("one segment off by {far:.1e}, four by {near:.1e}");
     assert!(

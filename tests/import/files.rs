@@ -1,4 +1,4 @@
-//! A small generator: one planted course, written in every form of log.
+//! A small generator: one planted trajectory, written in every form of log.
 
 use std::io::Write;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub struct Truth {
     pub force: f64,
 }
 
-/// The planted course at a row.
+/// The planted trajectory at a row.
 pub fn truth(row: usize) -> Truth {
     let (millis, micros) = whole(row);
     let pressure = 3e5 + 2e4 * (0.013 * row as f64).sin();

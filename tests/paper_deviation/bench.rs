@@ -72,7 +72,7 @@ pub struct Shown {
     /// p_1 A_1 - p_2 A_2 of the absolute pressures, as eq. (1) is printed, steady [N].
     pub force_as_printed: f64,
     /// Outlet from the command to the next one [Pa gauge].
-    pub course: Vec<f64>,
+    pub trajectory: Vec<f64>,
 }
 
 fn set(table: &mut Table, key: &str, value: Value) {
@@ -154,7 +154,7 @@ pub fn run(scenario: &str, edits: &[Edit]) -> Vec<Shown> {
                 force_read: mean(schema::MEASURED_FORCE),
                 force: mean(schema::CONTACT_FORCE),
                 force_as_printed: first * areas[0] - second * areas[1],
-                course: outlet[start..to].iter().map(|p| p - atmosphere).collect(),
+                trajectory: outlet[start..to].iter().map(|p| p - atmosphere).collect(),
             }
         })
         .collect()

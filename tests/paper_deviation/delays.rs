@@ -6,7 +6,7 @@ use crate::paper_page::{markdown, stands_in_the_page};
 
 /// Largest deviation while the pressure rises [% of what it rises by].
 fn while_rising(shown: &Shown, nominal: &Shown, level: &Level) -> f64 {
-    let apart = shown.course.iter().zip(&nominal.course);
+    let apart = shown.trajectory.iter().zip(&nominal.trajectory);
     let largest = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     100.0 * largest / (1e5 * (level.pressure - level.before))
 }
@@ -36,7 +36,7 @@ fn delays_are_seen_while_the_pressure_rises_and_not_after() {
                     level.pressure / rise
                 };
                 let asked = level.printed * of;
-                // A lag's own course: 1 - e^(-delay / tau) behind after the delay.
+                // A lag's own trajectory: 1 - e^(-delay / tau) behind after the delay.
                 let size = -TIME_CONSTANT * (-1e-2 * asked).ln_1p();
                 let key = "device.override.regulator_dead_time_ms";
                 let edits = [Edit::Key(key, 1e3 * (DEAD_TIME + size))];

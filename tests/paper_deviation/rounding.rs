@@ -123,7 +123,7 @@ fn a_proportional_term_on_top_of_the_set_values_steps() {
         });
         let stepped = run_all(&quick(&chain));
         let factors = std::array::from_fn(|i| stepped[i].outlet / nominal[i].outlet);
-        let (way, gain, foretold) = nearest(&factors);
+        let (way, gain, predicted) = nearest(&factors);
         let (name, sign, of_actual) = COUNTED[way];
         let edits = [
             chain,
@@ -143,7 +143,10 @@ fn a_proportional_term_on_top_of_the_set_values_steps() {
             farthest = farthest.max((off - level.printed).abs());
             cells.push(format!("{off:.2} %"));
         }
-        assert!((farthest - foretold).abs() < 1e-3, "{farthest} {foretold}");
+        assert!(
+            (farthest - predicted).abs() < 1e-3,
+            "{farthest} {predicted}"
+        );
         cells.push(format!("{farthest:.3}"));
         rows.push(cells);
         if farthest < ROUNDING {

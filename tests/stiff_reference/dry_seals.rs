@@ -74,9 +74,9 @@ fn motion_at_start() -> PistonMotion {
 }
 
 /// Both pressures [Pa], stroke [m] and the bristles' force [N] after each millisecond.
-type Course = Vec<[f64; 4]>;
+type Trajectory = Vec<[f64; 4]>;
 
-fn reference(parameters: &DeviceParameters) -> Course {
+fn reference(parameters: &DeviceParameters) -> Trajectory {
     let model = &Model::new(parameters, 0.0, None);
     let device = Device::new(parameters.clone());
     let timetable = Timetable {
@@ -88,7 +88,7 @@ fn reference(parameters: &DeviceParameters) -> Course {
     let [m1, m2, x, speed] = model.state(&device, masses, motion_at_start());
     let mut y = [m1, m2, x, speed, 0.0];
     let mut before: Option<Leg> = None;
-    let mut course = Course::new();
+    let mut trajectory = Trajectory::new();
     for window in timetable.breaks().windows(2) {
         let start = [y[0], y[1], y[2], y[3]];
         let leg = timetable.leg(model, before.as_ref(), window[0], &start);
@@ -120,15 +120,15 @@ fn reference(parameters: &DeviceParameters) -> Course {
             let state = [y[0], y[1], y[2], y[3]];
             let [p1, p2] = model.pressures(&state);
             let stroke = model.motion(&state).stroke;
-            course.push([p1, p2, stroke, seals.coulomb * y[4]]);
+            trajectory.push([p1, p2, stroke, seals.coulomb * y[4]]);
         }
         y = *solution.y.last().unwrap();
         before = Some(leg);
     }
-    course
+    trajectory
 }
 
-fn ours(parameters: &DeviceParameters, substeps: usize) -> Course {
+fn ours(parameters: &DeviceParameters, substeps: usize) -> Trajectory {
     let device = Device::new(parameters.clone());
     let (mut state, mut motion) = (device.at_rest(START, 0.0), motion_at_start());
     let step = |index: usize| {

@@ -18,7 +18,7 @@ use crate::arm::{Arm, load_arm};
 use crate::cell::{CellError, arm_options};
 use crate::diagnosis::comparison::Compared;
 use crate::diagnosis::servo::Axes;
-use crate::plant::{CellCourse, Channel, PlantParameters, follow};
+use crate::plant::{ArmTrajectory, Channel, PlantParameters, follow};
 use crate::recording::scene::{
     Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
 };
@@ -45,7 +45,7 @@ pub(super) struct Drawn<'a> {
     /// Its channels beside the models.
     pub compared: &'a Compared,
     /// The edge beside the ball.
-    pub course: &'a CellCourse,
+    pub trajectory: &'a ArmTrajectory,
 }
 
 /// The scene of a recording.
@@ -107,7 +107,7 @@ pub(super) fn cell_scene(
         bodies.extend(own);
     }
     bodies.push(part(cell)?);
-    let edge = &drawn.course.edge;
+    let edge = &drawn.trajectory.edge;
     let stations = frames.iter().map(|i| edge[*i].station);
     Ok(Scene {
         title: title(&drawn.compared.name, scale),
@@ -260,7 +260,7 @@ fn part(cell: &LoadedCell) -> Result<SceneBody, AppError> {
 
 /// The edge as far as it was ridden, with the mean of (measured - believed) / believed force over each segment.
 fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
-    let edge = &drawn.course.edge;
+    let edge = &drawn.trajectory.edge;
     let stations = || edge.iter().map(|place| place.station);
     let low = stations().fold(f64::INFINITY, f64::min);
     let high = stations().fold(f64::NEG_INFINITY, f64::max);

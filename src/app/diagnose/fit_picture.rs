@@ -25,8 +25,8 @@ pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError>
         let of = |readings: &[f64], label: &str, role, stroke| {
             Series::new(label, time.clone(), scaled(readings), role, stroke)
         };
-        let believed = &diagnosis.as_believed.courses[place].readings[index];
-        let found = &diagnosis.best().fit.prediction.courses[place].readings[index];
+        let believed = &diagnosis.as_believed.trajectories[place].readings[index];
+        let found = &diagnosis.best().fit.prediction.trajectories[place].readings[index];
         let readings = &measured.readings[index];
         panels.push(Panel {
             title: measured.name.clone(),

@@ -10,6 +10,7 @@ use super::outputs::{DIAGNOSIS, HOW_TO_RUN, NAMES, Outputs, stands_complete};
 use super::unlisted_picture::picture;
 use crate::case::{Case, Diagnosed, IMPROVED, RIG, diagnose};
 use crate::diagnosis::answer::Answer;
+use crate::diagnosis::details::DETAILS_SCHEMA;
 use crate::diagnosis::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::recording::scene::Scene;
@@ -42,7 +43,7 @@ pub(super) fn is_case(folder: &Path) -> bool {
 pub(super) fn complete(folder: &Path) -> Option<Answer> {
     let text = std::fs::read_to_string(folder.join(DIAGNOSIS)).ok()?;
     let answer: Answer = serde_json::from_str(&text).ok()?;
-    stands_complete(folder).then_some(answer)
+    (answer.details.schema == DETAILS_SCHEMA && stands_complete(folder)).then_some(answer)
 }
 
 impl Prepared {
@@ -129,20 +130,21 @@ fn scene(case: &Case, diagnosed: &Diagnosed) -> Result<Option<Scene>, AppError> 
         return Ok(None);
     };
     let first = case.input().and_then(|input| input.recordings.first());
-    let course = first.and_then(|first| first.recorded.inputs.cell.as_deref());
+    let trajectory = first.and_then(|first| first.recorded.inputs.cell.as_deref());
     let compared = diagnosed.comparison.recordings.first();
     let plants = case
         .input()
         .map(|input| &input.believed)
         .zip(diagnosed.plant.as_ref());
-    let (Some(compared), Some(course), Some((believed, improved))) = (compared, course, plants)
+    let (Some(compared), Some(trajectory), Some((believed, improved))) =
+        (compared, trajectory, plants)
     else {
         return Ok(None);
     };
     let drawn = Drawn {
         axes,
         compared,
-        course,
+        trajectory,
     };
     cell_scene(cell, &drawn, [believed, improved]).map(Some)
 }

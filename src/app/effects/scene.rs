@@ -491,7 +491,7 @@ fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
             parameter.quantity.set(&mut plant, value);
         }
     }
-    let course = simulate(&plant, &inputs);
+    let trajectory = simulate(&plant, &inputs);
     let (channel, title, axis, unit, factor) = match believed.chain {
         Chain::ClosedChamber => (
             Channel::RegulatorPressure,
@@ -515,7 +515,7 @@ fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
         title: title.to_owned(),
         axis,
         unit,
-        values: scaled(&course.readings[channel as usize], factor),
+        values: scaled(&trajectory.readings[channel as usize], factor),
     }];
     if let Some(motion) = &inputs.motion {
         signals.push(Signal {

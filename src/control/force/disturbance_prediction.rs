@@ -1,4 +1,4 @@
-//! Disturbances of the force are estimated, foretold over the dead time, and cancelled through the inverted regulator and chamber.
+//! Disturbances of the force are estimated, predicted over the dead time, and cancelled through the inverted regulator and chamber.
 //!
 //! ```text
 //! F = F_gas(p_1, p_2) - k f(z) - b v + m g_a - m a + o                       p_1, p_2 and f from models, o and k estimated
@@ -98,7 +98,7 @@ impl DisturbancePrediction {
         let now = self.wanted_gas_force(observation, horizon);
         let soon = self.wanted_gas_force(observation, horizon + response);
         let slope = (soon - now) / (response * self.area);
-        let then = Foretold {
+        let then = Predicted {
             stroke: ahead.stroke,
             speed: speed + self.surface.acceleration * horizon,
         };
@@ -110,7 +110,7 @@ impl DisturbancePrediction {
     }
 
     /// Outlet pressure [Pa gauge] for chamber 1 to go to `goal` [Pa absolute], which itself changes at `slope` [Pa/s].
-    fn outlet_goal(&self, chambers: &ChamberModel, goal: f64, slope: f64, then: Foretold) -> f64 {
+    fn outlet_goal(&self, chambers: &ChamberModel, goal: f64, slope: f64, then: Predicted) -> f64 {
         let error = goal - chambers.pressures[0];
         let approach = slope + error / self.parameters.response_time;
         let hold = chambers.holding_outlet(goal, slope, then.stroke, then.speed);
@@ -171,7 +171,7 @@ impl DisturbancePrediction {
 
 /// Motion of the piston after the dead time.
 #[derive(Debug, Clone, Copy)]
-struct Foretold {
+struct Predicted {
     stroke: f64,
     speed: f64,
 }

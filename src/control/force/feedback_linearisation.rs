@@ -13,7 +13,7 @@
 //! the flow. Bigras, Khayati and Wong (2002) meet the same with a port restriction and keep the law regular by modifying its input gain.
 //! Here both slopes are held within g/20 <= |.| <= g,  g = 2 r V / (R T), the conductance with which the chamber is as quick as wanted. A chamber
 //! that is quicker than that needs no inversion: at the upper bound the law becomes u = (p + tau r/2 (y_d - y)) / K, a first-order lag of 2/r.
-//! The law acts on the state after the dead time, foretold by the model; the integral takes the load cell's error against the force that the model
+//! The law acts on the state after the dead time, predicted by the model; the integral takes the load cell's error against the force that the model
 //! foresaw a dead time ago, so that it answers disturbances and not the chamber's filling. What the bounds cannot do (choked exhaust) the regulator's limits cut off.
 
 use std::collections::VecDeque;

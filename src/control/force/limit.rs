@@ -8,8 +8,8 @@
 //! ```
 //!
 //! even if d is seen at once, without noise, and cancelled fully and at once. With d^(t | t - theta) = d(t - theta) this is [`dead_time_error`].
-//! It is a lower bound for every causal controller if d cannot be foretold: if its increments have zero mean given its past (a random walk), d(t - theta)
-//! is the best estimate of d(t) in the mean square. Where d can be foretold - a friction that reverses with a motion whose speed and acceleration
+//! It is the error of a persistence forecast, and a lower bound for every causal controller if d cannot be predicted: if its increments have zero mean given its past (a random walk), d(t - theta)
+//! is the best estimate of d(t) in the mean square. Where d can be predicted - a friction that reverses with a motion whose speed and acceleration
 //! are seen - a controller that does so may beat it; then it says what prediction was worth.
 //! The lag is not in theta: a lag can be inverted as far as the supply reaches. What the supply costs counts for steps:
 //!
@@ -80,11 +80,11 @@ mod tests {
         // |1 - e^(-j w theta)| / sqrt(2) = 2 sin(w theta / 2) / sqrt(2), over whole turns.
         // A cosine, which is level at its start.
         let (w, theta, period) = (std::f64::consts::TAU, 0.02, 1e-3);
-        let course: Vec<f64> = (0..5000)
+        let trajectory: Vec<f64> = (0..5000)
             .map(|i| 7.0 * (w * f64::from(i) * period).cos())
             .collect();
         let expected = 7.0 * 2.0 * (0.5 * w * theta).sin() / 2.0f64.sqrt();
-        let settled = dead_time_error(&course, period, theta);
+        let settled = dead_time_error(&trajectory, period, theta);
         assert!(
             (settled / expected - 1.0).abs() < 1e-3,
             "{settled} {expected}"
@@ -93,10 +93,10 @@ mod tests {
 
     #[test]
     fn of_a_step_it_is_the_step_for_the_delay() {
-        let course: Vec<f64> = (0..1000).map(|i| if i < 500 { 0.0 } else { 4.0 }).collect();
+        let trajectory: Vec<f64> = (0..1000).map(|i| if i < 500 { 0.0 } else { 4.0 }).collect();
         let expected = 4.0 * (20.0f64 / 1000.0).sqrt();
-        assert!((dead_time_error(&course, 1e-3, 0.02) - expected).abs() < 1e-12);
-        assert_eq!(dead_time_error(&course, 1e-3, 0.0), 0.0);
+        assert!((dead_time_error(&trajectory, 1e-3, 0.02) - expected).abs() < 1e-12);
+        assert_eq!(dead_time_error(&trajectory, 1e-3, 0.0), 0.0);
         assert_eq!(dead_time_error(&[], 1e-3, 0.02), 0.0);
     }
 

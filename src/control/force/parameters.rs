@@ -19,7 +19,7 @@ pub enum ControllerParameters {
     ProportionalIntegral(ProportionalIntegralParameters),
     /// The chamber's equation inverted, and an integral of the load cell's error.
     FeedbackLinearisation(FeedbackLinearisationParameters),
-    /// Disturbances estimated, foretold over the dead time, and cancelled.
+    /// Disturbances estimated, predicted over the dead time, and cancelled.
     DisturbancePrediction(DisturbancePredictionParameters),
 }
 

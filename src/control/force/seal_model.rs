@@ -1,6 +1,6 @@
-//! The seals' friction as a controller believes it to be, now and after a motion that is foretold.
+//! The seals' friction as a controller believes it to be, now and after a motion that is predicted.
 //!
-//! The bristles' deflection depends on the path alone (`physics::seal_friction`), so a foretold path gives the coming friction, a reversal included:
+//! The bristles' deflection depends on the path alone (`physics::seal_friction`), so a predicted path gives the coming friction, a reversal included:
 //! x(t + h) - x(t) = v h + a h^2 / 2, in two legs if v + a h changes its sign on the way.
 
 use crate::physics::seal_friction::SealFriction;

@@ -40,13 +40,13 @@ fn link_words(link: &LinkResidual, regimes: &[Regime]) -> String {
     }
     let telling: Vec<String> = regimes
         .iter()
-        .filter(|r| r.share >= TELLING)
+        .filter(|r| r.correlation_ratio >= TELLING)
         .take(3)
         .map(|r| {
             format!(
                 "{} ({:.0} %)",
                 r.variable.trim_end_matches("_m").replace('_', " "),
-                100.0 * r.share
+                100.0 * r.correlation_ratio
             )
         })
         .collect();

@@ -155,11 +155,11 @@ impl Diagnosis {
         let (unit, factor) = CHANNEL_UNITS[remaining.channel as usize];
         let said = |value: f64| format!("{} {unit}", significant(value * factor, 2));
         let telling: Vec<String> = (self.regimes_of_what_is_left().iter())
-            .filter(|regime| regime.share >= TELLING)
+            .filter(|regime| regime.correlation_ratio >= TELLING)
             .take(MOST_OTHERS)
             .map(|regime| {
                 let name = regime.variable.trim_end_matches("_m").replace('_', " ");
-                format!("{name} ({})", percent(regime.share))
+                format!("{name} ({})", percent(regime.correlation_ratio))
             })
             .collect();
         let when = if telling.is_empty() {
@@ -171,7 +171,7 @@ impl Diagnosis {
             )
         };
         Some(format!(
-            "The best laws leave {} RMS in the {}, where the sensor's noise is {}, alike for {} s; {when}. Every effect was judged against that in place of the noise.",
+            "The best laws leave {} RMS in the {}, where the sensor's noise is {}, correlated over {} s; {when}. Every effect was judged against that in place of the noise.",
             said(remaining.size),
             CHANNEL_WORDS[remaining.channel as usize],
             said(remaining.noise),

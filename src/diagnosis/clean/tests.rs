@@ -105,7 +105,7 @@ fn planted_wild_values_are_set_aside_and_nothing_else_is() {
     readings[2][1200] = 1e12;
     let before = readings.clone();
     let cleaning = clean(&time, &mut readings, &NOISE, MASS);
-    let count = |channel: usize| cleaning.wild[channel].len();
+    let count = |channel: usize| cleaning.outliers[channel].len();
     assert_eq!([count(0), count(1), count(2), count(3)], [1, 1, 4, 1]);
     for (channel, index, _) in planted.into_iter().chain([(2, 1200, 0.0)]) {
         assert!(readings[channel][index].is_nan(), "{channel} {index}");
@@ -118,7 +118,7 @@ fn planted_wild_values_are_set_aside_and_nothing_else_is() {
     assert_eq!(kept, 4 * time.len() - 7);
     assert!(
         cleaning.account(&NOISE)[0]
-            .starts_with("1 wild value of regulator_pressure_pa set aside, at 2.800 s")
+            .starts_with("1 outlier of regulator_pressure_pa set aside, at 2.800 s")
     );
 }
 
@@ -128,7 +128,7 @@ fn two_wild_values_side_by_side_are_left_to_a_robust_fit() {
     readings[2][600] += 300.0;
     readings[2][601] += 300.0;
     let cleaning = clean(&time, &mut readings, &NOISE, MASS);
-    assert!(cleaning.wild[2].is_empty());
+    assert!(cleaning.outliers[2].is_empty());
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn a_wild_value_that_no_other_sensor_can_deny_stays() {
     readings[3].fill(f64::NAN);
     readings[2][900] += 60.0;
     let cleaning = clean(&time, &mut readings, &NOISE, MASS);
-    assert!(cleaning.wild.iter().all(Vec::is_empty));
+    assert!(cleaning.outliers.iter().all(Vec::is_empty));
     assert_eq!((cleaning.lost, cleaning.noise[3]), ([0; 4], None));
 }
 
@@ -179,11 +179,11 @@ fn gaps_lost_values_and_jitter_are_counted_and_do_no_harm() {
         [0, 0, (10..kept.len()).step_by(50).count(), 0]
     );
     assert!(cleaning.jitter > 2e-4 && cleaning.jitter < 8.1e-4);
-    assert_eq!(cleaning.wild[2], [jittered[planted]]);
+    assert_eq!(cleaning.outliers[2], [jittered[planted]]);
     assert!(
         [0, 1, 3]
             .iter()
-            .all(|channel| cleaning.wild[*channel].is_empty())
+            .all(|channel| cleaning.outliers[*channel].is_empty())
     );
     let account = cleaning.account(&NOISE).join("; ");
     assert!(account.contains("17 gaps, the longest of 0.1"), "{account}");

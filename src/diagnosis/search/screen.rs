@@ -1,7 +1,7 @@
 //! Which effects promise to explain what a hypothesis leaves: one simulation a start, derivatives of those that promise, a short fit of the best.
 
 use super::super::evidence::Prediction;
-use super::super::fit::{Effort, Stage, fit, foretold, jacobian, with_values};
+use super::super::fit::{Effort, Stage, fit, jacobian, linearised_cost, with_values};
 use super::super::free::{Free, Prior, free_of};
 use super::super::hypothesis::Hypothesis;
 use super::super::{bumps, spectrum};
@@ -148,7 +148,7 @@ impl Search<'_> {
         columns.push(way);
         free.push(WAY);
         values.push(0.0);
-        let (cost, reached) = foretold(self.evidence, here, &free, &values, &columns, stage);
+        let (cost, reached) = linearised_cost(self.evidence, here, &free, &values, &columns, stage);
         let mut start = start.clone();
         if let [size] = &new[..] {
             let none = size.quantity.get(&here.plant);
@@ -178,7 +178,7 @@ impl Search<'_> {
         free.extend(new);
         let values: Vec<f64> = free.iter().map(|f| f.start).collect();
         columns.extend(jacobian(self.evidence, there, &free, &values, own));
-        let (cost, _) = foretold(self.evidence, there, &free, &values, &columns, stage);
+        let (cost, _) = linearised_cost(self.evidence, there, &free, &values, &columns, stage);
         Promise {
             effect,
             start: start.clone(),

@@ -38,10 +38,13 @@ pub struct Needed {
 #[must_use]
 pub fn visited(evidence: &Evidence, hypothesis: &Hypothesis, latent: &Latent) -> Option<[f64; 2]> {
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-    let courses = &hypothesis.fit.prediction.courses;
-    for (measured, course) in evidence.recordings.iter().zip(courses) {
+    let trajectories = &hypothesis.fit.prediction.trajectories;
+    for (measured, trajectory) in evidence.recordings.iter().zip(trajectories) {
         for i in 0..measured.inputs.time.len() {
-            let at = course.truth.moment(&measured.inputs, i).of(latent.variable);
+            let at = trajectory
+                .truth
+                .moment(&measured.inputs, i)
+                .of(latent.variable);
             if at.is_finite() {
                 ends = [ends[0].min(at), ends[1].max(at)];
             }
@@ -102,7 +105,7 @@ fn samples(
     let seen = channel.map_or(&[2, 3][..], |_| &[]);
     let mut first = 0;
     let mut all = Vec::new();
-    for (measured, course) in evidence.recordings.iter().zip(&without.courses) {
+    for (measured, trajectory) in evidence.recordings.iter().zip(&without.trajectories) {
         let count = measured.inputs.time.len();
         let start = first;
         first += CHANNELS.len() * count;
@@ -111,10 +114,10 @@ fn samples(
             if !seen.iter().chain(&channel).all(counts) {
                 continue;
             }
-            let moment = course.truth.moment(&measured.inputs, i);
+            let moment = trajectory.truth.moment(&measured.inputs, i);
             let mut value = match channel {
-                None => lacking(measured, &course.truth, &without.plant, i),
-                Some(channel) => measured.readings[channel][i] - course.readings[channel][i],
+                None => lacking(measured, &trajectory.truth, &without.plant, i),
+                Some(channel) => measured.readings[channel][i] - trajectory.readings[channel][i],
             };
             if latent.directed {
                 if moment.speed.abs() < MOVING {

@@ -34,7 +34,7 @@ impl Elsewhere {
         })
     }
 
-    /// Cost of each recording as foretold by a rough fit to the others [1].
+    /// Cost of each recording as predicted by a rough fit to the others [1].
     #[must_use]
     pub fn cost(&self, whole: &Fit) -> f64 {
         let free = whole.free_from_here();

@@ -36,7 +36,7 @@ const THINGS: [(Thing, &[&str]); 8] = [
     (Thing::Pressure, &["pressure", "druck", "pression", "pressione", "presion", "press"]),
     (Thing::Force, &["force", "kraft", "forza", "fuerza", "effort", "loadcell", "load", "lastzelle", "kmd", "fz", "wrench"]),
     (Thing::Valve, &["valve", "ventil", "solenoid", "vanne", "valvola", "valvula", "spool", "ausfahren", "extend"]),
-    (Thing::Stroke, &["stroke", "position", "displacement", "travel", "weg", "hub", "pos", "course", "corsa", "posizione", "carrera", "posicion", "recorrido", "deplacement", "slide", "schlitten"]),
+    (Thing::Stroke, &["stroke", "position", "displacement", "travel", "weg", "hub", "pos", "trajectory", "corsa", "posizione", "carrera", "posicion", "recorrido", "deplacement", "slide", "schlitten"]),
     (Thing::Time, &["timestamp", "zeitstempel", "time", "zeit", "uhrzeit", "datum", "date", "temps", "heure", "tempo", "tiempo", "hora", "fecha", "xvalue", "elapsed", "stamp"]),
     (Thing::Other, &["temperatur", "durchfluss", "flow", "strom", "current", "spannung", "voltage", "drehmoment", "torque", "speed", "velocity", "geschwindigkeit", "vitesse", "velocita",
         "velocidad", "counter", "zaehler", "index", "status", "comment", "kommentar"]),

@@ -9,8 +9,8 @@
 //! free until the rate meets its limit, a ramp until the oscillator would slow down by itself, then free again; the rate is monotonic between
 //! the zeros of p'', so that the meeting is bracketed.
 
-use super::course::Law;
 use super::second_order::SecondOrder;
+use super::trajectory::Law;
 
 /// Relative tolerance within which a piece counts as over, so that its end does not start it again [1].
 const ROUNDING: f64 = 1e-9;

@@ -14,7 +14,7 @@ use super::super::parameters::PlantParameters;
 use super::super::simulate::Trajectory;
 use crate::physics::orifice::FlowFunction;
 
-pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
+pub(super) fn true_trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
     let gas = &plant.device.gas;
     let atmosphere = gas.atmosphere;
     let flow = FlowFunction::new(gas);

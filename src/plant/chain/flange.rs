@@ -10,7 +10,7 @@ use super::super::inputs::PlantInputs;
 use super::super::parameters::PlantParameters;
 use super::super::simulate::Trajectory;
 
-pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
+pub(super) fn true_trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
     let time = &inputs.time;
     let mut truth = Trajectory::still(time.len(), plant.device.gas.atmosphere);
     let mut force = inputs.set_pressure[0];

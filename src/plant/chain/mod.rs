@@ -78,14 +78,14 @@ impl Chain {
     }
 }
 
-/// True course of a rig with a part of the device; none of a whole one.
-pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Option<Trajectory> {
+/// True trajectory of a rig with a part of the device; none of a whole one.
+pub(super) fn true_trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Option<Trajectory> {
     Some(match plant.chain {
         Chain::Whole => return None,
-        Chain::MovedPiston | Chain::DrivenSlide => moved::trajectory(plant, inputs),
-        Chain::ClosedChamber => closed_chamber::trajectory(plant, inputs),
-        Chain::Regulator => regulator_alone::trajectory(plant, inputs),
-        Chain::ContactFlange => flange::trajectory(plant, inputs),
+        Chain::MovedPiston | Chain::DrivenSlide => moved::true_trajectory(plant, inputs),
+        Chain::ClosedChamber => closed_chamber::true_trajectory(plant, inputs),
+        Chain::Regulator => regulator_alone::true_trajectory(plant, inputs),
+        Chain::ContactFlange => flange::true_trajectory(plant, inputs),
     })
 }
 

@@ -13,7 +13,7 @@ use super::super::parameters::PlantParameters;
 use super::super::simulate::Trajectory;
 use super::Chain;
 
-pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
+pub(super) fn true_trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
     let device = &plant.device;
     let atmosphere = device.gas.atmosphere;
     let count = inputs.time.len();

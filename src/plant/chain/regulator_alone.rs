@@ -17,7 +17,7 @@ use crate::physics::regulator::{RateLimit, RegulatorParameters, RegulatorState};
 /// Set pressure below which nothing is set [Pa gauge].
 const NOTHING_SET: f64 = 100.0;
 
-pub(super) fn trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
+pub(super) fn true_trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
     let filling = plant.device.regulator;
     let links = plant.links;
     let with = |time_constant: f64| RegulatorParameters {

@@ -293,7 +293,7 @@ fn part(samples: std::ops::Range<usize>, frames: std::ops::Range<usize>) -> (Rec
 }
 
 /// Times and values of what changes with time, chunk after chunk.
-fn course(store: &ChunkStore, entity: &str) -> (Vec<i64>, Vec<i64>, Vec<f64>) {
+fn trajectory(store: &ChunkStore, entity: &str) -> (Vec<i64>, Vec<i64>, Vec<f64>) {
     let mut own = chunks(store, entity);
     own.retain(|chunk| !chunk.is_static());
     own.sort_by_key(|chunk| chunk.id().as_tuid());
@@ -326,9 +326,13 @@ fn encoded_while_it_is_made_it_holds_the_same() {
         "/plots/joint_torque",
         "/plots/force/band_plus_5",
     ] {
-        let (time, _, values) = course(&data, entity);
+        let (time, _, values) = trajectory(&data, entity);
         assert!(!time.is_empty() && time.len() == values.len(), "{entity}");
-        assert_eq!(course(&data, entity), course(&whole, entity), "{entity}");
+        assert_eq!(
+            trajectory(&data, entity),
+            trajectory(&whole, entity),
+            "{entity}"
+        );
     }
     let places = |store: &ChunkStore| -> Vec<[f32; 3]> {
         let mut own = chunks(store, "/cell/arm/link_1");
@@ -342,7 +346,7 @@ fn encoded_while_it_is_made_it_holds_the_same() {
     };
     assert_eq!(places(&data).len(), FRAMES);
     assert_eq!(places(&data), places(&whole));
-    let when = |store| course(store, "/cell/arm/link_1").0;
+    let when = |store| trajectory(store, "/cell/arm/link_1").0;
     assert_eq!(when(&data), when(&whole));
     let statics = |store: &ChunkStore| {
         let all = store.iter_physical_chunks();

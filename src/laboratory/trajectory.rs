@@ -17,9 +17,9 @@ const FIRST_STEP: f64 = 1e-6;
 /// Steps at most in a recording.
 const MOST_STEPS: usize = 20_000_000;
 
-/// True course of a recording, one value per sample time.
+/// True trajectory of a recording, one value per sample time.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Course {
+pub struct LaboratoryTrajectory {
     /// Readings of ideal sensors with the device's own errors, in the order of [`super::CHANNELS`].
     pub readings: [Vec<f64>; 4],
     /// Contact force [N].
@@ -129,7 +129,7 @@ pub fn run(
     rig: &Rig,
     concealed: &Concealed,
     programme: &Programme,
-) -> Result<Course, LaboratoryError> {
+) -> Result<LaboratoryTrajectory, LaboratoryError> {
     let mut equations = Equations::new(rig, concealed, programme.surface.as_ref());
     let mut state = equations.start();
     let samples = &programme.times;
@@ -215,10 +215,14 @@ pub fn run(
         }
         state = *solver.y();
     }
-    Ok(course(concealed, programme, &readings))
+    Ok(trajectory(concealed, programme, &readings))
 }
 
-fn course(concealed: &Concealed, programme: &Programme, readings: &[Reading]) -> Course {
+fn trajectory(
+    concealed: &Concealed,
+    programme: &Programme,
+    readings: &[Reading],
+) -> LaboratoryTrajectory {
     let of = |value: &dyn Fn(&Reading) -> f64| readings.iter().map(value).collect::<Vec<f64>>();
     let times = programme.times.iter();
     let force = readings.iter().zip(times).map(|(reading, time)| {
@@ -227,7 +231,7 @@ fn course(concealed: &Concealed, programme: &Programme, readings: &[Reading]) ->
         let value = concealed.force_gain * reading.force + bias + drift * time;
         value.clamp(-concealed.force_limit, concealed.force_limit)
     });
-    Course {
+    LaboratoryTrajectory {
         readings: [
             of(&|r| r.outlet),
             of(&|r| concealed.stroke_gain * r.stroke),
@@ -269,11 +273,11 @@ mod tests {
             ..Concealed::default()
         };
         let times = (0..200).map(|i| f64::from(i) * 0.01).collect();
-        let course = run(&rig, &concealed, &programme(0.0, times)).unwrap();
-        let stroke = &course.readings[1];
+        let trajectory = run(&rig, &concealed, &programme(0.0, times)).unwrap();
+        let stroke = &trajectory.readings[1];
         assert!(stroke.iter().any(|x| *x > 0.1 * rig.stroke), "it moves");
-        for air in &course.air {
-            assert!((air / course.air[0] - 1.0).abs() < 1e-7);
+        for air in &trajectory.air {
+            assert!((air / trajectory.air[0] - 1.0).abs() < 1e-7);
         }
     }
 
@@ -284,14 +288,14 @@ mod tests {
         (rig.gravity, rig.time_constant, rig.stop) = (-500.0, 1e-5, [1e9, 2e5]);
         let set = 8e5;
         let times: Vec<f64> = (1..=20).map(|i| f64::from(i) * 5e-4).collect();
-        let course = run(&rig, &Concealed::default(), &programme(set, times.clone())).unwrap();
+        let trajectory = run(&rig, &Concealed::default(), &programme(set, times.clone())).unwrap();
         let (gas, up) = (rig.gas, set + rig.gas.atmosphere);
         let k = gas.ratio;
         let choked = (k * (2.0 / (k + 1.0)).powf((k + 1.0) / (k - 1.0))).sqrt();
-        let volume = rig.dead_volume + rig.areas()[0] * course.readings[1][19];
+        let volume = rig.dead_volume + rig.areas()[0] * trajectory.readings[1][19];
         let root = (gas.constant * gas.temperature).sqrt();
         let slope = rig.supply_orifice * rig.discharge * up * choked * root / volume;
-        let [from, to] = [5, 19].map(|i| course.pressures[0][i]);
+        let [from, to] = [5, 19].map(|i| trajectory.pressures[0][i]);
         assert!(to < 0.528 * up, "choked to the end");
         let found = (to - from) / (times[19] - times[5]);
         assert!((found / slope - 1.0).abs() < 1e-4, "{found} {slope}");
@@ -306,9 +310,9 @@ mod tests {
             ..Concealed::default()
         };
         let times: Vec<f64> = (0..100).map(|i| f64::from(i) * 0.004).collect();
-        let course = run(&rig, &concealed, &programme(0.0, times)).unwrap();
-        let volume = |i: usize| rig.dead_volume + rig.areas()[0] * course.readings[1][i];
-        let constant = |i: usize| course.pressures[0][i] * volume(i).powf(rig.gas.ratio);
+        let trajectory = run(&rig, &concealed, &programme(0.0, times)).unwrap();
+        let volume = |i: usize| rig.dead_volume + rig.areas()[0] * trajectory.readings[1][i];
+        let constant = |i: usize| trajectory.pressures[0][i] * volume(i).powf(rig.gas.ratio);
         for i in 0..100 {
             assert!((constant(i) / constant(0) - 1.0).abs() < 1e-5, "{i}");
         }

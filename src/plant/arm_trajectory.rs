@@ -1,7 +1,7 @@
 //! A cell's arm over a recording, reduced to what the device at its end feels.
 //!
 //! ```text
-//! d = x c - s                  penetration along the bisector n of the edge, the links' swing aside (`flexing`)
+//! d = x c - s                  penetration along the bisector n of the edge, the links' swing aside (`joint_deflections`)
 //! s = n . (b - e) - r - l      standoff at no stroke
 //! c = -n . a                   share of the stroke that goes into the part
 //! ```
@@ -26,17 +26,17 @@ use std::sync::Arc;
 
 /// One joint over a recording.
 #[derive(Debug, Clone, PartialEq)]
-pub struct JointCourse {
+pub struct JointTrajectory {
     /// Commanded angle [rad].
     pub command: Vec<f64>,
-    /// Angle of the motor that everything else in the course goes with [rad].
+    /// Angle of the motor that everything else in the trajectory goes with [rad].
     pub angle: Vec<f64>,
     /// Its axis in the base frame [1].
     pub axis: Vec<DVec3>,
     /// A point on its axis in the base frame [m].
     pub origin: Vec<DVec3>,
     /// Acceleration of that angle [rad/s2].
-    pub bend: Vec<f64>,
+    pub acceleration: Vec<f64>,
     /// Torque that accelerates what is behind it [N m].
     pub torque: Vec<f64>,
 }
@@ -56,11 +56,11 @@ pub struct EdgeStation {
 
 /// A cell's arm over a recording.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CellCourse {
+pub struct ArmTrajectory {
     /// Sample times [s].
     pub time: Vec<f64>,
     /// The joints, base first.
-    pub joints: Vec<JointCourse>,
+    pub joints: Vec<JointTrajectory>,
     /// Bandwidth of the servos that gave `angle` [Hz].
     pub bandwidth: f64,
     /// Centre of the ball at no stroke [m].
@@ -77,8 +77,8 @@ pub struct CellCourse {
     pub middle: EdgeStation,
     /// Radius of the ball [m].
     pub ball_radius: f64,
-    /// Levers of the joints; see [`CellCourse::levers_of`].
-    pub levers: Vec<Levers>,
+    /// Contact Jacobians of the joints; see [`ArmTrajectory::jacobian_at`].
+    pub jacobians: Vec<ContactJacobian>,
     /// Mass matrices of every [`INERTIA_EVERY`]th sample, without the moving mass's along the slide [kg m2].
     pub inertia: Vec<DMatrix<f64>>,
     /// Moving mass [kg].
@@ -91,20 +91,20 @@ pub struct CellCourse {
     pub gravity: DVec3,
 }
 
-/// Levers of the joints in one sample: of the ball at no stroke, and what a stroke adds to them.
+/// Contact Jacobians of the joints in one sample: of the ball at no stroke, and what a stroke adds to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levers {
+pub struct ContactJacobian {
     /// Along the bisector [m], [1].
-    pub lift: [[f64; MOST_JOINTS]; 2],
+    pub normal: [[f64; MOST_JOINTS]; 2],
     /// Along the edge [m], [1].
-    pub slip: [[f64; MOST_JOINTS]; 2],
+    pub tangential: [[f64; MOST_JOINTS]; 2],
     /// Along the slide [m].
     pub axial: [f64; MOST_JOINTS],
 }
 
 /// Loads that the device feels of it, one value per sample.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Felt {
+pub struct ContactKinematics {
     /// Standoff s [m].
     pub standoff: Vec<f64>,
     /// Share c [1].
@@ -129,10 +129,10 @@ pub struct Felt {
 pub const INERTIA_EVERY: usize = 16;
 /// Commanded speed along the edge below which a tool may still hold on to it by friction [m/s].
 const RESTING: f64 = 3e-3;
-/// Speed along the edge at which friction is felt in full [m/s].
+/// Speed along the edge at which friction is full [m/s].
 pub(super) const SLIDING: f64 = 1e-3;
 
-impl CellCourse {
+impl ArmTrajectory {
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.time.len()
@@ -151,12 +151,12 @@ impl CellCourse {
     }
 
     /// Levers of a sample, for `levers`.
-    pub fn levers_of(&self, i: usize) -> Levers {
+    pub fn jacobian_at(&self, i: usize) -> ContactJacobian {
         let edge = &self.edge[i];
         let zero = [0.0; MOST_JOINTS];
-        let mut levers = Levers {
-            lift: [zero; 2],
-            slip: [zero; 2],
+        let mut levers = ContactJacobian {
+            normal: [zero; 2],
+            tangential: [zero; 2],
             axial: zero,
         };
         for (j, joint) in self.joints.iter().enumerate() {
@@ -166,8 +166,8 @@ impl CellCourse {
                 axis.cross(self.slide[i]),
             ];
             for (part, swing) in swings.into_iter().enumerate() {
-                levers.lift[part][j] = swing.dot(edge.bisector);
-                levers.slip[part][j] = swing.dot(edge.tangent);
+                levers.normal[part][j] = swing.dot(edge.bisector);
+                levers.tangential[part][j] = swing.dot(edge.tangent);
             }
             levers.axial[j] = swings[0].dot(self.slide[i]);
         }
@@ -175,7 +175,7 @@ impl CellCourse {
     }
 
     /// Loads that the device feels.
-    pub fn felt(&self, cell: &CellParameters) -> Felt {
+    pub fn contact_kinematics(&self, cell: &CellParameters) -> ContactKinematics {
         let turns = self.turns(cell);
         let count = self.len();
         let mut balls = Vec::with_capacity(count);
@@ -193,25 +193,25 @@ impl CellCourse {
             balls.push(ball);
             slides.push(slide);
         }
-        let mut felt = Felt::default();
+        let mut kinematics = ContactKinematics::default();
         for i in 0..count {
-            self.note(&mut felt, cell, i, &balls, &slides);
+            self.note(&mut kinematics, cell, i, &balls, &slides);
         }
-        felt.balls = balls;
-        felt.slides = slides;
-        felt
+        kinematics.balls = balls;
+        kinematics.slides = slides;
+        kinematics
     }
 
-    /// Departure of each joint from the course.
+    /// Departure of each joint from the trajectory.
     fn turns(&self, cell: &CellParameters) -> Vec<Turn> {
         let moved = cell.servo_bandwidth != self.bandwidth;
-        let turn = |(joint, offset): (&JointCourse, f64)| {
+        let turn = |(joint, offset): (&JointTrajectory, f64)| {
             // The servo closes on the encoder: the arm stands off by what it reads too much.
             if moved {
                 let of = |bandwidth| follow(&self.time, &joint.command, bandwidth).angle;
                 let (there, here) = (of(cell.servo_bandwidth), of(self.bandwidth));
                 let away = there.iter().zip(&here);
-                Turn::Course(away.map(|(there, here)| there - here - offset).collect())
+                Turn::Trajectory(away.map(|(there, here)| there - here - offset).collect())
             } else {
                 Turn::Constant(-offset)
             }
@@ -225,7 +225,7 @@ impl CellCourse {
 
     fn note(
         &self,
-        felt: &mut Felt,
+        kinematics: &mut ContactKinematics,
         cell: &CellParameters,
         i: usize,
         balls: &[DVec3],
@@ -254,14 +254,17 @@ impl CellCourse {
         let speed = self.slope(i, |j| balls[j]).dot(edge.tangent);
         let mass_at = |j: usize| balls[j] + slides[j] * (self.usual_stroke - self.mass_behind_ball);
         let acceleration = self.curvature(i, mass_at);
-        felt.aside.push(aside);
-        felt.standoff.push(standoff);
-        felt.share.push(share);
-        felt.burr.push(cell.burr.at(station));
-        felt.speed.push(speed);
-        felt.carried
+        kinematics.aside.push(aside);
+        kinematics.standoff.push(standoff);
+        kinematics.share.push(share);
+        kinematics.burr.push(cell.burr.at(station));
+        kinematics.speed.push(speed);
+        kinematics
+            .carried
             .push(self.moving_mass * acceleration.dot(slide));
-        felt.pull.push((self.gravity - acceleration).dot(slide));
+        kinematics
+            .pull
+            .push((self.gravity - acceleration).dot(slide));
     }
 
     /// Rate of a point that is known at the samples [m/s].
@@ -284,22 +287,22 @@ impl CellCourse {
     }
 }
 
-/// Departure of a joint from a course [rad].
+/// Departure of a joint from a trajectory [rad].
 enum Turn {
     Constant(f64),
-    Course(Vec<f64>),
+    Trajectory(Vec<f64>),
 }
 
 impl Turn {
     fn at(&self, i: usize) -> f64 {
         match self {
             Self::Constant(angle) => *angle,
-            Self::Course(angles) => angles[i],
+            Self::Trajectory(angles) => angles[i],
         }
     }
 }
 
-impl Felt {
+impl ContactKinematics {
     /// Where the edge stands along the slide [m].
     pub fn surface(&self) -> Vec<f64> {
         let pairs = self.standoff.iter().zip(&self.share);

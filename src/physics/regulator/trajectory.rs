@@ -15,7 +15,7 @@ pub(super) enum Law {
 
 /// The outlet over a time in which no new set pressure arrives and one law holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OutletCourse {
+pub struct OutletTrajectory {
     /// Pressure at its start, gauge [Pa].
     pub(super) start: f64,
     /// Where the regulator would take it, gauge [Pa].
@@ -27,7 +27,7 @@ pub struct OutletCourse {
     pub duration: f64,
 }
 
-impl OutletCourse {
+impl OutletTrajectory {
     /// Outlet pressure, gauge [Pa], at a time since its start [s]. What would swing beyond the supply or below the atmosphere is cut off there.
     #[inline]
     pub fn at(&self, time: f64) -> f64 {

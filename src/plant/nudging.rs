@@ -21,18 +21,18 @@ const NEAR: usize = 3;
 
 /// A motion, one value per sample.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Guide {
+pub struct Nudging {
     /// Stroke as measured, sensor gain included [m].
     pub stroke: Vec<f64>,
     /// Its rate [m/s].
     pub speed: Vec<f64>,
-    /// Firmness with which the piston is held, 0 to 1: hardly where the acceleration jumps, because how an impact ends decides how the seals are left.
-    pub firmness: Vec<f64>,
+    /// Gain with which the piston is held, 0 to 1: hardly where the acceleration jumps, because how an impact ends decides how the seals are left.
+    pub gain: Vec<f64>,
 }
 
-impl Guide {
+impl Nudging {
     /// Stiffness [N/m] and damping [N s/m] of the hold for a mass [kg].
-    pub fn hold(mass: f64) -> (f64, f64) {
+    pub fn gains(mass: f64) -> (f64, f64) {
         (mass * RATE * RATE, 2.0 * mass * RATE)
     }
 
@@ -143,7 +143,7 @@ impl Guide {
                 x[1] + c[2] * d[0] + c[3] * d[1],
             ];
         }
-        let firmness = |i: usize| {
+        let gain = |i: usize| {
             let near = &acceleration[i.saturating_sub(NEAR)..(i + NEAR + 1).min(count)];
             let known = near.iter().filter(|a| a.is_finite());
             let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| {
@@ -160,12 +160,12 @@ impl Guide {
             square / (1.0 + square)
         };
         Self {
-            firmness: (0..count)
+            gain: (0..count)
                 .map(|i| {
                     if touching(i) {
                         0.0
                     } else {
-                        moving(i) * firmness(i)
+                        moving(i) * gain(i)
                     }
                 })
                 .collect(),
@@ -201,9 +201,9 @@ mod tests {
             .enumerate()
             .map(|(i, t)| 0.02 * w * w * (w * t).cos() + 0.15 * noise[i + 3])
             .collect();
-        let guide = Guide::new(&time, &stroke, &acceleration, 2e-5, 0.15, |_| false);
+        let nudging = Nudging::new(&time, &stroke, &acceleration, 2e-5, 0.15, |_| false);
         let worst = (5..995)
-            .map(|i| (guide.speed[i] - 0.02 * w * (w * time[i]).sin()).abs())
+            .map(|i| (nudging.speed[i] - 0.02 * w * (w * time[i]).sin()).abs())
             .fold(0.0, f64::max);
         assert!(worst < 4e-3, "{worst}");
     }

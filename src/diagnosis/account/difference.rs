@@ -57,13 +57,13 @@ impl Diagnosis {
             )];
         }
         let all = self.by_misfit(&self.baseline.prediction.residuals);
-        let parting: Vec<&Misfit> = all.iter().filter(|m| self.span(m).is_some()).collect();
-        let Some((worst, others)) = parting.split_first() else {
+        let differing: Vec<&Misfit> = all.iter().filter(|m| self.span(m).is_some()).collect();
+        let Some((worst, others)) = differing.split_first() else {
             return vec![
                 "No short time stands out: the mismatch is spread over the recordings.".to_owned(),
             ];
         };
-        let mut paragraphs = vec![self.worst_parting(worst)];
+        let mut paragraphs = vec![self.worst_difference(worst)];
         let others: Vec<String> = others
             .iter()
             .filter(|m| m.sigmas > NOISE_ALONE)
@@ -84,20 +84,20 @@ impl Diagnosis {
         paragraphs
     }
 
-    /// From the first to the last time in which a channel parts from the baseline [s].
+    /// From the first to the last time in which a channel differs from the baseline [s].
     fn span(&self, misfit: &Misfit) -> Option<[f64; 2]> {
         let spans = self.spans(misfit);
         Some([spans.first()?[0], spans.last()?[1]])
     }
 
     fn spans(&self, misfit: &Misfit) -> Vec<[f64; 2]> {
-        let partings = self.baseline.partings.iter();
+        let differences = self.baseline.differences.iter();
         let own =
-            partings.filter(|p| p.recording == misfit.recording && p.channel == misfit.channel);
+            differences.filter(|p| p.recording == misfit.recording && p.channel == misfit.channel);
         own.map(|p| p.span).collect()
     }
 
-    fn worst_parting(&self, worst: &Misfit) -> String {
+    fn worst_difference(&self, worst: &Misfit) -> String {
         let spans = self.spans(worst);
         let [from, to] = self.span(worst).unwrap_or_default();
         let long: f64 = spans.iter().map(|span| span[1] - span[0]).sum();
@@ -106,7 +106,7 @@ impl Diagnosis {
             count => format!(", in {count} stretches that make {long:.1} s"),
         };
         format!(
-            "Between {from:.2} and {to:.2} s of {} the {} parts from the believed model, whatever its tolerances allow{times}: by {} RMS, where {} is {}.",
+            "Between {from:.2} and {to:.2} s of {} the {} differs from the believed model, whatever its tolerances allow{times}: by {} RMS, where {} is {}.",
             self.name(worst.recording),
             CHANNEL_WORDS[worst.channel as usize],
             self.baseline_rms(worst, [from, to]),

@@ -14,7 +14,7 @@
 //!
 //! Trapezoidal in springs and contact, implicit in friction, all in the speeds at the end of a step.
 
-use super::cell_course::{CellCourse, Felt, INERTIA_EVERY, SLIDING};
+use super::arm_trajectory::{ArmTrajectory, ContactKinematics, INERTIA_EVERY, SLIDING};
 use super::cell_parameters::{CellParameters, MOST_JOINTS};
 use glam::DVec3;
 use nalgebra::DMatrix;
@@ -27,8 +27,8 @@ type Joints = [f64; MOST_JOINTS];
 
 /// Links on their springs.
 #[derive(Debug, Clone)]
-pub(super) struct Flexing<'a> {
-    course: &'a CellCourse,
+pub(super) struct JointDeflections<'a> {
+    trajectory: &'a ArmTrajectory,
     cell: &'a CellParameters,
     count: usize,
     deflection: Joints,
@@ -70,7 +70,7 @@ pub(super) struct Bending {
 
 /// Effect of swinging over a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Swung {
+pub(super) struct DeflectedContact {
     /// Where the surface goes, seen along the slide: coefficients of 1, t, t2 [m].
     pub surface: [f64; 3],
     /// Loss of the contact force's share along the slide by the slide's turning [1].
@@ -79,14 +79,14 @@ pub(super) struct Swung {
     pub acceleration: f64,
 }
 
-impl<'a> Flexing<'a> {
+impl<'a> JointDeflections<'a> {
     /// At rest; none where no joint gives.
-    pub fn new(course: &'a CellCourse, cell: &'a CellParameters) -> Option<Self> {
-        let count = course.joints.len();
+    pub fn new(trajectory: &'a ArmTrajectory, cell: &'a CellParameters) -> Option<Self> {
+        let count = trajectory.joints.len();
         let gives = cell.joint_stiffness[..count].iter().any(|k| k.is_finite());
         let plays = cell.joint_play[..count].iter().any(|play| *play > 0.0);
         ((gives || plays) && count > 0).then_some(Self {
-            course,
+            trajectory,
             cell,
             count,
             deflection: [0.0; MOST_JOINTS],
@@ -99,7 +99,8 @@ impl<'a> Flexing<'a> {
     /// Bends the joints to where they carry what is on them, at a sample.
     pub fn settle(&mut self, i: usize, push: f64) {
         for j in 0..self.count {
-            let load = self.course.levers[i].axial[j] * push + self.course.joints[j].torque[i];
+            let load =
+                self.trajectory.jacobians[i].axial[j] * push + self.trajectory.joints[j].torque[i];
             let half = 0.5 * self.cell.joint_play[j];
             let side = if load == 0.0 { 0.0 } else { -load.signum() };
             self.deflection[j] = -load / self.stiffness(j) + side * half;
@@ -109,14 +110,14 @@ impl<'a> Flexing<'a> {
     /// Takes the levers at a sample, along the bisector of the edge or another normal.
     pub fn face(&mut self, i: usize, normal: Option<DVec3>) {
         let Some(normal) = normal else {
-            self.levers = self.course.levers[i].lift;
+            self.levers = self.trajectory.jacobians[i].normal;
             return;
         };
-        for (j, joint) in self.course.joints.iter().enumerate() {
+        for (j, joint) in self.trajectory.joints.iter().enumerate() {
             let axis = joint.axis[i];
-            let ball = axis.cross(self.course.ball[i] - joint.origin[i]);
+            let ball = axis.cross(self.trajectory.ball[i] - joint.origin[i]);
             self.levers[0][j] = ball.dot(normal);
-            self.levers[1][j] = axis.cross(self.course.slide[i]).dot(normal);
+            self.levers[1][j] = axis.cross(self.trajectory.slide[i]).dot(normal);
         }
     }
 
@@ -129,14 +130,14 @@ impl<'a> Flexing<'a> {
 
     /// Where a turn of a joint takes the ball at a stroke [m].
     fn swing(&self, i: usize, joint: usize, stroke: f64) -> DVec3 {
-        let tip = self.course.ball[i] + self.course.slide[i] * stroke;
-        let joint = &self.course.joints[joint];
+        let tip = self.trajectory.ball[i] + self.trajectory.slide[i] * stroke;
+        let joint = &self.trajectory.joints[joint];
         joint.axis[i].cross(tip - joint.origin[i])
     }
 
     /// Speed that a force across the edge on the ball gives it over a step as long as the last one, at a stroke [m] and on a normal [m/(s N)].
     pub fn mobility(&self, i: usize, stroke: f64, normal: DVec3) -> f64 {
-        let across = self.course.edge[i].tangent.cross(normal);
+        let across = self.trajectory.edge[i].tangent.cross(normal);
         let mut levers = [0.0; MOST_JOINTS];
         for (j, lever) in levers.iter_mut().enumerate().take(self.count) {
             *lever = self.swing(i, j, stroke).dot(across);
@@ -145,7 +146,7 @@ impl<'a> Flexing<'a> {
     }
 
     /// Levers along the normal at a stroke [m].
-    fn lift(&self, stroke: f64) -> Joints {
+    fn normal(&self, stroke: f64) -> Joints {
         let [fixed, turn] = &self.levers;
         std::array::from_fn(|j| fixed[j] + stroke * turn[j])
     }
@@ -156,15 +157,15 @@ impl<'a> Flexing<'a> {
     }
 
     /// Where the surface is now, and where it goes.
-    pub fn now(&self, i: usize, stroke: f64, share: f64) -> Swung {
-        self.swung(&self.lift(stroke), share, i)
+    pub fn now(&self, i: usize, stroke: f64, share: f64) -> DeflectedContact {
+        self.deflected(&self.normal(stroke), share, i)
     }
 
-    fn swung(&self, lift: &Joints, share: f64, i: usize) -> Swung {
-        Swung {
+    fn deflected(&self, normal: &Joints, share: f64, i: usize) -> DeflectedContact {
+        DeflectedContact {
             surface: [
-                dot(lift, &self.deflection) / share,
-                dot(lift, &self.speed) / share,
+                dot(normal, &self.deflection) / share,
+                dot(normal, &self.speed) / share,
                 0.0,
             ],
             turned: dot(self.turning(i), &self.deflection),
@@ -173,26 +174,33 @@ impl<'a> Flexing<'a> {
     }
 
     fn turning(&self, i: usize) -> &Joints {
-        match self.course.sharp {
-            None => &self.course.levers[i].lift[1],
+        match self.trajectory.sharp {
+            None => &self.trajectory.jacobians[i].normal[1],
             Some(_) => &self.levers[1],
         }
     }
 
     /// Advances over `h` [s] from sample `i` under forces as they are now, `share` of the contact's along the slide.
-    pub fn advance(&mut self, felt: &Felt, i: usize, h: f64, share: f64, forces: Bending) -> Swung {
-        let lift = self.lift(forces.stroke);
-        let levers = &self.course.levers[i];
-        let [fixed, turn] = &levers.slip;
-        let slip: Joints = std::array::from_fn(|j| fixed[j] + forces.stroke * turn[j]);
-        let axial = &levers.axial;
+    pub fn advance(
+        &mut self,
+        kinematics: &ContactKinematics,
+        i: usize,
+        h: f64,
+        share: f64,
+        forces: Bending,
+    ) -> DeflectedContact {
+        let normal = self.normal(forces.stroke);
+        let jacobian = &self.trajectory.jacobians[i];
+        let [fixed, turn] = &jacobian.tangential;
+        let tangential: Joints = std::array::from_fn(|j| fixed[j] + forces.stroke * turn[j]);
+        let axial = &jacobian.axial;
         let key = Key {
             inertia: i / INERTIA_EVERY,
             touching: forces.contact > 0.0,
             step: h,
             apart: self.apart(),
         };
-        let inertia = &self.course.inertia[key.inertia];
+        let inertia = &self.trajectory.inertia[key.inertia];
         let (stiffness, halved, rest) = self.springs(h, key.apart);
         // The contact over the step: as it is, with what the piston and the swing do to it by its middle.
         let [spring, damper] = if key.touching {
@@ -201,18 +209,18 @@ impl<'a> Flexing<'a> {
             [0.0; 2]
         };
         let implicit = 0.25 * h * spring + 0.5 * damper;
-        let lifting = dot(&lift, &self.speed);
+        let lifting = dot(&normal, &self.speed);
         let contact = forces.contact + 0.5 * h * spring * share * forces.speed
             - (0.25 * h * spring - 0.5 * damper) * lifting;
-        let tangent = self.course.edge[i].tangent;
+        let tangent = self.trajectory.edge[i].tangent;
         let across_edge = forces.friction - tangent * forces.friction.dot(tangent);
         let mut right = [0.0; MOST_JOINTS];
         for j in 0..self.count {
-            let motor = self.course.joints[j].torque[i] - axial[j] * felt.carried[i];
+            let motor = self.trajectory.joints[j].torque[i] - axial[j] * kinematics.carried[i];
             let across = self.swing(i, j, forces.stroke).dot(across_edge);
-            let bent = lift[j] + share * axial[j];
+            let bent = normal[j] + share * axial[j];
             right[j] = bent * contact + across
-                - axial[j] * (across_edge.dot(self.course.slide[i]) + forces.push)
+                - axial[j] * (across_edge.dot(self.trajectory.slide[i]) + forces.push)
                 - motor
                 - halved[j] * self.speed[j]
                 - stiffness[j] * (self.deflection[j] - rest[j]);
@@ -223,8 +231,8 @@ impl<'a> Flexing<'a> {
         if self.inverse.as_ref().is_none_or(|(known, _)| *known != key) {
             let matrix = DMatrix::from_fn(self.count, self.count, |j, k| {
                 let own = if j == k { halved[j] } else { 0.0 };
-                let bent = lift[j] + share * axial[j];
-                inertia[(j, k)] / h + own + implicit * bent * lift[k]
+                let bent = normal[j] + share * axial[j];
+                inertia[(j, k)] / h + own + implicit * bent * normal[k]
             });
             // A mass matrix with springs has an inverse.
             let inverse = matrix
@@ -233,25 +241,25 @@ impl<'a> Flexing<'a> {
             self.inverse = Some((key, inverse.as_slice().to_vec()));
         }
         let freely = self.solve(&right);
-        let dragged = self.solve(&slip);
+        let dragged = self.solve(&tangential);
         let most = self.cell.friction * forces.contact;
         let grip = most / SLIDING;
-        let speed = felt.speed[i] + dot(&slip, &freely);
-        let give = dot(&slip, &dragged);
+        let speed = kinematics.speed[i] + dot(&tangential, &freely);
+        let give = dot(&tangential, &dragged);
         let mut friction = grip * speed / (1.0 + grip * give);
         if friction.abs() > most {
             friction = most * friction.signum();
         }
-        let mut swung = self.swung(&lift, share, i);
+        let mut deflected = self.deflected(&normal, share, i);
         for j in 0..self.count {
             let end = freely[j] - friction * dragged[j];
             let rate = (end - self.speed[j]) / h;
-            swung.surface[2] += 0.5 * lift[j] * rate / share;
-            swung.acceleration += axial[j] * rate;
+            deflected.surface[2] += 0.5 * normal[j] * rate / share;
+            deflected.acceleration += axial[j] * rate;
             self.deflection[j] += 0.5 * h * (self.speed[j] + end);
             self.speed[j] = end;
         }
-        swung
+        deflected
     }
 
     /// Joints whose teeth are apart, one bit each.

@@ -43,7 +43,7 @@ struct Sight<'a> {
 }
 
 /// Wild readings by channel.
-pub(super) fn wild(
+pub(super) fn outlier(
     time: &[f64],
     readings: &[Vec<f64>; CHANNELS.len()],
     noise: &[f64; CHANNELS.len()],
@@ -142,8 +142,8 @@ impl Sight<'_> {
         let without = 0.5 * (acceleration[SIDE - 1] + acceleration[SIDE + 1]);
         let said = (acceleration[SIDE] - without) * 0.5 * (time[SIDE + 1] - time[SIDE - 1]);
         acceleration[SIDE] = without;
-        let course = twice_integrated(time, &acceleration);
-        let rest: Vec<f64> = stroke.iter().zip(course).map(|(x, c)| x - c).collect();
+        let trajectory = twice_integrated(time, &acceleration);
+        let rest: Vec<f64> = stroke.iter().zip(trajectory).map(|(x, c)| x - c).collect();
         let (before, its_variance) = slope(&time[..SIDE], &rest[..SIDE]);
         let (after, other_variance) = slope(&time[SIDE + 1..], &rest[SIDE + 1..]);
         let deviation = self.noise[STROKE] * (its_variance + other_variance).sqrt();
