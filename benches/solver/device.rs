@@ -16,7 +16,7 @@ pub fn steps(criterion: &mut Criterion, case: &Case) {
     for (name, kind) in [
         ("with its piston, ledger", Kind::Carried { audited: true }),
         ("with its piston", Kind::Carried { audited: false }),
-        ("piston foretold", Kind::Foretold),
+        ("piston predicted", Kind::Predicted),
     ] {
         for substeps in [1, 2, 4] {
             group.bench_function(BenchmarkId::new(name, substeps), |bencher| {
@@ -36,7 +36,7 @@ pub enum Kind {
         audited: bool,
     },
     /// Somebody else does.
-    Foretold,
+    Predicted,
 }
 
 /// The part of a case in which something happens.
@@ -89,11 +89,11 @@ impl<'a> Moving<'a> {
                     self.case
                         .step_device(&mut state, &mut motion, time, substeps, audited);
                 }
-                Kind::Foretold => {
+                Kind::Predicted => {
                     let set_pressure = self.case.set_pressure(time);
-                    let foretold = self.motion[step];
+                    let predicted = self.motion[step];
                     let device = &self.case.device;
-                    black_box(device.advance(&mut state, set_pressure, foretold, STEP, substeps));
+                    black_box(device.advance(&mut state, set_pressure, predicted, STEP, substeps));
                 }
             }
         }

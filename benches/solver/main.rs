@@ -74,13 +74,13 @@ fn beside_lsoda(case: &Case) -> Vec<peer::Call> {
     };
     let audited = cost(Kind::Carried { audited: true }, 2);
     let plain = cost(Kind::Carried { audited: false }, 2);
-    let foretold = cost(Kind::Foretold, 2);
+    let predicted = cost(Kind::Predicted, 2);
     println!(
         "\none device step of 1 ms, 1 to 2.5 s of paper_step, best of {ROUNDS} rounds (asked: at most 2 us):"
     );
     println!("  with its piston and ledger  {audited:.3} us");
     println!("  with its piston             {plain:.3} us");
-    println!("  piston foretold             {foretold:.3} us");
+    println!("  piston predicted             {predicted:.3} us");
     let calls = peer::run().unwrap_or_else(|reason| {
         println!("LSODA skipped: {reason}");
         Vec::new()
