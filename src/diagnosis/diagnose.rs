@@ -2,13 +2,13 @@
 
 use super::answer::UNLISTED;
 use super::clean::{Cleaning, clean};
+use super::cross_validation::{self, CrossValidation, Depth, LeftOut};
 use super::estimate::{Estimates, estimates};
 use super::evidence::{Evidence, Prediction};
-use super::fit::FULL;
+use super::fit::Refit;
 use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
 use super::input::{DiagnosisInput, NamedRecording, Prepared};
-use super::left_out::{self, left_out};
 use super::links::{LinkResidual, links};
 use super::localise::{Difference, differences, robust_rms, root_mean_square};
 use super::mismatch::{Interval, intervals};
@@ -35,13 +35,13 @@ pub struct Ranked {
     /// Its probability among those looked at in full [1].
     pub probability: f64,
     /// Residuals of each recording, fitted to the others, in standard deviations, by recording and channel; none where there are no others.
-    pub left_out: Option<Vec<[Vec<f64>; CHANNELS.len()]>>,
+    pub left_out: Option<LeftOut>,
 }
 
 impl Ranked {
     /// Robust sum of squares of what was left out in turn.
     fn left_out_sum(&self) -> Option<f64> {
-        Some(left_out::sum(self.left_out.as_ref()?))
+        Some(cross_validation::sum(self.left_out.as_ref()?))
     }
 }
 
@@ -226,7 +226,7 @@ fn against(
     let search = search_of(case, &independent, settings);
     let mut found = search.run(observer);
     // What the first look came to may be out of the search's sight: laws that do nothing but together.
-    let seeded = search.refine(seed, FULL, 40);
+    let seeded = search.refit(seed, Refit::FULL);
     if !found.iter().any(|h| h.names() == seeded.names()) {
         let mut seeded = vec![seeded];
         search.eliminate(&mut seeded, observer);
@@ -236,14 +236,18 @@ fn against(
     let mut ranked = rank(&search, found);
     let whole = remaining.whole(evidence);
     let search = search_of(case, &whole, settings);
-    let all_samples = &FULL[FULL.len() - 1..];
     for (place, ranked) in ranked.iter_mut().enumerate() {
         if place == 0 || ranked.odds >= search.settings.least_odds {
-            ranked.hypothesis = search.refine(&ranked.hypothesis, all_samples, 40);
-            ranked.left_out = left_out(&whole, &ranked.hypothesis.fit);
+            ranked.hypothesis = search.refit(&ranked.hypothesis, Refit::FINEST);
+            ranked.left_out = left_out(&whole, &ranked.hypothesis);
         }
     }
     (ranked, whole)
+}
+
+/// Residuals of each recording by a fit to the others; none where there are no others.
+fn left_out(evidence: &Evidence, hypothesis: &Hypothesis) -> Option<LeftOut> {
+    CrossValidation::of(evidence)?.residuals(&hypothesis.fit, Depth::OneStep)
 }
 
 /// The search in some evidence of a case.
@@ -281,7 +285,7 @@ fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
     let close = ranked[0].score + limit;
     let near = ranked.iter().take_while(|r| r.score <= close).count();
     for leading in &mut ranked[..near] {
-        leading.left_out = left_out(search.evidence, &leading.hypothesis.fit);
+        leading.left_out = left_out(search.evidence, &leading.hypothesis);
     }
     let sums: Vec<Option<f64>> = ranked[..near].iter().map(Ranked::left_out_sum).collect();
     if let Some(first) = sums[0] {

@@ -73,6 +73,20 @@ impl Evidence {
     }
 }
 
+impl Evidence {
+    /// The same of some of the recordings, by their index.
+    #[must_use]
+    pub fn of_those(&self, which: impl Fn(usize) -> bool) -> Self {
+        let chosen = || (0..self.recordings.len()).filter(|i| which(*i));
+        Self {
+            recordings: chosen().map(|i| self.recordings[i].clone()).collect(),
+            nudgings: chosen().map(|i| self.nudgings[i].clone()).collect(),
+            shares: Mutex::default(),
+            ..*self
+        }
+    }
+}
+
 /// A description with what it gives.
 #[derive(Debug, Clone)]
 pub struct Prediction {

@@ -5,7 +5,7 @@
 //! ```
 
 use super::evidence::{Evidence, Prediction};
-use super::free::Free;
+use super::free::{Free, Prior};
 use super::settings::HUBER;
 use crate::plant::PlantParameters;
 use nalgebra::{DMatrix, DVector};
@@ -298,44 +298,124 @@ pub const FULL: &[Stage] = &[
 /// Error in time that a rough fit forgives [s].
 const ROUGH_TIME: f64 = 0.006;
 
-/// Settings of a fit.
+/// Where a fit ends at the latest.
 #[derive(Debug, Clone, Copy)]
-pub struct Effort<'a> {
+pub struct Limit {
     /// Iterations at most.
     pub iterations: usize,
-    /// Stages.
-    pub stages: &'a [Stage],
-    /// Columns of the first quantities that are taken as they are.
-    pub frozen: &'a [Vec<f64>],
     /// Longest step in a coordinate [1].
     pub longest_step: f64,
 }
 
-/// Fits the free quantities from where they start; `known` may spare simulations.
+impl Limit {
+    /// So many iterations, with steps for the numbers of laws.
+    pub const fn of(iterations: usize) -> Self {
+        Self {
+            iterations,
+            longest_step: 3.0,
+        }
+    }
+
+    /// So many iterations, with steps as long as a curve without a law may need.
+    pub const fn of_curve(iterations: usize) -> Self {
+        Self {
+            iterations,
+            longest_step: 30.0,
+        }
+    }
+}
+
+/// Start of a fit.
+#[derive(Debug, Clone, Copy)]
+pub enum Start<'a> {
+    /// Where it was; what is tolerated from what was believed, because a model that lacks something bends it out of shape.
+    Believed,
+    /// Where it was.
+    Here,
+    /// Where another description stands: impacts make many minima, and a fit comes to rest in one of them. What another gains by having come to a better
+    /// one is not what it has more.
+    Where(&'a PlantParameters),
+}
+
+/// A fit of what a hypothesis has free.
+#[derive(Debug, Clone, Copy)]
+pub struct Refit<'a> {
+    /// Its start.
+    pub start: Start<'a>,
+    /// Its stages.
+    pub stages: &'a [Stage],
+    /// Its end.
+    pub limit: Limit,
+}
+
+impl<'a> Refit<'a> {
+    /// The full fit from where it was.
+    pub const FULL: Self = Self {
+        start: Start::Believed,
+        stages: FULL,
+        limit: Limit::of(40),
+    };
+    /// The finest measure alone.
+    pub const FINEST: Self = Self {
+        stages: FULL.split_at(FULL.len() - 1).1,
+        ..Self::FULL
+    };
+    /// The rough fit.
+    pub const ROUGH: Self = Self {
+        stages: ROUGH,
+        limit: Limit::of(15),
+        ..Self::FULL
+    };
+
+    /// The same from another start.
+    #[must_use]
+    pub const fn from(self, start: Start<'a>) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The same with another end.
+    #[must_use]
+    pub const fn until(self, limit: Limit) -> Self {
+        Self { limit, ..self }
+    }
+
+    /// What is free in a fit, from this start.
+    pub fn free(&self, fitted: &Fit) -> Vec<Free> {
+        let here = fitted.free_from_here().into_iter();
+        match self.start {
+            Start::Here => here.collect(),
+            Start::Where(there) => here.map(|f| f.from_where(there)).collect(),
+            Start::Believed => here
+                .map(|f| match f.prior {
+                    Prior::Normal { mean, .. } => f.from(mean),
+                    Prior::Flat => f,
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Fits free quantities from where they start, the derivatives by the first of them `frozen`; `known` may spare simulations.
 pub fn fit(
     evidence: &Evidence,
-    plant: &PlantParameters,
-    free: &[Free],
-    effort: Effort<'_>,
-    known: Option<&Prediction>,
+    (plant, known): (&PlantParameters, Option<&Prediction>),
+    (free, frozen): (&[Free], &[Vec<f64>]),
+    stages: &[Stage],
+    limit: Limit,
 ) -> Fit {
     let mut values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
-    let mut here = evidence.predict(
-        &with_values(plant, free, &values),
-        effort.stages[0].guided,
-        known,
-    );
+    let mut here = evidence.predict(&with_values(plant, free, &values), stages[0].guided, known);
     let mut prior = prior_sum(free, &values);
     let mut information = DMatrix::zeros(free.len(), free.len());
-    let mut columns: Vec<Vec<f64>> = effort.frozen.to_vec();
+    let mut columns: Vec<Vec<f64>> = frozen.to_vec();
     let mut damping = 1e-4;
-    let mut left = effort.iterations;
+    let mut left = limit.iterations;
     for &Stage {
         forgiven,
         guided,
         bounded,
         gain: least,
-    } in effort.stages
+    } in stages
     {
         if here.guided != guided {
             here = evidence.predict(&here.plant, guided, None);
@@ -343,14 +423,8 @@ pub fn fit(
         let shares = evidence.shares(forgiven, guided);
         while left > 0 {
             left -= 1;
-            columns.truncate(effort.frozen.len());
-            columns.extend(jacobian(
-                evidence,
-                &here,
-                free,
-                &values,
-                effort.frozen.len(),
-            ));
+            columns.truncate(frozen.len());
+            columns.extend(jacobian(evidence, &here, free, &values, frozen.len()));
             let weighing = Weighing {
                 shares: &shares,
                 limit: limit_for(&here.residuals, &shares),
@@ -368,7 +442,7 @@ pub fn fit(
                     &normal,
                     &gradient,
                     damping,
-                    effort.longest_step,
+                    limit.longest_step,
                 );
                 let Some((tried, promised)) = tried else {
                     damping *= 10.0;

@@ -9,14 +9,14 @@
 //! recording, and S cannot tell: all hats have as many coefficients. What happens in another recording they do not foretell, unless it is a matter of
 //! time. Where only one recording shows a term, L says nothing of it either way, and S decides.
 
+use super::cross_validation::{CrossValidation, Depth};
 use super::evidence::{Evidence, Prediction};
-use super::fit::{Effort, FULL, Fit, ROUGH, fit};
+use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start};
 use super::free::{Free, Prior};
 use super::hypothesis::Hypothesis;
 use super::progress::{Observer, Step};
 use super::search::Search;
 use super::spectrum;
-use super::unlisted::elsewhere::Elsewhere;
 use crate::effects::Coordinate;
 use crate::plant::{
     Basis, Latent, MOST_COEFFICIENTS, PlantParameters, Port, Quantity, Variable, registry,
@@ -264,7 +264,7 @@ impl Search<'_> {
     /// The latent term that explains most beside a hypothesis.
     pub fn latent(&self, base: &Hypothesis, observer: &mut Observer<'_>) -> Option<Hypothesis> {
         // Of a full fit the held prediction is wanted.
-        let base = &self.refine_from_here(base, ROUGH, 2);
+        let base = &self.refit(base, curve(ROUGH, 2));
         let terms = terms(self.evidence, &base.fit.prediction);
         let mut ranked: Vec<Hypothesis> = terms
             .par_iter()
@@ -274,7 +274,7 @@ impl Search<'_> {
         ranked.truncate(LOOKED_AT);
         ranked = ranked
             .par_iter()
-            .map(|promising| self.refine_from_here(promising, ROUGH, LOOK))
+            .map(|promising| self.refit(promising, curve(ROUGH, LOOK)))
             .collect();
         ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
         for h in &ranked {
@@ -282,14 +282,16 @@ impl Search<'_> {
             observer(&Step::Variation.of(h, detail));
         }
         let fitted = ranked.iter().take(FITTED).map(|promising| {
-            let fitted = self.refine_from_here(promising, ROUGH, ROUGH_ITERATIONS);
+            let fitted = self.refit(promising, curve(ROUGH, ROUGH_ITERATIONS));
             self.narrowed(base, fitted)
         });
-        let turns = Elsewhere::of(self.evidence);
+        let turns = CrossValidation::of(self.evidence);
         let mut fitted: Vec<(f64, Hypothesis)> = fitted
             .map(|h| {
                 let own = self.latent_score(&h);
-                let elsewhere = turns.as_ref().map_or(own, |turns| turns.cost(&h.fit));
+                let elsewhere = turns.as_ref().map_or(own, |turns| {
+                    turns.rough_cost(&h.fit, Depth::Refit(ELSEWHERE))
+                });
                 let detail = format!("{} {own:.0}, elsewhere {elsewhere:.0}", described(&h));
                 observer(&Step::Variation.of(&h, detail));
                 (0.5 * (own + elsewhere), h)
@@ -323,7 +325,7 @@ impl Search<'_> {
             .iter()
             .filter(|(score, _)| alike(*score))
             .take(IN_FULL)
-            .map(|(_, h)| self.refine_from_here(h, FULL, FULL_ITERATIONS))
+            .map(|(_, h)| self.refit(h, curve(FULL, FULL_ITERATIONS)))
             .collect();
         full.sort_by(|a, b| a.fit.cost().total_cmp(&b.fit.cost()));
         let mut hypothesis = full.into_iter().next()?;
@@ -350,36 +352,21 @@ impl Search<'_> {
         &self,
         base: &Hypothesis,
         latent: &Latent,
-        stages: &[super::fit::Stage],
+        stages: &[Stage],
         iterations: usize,
     ) -> Hypothesis {
         let mut plant = base.fit.prediction.plant.clone();
         plant.latent = Some(latent.clone());
         let mut free = base.fit.free_from_here();
         free.extend(free_of_latent(latent));
-        self.refitted(base, &plant, &free, stages, iterations)
-    }
-
-    /// A hypothesis with other things free, its steps as long as a curve may need.
-    fn refitted(
-        &self,
-        base: &Hypothesis,
-        plant: &PlantParameters,
-        free: &[Free],
-        stages: &[super::fit::Stage],
-        iterations: usize,
-    ) -> Hypothesis {
-        let effort = Effort {
-            iterations,
+        let effects = base.effects.clone();
+        self.fitted(
+            effects,
+            (&plant, None),
+            &free,
             stages,
-            frozen: &[],
-            longest_step: 30.0,
-        };
-        Hypothesis {
-            effects: base.effects.clone(),
-            fit: fit(self.evidence, plant, free, effort, None),
-            depends_on: Vec::new(),
-        }
+            Limit::of_curve(iterations),
+        )
     }
 
     /// A term that acts in a part of its range alone, with its knots there, if that fits better.
@@ -410,22 +397,20 @@ impl Search<'_> {
         }
         best
     }
+}
 
-    /// Goes on with a fit from where it is.
-    fn refine_from_here(
-        &self,
-        hypothesis: &Hypothesis,
-        stages: &[super::fit::Stage],
-        iterations: usize,
-    ) -> Hypothesis {
-        let from = &hypothesis.fit;
-        let plant = &from.prediction.plant;
-        self.refitted(
-            hypothesis,
-            plant,
-            &from.free_from_here(),
-            stages,
-            iterations,
-        )
+/// The fit to the other recordings, from where that to all is.
+const ELSEWHERE: Refit<'static> = Refit {
+    start: Start::Here,
+    stages: ROUGH,
+    limit: Limit::of_curve(5),
+};
+
+/// Goes on with the fit of a curve from where it is.
+fn curve(stages: &[Stage], iterations: usize) -> Refit<'_> {
+    Refit {
+        start: Start::Here,
+        stages,
+        limit: Limit::of_curve(iterations),
     }
 }

@@ -106,7 +106,7 @@ fn square(evidence: &Evidence, best: &Fit, rival: &PlantParameters, inputs: &Pla
 #[cfg(test)]
 mod tests {
     use super::super::evidence::Measured;
-    use super::super::fit::{Effort, ROUGH, fit};
+    use super::super::fit::{Limit, ROUGH, fit};
     use super::super::free::{Free, Prior};
     use super::*;
     use crate::effects::Coordinate;
@@ -157,13 +157,7 @@ mod tests {
     }
 
     fn fitted(evidence: &Evidence, plant: &PlantParameters, free: &[Free]) -> Fit {
-        let effort = Effort {
-            iterations: 1,
-            stages: ROUGH,
-            frozen: &[],
-            longest_step: 3.0,
-        };
-        fit(evidence, plant, free, effort, None)
+        fit(evidence, (plant, None), (free, &[]), ROUGH, Limit::of(1))
     }
 
     fn best_for(rival: &PlantParameters) -> &'static str {

@@ -10,6 +10,7 @@
 //! count for one. The last fit is to all samples.
 
 use super::evidence::{Evidence, Measured, Prediction};
+use super::fit::{Limit, Refit};
 use super::hypothesis::Hypothesis;
 use super::progress::{Observer, Step};
 use super::ruled_out::{exchanges, variant};
@@ -187,7 +188,7 @@ fn greedy(search: &Search<'_>, observer: &mut Observer<'_>) -> Hypothesis {
         }
         let candidates = search.screen(&best, stages, f64::INFINITY);
         let mut refined: Vec<Hypothesis> = (candidates.iter().take(TRIED))
-            .map(|candidate| search.refine(candidate, stages, 30))
+            .map(|candidate| search.refit(candidate, Refit::ROUGH.until(Limit::of(30))))
             .collect();
         refined.sort_by(|a, b| a.fit.rough.total_cmp(&b.fit.rough));
         let Some(more) = refined.into_iter().next() else {

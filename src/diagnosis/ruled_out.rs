@@ -1,6 +1,6 @@
 //! Worth of an explanation of a part of the device: the same without each of its effects, and with the laws that could stand in an effect's place.
 
-use super::fit::{Effort, FULL, Fit, Stage, fit};
+use super::fit::{FULL, Fit, Limit, Stage, fit};
 use super::free::free_of;
 use super::hypothesis::Hypothesis;
 use super::search::Search;
@@ -76,13 +76,8 @@ pub(super) fn variant(
                 &starts[turn.min(starts.len() - 1)],
             ));
         }
-        let effort = Effort {
-            iterations: 40,
-            stages,
-            frozen: &[],
-            longest_step: 3.0,
-        };
-        fit(search.evidence, believed, &free, effort, None)
+        let from = (believed, None);
+        fit(search.evidence, from, (&free, &[]), stages, Limit::of(40))
     });
     tried.min_by(|a, b| a.cost().total_cmp(&b.cost()))
 }

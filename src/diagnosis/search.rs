@@ -4,8 +4,8 @@ mod finish;
 mod screen;
 
 use super::evidence::{Evidence, Prediction};
-use super::fit::{Effort, FULL, ROUGH, Stage, fit, rough_noise};
-use super::free::{Free, Prior};
+use super::fit::{Limit, ROUGH, Refit, Stage, fit, rough_noise};
+use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
 use super::progress::{Observer, Step};
 use super::scale::Scale;
@@ -13,9 +13,6 @@ use super::settings::Settings;
 use crate::effects::Effect;
 use crate::plant::PlantParameters;
 use rayon::prelude::*;
-
-/// Iterations of a full fit.
-const FULL_ITERATIONS: usize = 40;
 
 /// Everything a search needs.
 #[derive(Clone)]
@@ -64,28 +61,38 @@ impl Search<'_> {
         let effects = self.shown.iter().map(|shown| shown.effect).collect();
         let own = self.shown.iter().flat_map(|shown| &shown.numbers);
         let free: Vec<Free> = self.tolerated.iter().chain(own).copied().collect();
-        self.fitted(effects, &self.believed, &free, ROUGH, 15, None)
+        self.fitted(effects, (&self.believed, None), &free, ROUGH, Limit::of(15))
     }
 
-    fn fitted(
+    pub(super) fn fitted(
         &self,
         effects: Vec<&'static Effect>,
-        plant: &PlantParameters,
+        from: (&PlantParameters, Option<&Prediction>),
         free: &[Free],
         stages: &[Stage],
-        iterations: usize,
-        known: Option<&Prediction>,
+        limit: Limit,
     ) -> Hypothesis {
-        let effort = Effort {
-            iterations,
-            stages,
-            frozen: &[],
-            longest_step: 3.0,
-        };
         Hypothesis {
             effects,
-            fit: fit(self.evidence, plant, free, effort, known),
+            fit: fit(self.evidence, from, (free, &[]), stages, limit),
             depends_on: Vec::new(),
+        }
+    }
+
+    /// Fits everything that is free in a hypothesis once more.
+    pub fn refit(&self, hypothesis: &Hypothesis, refit: Refit<'_>) -> Hypothesis {
+        let fitted = &hypothesis.fit;
+        let from = (&fitted.prediction.plant, Some(&fitted.prediction));
+        let effects = hypothesis.effects.clone();
+        Hypothesis {
+            depends_on: hypothesis.depends_on.clone(),
+            ..self.fitted(
+                effects,
+                from,
+                &refit.free(fitted),
+                refit.stages,
+                refit.limit,
+            )
         }
     }
 
@@ -213,7 +220,7 @@ impl Search<'_> {
             if leading.effects.len() > 1 && self.rough_score(leading) > 3.0 * near {
                 break;
             }
-            let refitted = self.refine(leading, ROUGH, 15);
+            let refitted = self.refit(leading, Refit::ROUGH);
             if refitted.fit.rough < leading.fit.rough {
                 *leading = refitted;
             }
@@ -264,7 +271,7 @@ impl Search<'_> {
                 full.push(known.full.clone());
                 continue;
             }
-            let refined = self.refine(candidate, FULL, FULL_ITERATIONS);
+            let refined = self.refit(candidate, Refit::FULL);
             let left = refined.fit.cost() - self.evidence.count() as f64;
             let detail = format!("score {:.1}, left {left:.0}", self.score(&refined));
             observer(&Step::FullFit.of(&refined, detail));
@@ -303,7 +310,7 @@ impl Search<'_> {
                 let mut other = candidate.clone();
                 let own = other.fit.values.len() - start.len();
                 other.fit.values[own..].copy_from_slice(&start);
-                let refined = self.refine(&other, FULL, FULL_ITERATIONS);
+                let refined = self.refit(&other, Refit::FULL);
                 let left = refined.fit.cost() - self.evidence.count() as f64;
                 observer(&Step::FullFit.of(&refined, format!("from the start, left {left:.0}")));
                 if scale.is_adequate(&refined) {
@@ -333,8 +340,9 @@ impl Search<'_> {
                     let fit = &hypothesis.fit;
                     let mut free = fit.free_from_here();
                     free[own + index].start = *choice;
-                    let (plant, effects) = (&fit.prediction.plant, hypothesis.effects.clone());
-                    self.fitted(effects, plant, &free, ROUGH, 6, Some(&fit.prediction))
+                    let from = (&fit.prediction.plant, Some(&fit.prediction));
+                    let effects = hypothesis.effects.clone();
+                    self.fitted(effects, from, &free, ROUGH, Limit::of(6))
                 })
                 .collect();
             tried.sort_by(|a, b| a.fit.rough.total_cmp(&b.fit.rough));
@@ -344,31 +352,6 @@ impl Search<'_> {
                 *hypothesis = best;
             }
         }
-    }
-
-    /// Fits everything that is free in a hypothesis: the effects from where they are, what is tolerated from what was believed, because a model that
-    /// lacks something bends it out of shape.
-    pub fn refine(
-        &self,
-        hypothesis: &Hypothesis,
-        stages: &[Stage],
-        iterations: usize,
-    ) -> Hypothesis {
-        let fitted = &hypothesis.fit;
-        let mut free = fitted.free_from_here();
-        for f in &mut free {
-            if let Prior::Normal { mean, .. } = f.prior {
-                f.start = mean;
-            }
-        }
-        self.fitted(
-            hypothesis.effects.clone(),
-            &fitted.prediction.plant,
-            &free,
-            stages,
-            iterations,
-            Some(&fitted.prediction),
-        )
     }
 }
 

@@ -1,12 +1,12 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
-use super::super::fit::{FULL, ROUGH};
+use super::super::cross_validation::{self, CrossValidation, Depth};
+use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start};
 use super::super::free::Free;
 use super::super::hypothesis::{Hypothesis, stands_for};
-use super::super::left_out;
 use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
-use super::{FULL_ITERATIONS, Search, same};
+use super::{Search, same};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -14,6 +14,17 @@ const CHANCE: f64 = 6.0;
 const MOST_CLOSE: usize = 6;
 /// Iterations of a rough fit without one of the effects.
 const LIGHTER: usize = 8;
+/// The last stages of a full fit, for what is all but there.
+const LAST: &[Stage] = FULL.split_at(FULL.len() - 2).1;
+
+/// A fit again from where a richer hypothesis stands.
+fn again(richer: &Hypothesis) -> Refit<'_> {
+    Refit {
+        start: Start::Where(&richer.fit.prediction.plant),
+        stages: LAST,
+        ..Refit::FULL
+    }
+}
 
 impl Search<'_> {
     /// Fits in full what says the same as the best hypothesis with plainer laws, where that has not been done: what the best was taken from may have had
@@ -33,7 +44,7 @@ impl Search<'_> {
         let more: Vec<Hypothesis> = rough
             .iter()
             .filter(plainer)
-            .map(|h| self.refine(h, FULL, FULL_ITERATIONS))
+            .map(|h| self.refit(h, Refit::FULL))
             .collect();
         for h in &more {
             observer(&Step::Variation.of(h, format!("plainer {:.1}", self.score(h))));
@@ -65,7 +76,7 @@ impl Search<'_> {
             .collect();
         close.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         let more: Vec<Hypothesis> = (close.into_iter().take(MOST_CLOSE))
-            .map(|h| self.refine(h, FULL, FULL_ITERATIONS))
+            .map(|h| self.refit(h, Refit::FULL))
             .collect();
         for h in &more {
             observer(&Step::Variation.of(h, format!("close {:.1}", self.score(h))));
@@ -129,7 +140,7 @@ impl Search<'_> {
             && self.score(&first) < self.score(&full[0])
         {
             let own = |base: &&Hypothesis| base.names() == first.names();
-            let without = (bases.iter().find(own)).map(|base| self.fitted_where(base, &first));
+            let without = (bases.iter().find(own)).map(|base| self.refit(base, again(&first)));
             match without.filter(|h| scale.is_adequate(h) || self.score(h) <= self.score(&first)) {
                 Some(without) => {
                     let detail = format!("without a term {:.1}", self.score(&without));
@@ -198,12 +209,13 @@ impl Search<'_> {
         let mut effects = hypothesis.effects.clone();
         effects.remove(index);
         // What was not needed is missed at no sample.
-        let last = &FULL[FULL.len() - 2..];
-        let near = self.fitted(effects.clone(), &self.believed, &free, last, LIGHTER, None);
+        let from = (&self.believed, None);
+        let limit = Limit::of(LIGHTER);
+        let near = self.fitted(effects.clone(), from, &free, LAST, limit);
         if self.score(&near) < self.score(hypothesis) {
             return Some(near);
         }
-        let rough = self.fitted(effects, &self.believed, &free, ROUGH, LIGHTER, None);
+        let rough = self.fitted(effects, from, &free, ROUGH, limit);
         if self.rough_score(&rough) > self.rough_score(hypothesis) + self.settings.given_up {
             return None;
         }
@@ -211,24 +223,11 @@ impl Search<'_> {
             f.start = *value;
         }
         let effects = rough.effects;
-        Some(self.fitted(effects, &self.believed, &free, FULL, FULL_ITERATIONS, None))
-    }
-
-    /// A hypothesis fitted again from where a richer one stands. Impacts make many dips, and a fit comes to rest in one of them: what another gains by
-    /// having come to a better one is not what it has more.
-    fn fitted_where(&self, hypothesis: &Hypothesis, richer: &Hypothesis) -> Hypothesis {
-        let there = &richer.fit.prediction.plant;
-        let free: Vec<Free> = (hypothesis.fit.free.iter())
-            .map(|f| f.from_where(there))
-            .collect();
-        let plant = &hypothesis.fit.prediction.plant;
-        let stages = &FULL[FULL.len() - 2..];
-        let effects = hypothesis.effects.clone();
-        self.fitted(effects, plant, &free, stages, FULL_ITERATIONS, None)
+        Some(self.fitted(effects, from, &free, FULL, Refit::FULL.limit))
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good. What a law is a little wrong by at an impact, an effect
-    /// that has nothing to do with it may fit by chance: so it must foretell recordings that were left out, and where the piston is held to its measured
+    /// that has nothing to do with it may fit by chance: so it must predict recordings that were left out, and where the piston is held to its measured
     /// motion it must not be worse by more than chance.
     pub(super) fn add_small(
         &self,
@@ -242,29 +241,33 @@ impl Search<'_> {
         {
             let score = self.score(best);
             let least = scale.material_in_full(best.fit.cost());
-            let precise = &FULL[FULL.len() - 1..];
             // What derivatives promise is not exact: half of what is needed is worth a look.
             let needed = least + self.settings.look_elsewhere + (self.evidence.count() as f64).ln();
             let most = best.fit.misfit - 0.5 * needed;
-            let Some(more) = self.screen(best, precise, most).into_iter().next() else {
+            let Some(more) = self
+                .screen(best, Refit::FINEST.stages, most)
+                .into_iter()
+                .next()
+            else {
                 return;
             };
             if score - self.score(&more) <= least {
                 return;
             }
-            let more = self.refine(&more, precise, FULL_ITERATIONS);
+            let more = self.refit(&more, Refit::FINEST);
             let gain = score - self.score(&more);
             observer(&Step::Variation.of(&more, format!("small, gain {gain:.1}")));
             if gain <= least {
                 return;
             }
-            let again = self.fitted_where(best, &more);
+            let again = self.refit(best, again(&more));
             let gain = self.score(&again) - self.score(&more);
             let held = again.fit.rough - more.fit.rough;
             let detail = format!("of which its own {gain:.1}, held {held:.1}");
             observer(&Step::Variation.of(&more, detail));
             let contradicted = held < -CHANCE * (2.0 * more.fit.free.len() as f64).sqrt();
-            let kept = gain > least && !contradicted && self.foretells(&more, &again, observer);
+            let kept =
+                gain > least && !contradicted && self.predicts_better(&more, &again, observer);
             if self.score(&again) < score {
                 full[0] = again;
             }
@@ -275,14 +278,18 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a hypothesis foretells recordings that were left out better than a simpler one. Where there are none, nothing speaks against it.
-    fn foretells(
+    /// Whether a hypothesis predicts recordings that were left out better than a simpler one. Where there are none, nothing speaks against it.
+    fn predicts_better(
         &self,
         more: &Hypothesis,
         simpler: &Hypothesis,
         observer: &mut Observer<'_>,
     ) -> bool {
-        let cost = |h: &Hypothesis| left_out::cost(self.evidence, &h.fit);
+        let turns = CrossValidation::of(self.evidence);
+        let cost = |h: &Hypothesis| {
+            let left = turns.as_ref()?.residuals(&h.fit, Depth::OneStep)?;
+            Some(cross_validation::sum(&left))
+        };
         let (Some(without), Some(with)) = (cost(simpler), cost(more)) else {
             return true;
         };

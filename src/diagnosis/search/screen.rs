@@ -1,7 +1,7 @@
 //! Which effects promise to explain what a hypothesis leaves: one simulation a start, derivatives of those that promise, a short fit of the best.
 
 use super::super::evidence::Prediction;
-use super::super::fit::{Effort, Stage, fit, jacobian, linearised_cost, with_values};
+use super::super::fit::{Limit, Stage, fit, jacobian, linearised_cost, with_values};
 use super::super::free::{Free, Prior, free_of};
 use super::super::hypothesis::Hypothesis;
 use super::super::{bumps, spectrum};
@@ -202,22 +202,16 @@ impl Search<'_> {
         for f in &free {
             f.quantity.set(&mut plant, f.start);
         }
-        let effort = Effort {
-            iterations,
-            stages,
-            frozen: &frozen,
-            longest_step: 3.0,
-        };
         let mut effects = from.effects.clone();
         effects.push(effect);
         Hypothesis {
             effects,
             fit: fit(
                 self.evidence,
-                &plant,
-                &free,
-                effort,
-                Some(&from.fit.prediction),
+                (&plant, Some(&from.fit.prediction)),
+                (&free, &frozen),
+                stages,
+                Limit::of(iterations),
             ),
             depends_on: Vec::new(),
         }

@@ -2,7 +2,6 @@
 //! a shape, and which known effects came nearest.
 
 pub mod balance;
-pub mod elsewhere;
 pub mod form;
 pub mod known;
 pub mod report;

@@ -1,0 +1,154 @@
+//! Prediction of each recording by a fit to the others, to one of two depths.
+//!
+//! ```text
+//! u_r = u - (J' W J + P)^-1 (J' W r + p)      over all recordings but r, from the optimum u of all
+//! ```
+//!
+//! J derivatives of the residuals by the coordinates, W weights of Huber's loss, P and p of the priors: one step of Gauss and Newton, which from an optimum
+//! is all but the whole way where a law is nearly linear. A refit goes the whole way. Then the recording r is simulated with u_r.
+
+use super::evidence::Evidence;
+use super::fit::{Fit, ROUGH, Refit, fit, robust_sum, with_values};
+use super::settings::HUBER;
+use crate::plant::{CHANNELS, PlantParameters};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Longest step in a coordinate, as in the fit [1].
+const LONGEST: f64 = 3.0;
+
+/// Depth of a fit to the others.
+#[derive(Debug, Clone, Copy)]
+pub enum Depth {
+    /// One step from the optimum of all, without a simulation.
+    OneStep,
+    /// A fit.
+    Refit(Refit<'static>),
+}
+
+/// Residuals of recordings, each by a fit to the others: measured less predicted in standard deviations, by recording and channel.
+pub type LeftOut = Vec<[Vec<f64>; CHANNELS.len()]>;
+
+/// Each recording, and the others.
+#[derive(Debug)]
+pub struct CrossValidation<'a> {
+    evidence: &'a Evidence,
+    turns: Vec<(Evidence, Evidence)>,
+}
+
+impl<'a> CrossValidation<'a> {
+    /// Of recordings; none where one stands alone.
+    #[must_use]
+    pub fn of(evidence: &'a Evidence) -> Option<Self> {
+        let count = evidence.recordings.len();
+        let turn = |left| {
+            let own = evidence.of_those(|i| i == left);
+            (own, evidence.of_those(|i| i != left))
+        };
+        (count > 1).then(|| Self {
+            evidence,
+            turns: (0..count).map(turn).collect(),
+        })
+    }
+
+    /// Descriptions by a fit to all recordings but one, for each of them.
+    fn plants(&self, whole: &Fit, depth: Depth) -> Vec<PlantParameters> {
+        let turn = |left: usize| match depth {
+            Depth::Refit(refit) => {
+                let (free, from) = (refit.free(whole), (&whole.prediction.plant, None));
+                let others = &self.turns[left].1;
+                let fitted = fit(others, from, (&free, &[]), refit.stages, refit.limit);
+                fitted.prediction.plant
+            }
+            Depth::OneStep => {
+                let samples =
+                    |i: usize| CHANNELS.len() * self.evidence.recordings[i].inputs.time.len();
+                let start: usize = (0..left).map(samples).sum();
+                let values = without(whole, start..start + samples(left));
+                with_values(&whole.prediction.plant, &whole.free, &values)
+            }
+        };
+        (0..self.turns.len()).into_par_iter().map(turn).collect()
+    }
+
+    /// Residuals of each recording; none where derivatives are asked for that the fit has not.
+    #[must_use]
+    pub fn residuals(&self, whole: &Fit, depth: Depth) -> Option<LeftOut> {
+        if matches!(depth, Depth::OneStep) && whole.columns.len() != whole.free.len() {
+            return None;
+        }
+        let plants = self.plants(whole, depth);
+        let turns = self.turns.par_iter().zip(&plants).map(|((own, _), plant)| {
+            let residuals = own.predict(plant, false, None).residuals;
+            let count = own.recordings[0].inputs.time.len();
+            std::array::from_fn(|channel| {
+                residuals[channel * count..(channel + 1) * count].to_vec()
+            })
+        });
+        Some(turns.collect())
+    }
+
+    /// Cost of all recordings, the piston held to its measured motion and errors in time forgiven [1].
+    #[must_use]
+    pub fn rough_cost(&self, whole: &Fit, depth: Depth) -> f64 {
+        let plants = self.plants(whole, depth);
+        let turns = self.turns.iter().zip(&plants).map(|((own, _), plant)| {
+            let shares = own.shares(ROUGH[0].forgiven, ROUGH[0].guided);
+            let left = own.predict(plant, ROUGH[0].guided, None).residuals;
+            let counted = left.iter().zip(shares.iter()).map(|(r, share)| r * share);
+            robust_sum(&counted.collect::<Vec<f64>>())
+        });
+        turns.sum()
+    }
+}
+
+/// Robust sum of squares of what was left out in turn.
+pub fn sum(left: &[[Vec<f64>; CHANNELS.len()]]) -> f64 {
+    let channels = left.iter().flatten();
+    channels.map(|residuals| robust_sum(residuals)).sum()
+}
+
+/// Values of the free quantities without some samples.
+fn without(fit: &Fit, left: std::ops::Range<usize>) -> Vec<f64> {
+    let count = fit.free.len();
+    let residuals = &fit.prediction.residuals;
+    let weight = |i: usize| {
+        let size = residuals[i].abs();
+        let counts = size.is_finite() && !left.contains(&i);
+        let weight = if size <= HUBER { 1.0 } else { HUBER / size };
+        if counts { weight } else { 0.0 }
+    };
+    let weights: Vec<f64> = (0..residuals.len()).map(weight).collect();
+    let product = |one: &[f64], other: &[f64]| -> f64 {
+        let pairs = one.iter().zip(other).zip(&weights);
+        pairs
+            .filter(|((one, other), w)| **w > 0.0 && one.is_finite() && other.is_finite())
+            .map(|((one, other), w)| w * one * other)
+            .sum()
+    };
+    let mut normal = DMatrix::zeros(count, count);
+    let mut gradient = DVector::zeros(count);
+    for i in 0..count {
+        for j in 0..=i {
+            let sum = product(&fit.columns[i], &fit.columns[j]);
+            normal[(i, j)] = sum;
+            normal[(j, i)] = sum;
+        }
+        gradient[i] = product(&fit.columns[i], residuals);
+    }
+    for (i, free) in fit.free.iter().enumerate() {
+        let slope = free.departure_slope(fit.values[i]);
+        normal[(i, i)] += slope * slope;
+        gradient[i] += slope * free.departure(fit.values[i]);
+        // What the others do not tell stays where it is.
+        normal[(i, i)] += 1e-6 * normal[(i, i)] + 1e-3;
+    }
+    let Some(step) = normal.cholesky().map(|c| c.solve(&gradient)) else {
+        return fit.values.clone();
+    };
+    let moved = |(i, free): (usize, &super::free::Free)| {
+        let at = free.coordinate.of(fit.values[i]) - step[i].clamp(-LONGEST, LONGEST);
+        free.clamp(free.coordinate.value(at))
+    };
+    fit.free.iter().enumerate().map(moved).collect()
+}
