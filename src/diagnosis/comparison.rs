@@ -110,7 +110,7 @@ impl Diagnosis {
 
     /// A recording as it is predicted by a fit to the others.
     fn left_out_of(&self, recording: usize) -> Option<Channels> {
-        let left = &self.ranked[0].left_out.as_ref()?[recording];
+        let left = &self.ranked[0].left_out.as_ref()?.residuals[recording];
         let measured = &self.evidence.recordings[recording].readings;
         Some(std::array::from_fn(|channel| {
             let noise = self.evidence.noise[channel];

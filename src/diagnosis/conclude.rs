@@ -120,7 +120,8 @@ impl Diagnosis {
             .collect()
     }
 
-    /// Probability that an effect is at work, by its name.
+    /// Probability that an effect is at work, by its name: that of the explanations with it, times G / (G + L), G what it gains over the best one without
+    /// it and L what all effects together leave beyond noise, of which what it gains may be a part.
     #[must_use]
     pub fn confidence(&self, name: &str) -> f64 {
         let has = |r: &&super::diagnose::Ranked| {
@@ -129,7 +130,16 @@ impl Diagnosis {
             unnamed || r.hypothesis.effects.iter().any(|e| own(e))
         };
         let with = self.ranked.iter().filter(has);
-        with.map(|r| r.probability).sum::<f64>().min(1.0)
+        let probability = with.map(|r| r.probability).sum::<f64>().min(1.0);
+        let own = &self.best().fit;
+        let left = self.model_error.left(&self.evidence, own);
+        let without = self.ranked.iter().filter(|r| !has(r));
+        let least = without.map(|r| r.hypothesis.fit.cost() - own.cost());
+        let gain = least.fold(f64::INFINITY, f64::min).max(0.0);
+        match left > 0.0 && gain.is_finite() {
+            true => probability * gain / (gain + left),
+            false => probability,
+        }
     }
 
     /// Share of the mismatch of the baseline that is explained [1]; none where there is no mismatch beyond noise.
@@ -177,7 +187,7 @@ impl Diagnosis {
                 let all: Vec<f64> = own.flat_map(|(.., r)| r.iter().copied()).collect();
                 ErrorSize::of(&all, noise)
             };
-            let after = left.iter().flat_map(|r| r[channel as usize].iter());
+            let after = (left.residuals.iter()).flat_map(|r| r[channel as usize].iter());
             let after: Vec<f64> = after.copied().collect();
             let in_turn = Unseen {
                 channel,
@@ -307,7 +317,7 @@ impl Diagnosis {
         let improved = misfits(evidence, &self.best().fit.prediction.residuals);
         let left = |recording: usize, channel: usize| {
             let left = self.ranked[0].left_out.as_ref()?;
-            robust_rms(&left[recording][channel]).map(|(_, rms)| rms)
+            robust_rms(&left.residuals[recording][channel]).map(|(_, rms)| rms)
         };
         let together = believed.iter().zip(&baseline).zip(&improved);
         together

@@ -9,8 +9,10 @@
 
 use super::evidence::Evidence;
 use super::fit::{Fit, ROUGH, Refit, fit, robust_sum, with_values};
+use super::free::Free;
+use super::model_error::ModelError;
 use super::settings::HUBER;
-use crate::plant::{CHANNELS, PlantParameters};
+use crate::plant::CHANNELS;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -26,8 +28,39 @@ pub enum Depth {
     Refit(Refit<'static>),
 }
 
-/// Residuals of recordings, each by a fit to the others: measured less predicted in standard deviations, by recording and channel.
-pub type LeftOut = Vec<[Vec<f64>; CHANNELS.len()]>;
+/// Recordings, each predicted by a fit to the others.
+#[derive(Debug, Clone)]
+pub struct LeftOut {
+    /// Measured less predicted in standard deviations, by recording and channel.
+    pub residuals: Vec<[Vec<f64>; CHANNELS.len()]>,
+    /// Values of what is free in the fits, in the order of the fit to all.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl LeftOut {
+    /// Robust sum of squares, weighed by a model error.
+    pub fn sum(&self, model_error: &ModelError) -> f64 {
+        let of_recording =
+            (self.residuals.iter()).flat_map(|recording| recording.iter().enumerate());
+        of_recording
+            .map(|(channel, residuals)| model_error.cost_of(channel, residuals))
+            .sum()
+    }
+
+    /// Variance of each free quantity in the fit's coordinates by how its value moves as recordings are left out: (n - 1) / n sum of (u_r - mean u)^2, the
+    /// jackknife with recordings as its groups (Efron and Stein, Ann. Stat. 9, 1981). A law that is a little wrong is so in each recording in another way.
+    pub fn jackknife(&self, free: &[Free]) -> Vec<f64> {
+        let count = self.values.len() as f64;
+        let of = |(index, free): (usize, &Free)| {
+            let at: Vec<f64> = (self.values.iter())
+                .map(|values| free.coordinate.of(values[index]))
+                .collect();
+            let mean = at.iter().sum::<f64>() / count;
+            (count - 1.0) / count * at.iter().map(|u| (u - mean).powi(2)).sum::<f64>()
+        };
+        free.iter().enumerate().map(of).collect()
+    }
+}
 
 /// Each recording, and the others.
 #[derive(Debug)]
@@ -51,48 +84,52 @@ impl<'a> CrossValidation<'a> {
         })
     }
 
-    /// Descriptions by a fit to all recordings but one, for each of them.
-    fn plants(&self, whole: &Fit, depth: Depth) -> Vec<PlantParameters> {
+    /// Values of what is free by a fit to all recordings but one, for each of them.
+    fn values(&self, whole: &Fit, depth: Depth) -> Vec<Vec<f64>> {
         let turn = |left: usize| match depth {
             Depth::Refit(refit) => {
                 let (free, from) = (refit.free(whole), (&whole.prediction.plant, None));
                 let others = &self.turns[left].1;
-                let fitted = fit(others, from, (&free, &[]), refit.stages, refit.limit);
-                fitted.prediction.plant
+                fit(others, from, (&free, &[]), refit.stages, refit.limit).values
             }
             Depth::OneStep => {
                 let samples =
                     |i: usize| CHANNELS.len() * self.evidence.recordings[i].inputs.time.len();
                 let start: usize = (0..left).map(samples).sum();
-                let values = without(whole, start..start + samples(left));
-                with_values(&whole.prediction.plant, &whole.free, &values)
+                without(whole, start..start + samples(left))
             }
         };
         (0..self.turns.len()).into_par_iter().map(turn).collect()
     }
 
-    /// Residuals of each recording; none where derivatives are asked for that the fit has not.
+    /// Each recording as predicted; none where derivatives are asked for that the fit has not.
     #[must_use]
-    pub fn residuals(&self, whole: &Fit, depth: Depth) -> Option<LeftOut> {
+    pub fn left_out(&self, whole: &Fit, depth: Depth) -> Option<LeftOut> {
         if matches!(depth, Depth::OneStep) && whole.columns.len() != whole.free.len() {
             return None;
         }
-        let plants = self.plants(whole, depth);
-        let turns = self.turns.par_iter().zip(&plants).map(|((own, _), plant)| {
-            let residuals = own.predict(plant, false, None).residuals;
+        let values = self.values(whole, depth);
+        let turns = self.turns.par_iter().zip(&values);
+        let residuals = turns.map(|((own, _), values)| {
+            let plant = with_values(&whole.prediction.plant, &whole.free, values);
+            let residuals = own.predict(&plant, false, None).residuals;
             let count = own.recordings[0].inputs.time.len();
             std::array::from_fn(|channel| {
                 residuals[channel * count..(channel + 1) * count].to_vec()
             })
         });
-        Some(turns.collect())
+        Some(LeftOut {
+            residuals: residuals.collect(),
+            values,
+        })
     }
 
     /// Cost of all recordings, the piston held to its measured motion and errors in time forgiven [1].
     #[must_use]
     pub fn rough_cost(&self, whole: &Fit, depth: Depth) -> f64 {
-        let plants = self.plants(whole, depth);
-        let turns = self.turns.iter().zip(&plants).map(|((own, _), plant)| {
+        let values = self.values(whole, depth);
+        let turns = self.turns.iter().zip(&values).map(|((own, _), values)| {
+            let plant = &with_values(&whole.prediction.plant, &whole.free, values);
             let shares = own.shares(ROUGH[0].forgiven, ROUGH[0].guided);
             let left = own.predict(plant, ROUGH[0].guided, None).residuals;
             let counted = left.iter().zip(shares.iter()).map(|(r, share)| r * share);
@@ -100,12 +137,6 @@ impl<'a> CrossValidation<'a> {
         });
         turns.sum()
     }
-}
-
-/// Robust sum of squares of what was left out in turn.
-pub fn sum(left: &[[Vec<f64>; CHANNELS.len()]]) -> f64 {
-    let channels = left.iter().flatten();
-    channels.map(|residuals| robust_sum(residuals)).sum()
 }
 
 /// Values of the free quantities without some samples.

@@ -2,16 +2,17 @@
 
 use super::answer::UNLISTED;
 use super::clean::{Cleaning, clean};
-use super::cross_validation::{self, CrossValidation, Depth, LeftOut};
+use super::cross_validation::{CrossValidation, Depth, LeftOut};
 use super::estimate::{Estimates, estimates};
 use super::evidence::{Evidence, Prediction};
-use super::fit::Refit;
+use super::fit::{Limit, Refit, Start};
 use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
 use super::input::{DiagnosisInput, NamedRecording, Prepared};
 use super::links::{LinkResidual, links};
 use super::localise::{Difference, differences, robust_rms, root_mean_square};
 use super::mismatch::{Interval, intervals};
+use super::model_error::ModelError;
 use super::next_experiment::{Separation, separations};
 use super::progress::{Observer, Step};
 use super::regime::{Regime, regimes};
@@ -22,6 +23,9 @@ use super::settings::Settings;
 use super::unlisted::Shape;
 use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
+
+/// The fit of the answer to all recordings but one, from where that to all is.
+const LEFT_OUT: Refit<'static> = Refit::FINEST.from(Start::Here).until(Limit::of(8));
 
 /// An explanation among others.
 #[derive(Debug, Clone)]
@@ -34,14 +38,14 @@ pub struct Ranked {
     pub odds: f64,
     /// Its probability among those looked at in full [1].
     pub probability: f64,
-    /// Residuals of each recording, fitted to the others, in standard deviations, by recording and channel; none where there are no others.
+    /// Each recording as predicted by a fit to the others; none where there are no others.
     pub left_out: Option<LeftOut>,
 }
 
 impl Ranked {
     /// Robust sum of squares of what was left out in turn.
-    fn left_out_sum(&self) -> Option<f64> {
-        Some(cross_validation::sum(self.left_out.as_ref()?))
+    fn left_out_sum(&self, model_error: &ModelError) -> Option<f64> {
+        Some(self.left_out.as_ref()?.sum(model_error))
     }
 }
 
@@ -112,6 +116,8 @@ pub struct Diagnosis {
     pub looked_at: usize,
     /// Explanations that were fitted roughly on the way, the best first.
     pub roughly: Vec<RoughFit>,
+    /// What the best leaves beyond noise, by which the evidence was weighed.
+    pub model_error: ModelError,
     /// Remainder that no law explains of a part of the device; none where that is noise, or where there is the whole of it.
     pub remaining: Option<Remaining>,
     /// Variants of the best that do worse, of a part of the device.
@@ -149,12 +155,18 @@ pub fn diagnose(
         .map(|channel| Remaining::of(&search_of(case, &evidence, settings), channel, observer))
         .filter(|(remaining, _)| !remaining.is_noise());
     let mut roughly = Vec::new();
-    let (ranked, evidence, remaining) = match remaining {
+    let mut weight = ModelError::NONE;
+    let (mut ranked, evidence, remaining) = match remaining {
         None => {
             let search = search_of(case, &evidence, settings);
-            let (found, rough) = search.run_with_rough(observer);
+            let (found, rough, model_error) = search.run_with_rough(observer);
             roughly = rough;
-            (rank(&search, found), evidence, None)
+            let weighed = Search {
+                model_error,
+                ..search.clone()
+            };
+            weight = model_error;
+            (rank(&weighed, found), evidence, None)
         }
         Some((mut remaining, mut seed)) => {
             let mut rounds = 0;
@@ -173,6 +185,10 @@ pub fn diagnose(
             }
         }
     };
+    if let Some(turns) = CrossValidation::of(&evidence) {
+        let whole = &ranked[0].hypothesis.fit;
+        ranked[0].left_out = turns.left_out(whole, Depth::Refit(LEFT_OUT));
+    }
     let search = search_of(case, &evidence, settings);
     let best = &ranked[0].hypothesis;
     observer(&Step::Localisation.begins());
@@ -199,8 +215,9 @@ pub fn diagnose(
             None => Vec::new(),
         },
         roughly,
+        model_error: weight,
         remaining,
-        estimates: estimates(&case.believed, best, &evidence),
+        estimates: estimates(&case.believed, &ranked, &evidence),
         shape: Shape::of(&evidence, best),
         mismatch: intervals(&evidence, &case.believed, best),
         as_believed: evidence.predict(&case.believed, false, None),
@@ -245,9 +262,9 @@ fn against(
     (ranked, whole)
 }
 
-/// Residuals of each recording by a fit to the others; none where there are no others.
+/// Each recording as predicted by one step to a fit to the others; none where there are no others.
 fn left_out(evidence: &Evidence, hypothesis: &Hypothesis) -> Option<LeftOut> {
-    CrossValidation::of(evidence)?.residuals(&hypothesis.fit, Depth::OneStep)
+    CrossValidation::of(evidence)?.left_out(&hypothesis.fit, Depth::OneStep)
 }
 
 /// The search in some evidence of a case.
@@ -265,6 +282,7 @@ fn search_of<'a>(case: &DiagnosisInput, evidence: &'a Evidence, settings: &Setti
         shown: case.shown.clone(),
         look,
         most_effects,
+        model_error: ModelError::NONE,
         settings: *settings,
     }
 }
@@ -287,7 +305,9 @@ fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
     for leading in &mut ranked[..near] {
         leading.left_out = left_out(search.evidence, &leading.hypothesis);
     }
-    let sums: Vec<Option<f64>> = ranked[..near].iter().map(Ranked::left_out_sum).collect();
+    let sums: Vec<Option<f64>> = (ranked[..near].iter())
+        .map(|r| r.left_out_sum(&search.model_error))
+        .collect();
     if let Some(first) = sums[0] {
         let others = sums.iter().enumerate().skip(1);
         // A richer law in place of a plain one predicts a little better whether or not it is at work: the search has weighed them.

@@ -8,9 +8,9 @@
 //! where between two samples something happened: a delay or a time constant is uncertain by half a sample either way, evenly.
 
 use super::covariance::covariance;
+use super::diagnose::Ranked;
 use super::evidence::Evidence;
 use super::free::Free;
-use super::hypothesis::Hypothesis;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
 use nalgebra::DMatrix;
@@ -102,15 +102,54 @@ fn longest_sample(evidence: &Evidence) -> f64 {
     medians.fold(0.0, f64::max)
 }
 
-/// Numbers and intervals of an explanation.
-pub fn estimates(
-    believed: &PlantParameters,
-    hypothesis: &Hypothesis,
-    evidence: &Evidence,
-) -> Estimates {
+/// Widens a covariance to variances that are larger than its own, its correlations kept.
+fn at_least(covariance: &mut DMatrix<f64>, variances: &[f64]) {
+    let own = covariance.diagonal();
+    let stretch = |i: usize| {
+        (variances[i] / own[i].max(f64::MIN_POSITIVE))
+            .max(1.0)
+            .sqrt()
+    };
+    for i in 0..own.len() {
+        for j in 0..own.len() {
+            covariance[(i, j)] *= stretch(i) * stretch(j);
+        }
+    }
+}
+
+/// Variance of each free quantity of the first explanation over those that have it too, weighed by their probabilities, in the fit's coordinates
+/// (Bayesian model averaging: Hoeting et al., Stat. Sci. 14, 1999).
+fn between_models(ranked: &[Ranked]) -> Vec<f64> {
+    let best = &ranked[0].hypothesis.fit;
+    let of = |(index, free): (usize, &Free)| {
+        let here = free.coordinate.of(best.values[index]);
+        let (mut squares, mut sum) = (0.0, 0.0);
+        for other in ranked {
+            let fit = &other.hypothesis.fit;
+            let same = |f: &Free| f.quantity.is(&free.quantity);
+            if let Some(place) = fit.free.iter().position(same) {
+                squares +=
+                    other.probability * (free.coordinate.of(fit.values[place]) - here).powi(2);
+                sum += other.probability;
+            }
+        }
+        squares / f64::max(sum, f64::MIN_POSITIVE)
+    };
+    best.free.iter().enumerate().map(of).collect()
+}
+
+/// Numbers and intervals of the first of the explanations.
+pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evidence) -> Estimates {
+    let hypothesis = &ranked[0].hypothesis;
     let fit = &hypothesis.fit;
     let mut covariance = covariance(evidence, fit);
+    if let Some(left) = &ranked[0].left_out {
+        at_least(&mut covariance, &left.jackknife(&fit.free));
+    }
     let first = hypothesis.tolerated(believed);
+    for (index, between) in between_models(ranked).into_iter().enumerate() {
+        covariance[(index, index)] += between;
+    }
     let sample = longest_sample(evidence);
     for (index, free) in fit.free.iter().enumerate().skip(first) {
         let slope = free.coordinate.slope(fit.values[index]);

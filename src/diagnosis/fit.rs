@@ -69,7 +69,8 @@ pub fn robust_weight(residual: f64) -> f64 {
     (HUBER / residual.abs()).min(1.0)
 }
 
-fn loss(residual: f64, limit: f64) -> f64 {
+/// Huber's loss beyond a limit.
+pub(super) fn loss(residual: f64, limit: f64) -> f64 {
     let size = residual.abs().min(1e6);
     if size <= limit {
         size * size

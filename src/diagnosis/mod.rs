@@ -24,6 +24,7 @@ pub mod latent;
 pub mod links;
 pub mod localise;
 pub mod mismatch;
+mod model_error;
 pub mod next_experiment;
 pub mod progress;
 pub mod recorded;

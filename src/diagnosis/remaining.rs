@@ -146,7 +146,7 @@ fn thinned(evidence: &Evidence, every: usize, noise: [f64; CHANNELS.len()]) -> E
 }
 
 /// Samples that tell as much as one.
-fn integrated_autocorrelation_time(left: &[f64]) -> f64 {
+pub(super) fn integrated_autocorrelation_time(left: &[f64]) -> f64 {
     let count = left.len();
     let mean = left.iter().sum::<f64>() / count.max(1) as f64;
     let at = |lag: usize| -> f64 {

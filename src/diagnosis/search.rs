@@ -7,11 +7,12 @@ use super::evidence::{Evidence, Prediction};
 use super::fit::{Limit, ROUGH, Refit, Stage, fit, rough_noise};
 use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
+use super::model_error::ModelError;
 use super::progress::{Observer, Step};
 use super::scale::Scale;
 use super::settings::Settings;
 use crate::effects::Effect;
-use crate::plant::PlantParameters;
+use crate::plant::{Chain, PlantParameters};
 use rayon::prelude::*;
 
 /// Everything a search needs.
@@ -31,6 +32,8 @@ pub struct Search<'a> {
     pub look: usize,
     /// Effects at most, beside those shown.
     pub most_effects: usize,
+    /// What explanations leave beyond noise, by which their scores are weighed.
+    pub model_error: ModelError,
     /// Thresholds.
     pub settings: Settings,
 }
@@ -110,7 +113,12 @@ impl Search<'_> {
 
     /// Cost with its penalty.
     pub fn score(&self, hypothesis: &Hypothesis) -> f64 {
-        hypothesis.fit.cost() + self.penalty(hypothesis)
+        let fit = &hypothesis.fit;
+        let misfit = match self.model_error.is_none() {
+            true => fit.misfit,
+            false => (self.model_error).cost(self.evidence, &fit.prediction.residuals),
+        };
+        misfit + fit.prior + self.penalty(hypothesis)
     }
 
     /// The explanation that costs least, and those that come near: first roughly, then in full.
@@ -121,8 +129,11 @@ impl Search<'_> {
         self.run_with_rough(observer).0
     }
 
-    /// The same, with what was fitted roughly on the way.
-    pub fn run_with_rough(&self, observer: &mut Observer<'_>) -> (Vec<Hypothesis>, Vec<RoughFit>) {
+    /// The same, with what was fitted roughly on the way, and the model error by which they were weighed.
+    pub fn run_with_rough(
+        &self,
+        observer: &mut Observer<'_>,
+    ) -> (Vec<Hypothesis>, Vec<RoughFit>, ModelError) {
         let noise = rough_noise(self.evidence);
         let baseline = self.baseline();
         let detail = format!("cost {:.0}, noise {noise:.0}", baseline.fit.rough);
@@ -175,11 +186,12 @@ impl Search<'_> {
         }
         self.eliminate(&mut full, observer);
         self.add_plainer(&mut full, &all, observer);
-        self.add_small(&mut full, &scale, observer);
-        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        self.prefer_plain(&mut full, &scale);
-        self.add_unlisted(&mut full, &unexplained, &scale, observer);
-        self.add_close(&mut full, &all, &scale, observer);
+        let weighed = self.weighed(&mut full, observer);
+        weighed.add_small(&mut full, &scale, observer);
+        full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
+        weighed.prefer_plain(&mut full, &scale);
+        weighed.add_unlisted(&mut full, &unexplained, &scale, observer);
+        weighed.add_close(&mut full, &all, &scale, observer);
         let before = unexplained.fit.rough - noise;
         let reference = full
             .first()
@@ -191,7 +203,27 @@ impl Search<'_> {
                 .then(|| ((unexplained.fit.rough - hypothesis.fit.rough) / before).clamp(0.0, 1.0)),
         });
         let roughly = roughly.collect();
-        (full, roughly)
+        (full, roughly, weighed.model_error)
+    }
+
+    /// The search with scores weighed by what the best explanation leaves beyond noise: where that is much, effects that follow it are taken out again. Of
+    /// a part of the device that is the noise already.
+    fn weighed(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) -> Self {
+        let mut weighed = self.clone();
+        if self.believed.chain != Chain::Whole {
+            return weighed;
+        }
+        for _ in 0..self.settings.rounds {
+            let Some(best) = full.first() else { break };
+            let left = ModelError::of(self.evidence, &best.fit.prediction);
+            if left == weighed.model_error {
+                break;
+            }
+            weighed.model_error = left;
+            full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
+            weighed.eliminate(full, observer);
+        }
+        weighed
     }
 
     /// Hypotheses of one effect more, those that lead fitted roughly with everything free; best first.

@@ -1,6 +1,6 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
-use super::super::cross_validation::{self, CrossValidation, Depth};
+use super::super::cross_validation::{CrossValidation, Depth};
 use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start};
 use super::super::free::Free;
 use super::super::hypothesis::{Hypothesis, stands_for};
@@ -153,7 +153,8 @@ impl Search<'_> {
     }
 
     /// Takes effects out of the best hypothesis as long as it scores better without, the last one too: a rough fit of the believed model may have come to
-    /// rest where an effect of no size let a full one go on.
+    /// rest where an effect of no size let a full one go on. Beside a model error an effect must also gain more than what all of them leave: less may
+    /// be a part of that error.
     pub(in crate::diagnosis) fn eliminate(
         &self,
         full: &mut Vec<Hypothesis>,
@@ -161,22 +162,34 @@ impl Search<'_> {
     ) {
         while let Some(best) = full.first()
             && best.effects.len() > self.shown.len()
+            && best.unlisted().is_none()
         {
             let score = self.score(best);
+            let known = |names: &[&str]| full.iter().find(|known| known.names() == names).cloned();
             let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
-                .filter_map(|index| self.without(best, index))
+                .filter_map(|index| {
+                    let mut names = best.effects.iter().map(|e| e.name).collect::<Vec<_>>();
+                    names.remove(index);
+                    names.sort_unstable();
+                    known(&names).or_else(|| self.without(best, index))
+                })
                 .collect();
             fewer.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-            if fewer.is_empty() {
-                break;
+            let Some(lighter) = fewer.first() else { break };
+            let detail = format!("lighter {:.1}, before {score:.1}", self.score(lighter));
+            observer(&Step::Variation.of(lighter, detail));
+            let better = self.score(lighter) < score;
+            let gain = lighter.fit.cost() - best.fit.cost();
+            let immaterial = !better && gain < self.model_error.left(self.evidence, &best.fit);
+            if immaterial {
+                full.remove(0);
             }
-            let lighter = fewer.swap_remove(0);
-            let detail = format!("lighter {:.1}, before {score:.1}", self.score(&lighter));
-            observer(&Step::Variation.of(&lighter, detail));
-            let better = self.score(&lighter) < score;
-            full.push(lighter);
+            // Each says how much its effect is needed.
+            let is_new = |h: &Hypothesis| !full.iter().any(|known| known.names() == h.names());
+            let fewer: Vec<Hypothesis> = fewer.into_iter().filter(is_new).collect();
+            full.extend(fewer);
             full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-            if !better {
+            if !better && !immaterial {
                 break;
             }
         }
@@ -251,23 +264,27 @@ impl Search<'_> {
             else {
                 return;
             };
-            if score - self.score(&more) <= least {
+            let raw = |h: &Hypothesis| h.fit.cost() + self.penalty(h);
+            let gain = |from: &Hypothesis, to: &Hypothesis| {
+                let weighed = self.score(from) - self.score(to);
+                weighed.min(raw(from) - raw(to) - least)
+            };
+            if gain(best, &more) <= 0.0 {
                 return;
             }
             let more = self.refit(&more, Refit::FINEST);
-            let gain = score - self.score(&more);
-            observer(&Step::Variation.of(&more, format!("small, gain {gain:.1}")));
-            if gain <= least {
+            let own = gain(best, &more);
+            observer(&Step::Variation.of(&more, format!("small, gain {own:.1}")));
+            if own <= 0.0 {
                 return;
             }
             let again = self.refit(best, again(&more));
-            let gain = self.score(&again) - self.score(&more);
+            let own = gain(&again, &more);
             let held = again.fit.rough - more.fit.rough;
-            let detail = format!("of which its own {gain:.1}, held {held:.1}");
+            let detail = format!("of which its own {own:.1}, held {held:.1}");
             observer(&Step::Variation.of(&more, detail));
             let contradicted = held < -CHANCE * (2.0 * more.fit.free.len() as f64).sqrt();
-            let kept =
-                gain > least && !contradicted && self.predicts_better(&more, &again, observer);
+            let kept = own > 0.0 && !contradicted && self.predicts_better(&more, &again, observer);
             if self.score(&again) < score {
                 full[0] = again;
             }
@@ -287,8 +304,8 @@ impl Search<'_> {
     ) -> bool {
         let turns = CrossValidation::of(self.evidence);
         let cost = |h: &Hypothesis| {
-            let left = turns.as_ref()?.residuals(&h.fit, Depth::OneStep)?;
-            Some(cross_validation::sum(&left))
+            let left = turns.as_ref()?.left_out(&h.fit, Depth::OneStep)?;
+            Some(left.sum(&self.model_error))
         };
         let (Some(without), Some(with)) = (cost(simpler), cost(more)) else {
             return true;

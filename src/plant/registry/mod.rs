@@ -82,6 +82,12 @@ impl Quantity {
         Self { index, ..self }
     }
 
+    /// Whether it is the same number of a description, by whatever name.
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
+        std::ptr::eq(self.number, other.number) && self.index == other.index
+    }
+
     /// Its value.
     pub fn get(&self, plant: &PlantParameters) -> f64 {
         (self.number.get)(plant, self.index)

@@ -1,0 +1,88 @@
+//! Model error: what an explanation leaves beyond noise, by which the evidence for and against others is weighed.
+//!
+//! ```text
+//! cost = sum over channels of sum rho(r / sqrt v),   v = s^2 tau,   s^2 = max(1, mean rho(r)),   tau = 1 + 2 sum of rho_k
+//! ```
+//!
+//! r residuals in standard deviations of the sensor's noise, rho Huber's loss, tau the integrated autocorrelation time in samples (Sokal 1997), rho_k the
+//! autocorrelation at k samples while it is above 0.05. Where a law is a little wrong its residuals are larger than noise and neighbours have the same
+//! sign: tau of them tell as much as one, and each is worth one over s^2 of a sample with noise alone. Counted as independent, they would make anything
+//! certain that follows them (the likelihood is tempered: Grunwald and van Ommen, Bayesian Analysis 12, 2017).
+
+use super::evidence::{Evidence, Prediction};
+use super::fit::{Fit, loss, robust_sum};
+use super::localise::by_channel;
+use super::remaining::integrated_autocorrelation_time;
+use super::settings::HUBER;
+use crate::plant::CHANNELS;
+
+/// Multiple of the noise's variance up to which a channel's residuals count as noise [1].
+const NOISE_ALONE: f64 = 1.3;
+
+/// Variance of a channel's residuals in units of the noise's, times the samples that tell as much as one [1].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModelError {
+    variance: [f64; CHANNELS.len()],
+}
+
+impl ModelError {
+    /// Noise alone.
+    pub const NONE: Self = Self {
+        variance: [1.0; CHANNELS.len()],
+    };
+
+    /// What a prediction leaves.
+    pub fn of(evidence: &Evidence, prediction: &Prediction) -> Self {
+        let mut sums = [[0.0; 3]; CHANNELS.len()];
+        for (_, channel, residuals) in by_channel(evidence, &prediction.residuals) {
+            let left: Vec<f64> = (residuals.iter().filter(|r| r.is_finite()))
+                .map(|r| r.signum() * loss(*r, HUBER).sqrt())
+                .collect();
+            let count = left.len() as f64;
+            let [squares, times, samples] = &mut sums[channel as usize];
+            *squares += left.iter().map(|r| r * r).sum::<f64>();
+            *times += count * integrated_autocorrelation_time(&left);
+            *samples += count;
+        }
+        let variance = sums.map(|[squares, times, samples]| {
+            let [size, time] = [squares, times].map(|sum| (sum / samples.max(1.0)).max(1.0));
+            if size * time < NOISE_ALONE {
+                1.0
+            } else {
+                size * time
+            }
+        });
+        Self { variance }
+    }
+
+    /// Whether there is noise alone.
+    pub fn is_none(&self) -> bool {
+        *self == Self::NONE
+    }
+
+    /// Cost that a fit leaves beyond noise; nothing where there is noise alone [1].
+    pub fn left(&self, evidence: &Evidence, fit: &Fit) -> f64 {
+        match self.is_none() {
+            true => 0.0,
+            false => (fit.cost() - evidence.count() as f64).max(0.0),
+        }
+    }
+
+    /// Robust sum of squares of residuals, recording by recording and channel by channel [1].
+    pub fn cost(&self, evidence: &Evidence, residuals: &[f64]) -> f64 {
+        if self.is_none() {
+            return robust_sum(residuals);
+        }
+        let channels = by_channel(evidence, residuals);
+        channels
+            .map(|(_, channel, residuals)| self.cost_of(channel as usize, residuals))
+            .sum()
+    }
+
+    /// That of one channel.
+    pub fn cost_of(&self, channel: usize, residuals: &[f64]) -> f64 {
+        let scale = self.variance[channel].sqrt();
+        let finite = residuals.iter().filter(|r| r.is_finite());
+        finite.map(|r| loss(r / scale, HUBER)).sum()
+    }
+}
