@@ -7,6 +7,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::common::shared;
 use crate::predict::RIG;
 use crate::program::{Bench, Outcome};
 use planted::{Dirt, OFFSET, TRUE_OFFSET, case, case_files};
@@ -405,17 +406,9 @@ fn a_rig_file_that_says_all_of_it_misses_nothing() {
 
 #[test]
 fn a_practice_case_with_nothing_concealed_is_answered_so() {
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/concealed/practice");
-    let shared = if shared.is_dir() {
-        shared
-    } else {
-        Path::new("/work/shared/concealed/practice").to_owned()
-    };
-    let folder = shared.join("cases/case-01");
-    if !folder.is_dir() {
-        eprintln!("skipped without {}", folder.display());
+    let Some(folder) = shared("concealed/practice/cases/case-01") else {
         return;
-    }
+    };
     let bench = Bench::new("plate_edge");
     let outcome = diagnose(
         &bench,

@@ -4,7 +4,7 @@
 use idc_cell::diagnosis::answer::{Answer, Verdict};
 use idc_cell::recording::parquet::read_parquet;
 
-use crate::common::project;
+use crate::common::shared;
 use crate::diagnose::planted::{Dirt, case_files};
 use crate::program::Bench;
 
@@ -88,11 +88,9 @@ fn where_it_was_not_planted_nothing_of_it_is_found() {
 /// Recordings of devices by others' equations, with physics outside the catalogue and its formula.
 #[test]
 fn a_law_of_a_foreign_device_is_found_with_its_number() {
-    let cases = project("../shared/concealed/beyond/practice/cases");
-    if !cases.is_dir() {
-        eprintln!("skipped without ../shared/concealed/beyond");
+    let Some(cases) = shared("concealed/beyond/practice/cases") else {
         return;
-    }
+    };
     let bench = Bench::new("plate_edge");
     std::fs::create_dir(bench.path("case")).unwrap();
     for file in std::fs::read_dir(cases.join("case-12")).unwrap() {

@@ -10,7 +10,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use crate::common::project;
+use crate::common::{project, shared};
 
 /// Runs the program, which must succeed.
 fn idc(arguments: &[&str]) {
@@ -306,11 +306,7 @@ fn a_part_that_is_unknown_or_a_pattern_that_nothing_fits_is_refused() {
 
 /// Imports logs of a public set and diagnoses them by the rig file that comes with the project; nothing where the set is absent.
 fn of_set(set: &str, map: &str, logs: &[&str], predict: Option<&str>) -> Option<Answer> {
-    let folder = project("../shared/recordings").join(set);
-    if !folder.is_dir() {
-        eprintln!("skipped without ../shared/recordings/{set}");
-        return None;
-    }
+    let folder = shared(&format!("recordings/{set}"))?;
     let case = tempfile::tempdir().unwrap();
     let map_file = project(&format!("assets/import/{map}.toml"))
         .display()

@@ -14,7 +14,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use crate::common::{project, scenario};
+use crate::common::{project, scenario, shared};
 use crate::program::Bench;
 
 const CELL: &str = r#"schema = 1
@@ -396,11 +396,9 @@ fn a_recorded_cell_is_nothing_to_run_and_its_file_says_what_is_believed_alone() 
 
 #[test]
 fn the_laboratory_s_nothing_is_nothing() {
-    let shared = project("../shared/cell");
-    if !shared.is_dir() {
-        eprintln!("skipped without ../shared/cell");
+    let Some(shared) = shared("cell") else {
         return;
-    }
+    };
     let scenario = project("tests/lab_cell.toml");
     let loaded = LoadedCell::new(load_recorded_cell(&scenario).unwrap()).unwrap();
     assert_eq!(loaded.joints.len(), 6);

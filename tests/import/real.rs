@@ -5,16 +5,11 @@ use std::path::{Path, PathBuf};
 use idc_cell::import::findings::findings;
 use idc_cell::import::{Imported, import, load_map};
 
-use crate::common::project;
+use crate::common::{project, shared};
 
 /// A set of recordings, where it is there.
 fn set(name: &str) -> Option<PathBuf> {
-    let folder = project("../shared/recordings").join(name);
-    if !folder.is_dir() {
-        eprintln!("skipped without ../shared/recordings/{name}");
-        return None;
-    }
-    Some(folder)
+    shared(&format!("recordings/{name}"))
 }
 
 /// Logs of a folder whose names end so, in order.

@@ -201,7 +201,7 @@ mod tests {
                 .starts_with("cannot read /nowhere/x.rrd")
         );
         assert!(
-            check_rrd(Path::new("/tmp"))
+            check_rrd(Path::new(env!("CARGO_MANIFEST_DIR")))
                 .unwrap_err()
                 .to_string()
                 .contains("it is a folder")
