@@ -46,12 +46,13 @@ impl Hypothesis {
     }
 }
 
+/// Whether a hypothesis has the effects of another, or laws in their place that exclude them.
+pub(super) fn covers(one: &Hypothesis, other: &Hypothesis) -> bool {
+    let in_one = |effect: &&Effect| one.effects.iter().any(|known| known.excludes(effect));
+    other.effects.iter().all(|effect| in_one(effect))
+}
+
 /// Whether the effects of two hypotheses are the same but for laws that exclude one another.
 pub(super) fn stands_for(one: &Hypothesis, other: &Hypothesis) -> bool {
-    let covered = |a: &Hypothesis, b: &Hypothesis| {
-        a.effects
-            .iter()
-            .all(|effect| b.effects.iter().any(|known| known.excludes(effect)))
-    };
-    one.effects.len() == other.effects.len() && covered(one, other) && covered(other, one)
+    one.effects.len() == other.effects.len() && covers(one, other) && covers(other, one)
 }

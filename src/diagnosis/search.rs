@@ -184,6 +184,8 @@ impl Search<'_> {
         if full.is_empty() {
             full = self.in_full(&all, &scale, &mut done, observer);
         }
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        self.add_unseen_roughly(&mut full, &all, &scale, observer);
         self.eliminate(&mut full, observer);
         self.add_plainer(&mut full, &all, observer);
         let weighed = self.weighed(&mut full, observer);
@@ -191,6 +193,7 @@ impl Search<'_> {
         full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
         weighed.prefer_plain(&mut full, &scale);
         weighed.add_unlisted(&mut full, &unexplained, &scale, observer);
+        weighed.drop_below_noise(&mut full, observer);
         weighed.add_close(&mut full, &all, &scale, observer);
         let before = unexplained.fit.rough - noise;
         let reference = full

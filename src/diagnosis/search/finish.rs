@@ -1,17 +1,22 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
 use super::super::cross_validation::{CrossValidation, Depth};
-use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start};
-use super::super::free::Free;
-use super::super::hypothesis::{Hypothesis, stands_for};
+use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, rough_noise};
+use super::super::free::{Free, free_of};
+use super::super::hypothesis::{Hypothesis, covers, stands_for};
+use super::super::localise::by_channel;
 use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
 use super::{Search, same};
+use crate::effects::Effect;
+use crate::plant::CHANNELS;
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
 /// Close rivals that are fitted in full beside those that the search has fitted, at most.
 const MOST_CLOSE: usize = 6;
+/// Influence of an effect on the channel that it moves most below which it is not named, in standard deviations of that channel's noise [1].
+const BELOW_NOISE: f64 = 0.5;
 /// Iterations of a rough fit without one of the effects.
 const LIGHTER: usize = 8;
 /// The last stages of a full fit, for what is all but there.
@@ -41,16 +46,52 @@ impl Search<'_> {
                 && stands_for(h, best)
                 && !full.iter().any(|known| known.names() == h.names())
         };
-        let more: Vec<Hypothesis> = rough
+        let mut more: Vec<Hypothesis> = rough
             .iter()
             .filter(plainer)
             .map(|h| self.refit(h, Refit::FULL))
             .collect();
+        for (index, effect) in best.effects.iter().enumerate().skip(self.shown.len()) {
+            let numbers = |e: &Effect| e.parameters(&self.believed).len();
+            let plain = |e: &&&'static Effect| e.excludes(effect) && numbers(e) < numbers(effect);
+            for plain in self.candidates.iter().filter(plain) {
+                let other = self.exchanged(best, index, plain);
+                let names = other.names();
+                if !(full.iter().chain(&more)).any(|known| known.names() == names) {
+                    more.push(other);
+                }
+            }
+        }
         for h in &more {
             observer(&Step::Variation.of(h, format!("plainer {:.1}", self.score(h))));
         }
         full.extend(more);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
+    /// A hypothesis with a plainer law in the place of one of its own, its numbers from there where both have them.
+    fn exchanged(&self, best: &Hypothesis, index: usize, plain: &'static Effect) -> Hypothesis {
+        let there = &best.fit.prediction.plant;
+        let mut effects = best.effects.clone();
+        effects[index] = plain;
+        let mut free: Vec<Free> = self.tolerated.iter().map(|f| f.from_where(there)).collect();
+        for effect in &effects {
+            let starts = effect.starts(&self.clues(best, &[], &[]));
+            let own = free_of(effect, &self.believed, &starts[0])
+                .into_iter()
+                .map(|f| {
+                    let same = |other: &&Free| other.quantity.is(&f.quantity);
+                    match best.fit.free.iter().find(same) {
+                        Some(_) => f.from_where(there),
+                        None => f,
+                    }
+                });
+            let own: Vec<Free> = own.collect();
+            free.retain(|f| !own.iter().any(|o| same(o, f, &self.believed)));
+            free.extend(own);
+        }
+        let limit = Refit::FULL.limit;
+        self.fitted(effects, (&self.believed, None), &free, FULL, limit)
     }
 
     /// Fits in full the explanations that a rough fit cannot rule out beside the best one: nothing is said of a close rival by a rough fit. Where the best
@@ -68,8 +109,7 @@ impl Search<'_> {
         };
         let limit = self.rough_reference(best, rough) - 2.0 * self.settings.least_odds.ln();
         let is_fitted = |h: &Hypothesis| full.iter().any(|known| known.names() == h.names());
-        let own = best.names();
-        let is_richer = |h: &Hypothesis| own.iter().all(|name| h.names().contains(name));
+        let is_richer = |h: &Hypothesis| covers(h, best) && h.effects.len() > best.effects.len();
         let mut close: Vec<&Hypothesis> = rough
             .iter()
             .filter(|h| self.rough_score(h) < limit && !is_fitted(h) && !is_richer(h))
@@ -97,10 +137,10 @@ impl Search<'_> {
 
     /// Of laws that exclude one another puts the plainest first that explains as much but for what idealisation leaves: a richer law bends to the errors
     /// of a plain one.
-    #[expect(clippy::unused_self, reason = "a step of the search as the others are")]
     pub(super) fn prefer_plain(&self, full: &mut Vec<Hypothesis>, scale: &Scale) {
         let Some(best) = full.first() else { return };
-        let allowed = scale.material_in_full(best.fit.cost());
+        let left = self.model_error.left(self.evidence, &best.fit);
+        let allowed = scale.material_in_full(best.fit.cost()).max(left);
         let plainer = |h: &&Hypothesis| {
             h.fit.free.len() < best.fit.free.len()
                 && h.fit.cost() - best.fit.cost() < allowed
@@ -229,7 +269,13 @@ impl Search<'_> {
             return Some(near);
         }
         let rough = self.fitted(effects, from, &free, ROUGH, limit);
-        if self.rough_score(&rough) > self.rough_score(hypothesis) + self.settings.given_up {
+        // Beside a model error a rough fit is wrong by as much as that.
+        let left = (hypothesis.fit.rough - rough_noise(self.evidence)).max(0.0);
+        let reach = match self.model_error.is_none() {
+            true => self.settings.given_up,
+            false => self.settings.given_up + left,
+        };
+        if self.rough_score(&rough) > self.rough_score(hypothesis) + reach {
             return None;
         }
         for (f, value) in free.iter_mut().zip(&rough.fit.values) {
@@ -237,6 +283,88 @@ impl Search<'_> {
         }
         let effects = rough.effects;
         Some(self.fitted(effects, from, &free, FULL, Refit::FULL.limit))
+    }
+
+    /// Where a rough fit leaves noise alone and a full one does not, adds effects that the free motion shows: a piston that is held to its measured motion
+    /// hides what moves it a little late.
+    pub(super) fn add_unseen_roughly(
+        &self,
+        full: &mut Vec<Hypothesis>,
+        rough: &[Hypothesis],
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) {
+        let noise = rough_noise(self.evidence);
+        let leaves_noise = |h: &Hypothesis| h.fit.rough - noise < scale.rough_spread();
+        while let Some(best) = full.first()
+            && best.effects.len() < self.most_effects + self.shown.len()
+            && rough.first().is_some_and(leaves_noise)
+            && !scale.is_adequate(best)
+        {
+            let score = self.score(best);
+            let candidates = self.screen(best, &FULL[1..], f64::INFINITY);
+            let more: Vec<Hypothesis> = (candidates.iter().take(self.settings.fitted_in_full))
+                .map(|candidate| self.refit(candidate, Refit::FULL))
+                .collect();
+            for h in &more {
+                observer(&Step::FullFit.of(h, format!("in free motion {:.1}", self.score(h))));
+            }
+            full.extend(more);
+            full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if self.score(&full[0]) >= score {
+                break;
+            }
+        }
+    }
+
+    /// Takes out of the best hypothesis what moves no channel by a share of its noise: recordings long enough show what nobody would miss.
+    pub(super) fn drop_below_noise(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
+        while let Some(best) = full.first()
+            && best.unlisted().is_none()
+        {
+            let own = self.shown.len()..best.effects.len();
+            let sizes = own.map(|index| (index, self.influence(best, index)));
+            let Some((index, size)) = sizes.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+                break;
+            };
+            if size >= BELOW_NOISE {
+                break;
+            }
+            let name = best.effects[index].name;
+            observer(&Step::Variation.of(best, format!("{name} moves {size:.2} sigmas at most")));
+            let Some(lighter) = self.without(best, index) else {
+                break;
+            };
+            full.retain(|h| !h.effects.iter().any(|effect| effect.name == name));
+            full.retain(|h| h.names() != lighter.names());
+            full.insert(0, lighter);
+        }
+    }
+
+    /// What an effect of a hypothesis does to the channel that it moves most, root mean square, in standard deviations of its noise [1].
+    fn influence(&self, hypothesis: &Hypothesis, index: usize) -> f64 {
+        let plant = &hypothesis.fit.prediction.plant;
+        let mut bare = plant.clone();
+        for parameter in hypothesis.effects[index].parameters(&self.believed) {
+            parameter
+                .quantity
+                .set(&mut bare, parameter.quantity.get(&self.believed));
+        }
+        let with = self.evidence.predict(plant, false, None);
+        let without = self.evidence.predict(&bare, false, None);
+        let moved: Vec<f64> = (with.residuals.iter().zip(&without.residuals))
+            .map(|(with, without)| with - without)
+            .collect();
+        let mut sums = [[0.0; 2]; CHANNELS.len()];
+        for (_, channel, moved) in by_channel(self.evidence, &moved) {
+            let [squares, count] = &mut sums[channel as usize];
+            for change in moved.iter().filter(|change| change.is_finite()) {
+                *squares += change * change;
+                *count += 1.0;
+            }
+        }
+        let sizes = sums.map(|[squares, count]| (squares / f64::max(count, 1.0)).sqrt());
+        sizes.into_iter().fold(0.0, f64::max)
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good. What a law is a little wrong by at an impact, an effect
