@@ -24,6 +24,9 @@ pub struct Answer {
     pub schema: u32,
     /// Its conclusion.
     pub verdict: Verdict,
+    /// Whether it predicts the recordings, each by the others, to near the noise of the sensors; none in files that are older.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explained: Option<Extent>,
     /// Physics that the believed model lacks; nothing where nothing is missing.
     pub effects: Vec<FoundEffect>,
     /// Where the effects act.
@@ -50,6 +53,16 @@ pub enum Verdict {
     NothingMissing,
     /// Physics that has no name here is at work.
     Unlisted,
+}
+
+/// Extent to which recordings are explained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Extent {
+    /// To near the sensors' noise, each recording by a fit to the others too.
+    Fully,
+    /// More than that is left; `departure` says how much and where.
+    Partly,
 }
 
 /// An effect with what is known of it.
@@ -317,6 +330,7 @@ mod tests {
         Answer {
             schema: SCHEMA,
             verdict: Verdict::Explained,
+            explained: None,
             effects: vec![FoundEffect {
                 name: "coulomb_viscous_friction".to_owned(),
                 subsystem: "force_balance".to_owned(),

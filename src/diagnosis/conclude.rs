@@ -1,16 +1,18 @@
 //! From what was found to diagnosis.json.
 
 use super::answer::{
-    Alternative, Answer, Estimate, FoundEffect, FoundLaw, Mismatch, SCHEMA, UNLISTED, Verdict,
+    Alternative, Answer, Estimate, Extent, FoundEffect, FoundLaw, Mismatch, SCHEMA, UNLISTED,
+    Verdict,
 };
 use super::details::{
-    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Details, IN_TURN, LinkReport,
-    NextExperiment, PredictionError, RegimeReport, RemainingError, RemainingReport, RuledOutReport,
-    ToleratedNumber, remaining_errors,
+    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Departure, Details, IN_TURN,
+    LinkReport, NextExperiment, PredictionError, RegimeReport, RemainingError, RemainingReport,
+    RuledOutReport, ToleratedNumber, remaining_errors,
 };
 use super::diagnose::{Diagnosis, ErrorSize, Unseen, names_of, spoken_name};
 use super::estimate::Number;
 use super::evidence::Prediction;
+use super::extent::NEAR_NOISE;
 use super::fit::robust_sum;
 use super::hypothesis::Hypothesis;
 use super::links::Link;
@@ -26,6 +28,15 @@ const MOST_REGIMES: usize = 5;
 const MOST_CONSIDERED: usize = 8;
 
 impl Link {
+    /// The link that a channel shows.
+    fn of(channel: Channel) -> Self {
+        match channel {
+            Channel::RegulatorPressure => Self::Regulator,
+            Channel::Stroke | Channel::Acceleration => Self::Piston,
+            Channel::Force => Self::Contact,
+        }
+    }
+
     /// Name in an answer.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -52,6 +63,7 @@ impl Diagnosis {
             } else {
                 Verdict::Explained
             },
+            explained: self.extent(),
             effects,
             mismatch: self
                 .mismatch
@@ -74,6 +86,15 @@ impl Diagnosis {
             notes: self.notes.clone(),
             details: self.details(),
         }
+    }
+
+    /// Whether all recordings are predicted to near the noise: those fitted to, each by the others, and the one to be predicted where it was measured.
+    #[must_use]
+    pub fn extent(&self) -> Option<Extent> {
+        let unseen = self.unseen.iter().flat_map(|(_, errors)| errors);
+        let near = |error: &Unseen| error.after.p90 <= NEAR_NOISE;
+        let fully = self.largest?.is_near_noise() && unseen.into_iter().all(near);
+        Some(if fully { Extent::Fully } else { Extent::Partly })
     }
 
     /// The law that an effect is which a user wrote.
@@ -133,7 +154,13 @@ impl Diagnosis {
         let probability = with.map(|r| r.probability).sum::<f64>().min(1.0);
         let own = &self.best().fit;
         let left = self.model_error.left(&self.evidence, own);
-        let without = self.ranked.iter().filter(|r| !has(r));
+        // A law that excludes it is no explanation without what it stands for: the probability weighs that.
+        let in_place = |r: &super::diagnose::Ranked| {
+            let mut effects = r.hypothesis.effects.iter();
+            let named = self.best().effects.iter().find(|e| e.name == name);
+            named.is_some_and(|own| effects.any(|e| e.excludes(own)))
+        };
+        let without = (self.ranked.iter()).filter(|r| !has(r) && !in_place(r));
         let least = without.map(|r| r.hypothesis.fit.cost() - own.cost());
         let gain = least.fold(f64::INFINITY, f64::min).max(0.0);
         match left > 0.0 && gain.is_finite() {
@@ -239,6 +266,13 @@ impl Diagnosis {
                 })
                 .collect(),
             links: self.link_reports(),
+            departure: self.largest.map(|largest| Departure {
+                recording: self.evidence.recordings[largest.recording].name.clone(),
+                channel: COLUMNS[largest.channel as usize].to_owned(),
+                left_out: largest.left_out,
+                p90_sigmas: largest.p90,
+                link: Link::of(largest.channel).name().to_owned(),
+            }),
             explained_share: self.explained_share(),
             remaining: self.remaining_report(),
             considered: (self.considered().into_iter())

@@ -15,6 +15,7 @@ use super::settings::HUBER;
 use crate::plant::CHANNELS;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Longest step in a coordinate, as in the fit [1].
 const LONGEST: f64 = 3.0;
@@ -84,6 +85,27 @@ impl<'a> CrossValidation<'a> {
         })
     }
 
+    /// Samples of a recording among the residuals of all.
+    fn samples(&self, recording: usize) -> Range<usize> {
+        let count = |i: usize| CHANNELS.len() * self.evidence.recordings[i].inputs.time.len();
+        let start: usize = (0..recording).map(count).sum();
+        start..start + count(recording)
+    }
+
+    /// Standard deviations of the predictions of a recording by a fit to the others, by channel, noise included, in units of the noise's [1]; none where
+    /// the fit has no derivatives.
+    #[must_use]
+    pub fn predictive(&self, whole: &Fit, recording: usize) -> Option<[Vec<f64>; CHANNELS.len()]> {
+        if whole.columns.len() != whole.free.len() {
+            return None;
+        }
+        let all = predictive(whole, &self.samples(recording));
+        let count = all.len() / CHANNELS.len();
+        Some(std::array::from_fn(|channel| {
+            all[channel * count..(channel + 1) * count].to_vec()
+        }))
+    }
+
     /// Values of what is free by a fit to all recordings but one, for each of them.
     fn values(&self, whole: &Fit, depth: Depth) -> Vec<Vec<f64>> {
         let turn = |left: usize| match depth {
@@ -92,12 +114,7 @@ impl<'a> CrossValidation<'a> {
                 let others = &self.turns[left].1;
                 fit(others, from, (&free, &[]), refit.stages, refit.limit).values
             }
-            Depth::OneStep => {
-                let samples =
-                    |i: usize| CHANNELS.len() * self.evidence.recordings[i].inputs.time.len();
-                let start: usize = (0..left).map(samples).sum();
-                without(whole, start..start + samples(left))
-            }
+            Depth::OneStep => without(whole, &self.samples(left)),
         };
         (0..self.turns.len()).into_par_iter().map(turn).collect()
     }
@@ -139,8 +156,8 @@ impl<'a> CrossValidation<'a> {
     }
 }
 
-/// Values of the free quantities without some samples.
-fn without(fit: &Fit, left: std::ops::Range<usize>) -> Vec<f64> {
+/// Normal equations in the fit's coordinates without some samples, priors included: information and gradient.
+fn normal_without(fit: &Fit, left: &Range<usize>) -> (DMatrix<f64>, DVector<f64>) {
     let count = fit.free.len();
     let residuals = &fit.prediction.residuals;
     let weight = |i: usize| {
@@ -174,12 +191,35 @@ fn without(fit: &Fit, left: std::ops::Range<usize>) -> Vec<f64> {
         // What the others do not tell stays where it is.
         normal[(i, i)] += 1e-6 * normal[(i, i)] + 1e-3;
     }
+    (normal, gradient)
+}
+
+/// Values of the free quantities without some samples.
+fn without(fit: &Fit, left: &Range<usize>) -> Vec<f64> {
+    let (normal, gradient) = normal_without(fit, left);
     let Some(step) = normal.cholesky().map(|c| c.solve(&gradient)) else {
         return fit.values.clone();
     };
-    let moved = |(i, free): (usize, &super::free::Free)| {
+    let moved = |(i, free): (usize, &Free)| {
         let at = free.coordinate.of(fit.values[i]) - step[i].clamp(-LONGEST, LONGEST);
         free.clamp(free.coordinate.value(at))
     };
     fit.free.iter().enumerate().map(moved).collect()
+}
+
+/// Standard deviation of the prediction of samples by a fit to the others, noise included, in standard deviations of the noise: sqrt(1 + c' V c), c their
+/// derivatives and V the covariance of that fit [1].
+fn predictive(fit: &Fit, left: &Range<usize>) -> Vec<f64> {
+    let Some(known) = normal_without(fit, left).0.cholesky() else {
+        return vec![1.0; left.len()];
+    };
+    let of = |i: usize| {
+        let slopes = fit.columns.iter().map(|column| column[i]);
+        let c = DVector::from_iterator(
+            fit.columns.len(),
+            slopes.map(|c| if c.is_finite() { c } else { 0.0 }),
+        );
+        (1.0 + c.dot(&known.solve(&c))).sqrt()
+    };
+    left.clone().map(of).collect()
 }

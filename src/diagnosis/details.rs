@@ -18,7 +18,8 @@ pub const DETAILS_SCHEMA: u32 = 2;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Details {
-    /// Version of the details.
+    /// Version of the details, apart from that of what is scored.
+    #[serde(rename = "details_schema")]
     pub schema: u32,
     /// Name of the case.
     pub case: String,
@@ -34,6 +35,9 @@ pub struct Details {
     pub differences: Vec<super::answer::Mismatch>,
     /// Residual of each link of the chain, and the variable that explains it.
     pub links: Vec<LinkReport>,
+    /// Largest departure of the best explanation from the recordings, those left out in turn among them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub departure: Option<Departure>,
     /// Share of the mismatch that is explained [1]; none where there is none.
     pub explained_share: Option<f64>,
     /// Remainder that no law explains, where it is more than noise and everything was judged against it.
@@ -54,6 +58,21 @@ pub struct Details {
     pub prediction: Vec<PredictionError>,
     /// The next recording to make.
     pub next_experiment: Option<NextExperiment>,
+}
+
+/// A departure of the best explanation from a recording.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Departure {
+    /// The recording.
+    pub recording: String,
+    /// Column of the channel.
+    pub channel: String,
+    /// Whether it was predicted by a fit to the other recordings.
+    pub left_out: bool,
+    /// 90th percentile of its size, in standard deviations of the sensor's noise and of what the numbers' uncertainty moves it by [1].
+    pub p90_sigmas: f64,
+    /// Link of the chain that the channel shows: `regulator`, `piston`, `contact` or `sensors`.
+    pub link: String,
 }
 
 /// Noise of a channel.

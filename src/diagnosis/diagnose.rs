@@ -5,6 +5,7 @@ use super::clean::{Cleaning, clean};
 use super::cross_validation::{CrossValidation, Depth, LeftOut};
 use super::estimate::{Estimates, estimates};
 use super::evidence::{Evidence, Prediction};
+use super::extent::{Largest, percentile_90};
 use super::fit::{Limit, Refit, Start};
 use super::free::Free;
 use super::hypothesis::{Hypothesis, stands_for};
@@ -82,6 +83,8 @@ pub struct ErrorSize {
     pub rms: f64,
     /// Robust root mean square, in standard deviations of the noise [1].
     pub sigmas: f64,
+    /// 90th percentile of its size, in standard deviations of the noise [1].
+    pub p90: f64,
 }
 
 impl ErrorSize {
@@ -91,6 +94,7 @@ impl ErrorSize {
         Some(Self {
             rms: noise * root_mean_square(residuals.iter().copied())?,
             sigmas: robust_rms(residuals)?.1,
+            p90: percentile_90(residuals.iter().copied())?,
         })
     }
 }
@@ -128,6 +132,8 @@ pub struct Diagnosis {
     pub shape: Option<Shape>,
     /// Where its effects act.
     pub mismatch: Vec<Interval>,
+    /// Largest departure of the best from the recordings; none where nothing was measured.
+    pub largest: Option<Largest>,
     /// Prediction of the believed model, as it stands in the rig file.
     pub as_believed: Prediction,
     /// The believed model, moved within its tolerances.
@@ -220,6 +226,7 @@ pub fn diagnose(
         estimates: estimates(&case.believed, &ranked, &evidence),
         shape: Shape::of(&evidence, best),
         mismatch: intervals(&evidence, &case.believed, best),
+        largest: Largest::of(&evidence, &ranked[0]),
         as_believed: evidence.predict(&case.believed, false, None),
         baseline,
         unseen,

@@ -162,6 +162,7 @@ impl FlangeDiagnosis {
                     end_s: shown.contact + shown.settling,
                 })
                 .collect(),
+            explained: None,
             effects,
             seconds,
             alternatives: (causes.into_iter())

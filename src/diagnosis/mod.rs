@@ -13,6 +13,7 @@ pub mod diagnose;
 pub mod estimate;
 pub mod evidence;
 pub mod experiment;
+mod extent;
 pub mod fit;
 pub mod flange;
 pub mod flange_answer;

@@ -138,6 +138,7 @@ mod tests {
         Answer {
             schema: SCHEMA,
             verdict: Verdict::NothingMissing,
+            explained: None,
             effects: Vec::new(),
             mismatch: Vec::new(),
             seconds: 1.0,

@@ -253,6 +253,7 @@ mod tests {
         Answer {
             schema: SCHEMA,
             verdict: Verdict::Explained,
+            explained: None,
             effects: vec![FoundEffect {
                 name: "force_sensor_gain_error".to_owned(),
                 subsystem: "sensors".to_owned(),

@@ -254,6 +254,7 @@ mod tests {
             Ok(Answer {
                 schema: SCHEMA,
                 verdict: Verdict::NothingMissing,
+                explained: None,
                 effects: Vec::new(),
                 mismatch: Vec::new(),
                 seconds: 1.0,
