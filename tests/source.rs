@@ -71,7 +71,8 @@ pub fn tokens(text: &str) -> Vec<Token> {
         } else if rest[0] == '\'' && rest.get(2) == Some(&'\'') {
             3
         } else {
-            let word = rest.iter().take_while(|it| is_word(it)).count();
+            let mark = usize::from(rest[0] == '\'');
+            let word = mark + rest[mark..].iter().take_while(|it| is_word(it)).count();
             let length = after("::").unwrap_or(word.max(1));
             if !rest[0].is_whitespace() {
                 let text = rest[..length].iter().collect();
@@ -131,7 +132,7 @@ fn words_are_read_without_comments_strings_and_unit_tests() {
     assert_eq!(words("a::b // c::d\n/* e */ f"), ["a", "::", "b", "f"]);
     assert_eq!(words(r##"r#"a " b"# c "d \" e" f"##), ["c", "f"]);
     assert_eq!(words("'a' '\\'' b \"\\\\\" c"), ["b", "c"]);
-    assert_eq!(words("&'a b"), ["&", "'", "a", "b"]);
+    assert_eq!(words("&'a b"), ["&", "'a", "b"]);
     assert_eq!(words("#[cfg(test)]\n#[x] mod t { a {} }\nb"), ["b"]);
     assert_eq!(words("#[cfg(test)]\nmod tests;\nb"), ["b"]);
     assert_eq!(tokens("\"\n\"\n// a\n\nb")[0].line, 5);

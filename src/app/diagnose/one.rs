@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::files::{OutputFolder, Standing, is_same};
+use super::super::files::{DIAGNOSIS, OutputFolder, Standing, is_same};
 use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
-use super::outputs::{DIAGNOSIS, HOW_TO_RUN, NAMES, Outputs, stands_complete};
+use super::outputs::{Finished, HOW_TO_RUN, NAMES, Outputs, stands_complete};
 use super::unlisted_picture::picture;
 use crate::case::{Case, Diagnosed, IMPROVED, RIG, diagnose};
 use crate::diagnosis::answer::Answer;
@@ -20,18 +20,6 @@ use crate::replay::LoadedCell;
 pub(super) struct Prepared {
     case: Case,
     folder: OutputFolder,
-}
-
-/// A case that was diagnosed; its files are written.
-pub(super) struct Finished {
-    /// The finding.
-    pub answer: Answer,
-    /// diagnosis.json.
-    pub document: String,
-    /// account.txt.
-    pub account: String,
-    /// Names of the files written.
-    pub names: Vec<&'static str>,
 }
 
 /// Whether this is a folder with a case.

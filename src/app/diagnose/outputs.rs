@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::files::OutputFolder;
-use super::super::report::{REPORT, of_diagnosis};
+use super::super::files::{BALANCE, BOARD, COMPARISON, DIAGNOSIS, OutputFolder, REPORT};
+use super::super::report::of_diagnosis;
 use super::board::board;
-use super::comparison_files::{BALANCE, COMPARISON, write_balances, write_recordings};
-use super::one::Finished;
+use super::comparison_files::{write_balances, write_recordings};
 use crate::case::IMPROVED;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
@@ -23,9 +22,6 @@ const PREDICTION: &str = "prediction.csv";
 const PICTURE: &str = "unlisted.svg";
 /// Before and after, of a part of the device.
 const FIT_PICTURE: &str = "fit.svg";
-/// All of it on a screen, for Rerun's viewer.
-pub(in super::super) const BOARD: &str = "diagnosis.rrd";
-pub(in super::super) const DIAGNOSIS: &str = "diagnosis.json";
 /// All that a diagnosis may write.
 pub(super) const NAMES: [&str; 10] = [
     ACCOUNT,
@@ -62,6 +58,18 @@ pub(super) struct Outputs<'a> {
     pub comparison: &'a Comparison,
     /// Scene of a cell.
     pub scene: Option<Scene>,
+}
+
+/// A case that was diagnosed; its files are written.
+pub(super) struct Finished {
+    /// The finding.
+    pub answer: Answer,
+    /// diagnosis.json.
+    pub document: String,
+    /// account.txt.
+    pub account: String,
+    /// Names of the files written.
+    pub names: Vec<&'static str>,
 }
 
 impl Outputs<'_> {

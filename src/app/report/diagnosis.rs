@@ -2,7 +2,7 @@
 
 use super::super::diagnose::HOW_TO_RUN;
 use super::charts::{balance, channel, origin, unlisted};
-use super::provenance;
+use super::provenance::provenance;
 use super::tables::{how_well, own_numbers, ruled_out};
 use crate::diagnosis::account::Section as Told;
 use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict};
