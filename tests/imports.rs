@@ -6,8 +6,30 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::source::{Sources, Token, sources, tokens};
 
-/// Circles that wait for their end.
-const ALLOWED: [&[&str]; 0] = [];
+/// Circles that wait for their end, in `src/diagnosis`.
+const ALLOWED: [&[&str]; 2] = [
+    &[
+        "diagnosis/account.rs",
+        "diagnosis/answer.rs",
+        "diagnosis/details.rs",
+        "diagnosis/diagnose.rs",
+        "diagnosis/estimate.rs",
+        "diagnosis/unlisted/report.rs",
+    ],
+    &[
+        "diagnosis/cross_validation.rs",
+        "diagnosis/hypothesis.rs",
+        "diagnosis/latent.rs",
+        "diagnosis/localise.rs",
+        "diagnosis/mismatch.rs",
+        "diagnosis/model_error.rs",
+        "diagnosis/progress.rs",
+        "diagnosis/remaining.rs",
+        "diagnosis/ruled_out.rs",
+        "diagnosis/scale.rs",
+        "diagnosis/search.rs",
+    ],
+];
 
 /// A file as a module.
 struct Module {

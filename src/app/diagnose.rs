@@ -16,7 +16,6 @@ use clap::Args;
 
 pub(super) use all::natural;
 pub(super) use comparison_files::read_comparison;
-pub(super) use outputs::HOW_TO_RUN;
 
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, output_folder};

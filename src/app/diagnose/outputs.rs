@@ -15,8 +15,6 @@ use crate::recording::rerun::write_board;
 use crate::recording::scene::Scene;
 
 const ACCOUNT: &str = "account.txt";
-/// Part of the account that says what to do with it.
-pub(in super::super) const HOW_TO_RUN: &str = "How to run what was found";
 const PREDICTION: &str = "prediction.csv";
 /// Shape of physics without a name, where there is such.
 const PICTURE: &str = "unlisted.svg";
