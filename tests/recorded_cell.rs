@@ -6,7 +6,7 @@ use std::path::Path;
 
 use idc_cell::cell::Cell;
 use idc_cell::diagnosis::answer::{Answer, Verdict};
-use idc_cell::path::plan::Phase;
+use idc_cell::path::Phase;
 use idc_cell::plant::{Burr, PlantInputs, PlantParameters, follow, simulate};
 use idc_cell::replay::LoadedCell;
 use idc_cell::scenario::{load_any, load_recorded_cell};

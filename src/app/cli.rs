@@ -1,14 +1,14 @@
 //! The command line.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
-use super::files::{OutputFolder, Standing};
+use super::files::{Standing, output_folder};
 use super::interrupt::Interruptible;
-use super::output::say;
+use super::output::show;
 use super::{help, progress};
 
 /// Simulate a robot deburring cell with a pneumatic constant-force end effector, and find out what physics recordings of a real one contain
@@ -59,7 +59,7 @@ enum Command {
     Predict(super::predict::PredictArguments),
     /// Find what physics the recordings of a rig contain that its model leaves out.
     #[command(after_help = help::DIAGNOSE)]
-    Diagnose(DiagnoseArguments),
+    Diagnose(super::diagnose::DiagnoseArguments),
     /// Write report.html of a folder with results: one page for a browser.
     #[command(after_help = super::report::EXAMPLES)]
     Report(super::report::ReportArguments),
@@ -105,39 +105,6 @@ struct DesignArguments {
     /// Print what design.json holds instead of the table.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct DiagnoseArguments {
-    /// Folder with rig.toml and the recordings that it names; with --all, a folder of such folders.
-    pub(super) case: PathBuf,
-    /// Folder for diagnosis.json, prediction.csv, improved.toml and account.txt [default: runs/<name of the case's folder>].
-    #[arg(long, help_heading = "Output")]
-    pub(super) out: Option<PathBuf>,
-    /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
-    #[arg(long)]
-    pub(super) scenario: Option<PathBuf>,
-    /// Diagnose every folder in it that holds a rig.toml, each into a folder of its name.
-    #[arg(long)]
-    pub(super) all: bool,
-    /// Go on where it was stopped: what has been diagnosed already is left as it is.
-    #[arg(long, conflicts_with = "force")]
-    pub(super) resume: bool,
-    /// Put new diagnoses in place of old ones.
-    #[arg(long, help_heading = "Output")]
-    pub(super) force: bool,
-    /// Cases at a time with --all [default: 1, on all processors]; the processors are shared among them, and results do not depend on it.
-    #[arg(long, requires = "all", value_parser = clap::value_parser!(u16).range(1..))]
-    pub(super) jobs: Option<u16>,
-    /// Print nothing but errors.
-    #[arg(long, help_heading = "Output")]
-    pub(super) quiet: bool,
-    /// Print on stderr what the search tries, and what each explanation would cost.
-    #[arg(long, conflicts_with_all = ["quiet", "all"])]
-    pub(super) verbose: bool,
-    /// Print what diagnosis.json holds instead of the account; with --all, one line for each case.
-    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
-    pub(super) json: bool,
 }
 
 /// Runs the command; errors are bad input.
@@ -189,57 +156,4 @@ fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {
         &finished.names,
     )?;
     Ok(ExitCode::Done)
-}
-
-/// Prints what the user asked to see.
-pub(super) fn show(
-    [quiet, json]: [bool; 2],
-    document: &str,
-    table: &str,
-    folder: &OutputFolder,
-    names: &[&str],
-) -> Result<(), AppError> {
-    if json {
-        say(&format!("{document}\n"))?;
-    } else if !quiet {
-        say(table)?;
-        say(&format!(
-            "written to {}: {}\n",
-            folder.path().display(),
-            names.join(", ")
-        ))?;
-    }
-    Ok(())
-}
-
-/// Where results go: as asked, or to a folder in `runs` that is called as the input, a file without its extension.
-pub(super) fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
-    let default = || {
-        let folder = input.canonicalize().ok().filter(|path| path.is_dir());
-        let name = match &folder {
-            Some(folder) => folder.file_name(),
-            None => input.file_stem(),
-        };
-        Path::new("runs").join(name.unwrap_or_default())
-    };
-    out.cloned().unwrap_or_else(default)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn results_go_to_a_folder_that_is_called_as_the_input() {
-        let folder = tempfile::tempdir().unwrap();
-        let case = folder.path().join("rig.v2");
-        std::fs::create_dir(&case).unwrap();
-        let of = |input: &Path| output_folder(None, input);
-        assert_eq!(of(&case), Path::new("runs/rig.v2"));
-        // As `idc diagnose .` has it.
-        assert_eq!(of(&case.join(".")), Path::new("runs/rig.v2"));
-        assert_eq!(of(Path::new("scenarios/a.b.toml")), Path::new("runs/a.b"));
-        let asked = PathBuf::from("elsewhere");
-        assert_eq!(output_folder(Some(&asked), &case), asked);
-    }
 }

@@ -8,9 +8,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::diagnose::DIAGNOSIS;
 use super::error::{AppError, ExitCode};
-use super::files::{SAMPLES, SUMMARY, Standing, is_same, prepare_file};
+use super::files::{DIAGNOSIS, SAMPLES, SUMMARY, Standing, is_same, prepare_file};
 use super::output::say;
 use super::report::{Label, ROLES, RunResult, read_json, read_run};
 use crate::diagnosis::answer::{Answer, Estimate};

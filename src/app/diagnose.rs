@@ -10,19 +10,54 @@ mod outputs;
 mod stages;
 mod unlisted_picture;
 
-pub(super) use all::natural;
-pub(super) use comparison_files::{BALANCE, COMPARISON, read_comparison};
-pub(super) use outputs::{BOARD, DIAGNOSIS, HOW_TO_RUN};
+use std::path::PathBuf;
 
-use super::cli::{DiagnoseArguments, output_folder};
+use clap::Args;
+
+pub(super) use all::natural;
+pub(super) use comparison_files::read_comparison;
+
 use super::error::{AppError, ExitCode};
-use super::files::Standing;
+use super::files::{Standing, output_folder};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress::StagedLine;
 use crate::diagnosis::progress::Progress;
 use crate::replay::LoadedCell;
 use stages::Stages;
+
+#[derive(Debug, Args)]
+pub(super) struct DiagnoseArguments {
+    /// Folder with rig.toml and the recordings that it names; with --all, a folder of such folders.
+    case: PathBuf,
+    /// Folder for diagnosis.json, prediction.csv, improved.toml and account.txt [default: runs/<name of the case's folder>].
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
+    #[arg(long)]
+    scenario: Option<PathBuf>,
+    /// Diagnose every folder in it that holds a rig.toml, each into a folder of its name.
+    #[arg(long)]
+    all: bool,
+    /// Go on where it was stopped: what has been diagnosed already is left as it is.
+    #[arg(long, conflicts_with = "force")]
+    resume: bool,
+    /// Put new diagnoses in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Cases at a time with --all [default: 1, on all processors]; the processors are shared among them, and results do not depend on it.
+    #[arg(long, requires = "all", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print on stderr what the search tries, and what each explanation would cost.
+    #[arg(long, conflicts_with_all = ["quiet", "all"])]
+    verbose: bool,
+    /// Print what diagnosis.json holds instead of the account; with --all, one line for each case.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
 
 /// Diagnoses and writes.
 pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {

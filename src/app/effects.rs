@@ -15,7 +15,7 @@ use super::output::say;
 use crate::effects::{Effect, kinds};
 use crate::recording::atomic::write_text;
 use crate::scenario::suggestion::nearest;
-use page::{Explained, SUBSYSTEMS, heading};
+use page::{Explained, by_subsystem};
 use picture::picture;
 use scene::Stage;
 
@@ -104,14 +104,6 @@ fn named(name: &str) -> Result<&'static Effect, AppError> {
     effect.ok_or_else(|| AppError::NoEffect {
         name: name.to_owned(),
         advice: nearest(name, &known),
-    })
-}
-
-/// Effects with their subsystem, in the order in which they are told.
-fn by_subsystem() -> impl Iterator<Item = (&'static str, Vec<&'static Effect>)> {
-    SUBSYSTEMS.into_iter().map(|subsystem| {
-        let own = kinds().filter(|effect| effect.subsystem == subsystem);
-        (heading(subsystem), own.collect())
     })
 }
 

@@ -6,11 +6,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::error::AppError;
-use super::report::REPORT;
-use super::run::{Finished, Source};
-use crate::cell::Cell;
 use crate::drawing;
-use crate::metrics::{FOLLOW_PHASE, Summary, Verdict};
+use crate::metrics::FOLLOW_PHASE;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
@@ -32,6 +29,14 @@ pub(super) const RUN_NAMES: [&str; 8] = [
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
 pub(super) const FRONT: &str = "front.svg";
+pub(super) const DIAGNOSIS: &str = "diagnosis.json";
+/// Recordings of a diagnosis beside its models, and their balances.
+pub(super) const COMPARISON: &str = "comparison.parquet";
+pub(super) const BALANCE: &str = "balance.parquet";
+/// A diagnosis on a screen, for Rerun's viewer.
+pub(super) const BOARD: &str = "diagnosis.rrd";
+/// The page of any of them.
+pub(super) const REPORT: &str = "report.html";
 
 /// Treatment of results that stand where new ones are to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -274,57 +279,34 @@ impl Sketches {
     }
 }
 
-/// Content of summary.json, which `--json` prints.
-#[derive(serde::Serialize)]
-pub(super) struct SummaryDocument<'a> {
-    schema: u32,
-    scenario: &'a str,
-    title: &'a str,
-    /// Keys that have other values than in the scenario's file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    set: Option<serde_json::Value>,
-    /// Reason for an early stop of the run; null if it ran to its end.
-    stopped: Option<String>,
-    summary: &'a Summary,
-    expectations: &'a [Verdict],
-    joint_names: Vec<&'a str>,
-    samples: usize,
-    notes: &'a [String],
-    provenance: &'a Provenance,
+/// Where results go: as asked, or to a folder in `runs` that is called as the input, a file without its extension.
+pub(super) fn output_folder(out: Option<&PathBuf>, input: &Path) -> PathBuf {
+    let default = || {
+        let folder = input.canonicalize().ok().filter(|path| path.is_dir());
+        let name = match &folder {
+            Some(folder) => folder.file_name(),
+            None => input.file_stem(),
+        };
+        Path::new("runs").join(name.unwrap_or_default())
+    };
+    out.cloned().unwrap_or_else(default)
 }
 
-impl<'a> SummaryDocument<'a> {
-    /// The document of a run.
-    pub(super) fn new(
-        cell: &'a Cell,
-        finished: &'a Finished,
-        expectations: &'a [Verdict],
-        source: &'a Source,
-        origin: &'a Provenance,
-    ) -> Self {
-        Self {
-            schema: 1,
-            scenario: &source.name,
-            title: &cell.scenario.title,
-            set: source.set(),
-            stopped: finished.stop.as_ref().map(ToString::to_string),
-            summary: &finished.summary,
-            expectations,
-            joint_names: cell
-                .arm
-                .chain
-                .joints
-                .iter()
-                .map(|joint| joint.name.as_str())
-                .collect(),
-            samples: finished.recording.sample_count(),
-            notes: &cell.notes,
-            provenance: origin,
-        }
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-    /// As JSON.
-    pub(super) fn text(&self) -> Result<String, AppError> {
-        Ok(serde_json::to_string_pretty(self)?)
+    #[test]
+    fn results_go_to_a_folder_that_is_called_as_the_input() {
+        let folder = tempfile::tempdir().unwrap();
+        let case = folder.path().join("rig.v2");
+        std::fs::create_dir(&case).unwrap();
+        let of = |input: &Path| output_folder(None, input);
+        assert_eq!(of(&case), Path::new("runs/rig.v2"));
+        // As `idc diagnose .` has it.
+        assert_eq!(of(&case.join(".")), Path::new("runs/rig.v2"));
+        assert_eq!(of(Path::new("scenarios/a.b.toml")), Path::new("runs/a.b"));
+        let asked = PathBuf::from("elsewhere");
+        assert_eq!(output_folder(Some(&asked), &case), asked);
     }
 }

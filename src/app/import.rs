@@ -17,6 +17,7 @@ use super::progress;
 use crate::import::findings::same_data;
 use crate::import::{ImportMap, Imported, LogNote, import, load_map};
 use crate::recording::parquet::write_parquet;
+use told::{Copies, Job, name};
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
@@ -37,19 +38,6 @@ pub(super) struct ImportArguments {
     /// Print what was understood as JSON.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
-}
-
-/// A recording to be, and where it goes.
-struct Job {
-    imported: Imported,
-    out: Option<PathBuf>,
-}
-
-/// Two logs that are the same data.
-struct Copies {
-    one: PathBuf,
-    other: PathBuf,
-    share: f64,
 }
 
 /// Imports logs, one recording for as many as the map has files; nothing is written before all of them have been read.
@@ -160,11 +148,6 @@ fn provenance(imported: &Imported, map: &ImportMap) -> BTreeMap<String, String> 
         pairs.insert("time_origin_unix_s".to_owned(), origin);
     }
     pairs
-}
-
-fn name(path: &Path) -> String {
-    let name = path.file_name().unwrap_or(path.as_os_str());
-    name.to_string_lossy().into_owned()
 }
 
 fn text(map: &ImportMap, jobs: &[Job], copies: &[Copies]) -> String {

@@ -3,6 +3,7 @@
 mod charts;
 mod design;
 mod diagnosis;
+mod provenance;
 mod run;
 mod signals;
 mod tables;
@@ -12,10 +13,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::diagnose::{BALANCE, COMPARISON, DIAGNOSIS, read_comparison};
+use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
-    CELL, DESIGN, EDGE, FRONT, SAMPLES, SUMMARY, Sketches, Standing, is_same, prepare_file,
+    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, EDGE, FRONT, REPORT, SAMPLES, SUMMARY, Sketches,
+    Standing, is_same, prepare_file,
 };
 use super::output::say;
 use crate::diagnosis::answer::Answer;
@@ -23,15 +25,11 @@ use crate::diagnosis::comparison::Comparison;
 use crate::page::html;
 use crate::recording::atomic::write_text;
 use crate::recording::parquet::read_parquet;
-use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
 
 pub(super) use charts::{lacking, most_of, variable};
 pub(super) use run::{Label, RunResult};
 pub(super) use signals::{ROLES, chart_groups};
-
-/// Its name.
-pub(super) const REPORT: &str = "report.html";
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -157,41 +155,4 @@ pub(super) fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T
     let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
     let read = serde_json::from_str(&text);
     Ok(read.map_err(|e| RecordingError::read(path, e))?)
-}
-
-/// Where a document says that it comes from.
-fn provenance_of(document: &serde_json::Value) -> crate::page::Section<'static> {
-    let known = serde_json::from_value(document["provenance"].clone());
-    provenance(&known.unwrap_or_default())
-}
-
-/// The part of a page that says where all comes from.
-fn provenance(from: &Provenance) -> crate::page::Section<'static> {
-    use crate::page::{Block, Cell, Section, Table};
-    let mut made = format!("Made by {}", from.program);
-    if !from.libraries.is_empty() {
-        made += &format!(" with {}", from.libraries.join(", "));
-    }
-    made += &match from.seed {
-        Some(seed) => format!("; seed {seed}."),
-        None => "; nothing is drawn at random.".to_owned(),
-    };
-    let rows = from.files.iter().map(|file| {
-        vec![
-            Cell::from(file.file.clone()),
-            Cell::from(file.bytes.to_string()),
-            Cell::Hash(file.sha256.clone()),
-        ]
-    });
-    Section::new(
-        "Provenance",
-        vec![
-            Block::Paragraph(made),
-            Block::Table(Table::new(
-                "Files that were read",
-                &["file", "#bytes", "SHA-256"],
-                rows.collect(),
-            )),
-        ],
-    )
 }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use clap::Args;
 use serde::Serialize;
 
-use super::diagnose::{BOARD, natural};
+use super::diagnose::natural;
 use super::error::{AppError, ExitCode};
-use super::files::RECORDING;
+use super::files::{BOARD, RECORDING};
 use super::output::say;
 use super::viewer::{NativeViewer, Shown, ViewerError, WebPage};
 use crate::recording::rerun::{check_rrd, viewer_version};

@@ -2,6 +2,7 @@
 
 use super::Diagnosed;
 use super::cell::CellCase;
+use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::diagnose::Diagnosis;
 use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
@@ -18,11 +19,11 @@ pub(super) fn add_cell(diagnosed: &mut Diagnosed, cell: &LoadedCell, read: &Cell
     let details = &mut diagnosed.answer.details;
     details.prediction.extend(read.of_arm.iter().cloned());
     let account = &mut details.account;
-    account.add("The arm", arm(cell, read, diagnosis));
-    account.add("Where on the path", places(diagnosis));
+    account.add(SectionKind::Arm, arm(cell, read, diagnosis));
+    account.add(SectionKind::PathPlaces, places(diagnosis));
     if diagnosis.shape.is_some() {
         let place = "A cell's improved.toml has no place for a term without a name: it stands in prediction.csv alone.";
-        account.add("What improved.toml leaves out", vec![place.to_owned()]);
+        account.add(SectionKind::NotWritten, vec![place.to_owned()]);
     }
 }
 

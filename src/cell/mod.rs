@@ -18,7 +18,7 @@ use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
 use crate::control::force::ForceController;
 use crate::control::transmission::TransmissionParameters;
 use crate::device::{Device, PressureMap};
-use crate::path::plan::PlanRequest;
+use crate::path::PlanRequest;
 use crate::path::profile::MotionLimits;
 use crate::path::{Plan, ToolPath};
 use crate::physics::push_only::PushOnly;

@@ -4,7 +4,6 @@
 //! mass solves one equation, monotonic in the pressure; a reservoir that no longer holds the regulator's pressure drives the line, and is solved with it. Its implicit half is stable however fast the line is, damps what is faster than the
 //! sub-step, and ends on its last stage, so that a fast line comes out where inflow and outflow balance.
 
-use super::DeviceParameters;
 use super::carrier::{Carrier, PistonMotion};
 use super::integrate::{Flow, Leg, Mode};
 use super::pneumatics::Device;
@@ -14,10 +13,6 @@ use crate::physics::hose::Hose;
 use crate::physics::line_chain::{LineChain, UPSTREAM};
 use crate::physics::valve::ValvePosition;
 
-/// Longest sub-step that a line is taken in however fast it is [s], for accuracy alone: tests/equations/lines.rs.
-const LONGEST: f64 = 2.5e-4;
-/// Largest sub-step of a slow line times its rate [1].
-const RATE_LIMIT: f64 = 1.2;
 /// Share of the step that is implicit [1].
 const IMPLICIT_SHARE: f64 = 0.25;
 /// When in the step the stages are [1].
@@ -76,22 +71,6 @@ const IMPLICIT: [[f64; 5]; 6] = [
         -2_260.0 / 8_211.0,
     ],
 ];
-
-/// Longest sub-step [s] for a line, if there is one, before a valve that lets `valve_rate` [m3/s] through at most, as a rate times a volume.
-pub(super) fn longest(parameters: &DeviceParameters, valve_rate: f64) -> f64 {
-    let Some(hose) = &parameters.hose else {
-        return f64::INFINITY;
-    };
-    let gas = &parameters.gas;
-    let rt = gas.specific_gas_constant * gas.temperature;
-    let through = rt / hose.resistance_at_rest(gas.atmosphere);
-    // As a whole: what segments exchange faster than that follows, and is implicit.
-    let mut rate = (valve_rate + through) / hose.volume;
-    if let Some(reservoir) = &parameters.supply_reservoir {
-        rate += reservoir.rate(gas) + through / reservoir.volume;
-    }
-    LONGEST.max(RATE_LIMIT / rate)
-}
 
 impl<C: Carrier> Leg<'_, C> {
     /// One step of the pair.

@@ -2,9 +2,9 @@
 
 use super::carrier::{PistonMotion, Predicted};
 use super::leaks::LeakFlows;
-use super::rates::PistonRates;
+use super::rates::{PistonRates, longest_line_step};
 use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
-use super::{Carrier, DeviceParameters, line_step};
+use super::{Carrier, DeviceParameters};
 use crate::physics::chamber::Chamber;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::line_chain::UPSTREAM;
@@ -79,7 +79,7 @@ impl Device {
                 // With a line it is implicit.
                 _ => 0.0,
             },
-            line_substep: line_step::longest(&parameters, rate_volume(valve.supply_conductance)),
+            line_substep: longest_line_step(&parameters, rate_volume(valve.supply_conductance)),
             flow,
             valve,
             parameters,

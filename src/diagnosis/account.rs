@@ -25,10 +25,87 @@ pub struct Account {
     pub sections: Vec<Section>,
 }
 
+/// Subject of a part of an account.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SectionKind {
+    /// Where recordings and model differ.
+    Mismatch,
+    /// The link of the chain that does not explain its own recording.
+    Link,
+    /// The effects that were found.
+    Missing,
+    /// Errors that remain.
+    Remaining,
+    /// Explanations that were ruled out.
+    RuledOut,
+    /// Explanations that the recordings do not tell apart.
+    Ambiguous,
+    /// The experiment to make next.
+    NextExperiment,
+    /// Numbers of the rig file, moved within their tolerances.
+    OwnNumbers,
+    /// Remarks on the recordings.
+    Recordings,
+    /// Impact of a contact flange.
+    Impact,
+    /// Its ringing.
+    Ringing,
+    /// Its settling.
+    Settling,
+    /// Its steady force error.
+    SteadyError,
+    /// Its force error while the arm moves.
+    ErrorWhileMoving,
+    /// Prediction of a run of it that was not fitted to.
+    UnseenRun,
+    /// Its runs.
+    Runs,
+    /// Joints and servos of a cell.
+    Arm,
+    /// Places on a cell's path.
+    PathPlaces,
+    /// What the improved file has no place for.
+    NotWritten,
+    /// Commands for the improved file.
+    HowToRun,
+}
+
+impl SectionKind {
+    /// Its title.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Mismatch => "Where it parts",
+            Self::Link => "Which link",
+            Self::Missing => "What is missing",
+            Self::Remaining => "What is left",
+            Self::RuledOut => "What was ruled out",
+            Self::Ambiguous => "What the recordings do not tell apart",
+            Self::NextExperiment => "What to record next",
+            Self::OwnNumbers => "The rig file's own numbers",
+            Self::Recordings => "The recordings",
+            Self::Impact => "Impact",
+            Self::Ringing => "Ringing",
+            Self::Settling => "Settling",
+            Self::SteadyError => "Steady error",
+            Self::ErrorWhileMoving => "While the arm moves",
+            Self::UnseenRun => "A run that it never saw",
+            Self::Runs => "The runs",
+            Self::Arm => "The arm",
+            Self::PathPlaces => "Where on the path",
+            Self::NotWritten => "What improved.toml leaves out",
+            Self::HowToRun => "How to run what was found",
+        }
+    }
+}
+
 /// A part of an account.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Section {
     /// Its subject.
+    pub kind: SectionKind,
+    /// The same for people.
     pub title: String,
     /// A paragraph each.
     pub paragraphs: Vec<String>,
@@ -39,15 +116,22 @@ pub struct Section {
 
 impl Account {
     /// Adds a part, if it says anything.
-    pub fn add(&mut self, title: &str, paragraphs: Vec<String>) {
+    pub fn add(&mut self, kind: SectionKind, paragraphs: Vec<String>) {
         let paragraphs: Vec<String> = paragraphs.into_iter().filter(|p| !p.is_empty()).collect();
         if !paragraphs.is_empty() {
             self.sections.push(Section {
-                title: title.to_owned(),
+                kind,
+                title: kind.title().to_owned(),
                 paragraphs,
                 table: None,
             });
         }
+    }
+
+    /// A part of it, if it says anything of that.
+    #[must_use]
+    pub fn section(&self, kind: SectionKind) -> Option<&Section> {
+        self.sections.iter().find(|section| section.kind == kind)
     }
 
     /// As text, under the name of the case.
@@ -73,20 +157,19 @@ impl Diagnosis {
             headline: self.headline(),
             sections: Vec::new(),
         };
-        account.add("Where it parts", self.where_it_parts());
-        account.add("Which link", self.which_link());
-        account.add("What is missing", self.what_is_missing());
+        account.add(SectionKind::Mismatch, self.where_it_parts());
+        account.add(SectionKind::Link, self.which_link());
+        account.add(SectionKind::Missing, self.what_is_missing());
         if let Some(section) = account.sections.last_mut() {
             section.table = self.shape_table();
         }
-        account.add("What is left", self.what_is_left());
-        account.add("What was ruled out", vec![self.what_was_ruled_out()]);
-        let title = "What the recordings do not tell apart";
-        account.add(title, self.not_told_apart());
-        account.add("What to record next", vec![self.what_next()]);
-        account.add("The rig file's own numbers", vec![self.own_numbers()]);
+        account.add(SectionKind::Remaining, self.what_is_left());
+        account.add(SectionKind::RuledOut, vec![self.what_was_ruled_out()]);
+        account.add(SectionKind::Ambiguous, self.not_told_apart());
+        account.add(SectionKind::NextExperiment, vec![self.what_next()]);
+        account.add(SectionKind::OwnNumbers, vec![self.own_numbers()]);
         let notes = self.notes.iter().map(|n| format!("{n}."));
-        account.add("The recordings", notes.collect());
+        account.add(SectionKind::Recordings, notes.collect());
         account
     }
 

@@ -1,6 +1,6 @@
 //! From what the runs of a contact flange show to an answer.
 
-use super::account::Account;
+use super::account::{Account, SectionKind};
 use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
 use super::details::{DETAILS_SCHEMA, Details, PredictedRun, RunShown};
 use super::flange::{AVERAGED, BAND, Shown, spread, spread_of_sizes};
@@ -213,16 +213,16 @@ impl FlangeDiagnosis {
             },
             sections: Vec::new(),
         };
-        let mut part = |name: &str, title: &str, paragraph: &str| {
+        let mut part = |name: &str, kind: SectionKind, paragraph: &str| {
             if name.is_empty() || missing.contains(&name) {
-                account.add(title, vec![paragraph.to_owned()]);
+                account.add(kind, vec![paragraph.to_owned()]);
             }
         };
         let [z, z_low, z_high] = self.impedance();
         let [k, low, high] = [z, z_low, z_high].map(|z| z.max(0.0).powi(2) / self.mass * 1e-3);
         part(
             "contact_impact",
-            "Impact",
+            SectionKind::Impact,
             &format!(
                 "The tool of {} kg meets the surface and the force peaks at {z:.0} N for each m/s of approach ({z_low:.0} to {z_high:.0}) over what was desired before, as on a spring of {k:.0} N/mm ({low:.0} to {high:.0}). The believed first order has no impact. The intervals are those of 95 %, from how the runs differ.",
                 self.mass
@@ -241,7 +241,7 @@ impl FlangeDiagnosis {
         };
         part(
             "contact_ringing",
-            "Ringing",
+            SectionKind::Ringing,
             &format!(
                 "After the impact the force rings at {f:.1} Hz ({f_low:.1} to {f_high:.1}){dies}."
             ),
@@ -249,7 +249,7 @@ impl FlangeDiagnosis {
         let [s, s_low, s_high] = self.of(|s| s.settling);
         part(
             "settling",
-            "Settling",
+            SectionKind::Settling,
             &format!(
                 "The force, averaged over {:.0} ms, stays within {:.0} % of the desired force about its later level {s:.2} s after contact ({s_low:.2} to {s_high:.2}).",
                 AVERAGED * 1e3,
@@ -265,7 +265,7 @@ impl FlangeDiagnosis {
         };
         part(
             "steady_force_error",
-            "Steady error",
+            SectionKind::SteadyError,
             &format!(
                 "Once settled, with the arm at rest, the force is off by {off}, where within a run it wanders by {unrest:.2} N. {CANNOT_TELL}."
             ),
@@ -276,7 +276,7 @@ impl FlangeDiagnosis {
             let [m, ..] = spread_of_sizes(&moving);
             part(
                 "force_error_while_moving",
-                "While the arm moves",
+                SectionKind::ErrorWhileMoving,
                 &format!(
                     "In contact and moving, the force is off by {m:.1} N RMS, and contact is lost for up to {:.1} % of a run's time.",
                     lost * 100.0
@@ -287,7 +287,7 @@ impl FlangeDiagnosis {
             let (peak, settling) = self.predicted(shown);
             part(
                 "",
-                "A run that it never saw",
+                SectionKind::UnseenRun,
                 &format!(
                     "{name} comes at {:.3} m/s. Predicted: a peak of {peak:.0} N, settled after {settling:.2} s; measured: {:.0} N ({:+.0} %) and {:.2} s ({:+.0} %).",
                     shown.approach,
@@ -306,7 +306,7 @@ impl FlangeDiagnosis {
                 )
             })
             .collect();
-        account.add("The runs", runs);
+        account.add(SectionKind::Runs, runs);
         account
     }
 }

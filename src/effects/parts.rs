@@ -5,6 +5,9 @@ pub use super::quantity::Coordinate::{self, Linear, Logarithmic};
 pub use crate::plant::Quantity;
 pub use crate::plant::registry::*;
 
+/// Laws of a leak exclude one another.
+pub(super) const LEAK: Option<&str> = Some("leak");
+
 /// A number that is a part of the answer.
 pub fn reported(quantity: Quantity, coordinate: Coordinate, bounds: [f64; 2]) -> Parameter {
     Parameter {

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::clock::{self, Alignment};
 use super::error::ImportError;
-use super::log::{Remark, Series, read_log};
+use super::log::{Series, read_log};
 use super::map::{Clock, ImportMap};
+use super::rows::Remark;
 use crate::recording::csv::median_step;
 use crate::recording::{Channel, Recording};
 

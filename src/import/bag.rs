@@ -7,13 +7,14 @@
 use std::path::Path;
 
 use super::error::ImportError;
-use super::log::{Remark, Rows};
 use super::map::FileMap;
+use super::rows::{Remark, Rows};
 
 mod definition;
 mod field;
 pub(super) mod glance;
 mod mcap_file;
+mod message;
 mod sqlite_file;
 mod standard;
 mod store;

@@ -14,8 +14,8 @@ use flate2::read::ZlibDecoder;
 use matfile::{MatFile, NumericData};
 
 use super::error::ImportError;
-use super::log::{Remark, Rows, Times, places};
 use super::map::{Column, FileMap};
+use super::rows::{Remark, Rows, Times, places};
 
 const HEADER: usize = 128;
 const TAG: usize = 8;

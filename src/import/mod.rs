@@ -15,6 +15,7 @@ pub mod map_file;
 mod mat_log;
 mod numbers;
 mod parquet_log;
+pub mod rows;
 pub mod stamps;
 mod text;
 pub mod units;
@@ -22,7 +23,8 @@ pub mod words;
 
 pub use assemble::{Imported, LogNote, import};
 pub use error::ImportError;
-pub use log::{Log, Remark, Series, read_log};
+pub use log::{Log, Series, read_log};
 pub use look::{Draft, draft};
 pub use map::ImportMap;
 pub use map_file::load_map;
+pub use rows::Remark;

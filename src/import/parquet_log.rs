@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::error::ImportError;
-use super::log::{Rows, Times, places};
 use super::map::{FileMap, TimeMap};
+use super::rows::{Rows, Times, places};
 use super::units;
 use crate::recording::Unit;
 use crate::recording::table::{Cells, Table};

@@ -6,9 +6,9 @@ use csv::StringRecord;
 
 use super::encoding::{Told, decode};
 use super::error::ImportError;
-use super::log::{Remark, Rows, Times, place, places};
 use super::map::{ChannelMap, Column, FileMap, Separator, TextForm, TimeMap};
 use super::numbers::{self, Marks};
+use super::rows::{Remark, Rows, Times, place, places};
 use super::{stamps, words};
 use crate::recording::Unit;
 

@@ -3,14 +3,13 @@
 use glamx::DPose3;
 
 use super::error::{Obstacle, PlanError};
-use super::plan::{Phase, Plan, PlanRequest, Way, waypoint_error};
-use super::posture::Standing;
+use super::plan::Plan;
+use super::posture::{SINGULAR_LIMIT, Standing};
+use super::request::{Phase, PlanRequest, Way, waypoint_error};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::inverse_dynamics;
 use crate::arm::kinematics::{jacobian_at, link_poses};
 
-/// Least singular value of the scaled Jacobian that is accepted [1].
-pub(super) const SINGULAR_LIMIT: f64 = 0.015;
 /// Interval at which speeds and torques are checked [s].
 const INTERVAL: f64 = 4e-3;
 

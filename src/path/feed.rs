@@ -1,8 +1,8 @@
 //! Feed along the edge: as asked for, less at corners, and less where an axis could not keep up.
 
 use super::error::{Obstacle, PlanError};
-use super::plan::{KNOT_SPACING, Phase, PlanRequest, waypoint_error};
 use super::profile::SpeedSection;
+use super::request::{KNOT_SPACING, Phase, PlanRequest, waypoint_error};
 use super::spline::Spline;
 use super::toolpath::Stretch;
 use crate::arm::chain::MAX_JOINTS;

@@ -4,10 +4,10 @@ use glamx::DPose3;
 
 use super::error::PlanError;
 use super::feed;
-use super::plan::{KNOT_SPACING, Leg, Phase, PlanRequest, Way, waypoint_error};
 use super::poses::{backed_off, places, poses_along};
 use super::posture::Standing;
 use super::profile::Profile;
+use super::request::{KNOT_SPACING, Leg, Phase, PlanRequest, Way, waypoint_error};
 use super::spline::Spline;
 
 /// Distance before touching at which approach hands over to engage [m].

@@ -13,9 +13,11 @@ pub mod plan;
 mod poses;
 mod posture;
 pub mod profile;
+pub mod request;
 pub mod spline;
 pub mod toolpath;
 
 pub use error::{Obstacle, PlanError};
-pub use plan::{Phase, Plan, PlanRequest, Reference};
+pub use plan::{Plan, Reference};
+pub use request::{Phase, PlanRequest};
 pub use toolpath::{ToolPath, ToolStation};

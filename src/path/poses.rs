@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 
 use super::error::{Obstacle, PlanError};
-use super::plan::{Phase, PlanRequest, waypoint_error};
+use super::request::{Phase, PlanRequest, waypoint_error};
 use super::toolpath::ToolStation;
 
 /// Distance between the poses by which a posture is chosen [m].

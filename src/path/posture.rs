@@ -14,6 +14,8 @@ use crate::arm::kinematics::{
     Jacobian, jacobian_at, link_poses, smallest_singular_value, tip_pose,
 };
 
+/// Least singular value of the scaled Jacobian that is accepted [1].
+pub(super) const SINGULAR_LIMIT: f64 = 0.015;
 /// Newton steps to each pose; neighbouring poses need two or three, the coarse ones by which a posture is chosen up to six.
 const STEPS: usize = 6;
 /// Shortest part of the way between two neighbouring poses that is tried [1].
@@ -231,7 +233,7 @@ impl Standing<'_> {
             &self.options(1),
         ) {
             Ok(solution) => {
-                let (value, limit) = (self.singularity(start), super::check::SINGULAR_LIMIT);
+                let (value, limit) = (self.singularity(start), SINGULAR_LIMIT);
                 if value < limit {
                     return Obstacle::Singular {
                         value,

@@ -19,7 +19,7 @@
 use super::cell_parameters::{CellParameters, MOST_JOINTS};
 use super::observation::Observation;
 use super::servo::follow;
-use super::sharp_edge::SharpEdge;
+use super::sharp_edge::{EdgeStation, SharpEdge};
 use glam::{DQuat, DVec3};
 use nalgebra::DMatrix;
 use std::sync::Arc;
@@ -39,19 +39,6 @@ pub struct JointTrajectory {
     pub acceleration: Vec<f64>,
     /// Torque that accelerates what is behind it [N m].
     pub torque: Vec<f64>,
-}
-
-/// A point of the followed edge.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EdgeStation {
-    /// Where it is [m].
-    pub point: DVec3,
-    /// Direction of the edge [1].
-    pub tangent: DVec3,
-    /// Outward bisector of the faces [1].
-    pub bisector: DVec3,
-    /// Distance along the edge from its start [m].
-    pub station: f64,
 }
 
 /// A cell's arm over a recording.

@@ -1,10 +1,13 @@
 //! Properties of a cell's arm and part: springs in the joints, encoders that are off, a servo that lags, a part that is not where it is believed.
 
-use super::arm_trajectory::EdgeStation;
+use super::sharp_edge::EdgeStation;
 use glam::DVec3;
 
 /// Most joints that an arm may have.
 pub const MOST_JOINTS: usize = 8;
+
+/// Damping over stiffness of a joint's spring of which nothing else is said [s].
+pub(super) const DAMPING_TIME: f64 = 2.5e-3;
 
 /// Arm and part of a cell, beside its device; [`CellParameters::RIGID`] where there is none.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +103,7 @@ impl CellParameters {
         joint_stiffness: [f64::INFINITY; MOST_JOINTS],
         joint_play: [0.0; MOST_JOINTS],
         joint_friction: [0.0; MOST_JOINTS],
-        joint_damping: super::registry::DAMPING_TIME,
+        joint_damping: DAMPING_TIME,
         encoder_offset: [0.0; MOST_JOINTS],
         friction: 0.0,
         start_stroke: 0.0,

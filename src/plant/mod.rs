@@ -31,9 +31,10 @@ mod servo;
 mod sharp_edge;
 mod simulate;
 mod terms;
+mod trajectory;
 
 pub use arm_trajectory::{
-    ArmTrajectory, ContactJacobian, ContactKinematics, EdgeStation, INERTIA_EVERY, JointTrajectory,
+    ArmTrajectory, ContactJacobian, ContactKinematics, INERTIA_EVERY, JointTrajectory,
 };
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS, Relief};
 pub use chain::{Chain, LinkParameters};
@@ -52,8 +53,7 @@ pub use registry::{Number, Quantity};
 pub use running_sensors::{RunningSensors, SensorReadings};
 pub use sensors::SensorErrors;
 pub use servo::{Followed, follow, shown};
-pub use sharp_edge::{SharpEdge, Touch};
-pub use simulate::{
-    CHANNELS, Channel, PlantTrajectory, Trajectory, readings, simulate, true_trajectory,
-};
+pub use sharp_edge::{EdgeStation, SharpEdge, Touch};
+pub use simulate::{PlantTrajectory, readings, simulate, true_trajectory};
 pub use terms::ForceTerms;
+pub use trajectory::{CHANNELS, Channel, Trajectory};

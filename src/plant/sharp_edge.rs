@@ -10,6 +10,19 @@
 
 use glam::DVec3;
 
+/// A point of the followed edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeStation {
+    /// Where it is [m].
+    pub point: DVec3,
+    /// Direction of the edge [1].
+    pub tangent: DVec3,
+    /// Outward bisector of the faces [1].
+    pub bisector: DVec3,
+    /// Distance along the edge from its start [m].
+    pub station: f64,
+}
+
 /// An edge as a chain of straight segments in the world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharpEdge {

@@ -11,52 +11,9 @@ use super::nudging::Nudging;
 use super::parameters::PlantParameters;
 use super::riding::Riding;
 use super::terms::ForceTerms;
+use super::trajectory::Trajectory;
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::valve::ValvePosition;
-
-/// A measured channel of a rig.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Channel {
-    /// Outlet of the regulator [Pa gauge].
-    RegulatorPressure,
-    /// Stroke from the retracted end [m].
-    Stroke,
-    /// Load cell, pushing positive [N].
-    Force,
-    /// Acceleration along extension [m/s2].
-    Acceleration,
-}
-
-/// All channels, in the order of a file's columns.
-pub const CHANNELS: [Channel; 4] = [
-    Channel::RegulatorPressure,
-    Channel::Stroke,
-    Channel::Force,
-    Channel::Acceleration,
-];
-
-/// True trajectory of a rig, one value per sample time.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Trajectory {
-    /// Outlet of the regulator [Pa gauge].
-    pub outlet: Vec<f64>,
-    /// Stroke [m].
-    pub stroke: Vec<f64>,
-    /// Speed of extension [m/s].
-    pub speed: Vec<f64>,
-    /// Acceleration along extension [m/s2].
-    pub acceleration: Vec<f64>,
-    /// Contact force [N].
-    pub contact_force: Vec<f64>,
-    /// Pressures of chambers 1 and 2 [Pa absolute].
-    pub pressures: [Vec<f64>; 2],
-    /// Air that came in since the sample before [kg/s].
-    pub mass_flow: Vec<f64>,
-    /// Force that held the piston to a measured motion [N]; none where nothing did.
-    pub hold_force: Vec<f64>,
-    /// Share of the contact force along the stroke [1].
-    pub share: Vec<f64>,
-}
 
 /// A simulated recording.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,6 @@
 //! The results of a bench run: a table of the levels commanded, and its numbers.
 
-use super::printable;
-use super::rows::{comparison, far_from_desired, shown, tally};
+use super::rows::{comparison, far_from_desired, printable, shown, tally};
 use super::text::Style;
 use crate::metrics::{BENCH_METRICS, BenchSummary, LevelSummary, Metric, Verdict};
 use crate::quantity::optional;

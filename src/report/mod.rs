@@ -11,8 +11,3 @@ pub use bench::{LEVELS, LevelColumn, bench_markdown, bench_text};
 pub use markdown::markdown;
 pub use rows::{far_from_desired, shown};
 pub use text::{Style, text};
-
-/// A name from a file on one line, without anything that steers a terminal.
-fn printable(text: &str) -> String {
-    text.replace(char::is_control, " ")
-}

@@ -1,6 +1,5 @@
 //! The rows of the reports: which metrics, in which parts, with what beside them.
 
-use super::printable;
 use crate::metrics::{Metric, NARROW_BAND, Summary, Verdict, WIDE_BAND, metric};
 use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
@@ -196,6 +195,11 @@ pub(super) fn tally(verdicts: &[Verdict]) -> String {
         1 => format!("{kept} of 1 bound kept"),
         count => format!("{kept} of {count} bounds kept"),
     }
+}
+
+/// A name from a file on one line, without anything that steers a terminal.
+pub(super) fn printable(text: &str) -> String {
+    text.replace(char::is_control, " ")
 }
 
 #[cfg(test)]

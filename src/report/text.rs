@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use super::printable;
-use super::rows::{Row, comparison, far_from_desired, rows, tally};
+use super::rows::{Row, comparison, far_from_desired, printable, rows, tally};
 use crate::metrics::{ForceTenth, Summary, Verdict};
 use crate::quantity::{UNKNOWN, column};
 

@@ -6,39 +6,8 @@ use serde::Deserialize;
 
 use super::controller::ControllerKeys;
 use super::estimator::EstimatorKeys;
-use super::file::{BoundKeys, DeviceKeys};
+use super::file::{BoundKeys, DeviceKeys, Kind};
 use super::sensing::keys::SensingKeys;
-
-/// Kind of scenario in a file; a cell if it does not say.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum Kind {
-    /// Arm, device and workpiece.
-    #[default]
-    Cell,
-    /// The device alone.
-    Bench,
-    /// Arm, device and workpiece of which there are recordings.
-    RecordedCell,
-}
-
-impl Kind {
-    /// As a file names it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cell => "cell",
-            Self::Bench => "bench",
-            Self::RecordedCell => "recorded_cell",
-        }
-    }
-}
-
-/// The one key that is read before a file's kind is known.
-#[derive(Debug, Deserialize)]
-pub(super) struct KindOnly {
-    #[serde(default)]
-    pub kind: Kind,
-}
 
 /// A bench scenario file.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]

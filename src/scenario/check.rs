@@ -8,7 +8,7 @@ use glamx::DPose3;
 
 use super::document::{Document, join};
 use super::error::ScenarioError;
-use super::units::Unit;
+use super::units::{Unit, look_alike};
 use crate::plant::Number;
 
 /// A table of a file, whose values are checked key by key.
@@ -254,5 +254,38 @@ impl<'a> Section<'a> {
             key,
             reason,
         }
+    }
+}
+
+/// A value that is plausible in the unit of its key.
+pub(super) fn checked(
+    section: &Section<'_>,
+    key: &str,
+    value: f64,
+    range: [f64; 2],
+) -> Result<f64, ScenarioError> {
+    if range[0] <= value && value <= range[1] {
+        return Ok(value);
+    }
+    let unit = Unit::of_key(key);
+    let with_unit = |value: f64| {
+        format!("{} {}", plain(value), unit.symbol)
+            .trim_end()
+            .to_owned()
+    };
+    let mut expected = format!("{} to {}", plain(range[0]), with_unit(range[1]));
+    if let Some(other) = look_alike(unit.symbol, value, range) {
+        expected += &format!(" (it looks like {other}; a rig file is in SI)");
+    }
+    Err(section.refuse(key, with_unit(value), expected))
+}
+
+/// A number in the shorter of its usual forms.
+pub(super) fn plain(value: f64) -> String {
+    let usual = value == 0.0 || (1e-3..1e6).contains(&value.abs());
+    if usual || !value.is_finite() {
+        value.to_string()
+    } else {
+        format!("{value:e}")
     }
 }

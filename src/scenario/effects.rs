@@ -15,85 +15,26 @@
 //!
 //! A file of schema 1 has `[effect.NAME]` with its numbers instead, and names the joint at the end of NAME.
 
+mod keys;
 mod own;
 mod schema;
 mod value;
 mod written;
 
-use std::collections::BTreeMap;
-use std::fmt;
-
-use serde::Deserialize;
-use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
-
-use super::check::Section;
+use super::check::{Section, checked};
 use super::document::{Document, join};
 use super::error::ScenarioError;
-use super::rig_file::{checked, plain};
 use super::suggestion::nearest;
 use super::units::Unit;
 use crate::effects::{Effect, Parameter, PresentEffect};
 use crate::plant::PlantParameters;
-use value::EffectValue;
+use keys::{JOINT, LISTED, NAME, Table};
+
+pub(super) use keys::EffectKeys;
 
 pub(super) use schema::schema;
 pub use written::{WrittenEffect, as_written};
 pub(super) use written::{append, remove_effects};
-
-/// First version of a file whose effects are a list.
-const LISTED: i64 = 2;
-/// Key of an effect's name.
-const NAME: &str = "name";
-/// Key of the joint that an effect is about.
-const JOINT: &str = "joint";
-
-/// One effect's keys.
-type Table = BTreeMap<String, EffectValue>;
-
-/// The effects of a file.
-#[derive(Debug)]
-pub(super) enum EffectKeys {
-    /// `[[effect]]`.
-    List(Vec<Table>),
-    /// `[effect.NAME]`, of schema 1.
-    Named(BTreeMap<String, Table>),
-}
-
-impl Default for EffectKeys {
-    fn default() -> Self {
-        Self::List(Vec::new())
-    }
-}
-
-impl<'de> Deserialize<'de> for EffectKeys {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Tables;
-        impl<'de> Visitor<'de> for Tables {
-            type Value = EffectKeys;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("tables [[effect]]")
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<EffectKeys, A::Error> {
-                let mut tables = Vec::new();
-                while let Some(table) = list.next_element()? {
-                    tables.push(table);
-                }
-                Ok(EffectKeys::List(tables))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<EffectKeys, A::Error> {
-                let mut tables = BTreeMap::new();
-                while let Some((name, table)) = map.next_entry()? {
-                    tables.insert(name, table);
-                }
-                Ok(EffectKeys::Named(tables))
-            }
-        }
-        deserializer.deserialize_any(Tables)
-    }
-}
 
 /// The effects of a file on a model without them, in the order of the catalogue and then as they are written. `known` are those that it may have.
 pub(super) fn effects(
@@ -292,9 +233,4 @@ fn widened([low, high]: [f64; 2]) -> [f64; 2] {
     let low = if low > 0.0 { 0.5 * low } else { 2.0 * low };
     let high = if high > 0.0 { 2.0 * high } else { 0.5 * high };
     [low, high]
-}
-
-/// A number as a file has it, for messages.
-fn shown(value: f64) -> String {
-    plain(value)
 }

@@ -14,6 +14,37 @@ use super::sensing::keys::SensingKeys;
 /// Version of both formats.
 pub(super) const SCHEMA: u32 = 2;
 
+/// Kind of scenario in a file; a cell if it does not say.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Kind {
+    /// Arm, device and workpiece.
+    #[default]
+    Cell,
+    /// The device alone.
+    Bench,
+    /// Arm, device and workpiece of which there are recordings.
+    RecordedCell,
+}
+
+impl Kind {
+    /// As a file names it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cell => "cell",
+            Self::Bench => "bench",
+            Self::RecordedCell => "recorded_cell",
+        }
+    }
+}
+
+/// The one key that is read before a file's kind is known.
+#[derive(Debug, Deserialize)]
+pub(super) struct KindOnly {
+    #[serde(default)]
+    pub kind: Kind,
+}
+
 /// A scenario file.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -21,7 +52,7 @@ pub(super) struct ScenarioFile {
     #[expect(dead_code, reason = "checked by Document::new")]
     pub schema: u32,
     #[expect(dead_code, reason = "read as `KindOnly`; here so that it is known")]
-    pub kind: Option<super::bench_file::Kind>,
+    pub kind: Option<Kind>,
     pub title: String,
     pub arm: ArmKeys,
     pub device: DeviceKeys,

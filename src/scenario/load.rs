@@ -5,102 +5,29 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::bench::{self, BenchScenario};
-use super::bench_file::{Kind, KindOnly};
 use super::check::Section;
 use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
-use super::document::{Document, read_text};
+use super::document::Document;
 use super::effects::{EffectKeys, effects};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
 use super::rig_device::is_rig;
-use super::sections::{bench_sections, scenario_sections};
+use super::sections::scenario_sections;
 use super::sensing::sensing;
-use super::suggestion::Sections;
 use super::workpiece::workpiece;
 use super::{
-    AnyScenario, ArmScenario, ContactScenario, DeviceScenario, DriveScenario, Expectation,
-    LimitOverride, ProcessScenario, Scenario, ServoScenario, SimulationScenario,
+    ArmScenario, ContactScenario, DeviceScenario, DriveScenario, Expectation, LimitOverride,
+    ProcessScenario, Scenario, ServoScenario, SimulationScenario,
 };
 use crate::effects::{Effect, PresentEffect, every};
 use crate::plant::{CellParameters, PlantParameters, registry};
 
-/// Reads and checks a scenario file of either kind and the device model file that it names.
-///
-/// # Errors
-/// A file cannot be read, or a key is unknown, absent or out of its range.
-pub fn load_any(path: &Path) -> Result<AnyScenario, ScenarioError> {
-    from_text(path, &read_text(path)?)
-}
-
-/// As `load_any`, of a text that stands, or could stand, in the file at `path`.
-pub(super) fn from_text(path: &Path, text: &str) -> Result<AnyScenario, ScenarioError> {
-    let document = Document::new(path, text, file::SCHEMA)?;
-    // Keys of either kind are known here, so that only a wrong kind is refused.
-    let KindOnly { kind } = document.parse(&bench_sections())?;
-    match kind {
-        Kind::Cell => from_document(path, &document)
-            .map(|cell| AnyScenario::Cell(Box::new(cell)))
-            .map_err(|error| name_kind(error, "bench", &bench_sections())),
-        Kind::RecordedCell => Err(ScenarioError::OtherKind {
-            file: path.to_owned(),
-            found: kind.name(),
-            expected: "cell or bench",
-        }),
-        Kind::Bench => bench::from_document(path, &document)
-            .map(|bench| AnyScenario::Bench(Box::new(bench)))
-            .map_err(|error| name_kind(error, "cell", &scenario_sections())),
-    }
-}
-
-/// Says of an unknown key at the top that the other kind of scenario has it, if so.
-fn name_kind(error: ScenarioError, other: &str, sections: &Sections) -> ScenarioError {
-    match error {
-        ScenarioError::UnknownKey { place, key, .. }
-            if sections
-                .iter()
-                .any(|(table, keys)| table.is_empty() && keys.contains(&key.as_str())) =>
-        {
-            let advice = format!("a scenario of kind = \"{other}\" has it");
-            ScenarioError::UnknownKey { place, key, advice }
-        }
-        error => error,
-    }
-}
-
-/// Reads and checks the scenario file of a cell and the device model file that it names.
-///
-/// # Errors
-/// A file cannot be read, or a key is unknown, absent or out of its range.
-pub fn load(path: &Path) -> Result<Scenario, ScenarioError> {
-    match load_any(path)? {
-        AnyScenario::Cell(cell) => Ok(*cell),
-        AnyScenario::Bench(_) => Err(ScenarioError::OtherKind {
-            file: path.to_owned(),
-            found: "bench",
-            expected: "cell",
-        }),
-    }
-}
-
-/// Reads and checks a bench scenario file and the device model file that it names.
-///
-/// # Errors
-/// A file cannot be read, or a key is unknown, absent or out of its range.
-pub fn load_bench(path: &Path) -> Result<BenchScenario, ScenarioError> {
-    match load_any(path)? {
-        AnyScenario::Bench(bench) => Ok(*bench),
-        AnyScenario::Cell(_) => Err(ScenarioError::OtherKind {
-            file: path.to_owned(),
-            found: "cell",
-            expected: "bench",
-        }),
-    }
-}
-
 /// Reads the scenario of a cell from a document that does not say otherwise.
-fn from_document(path: &Path, document: &Document<'_>) -> Result<Scenario, ScenarioError> {
+pub(super) fn from_document(
+    path: &Path,
+    document: &Document<'_>,
+) -> Result<Scenario, ScenarioError> {
     let file: ScenarioFile = document.parse(&scenario_sections())?;
     let section = |table: &str| Section::new(document, table);
     let device = device(&section("device"), &file.device)?;

@@ -4,13 +4,12 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use serde::Deserialize;
 
-use super::bench_file::{Kind, KindOnly};
+use super::any;
 use super::check::Section;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
-use super::file::{self, ArmKeys, ContactKeys, DeviceKeys, WorkpieceKeys};
+use super::file::{self, Kind, KindOnly};
 use super::load;
 use super::sections::recorded_cell_sections;
 use super::workpiece::workpiece;
@@ -18,61 +17,13 @@ use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, Workpiec
 use crate::effects::PresentEffect;
 use crate::plant::{Observation, registry};
 
+mod keys;
 mod own;
 
 mod improved;
 
 pub use improved::improved_cell_text;
-
-/// The file.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RecordedCellFile {
-    #[expect(dead_code, reason = "checked by Document::new")]
-    pub schema: u32,
-    pub kind: Kind,
-    pub title: String,
-    pub arm: ArmKeys,
-    pub joints: JointsKeys,
-    pub device: DeviceKeys,
-    pub workpiece: WorkpieceKeys,
-    #[serde(default)]
-    pub contact: ContactKeys,
-    pub sensors: SensorsKeys,
-    #[serde(default)]
-    pub belief: BeliefKeys,
-    #[serde(default)]
-    pub effect: super::effects::EffectKeys,
-}
-
-/// `[joints]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct JointsKeys {
-    pub servo_bandwidth_hz: f64,
-    pub stiffness_n_m_per_rad: Vec<f64>,
-    pub damping_time_ms: Option<f64>,
-    pub damping_time_tolerance_ms: Option<f64>,
-}
-
-/// `[sensors]`: standard deviations of their noise.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SensorsKeys {
-    pub joints_rad: f64,
-    pub regulator_pressure_pa: f64,
-    pub stroke_um: f64,
-    pub force_n: f64,
-}
-
-/// `[belief]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct BeliefKeys {
-    pub tolerance: Option<f64>,
-    pub start_stroke_tolerance_mm: Option<f64>,
-    pub gravity_m_per_s2: Option<Vec<f64>>,
-}
+pub(super) use keys::{BeliefKeys, JointsKeys, RecordedCellFile, SensorsKeys};
 
 /// A cell of which there are recordings.
 #[derive(Debug, Clone)]
@@ -127,7 +78,7 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let document = Document::new(path, &text, file::SCHEMA)?;
     let KindOnly { kind } = document.parse(&recorded_cell_sections())?;
     if kind == Kind::Cell {
-        return own::of_scenario(&load::load(path)?, &document, &text);
+        return own::of_scenario(&any::load(path)?, &document, &text);
     }
     let file: RecordedCellFile = document.parse(&recorded_cell_sections())?;
     if file.kind != Kind::RecordedCell {

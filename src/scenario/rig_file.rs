@@ -16,7 +16,6 @@ use super::effects::effects;
 use super::error::ScenarioError;
 use crate::effects::{PresentEffect, candidates};
 use crate::plant::PlantParameters;
-use crate::plant::Quantity;
 use keys::{RigKeys, sections};
 use values::{check_together, pressure_drift, recordings, sensors};
 
@@ -33,7 +32,7 @@ mod values;
 pub use improved::improved_text;
 pub(super) use number::NUMBER_OR_TABLE;
 pub(super) use quantities::{blank, described_numbers};
-pub(super) use values::{checked, plain};
+pub use values::Tolerance;
 
 /// Version of the format.
 const SCHEMA: u32 = 2;
@@ -61,19 +60,6 @@ pub struct RigFile {
     pub predict: Option<String>,
     /// Effects that the file names, in the order of the catalogue, with all their numbers.
     pub effects: Vec<PresentEffect>,
-}
-
-/// A number of the rig that is not exactly known.
-#[derive(Debug, Clone, Copy)]
-pub struct Tolerance {
-    /// Dotted key in the file.
-    pub key: &'static str,
-    /// The number in the rig's description.
-    pub quantity: Quantity,
-    /// Its value [SI].
-    pub value: f64,
-    /// Half the width of what is believed, relative to the value [1].
-    pub tolerance: f64,
 }
 
 impl RigFile {

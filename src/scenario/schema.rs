@@ -1,6 +1,7 @@
 //! JSON Schemas of the files, for editors: structure and choices of values from the types that serde fills, meaning, units, ranges and defaults from the
 //! pages that describe the keys (which the tests hold against the program).
 
+mod described;
 mod page;
 mod rig;
 
@@ -8,6 +9,7 @@ use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
+pub(crate) use described::Described;
 #[cfg(feature = "import")]
 pub(crate) use page::key_rows;
 pub use rig::schema as rig;
@@ -15,27 +17,7 @@ pub use rig::schema as rig;
 use super::bench_file::BenchFile;
 use super::file::{ModelFile, ScenarioFile};
 use super::recorded_cell::RecordedCellFile;
-
-/// Knowledge of a key besides its type.
-#[derive(Debug, Default)]
-pub(crate) struct Described {
-    /// A sentence or two.
-    text: String,
-    /// Least and greatest value, in the key's unit.
-    range: [Option<f64>; 2],
-    /// Value where the file gives none.
-    default: Option<Value>,
-}
-
-impl Described {
-    /// A sentence alone.
-    pub(crate) fn text(text: String) -> Self {
-        Self {
-            text,
-            ..Self::default()
-        }
-    }
-}
+use described::DIALECT;
 
 /// Schema of a scenario file of any kind.
 #[must_use]
@@ -75,9 +57,6 @@ pub fn device() -> Value {
         Some(row.described())
     })
 }
-
-/// The dialect that editors for TOML know.
-const DIALECT: &str = "http://json-schema.org/draft-07/schema#";
 
 /// A type's own schema, each table in its place and without what TOML does not have.
 pub(crate) fn plain_schema<T: JsonSchema>() -> Value {

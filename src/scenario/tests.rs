@@ -15,7 +15,7 @@ mod values;
 
 use std::path::{Path, PathBuf};
 
-use super::load::from_text;
+use super::any::from_text;
 use super::{AnyScenario, BenchScenario, Scenario, ScenarioError};
 
 /// A scenario of required keys alone.

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use toml_edit::{DocumentMut, TomlError, Value};
 
 use super::AnyScenario;
+use super::any::from_text;
 use super::document::read_text;
 use super::error::{Place, ScenarioError};
-use super::load::from_text;
 use super::sections::{bench_sections, scenario_sections};
 use super::suggestion::nearest_dotted;
 

@@ -403,7 +403,7 @@ class Examination:
         if of.is_flange:
             return
         beyond = [e for e in of.errors() if e[0] > NOISE_ALONE]
-        left = " ".join(p for s in account["sections"] if s["title"] == "What is left" for p in s["paragraphs"])
+        left = " ".join(p for s in account["sections"] if s["kind"] == "remaining" for p in s["paragraphs"])
         fact("`no more than noise is left` agrees with every channel, the kept-back ones too", bool(re.search(r"\bNo more than", left)), not beyond)
         fact("`more than noise` agrees", bool(re.search(r"More than .* in \d+ of", left)), bool(beyond))
         if of.json["effects"]:

@@ -11,8 +11,8 @@ use serde::Serialize;
 pub use evaluate::ScenarioEvaluator;
 
 use super::error::AppError;
-use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, Standing, provenance};
-use super::report::{REPORT, of_design};
+use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, REPORT, Standing, provenance};
+use super::report::of_design;
 use crate::design::{self, Domain, Study, StudyResult, Variable};
 use crate::recording::provenance::Provenance;
 use crate::scenario::{self, AnyScenario, files_of_cell};

@@ -5,12 +5,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::super::cli::DiagnoseArguments;
 use super::super::error::{AppError, ExitCode};
 use super::super::files::Standing;
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
+use super::DiagnoseArguments;
 use super::one::{Prepared, complete, is_case};
 use crate::case::is_cell_case;
 use crate::diagnosis::answer::{Answer, Verdict};

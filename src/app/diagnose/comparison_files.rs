@@ -8,16 +8,13 @@
 use std::path::Path;
 
 use super::super::error::AppError;
+use super::super::files::{BALANCE, COMPARISON};
 use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel, Comparison};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Channel};
 use crate::recording::RecordingError;
 use crate::recording::long_table::{LongColumn, read_long, write_long};
 
-/// Name of the file with the recordings.
-pub(in super::super) const COMPARISON: &str = "comparison.parquet";
-/// Name of the file with the balances.
-pub(in super::super) const BALANCE: &str = "balance.parquet";
 const FITTED: &str = "fitted";
 const UNSEEN: &str = "unseen";
 const MODELS: [&str; 5] = ["measured", "believed", "tolerated", "improved", "left_out"];

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::files::{OutputFolder, Standing, is_same};
+use super::super::files::{DIAGNOSIS, OutputFolder, Standing, is_same};
 use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
-use super::outputs::{DIAGNOSIS, HOW_TO_RUN, NAMES, Outputs, stands_complete};
+use super::outputs::{Finished, NAMES, Outputs, stands_complete};
 use super::unlisted_picture::picture;
 use crate::case::{Case, Diagnosed, IMPROVED, RIG, diagnose};
+use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::details::DETAILS_SCHEMA;
 use crate::diagnosis::progress::Observer;
@@ -20,18 +21,6 @@ use crate::replay::LoadedCell;
 pub(super) struct Prepared {
     case: Case,
     folder: OutputFolder,
-}
-
-/// A case that was diagnosed; its files are written.
-pub(super) struct Finished {
-    /// The finding.
-    pub answer: Answer,
-    /// diagnosis.json.
-    pub document: String,
-    /// account.txt.
-    pub account: String,
-    /// Names of the files written.
-    pub names: Vec<&'static str>,
 }
 
 /// Whether this is a folder with a case.
@@ -93,7 +82,7 @@ impl Prepared {
             if !diagnosis.best().finds_nothing() {
                 let file = self.folder.path().join(IMPROVED).display().to_string();
                 let how = how_to_run(self.case.cell(), &file);
-                answer.details.account.add(HOW_TO_RUN, vec![how]);
+                answer.details.account.add(SectionKind::HowToRun, vec![how]);
             }
         }
         let outputs = Outputs {

@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::files::OutputFolder;
-use super::super::report::{REPORT, of_diagnosis};
+use super::super::files::{BALANCE, BOARD, COMPARISON, DIAGNOSIS, OutputFolder, REPORT};
+use super::super::report::of_diagnosis;
 use super::board::board;
-use super::comparison_files::{BALANCE, COMPARISON, write_balances, write_recordings};
-use super::one::Finished;
+use super::comparison_files::{write_balances, write_recordings};
 use crate::case::IMPROVED;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
@@ -16,16 +15,11 @@ use crate::recording::rerun::write_board;
 use crate::recording::scene::Scene;
 
 const ACCOUNT: &str = "account.txt";
-/// Part of the account that says what to do with it.
-pub(in super::super) const HOW_TO_RUN: &str = "How to run what was found";
 const PREDICTION: &str = "prediction.csv";
 /// Shape of physics without a name, where there is such.
 const PICTURE: &str = "unlisted.svg";
 /// Before and after, of a part of the device.
 const FIT_PICTURE: &str = "fit.svg";
-/// All of it on a screen, for Rerun's viewer.
-pub(in super::super) const BOARD: &str = "diagnosis.rrd";
-pub(in super::super) const DIAGNOSIS: &str = "diagnosis.json";
 /// All that a diagnosis may write.
 pub(super) const NAMES: [&str; 10] = [
     ACCOUNT,
@@ -62,6 +56,18 @@ pub(super) struct Outputs<'a> {
     pub comparison: &'a Comparison,
     /// Scene of a cell.
     pub scene: Option<Scene>,
+}
+
+/// A case that was diagnosed; its files are written.
+pub(super) struct Finished {
+    /// The finding.
+    pub answer: Answer,
+    /// diagnosis.json.
+    pub document: String,
+    /// account.txt.
+    pub account: String,
+    /// Names of the files written.
+    pub names: Vec<&'static str>,
 }
 
 impl Outputs<'_> {

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::files::{Standing, prepare_file};
-use super::by_subsystem;
-use super::page::Explained;
+use super::page::{Explained, by_subsystem};
 use super::picture::picture;
 use super::scene::{self, Stage};
 use crate::diagnosis::words::capital;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::scene::{self, Scene, Stage};
 use crate::diagnosis::words::{capital, spoken, wrapped};
-use crate::effects::{Effect, Header, Subsystem, Which};
+use crate::effects::{Effect, Header, Subsystem, Which, kinds};
 use crate::plant::PlantParameters;
 use crate::quantity::significant;
 
@@ -305,4 +305,12 @@ fn plain(text: &str) -> String {
     text.replace('*', "\\*")
         .replace('_', "\\_")
         .replace('<', "&lt;")
+}
+
+/// Effects with their subsystem, in the order in which they are told.
+pub(super) fn by_subsystem() -> impl Iterator<Item = (&'static str, Vec<&'static Effect>)> {
+    SUBSYSTEMS.into_iter().map(|subsystem| {
+        let own = kinds().filter(|effect| effect.subsystem == subsystem);
+        (heading(subsystem), own.collect())
+    })
 }

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::told::remarks;
-use super::{Copies, Job};
+use super::told::{Copies, Job, remarks};
 use crate::import::ImportMap;
 use crate::import::findings::{Finding, findings};
 

@@ -1,13 +1,26 @@
 //! Interpretation of a log, for people.
 
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
-use super::name;
 use crate::import::findings::{Finding, findings};
 use crate::import::{ImportMap, Imported, LogNote, Remark};
 
 /// Gaps and rows that are listed, at most.
 const LISTED: usize = 3;
+
+/// A recording to be, and where it goes.
+pub(super) struct Job {
+    pub imported: Imported,
+    pub out: Option<PathBuf>,
+}
+
+/// Two logs that are the same data.
+pub(super) struct Copies {
+    pub one: PathBuf,
+    pub other: PathBuf,
+    pub share: f64,
+}
 
 /// Interpretation of a recording.
 pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
@@ -174,4 +187,9 @@ pub(super) fn remarks(log: &LogNote) -> Vec<String> {
         ));
     }
     said
+}
+
+pub(super) fn name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
 }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::super::files::{DESIGN, OVERRIDE};
-use super::provenance_of;
+use super::provenance::provenance_of;
 use super::run::labels;
 use crate::design::{number, spoken};
 use crate::diagnosis::words::capital;

@@ -1,10 +1,9 @@
 //! The page of a diagnosis.
 
-use super::super::diagnose::HOW_TO_RUN;
 use super::charts::{balance, channel, origin, unlisted};
-use super::provenance;
-use super::tables::{how_well, own_numbers, ruled_out};
-use crate::diagnosis::account::Section as Told;
+use super::provenance::provenance;
+use super::tables::{how_well, own_numbers, ruled_out, told};
+use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, UNLISTED, Verdict};
 use crate::diagnosis::comparison::{Compared, Comparison};
 use crate::diagnosis::details::remaining_errors;
@@ -18,13 +17,14 @@ use crate::quantity::significant;
 /// Recordings that are shown at once; the others are folded away.
 const SHOWN: usize = 2;
 
-/// Sentences on a contact flange from its account.
-const OF_FLANGE: [&str; 5] = [
-    "Impact",
-    "Ringing",
-    "Settling",
-    "Steady error",
-    "While the arm moves",
+/// Parts of the account that say what was found, those of a contact flange last.
+const FOUND: [SectionKind; 6] = [
+    SectionKind::Missing,
+    SectionKind::Impact,
+    SectionKind::Ringing,
+    SectionKind::Settling,
+    SectionKind::SteadyError,
+    SectionKind::ErrorWhileMoving,
 ];
 
 /// The page.
@@ -39,7 +39,7 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> 
         how_well(answer),
         own_numbers(answer),
         ruled_out(answer),
-        told(answer, "What to record next", "What to record next"),
+        next_experiment(answer),
         account(answer),
     ];
     let sections = sections.into_iter().flatten();
@@ -58,16 +58,10 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> 
     }
 }
 
-/// A part of the account by its title.
-pub(super) fn part<'a>(answer: &'a Answer, title: &str) -> Option<&'a Told> {
-    let mut sections = answer.details.account.sections.iter();
-    sections.find(|section| section.title == title)
-}
-
-fn told<'a>(answer: &Answer, title: &str, heading: &str) -> Option<Section<'a>> {
-    let paragraphs = part(answer, title)?.paragraphs.iter();
-    let blocks = paragraphs.map(|text| Block::Paragraph(text.clone()));
-    Some(Section::new(heading, blocks.collect()))
+fn next_experiment<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let kind = SectionKind::NextExperiment;
+    let blocks: Vec<Block<'a>> = told(answer, &[kind]).collect();
+    (!blocks.is_empty()).then(|| Section::new(kind.title(), blocks))
 }
 
 /// Meaning of each effect, in words.
@@ -79,8 +73,8 @@ fn lead(answer: &Answer) -> Vec<String> {
     let known = answer.effects.iter().filter(|e| e.name != UNLISTED);
     let mut lead: Vec<String> = known.filter_map(said).collect();
     if answer.verdict == Verdict::NothingMissing {
-        let left = part(answer, "What is left").into_iter();
-        lead.extend(left.flat_map(|told| told.paragraphs.clone()));
+        let left = answer.details.account.section(SectionKind::Remaining);
+        lead.extend(left.into_iter().flat_map(|told| told.paragraphs.clone()));
     }
     lead
 }
@@ -211,24 +205,14 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
             blocks.push(Block::Chart(unlisted(report)));
         }
     }
-    let told = part(answer, "What is missing");
-    let paragraphs = told.into_iter().flat_map(|told| &told.paragraphs);
-    blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
-    for title in OF_FLANGE {
-        let paragraphs = part(answer, title).into_iter().flat_map(|t| &t.paragraphs);
-        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
-    }
+    blocks.extend(told(answer, &FOUND));
     (!blocks.is_empty()).then(|| Section::new("What is missing", blocks))
 }
 
 /// Strips of the times in which the effects show.
 fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Section<'a>> {
-    let mut blocks: Vec<Block<'a>> = Vec::new();
-    let told = ["Where it parts", "Which link"].map(|title| part(answer, title));
-    for told in told.into_iter().flatten() {
-        let paragraphs = told.paragraphs.iter();
-        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
-    }
+    let mut blocks: Vec<Block<'a>> =
+        told(answer, &[SectionKind::Mismatch, SectionKind::Link]).collect();
     let mut subsystems: Vec<&str> = Vec::new();
     for effect in &answer.effects {
         if !subsystems.contains(&effect.subsystem.as_str()) {
@@ -320,20 +304,18 @@ fn balances<'a>(comparison: &Comparison) -> Option<Section<'a>> {
 /// All that the account says, folded away.
 fn account<'a>(answer: &Answer) -> Option<Section<'a>> {
     let text = answer.details.account.text(&answer.details.case);
-    let notes = part(answer, "The recordings")
-        .into_iter()
-        .flat_map(|t| &t.paragraphs);
-    let mut blocks: Vec<Block<'a>> = notes.map(|text| Block::Paragraph(text.clone())).collect();
-    let others = [
-        "The arm",
-        "Where on the path",
-        "What improved.toml leaves out",
-        HOW_TO_RUN,
-    ];
-    for told in others.into_iter().filter_map(|title| part(answer, title)) {
-        blocks.push(Block::Heading(told.title.clone()));
-        let paragraphs = told.paragraphs.iter();
-        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    let mut blocks: Vec<Block<'a>> = told(answer, &[SectionKind::Recordings]).collect();
+    for kind in [
+        SectionKind::Arm,
+        SectionKind::PathPlaces,
+        SectionKind::NotWritten,
+        SectionKind::HowToRun,
+    ] {
+        let paragraphs: Vec<Block<'a>> = told(answer, &[kind]).collect();
+        if !paragraphs.is_empty() {
+            blocks.push(Block::Heading(kind.title().to_owned()));
+            blocks.extend(paragraphs);
+        }
     }
     blocks.push(Block::Folded(
         "account.txt".to_owned(),

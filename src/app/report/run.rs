@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
-use super::provenance_of;
+use super::provenance::provenance_of;
 use super::signals::{along_the_path, joints, signals};
 use crate::metrics::{BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, WIDE_BAND};
 use crate::page::{Block, Cell, Fact, Page, Section, Table, Tone};

@@ -1,6 +1,6 @@
 //! The tables of a diagnosis: how well it fits, the rig's own numbers, what was ruled out.
 
-use super::diagnosis::part;
+use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::details::{
     ChannelMisfit, Considered, PredictionError, RuledOutReport, ToleratedNumber,
@@ -85,10 +85,12 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
             details.prediction.iter().map(row).collect(),
         )));
     }
-    for told in ["What is left", "A run that it never saw", "The runs"] {
-        let paragraphs = part(answer, told).into_iter().flat_map(|t| &t.paragraphs);
-        blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
-    }
+    let kinds = [
+        SectionKind::Remaining,
+        SectionKind::UnseenRun,
+        SectionKind::Runs,
+    ];
+    blocks.extend(told(answer, &kinds));
     (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
 }
 
@@ -186,8 +188,14 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
             details.ruled_out.iter().map(row).collect(),
         )));
     }
-    let title = "What the recordings do not tell apart";
-    let paragraphs = part(answer, title).into_iter().flat_map(|t| &t.paragraphs);
-    blocks.extend(paragraphs.map(|text| Block::Paragraph(text.clone())));
+    blocks.extend(told(answer, &[SectionKind::Ambiguous]));
     (!blocks.is_empty()).then(|| Section::new("Other explanations", blocks))
+}
+
+/// What the account says of these, a paragraph each.
+pub(super) fn told<'a>(answer: &Answer, kinds: &[SectionKind]) -> impl Iterator<Item = Block<'a>> {
+    let account = &answer.details.account;
+    let sections = kinds.iter().filter_map(|kind| account.section(*kind));
+    let paragraphs = sections.flat_map(|section| &section.paragraphs);
+    paragraphs.map(|text| Block::Paragraph(text.clone()))
 }

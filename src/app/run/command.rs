@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::super::cli::{output_folder, show};
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, RUN_NAMES, Standing, VARIED, is_same};
+use super::super::files::{OutputFolder, RUN_NAMES, Standing, VARIED, is_same, output_folder};
 use super::super::interrupt::Interruptible;
+use super::super::output::show;
 use super::super::progress;
 use super::super::viewer::{Viewing, Watch};
 use super::job::{Job, Manner};

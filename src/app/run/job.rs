@@ -3,16 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{
-    EDGE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches, SummaryDocument,
-};
+use super::super::files::{EDGE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches};
 use super::super::growing::GrowingFile;
 use super::super::picture::scene_of;
 use super::super::report::page_of_run;
 use super::super::viewer::Watch;
 use super::super::{bench, bench_figures, bench_picture};
+use super::cell_run::{Listener, SummaryDocument, run_heard};
 use super::source::Source;
-use super::{Listener, run_heard};
 use crate::cell::Cell;
 use crate::metrics::{self, MetricsError, Verdict};
 use crate::recording::provenance::Provenance;

@@ -1,10 +1,11 @@
 //! The runs of `--set` side by side, in a terminal: what varies against the numbers that matter most.
 
+use std::path::PathBuf;
+
 use serde_json::Value;
 
 use super::super::error::ExitCode;
-use super::settings::short;
-use super::variants::Done;
+use super::settings::{Variant, short};
 use crate::design::spoken;
 use crate::metrics::{BENCH_METRICS, METRICS};
 use crate::quantity::column;
@@ -33,6 +34,31 @@ const OF_BENCH: [&str; 7] = [
     "stroke_margin_mm",
     "regulator_delay_s",
 ];
+
+/// A variant that has been run.
+pub(super) struct Done {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// Its values in place of the scenario's, and its name.
+    pub variant: Variant,
+    /// Content of summary.json.
+    pub document: Value,
+}
+
+impl Done {
+    /// Its exit code.
+    pub(super) fn code(&self) -> ExitCode {
+        let verdicts = self.document["expectations"].as_array();
+        let outside = |verdict: &Value| verdict["kept"] == false;
+        if !self.document["stopped"].is_null() {
+            ExitCode::Stopped
+        } else if verdicts.is_some_and(|verdicts| verdicts.iter().any(outside)) {
+            ExitCode::OutsideBounds
+        } else {
+            ExitCode::Done
+        }
+    }
+}
 
 /// A column: lines of its heading, and its cells.
 struct Column {

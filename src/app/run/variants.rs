@@ -16,7 +16,7 @@ use super::command::RunArguments;
 use super::job::Job;
 use super::settings::{Variant, blamed, with_flags};
 use super::source::Source;
-use super::table::table;
+use super::table::{Done, table};
 use crate::proof::in_order;
 use crate::scenario::ScenarioTemplate;
 
@@ -24,31 +24,6 @@ use crate::scenario::ScenarioTemplate;
 const PAGE: &str = "compare.html";
 /// Count of each run's progress.
 const PARTS: usize = 1000;
-
-/// A variant that has been run.
-pub(super) struct Done {
-    /// Its folder.
-    folder: PathBuf,
-    /// Its values in place of the scenario's, and its name.
-    pub variant: Variant,
-    /// Content of summary.json.
-    pub document: Value,
-}
-
-impl Done {
-    /// Its exit code.
-    pub(super) fn code(&self) -> ExitCode {
-        let verdicts = self.document["expectations"].as_array();
-        let outside = |verdict: &Value| verdict["kept"] == false;
-        if !self.document["stopped"].is_null() {
-            ExitCode::Stopped
-        } else if verdicts.is_some_and(|verdicts| verdicts.iter().any(outside)) {
-            ExitCode::OutsideBounds
-        } else {
-            ExitCode::Done
-        }
-    }
-}
 
 /// Runs all of them; nothing is run before all have been checked.
 pub(super) fn run(

@@ -1,7 +1,7 @@
 //! The file's links and joints by name: what hangs on what, and where joints off the path are held.
 
 use super::Refusal;
-use super::tree::kind_of;
+use crate::arm::chain::JointKind;
 use std::collections::BTreeMap;
 use urdf_rs::{Joint, JointType, Link, Robot};
 
@@ -155,5 +155,23 @@ fn rest_position(joint: &Joint) -> Result<f64, Refusal> {
             upper,
             origin: "",
         })
+    }
+}
+
+/// Motion of a joint; none if it is fixed.
+pub(super) fn kind_of(joint: &Joint) -> Result<Option<JointKind>, Refusal> {
+    let refused = |kind| {
+        Err(Refusal::JointType {
+            joint: joint.name.clone(),
+            kind,
+        })
+    };
+    match joint.joint_type {
+        JointType::Revolute | JointType::Continuous => Ok(Some(JointKind::Revolute)),
+        JointType::Prismatic => Ok(Some(JointKind::Prismatic)),
+        JointType::Fixed => Ok(None),
+        JointType::Floating => refused("floating"),
+        JointType::Planar => refused("planar"),
+        JointType::Spherical => refused("spherical"),
     }
 }

@@ -1,7 +1,7 @@
 //! Masses of the file's links, welded together to one body a moving link.
 
-use super::tree::{Placed, Tree};
-use super::{Refusal, pose_of};
+use super::Refusal;
+use super::tree::{Placed, Tree, pose_of};
 use crate::arm::chain::BodyInertia;
 use glam::{DMat3, DVec3};
 use nalgebra::Matrix3;

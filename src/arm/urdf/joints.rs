@@ -1,6 +1,7 @@
 //! One moving joint of the path: axis, limits, damping and friction.
 
-use super::tree::{Moving, kind_of, unit_axis};
+use super::graph::kind_of;
+use super::tree::{Moving, unit_axis};
 use super::{ArmOptions, Refusal};
 use crate::arm::chain::{BodyInertia, Joint, JointKind};
 use urdf_rs::JointType;

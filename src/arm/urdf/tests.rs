@@ -1,7 +1,8 @@
 use super::*;
 use crate::arm::chain::point_mass_inertia;
 use crate::arm::kinematics::tip_pose;
-use glam::{DMat3, DQuat};
+use glam::{DMat3, DQuat, DVec3};
+use glamx::DPose3;
 use std::fs;
 
 const DYNAMICS: &str = r#"<dynamics damping="0.5" friction="0.25"/>"#;

@@ -1,12 +1,12 @@
 //! Which link hangs where: the path of moving joints, and what is welded to each moving link.
 
-use super::graph::Graph;
-use super::{Refusal, pose_of};
+use super::Refusal;
+use super::graph::{Graph, kind_of};
 use crate::arm::chain::BodyInertia;
 use crate::arm::chain::{Joint as ChainJoint, JointKind};
 use glam::DVec3;
 use glamx::DPose3;
-use urdf_rs::{Joint, JointType, Link, Robot};
+use urdf_rs::{Joint, Link, Robot};
 
 /// A moving joint on the path, with the fixed frames before it folded in.
 pub(super) struct Moving<'a> {
@@ -163,24 +163,6 @@ pub(super) fn unit_axis(joint: &Joint) -> Result<DVec3, Refusal> {
     })
 }
 
-/// Motion of a joint; none if it is fixed.
-pub(super) fn kind_of(joint: &Joint) -> Result<Option<JointKind>, Refusal> {
-    let refused = |kind| {
-        Err(Refusal::JointType {
-            joint: joint.name.clone(),
-            kind,
-        })
-    };
-    match joint.joint_type {
-        JointType::Revolute | JointType::Continuous => Ok(Some(JointKind::Revolute)),
-        JointType::Prismatic => Ok(Some(JointKind::Prismatic)),
-        JointType::Fixed => Ok(None),
-        JointType::Floating => refused("floating"),
-        JointType::Planar => refused("planar"),
-        JointType::Spherical => refused("spherical"),
-    }
-}
-
 fn held_note(joint: &Joint, kind: JointKind, held: f64) -> String {
     let unit = match kind {
         JointKind::Revolute => "rad",
@@ -211,4 +193,22 @@ fn held_motion(joint: &Joint, kind: JointKind, held: f64) -> Result<DPose3, Refu
         body: BodyInertia::ZERO,
     };
     Ok(chain_joint.parent_from_link(held))
+}
+
+/// Pose of a URDF `origin`, refused if it is not finite; `place` says where it stands.
+pub(super) fn pose_of(
+    origin: &urdf_rs::Pose,
+    place: impl FnOnce() -> String,
+) -> Result<DPose3, Refusal> {
+    let [roll, pitch, yaw] = *origin.rpy;
+    // Fixed-axis roll, pitch, yaw: roll turns first.
+    let rotation = glam::DQuat::from_rotation_z(yaw)
+        * glam::DQuat::from_rotation_y(pitch)
+        * glam::DQuat::from_rotation_x(roll);
+    let pose = DPose3::from_parts(DVec3::from_array(*origin.xyz), rotation);
+    if pose.translation.is_finite() && pose.rotation.is_finite() {
+        Ok(pose)
+    } else {
+        Err(Refusal::NotFinite { place: place() })
+    }
 }

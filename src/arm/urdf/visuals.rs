@@ -1,8 +1,8 @@
 //! Shapes in the file that are drawn, their poses and colours.
 
 use super::mesh::{self, MeshPart};
-use super::tree::{Placed, Tree};
-use super::{ArmOptions, Refusal, Visual, VisualShape, pose_of};
+use super::tree::{Placed, Tree, pose_of};
+use super::{ArmOptions, Refusal, Visual, VisualShape};
 use glam::DVec3;
 use glamx::DPose3;
 use std::collections::{BTreeMap, BTreeSet};

@@ -32,9 +32,6 @@ pub static LINK_EFFECTS: &[Effect] = &[
     chamber_shut_later::EFFECT,
 ];
 
-/// Laws of a leak exclude one another.
-const LEAK: Option<&str> = Some("leak");
-
 /// Effects that can act in a rig with so much of the device.
 #[must_use]
 pub fn candidates(chain: Chain) -> Vec<&'static Effect> {

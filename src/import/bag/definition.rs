@@ -1,8 +1,8 @@
 //! The definition of a topic's messages: that of the bag, or a usual one where the bag has none.
 
 use super::field::Definition;
+use super::message::There;
 use super::standard;
-use super::store::There;
 
 /// Reads the definition of a topic's messages.
 ///

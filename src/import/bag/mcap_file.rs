@@ -7,7 +7,7 @@ use mcap::parse_record;
 use mcap::records::Record;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::store::{Message, There};
+use super::message::{Message, There};
 
 /// Longest record or chunk [B]; a length beyond it is a damaged one.
 const LONGEST: usize = 1 << 30;

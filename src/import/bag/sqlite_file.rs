@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rusqlite::{Connection, Error, OpenFlags};
 
-use super::store::{Message, There};
+use super::message::{Message, There};
 
 /// A message's columns.
 const MESSAGES: &str = "SELECT topic_id, timestamp, data FROM messages ORDER BY id";

@@ -4,33 +4,13 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 
+use super::message::{Message, There};
 use super::{mcap_file, sqlite_file};
 
 /// Endings of files that are bags.
 const ENDINGS: [&str; 2] = ["mcap", "db3"];
 /// Beginning of a SQLite file (its format, 1.3).
 const SQLITE: &[u8] = b"SQLite format 3\0";
-
-/// A topic that is there, with the name, the encoding and the text of its definition.
-#[derive(Debug, Clone)]
-pub(super) struct There {
-    pub topic: String,
-    pub encoding: String,
-    pub schema: Option<(String, String, Vec<u8>)>,
-}
-
-/// A message.
-pub(super) struct Message<'a> {
-    /// Its topic.
-    pub there: &'a There,
-    /// Its number in the bag, from 1.
-    pub number: u64,
-    /// When it was logged and published [ns].
-    pub logged: u64,
-    pub published: u64,
-    /// Its bytes.
-    pub data: &'a [u8],
-}
 
 /// The files of a bag, in order.
 pub(super) struct Stores(Vec<Store>);

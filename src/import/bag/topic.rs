@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::definition::definition;
 use super::field::{Definition, Field, Kind, Picked};
-use super::store::{Message, There};
+use super::message::{Message, There};
 use crate::import::error::ImportError;
-use crate::import::log::{Remark, Rows, Times, nearest_first};
 use crate::import::map::{ChannelMap, Column, FileMap};
+use crate::import::rows::{Remark, Rows, Times, nearest_first};
 use crate::import::units;
 use crate::recording::Unit;
 

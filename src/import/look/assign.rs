@@ -1,7 +1,7 @@
 //! Which column is which quantity: by its name, its unit, or as the only one that can be.
 
 use super::names::{self, Role, Said, Thing};
-use super::{Because, Cells, Seen};
+use super::seen::{Because, Cells, Seen};
 use crate::import::map::Column;
 use crate::recording::{Unit, schema};
 

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen, names, units};
+use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
+use super::{names, units};
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Pressure};
 use crate::import::units::named;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::Because;
+use super::seen::Because;
 use crate::import::error::ImportError;
 use crate::import::map::Column;
 use crate::import::numbers::{self, Marks};

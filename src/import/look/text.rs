@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::marks::marks;
-use super::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen, names, units};
+use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
+use super::{names, units};
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Separator};
 use crate::import::numbers::{self, Marks};

@@ -1,8 +1,8 @@
 //! Which column of a log holds the times, and in what unit.
 
 use super::names::{Thing, said};
+use super::seen::{Because, Cells, Looked, Seen, TimeSeen};
 use super::units::shown;
-use super::{Because, Cells, Looked, Seen, TimeSeen};
 use crate::import::map::Column;
 use crate::import::units::{self, LogUnit};
 use crate::recording::Unit;

@@ -1,6 +1,7 @@
 //! Units of columns: as a name or a row of units says them, or as their range looks.
 
-use super::{Because, SaidUnit, names};
+use super::names;
+use super::seen::{Because, SaidUnit};
 use crate::import::doubts::unit_of_name;
 use crate::import::map::Pressure;
 use crate::import::units::{self, LogUnit};

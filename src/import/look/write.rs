@@ -4,9 +4,9 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use super::assign::{Pick, QUANTITIES, assign, described};
+use super::seen::{Because, Draft, Looked, Seen, TimeSeen};
 use super::time::{self, toml_text, written};
 use super::units::{self, shown};
-use super::{Because, Draft, Looked, Seen, TimeSeen};
 use crate::import::map::Pressure;
 use crate::recording::{Unit, schema};
 

@@ -11,7 +11,7 @@
 
 use super::super::inputs::PlantInputs;
 use super::super::parameters::PlantParameters;
-use super::super::simulate::Trajectory;
+use super::super::trajectory::Trajectory;
 use crate::physics::orifice::FlowFunction;
 
 pub(super) fn true_trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {

@@ -8,7 +8,7 @@
 
 use super::super::inputs::PlantInputs;
 use super::super::parameters::PlantParameters;
-use super::super::simulate::Trajectory;
+use super::super::trajectory::Trajectory;
 
 pub(super) fn true_trajectory(plant: &PlantParameters, inputs: &PlantInputs) -> Trajectory {
     let time = &inputs.time;

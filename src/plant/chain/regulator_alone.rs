@@ -11,7 +11,7 @@
 
 use super::super::inputs::PlantInputs;
 use super::super::parameters::PlantParameters;
-use super::super::simulate::Trajectory;
+use super::super::trajectory::Trajectory;
 use crate::physics::regulator::{RateLimit, RegulatorParameters, RegulatorState};
 
 /// Set pressure below which nothing is set [Pa gauge].

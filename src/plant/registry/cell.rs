@@ -3,9 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{ANY, Number, numbers};
-
-/// Damping over stiffness of a joint's spring of which nothing else is said [s].
-pub const DAMPING_TIME: f64 = 2.5e-3;
+use crate::plant::cell_parameters::DAMPING_TIME;
 
 #[rustfmt::skip] // A table: one number a line.
 numbers! { CELL:

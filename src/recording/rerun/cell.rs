@@ -8,8 +8,8 @@ use ::rerun::{
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
-use super::RerunOptions;
 use super::colours::{SKY_BLUE, rerun_colour};
+use super::options::RerunOptions;
 use super::rrd::{RrdError, RrdWriter};
 use super::shading::shade;
 use super::timelines::Axes;

@@ -1,5 +1,6 @@
 //! Colours that people with any colour vision can tell apart, the same for a signal in every run.
 
+use crate::recording::board::BoardRole;
 use crate::recording::scene::Colour;
 
 /// The palette of Okabe and Ito (2008), without its black; its light colours darker, so that all are seen on the viewer's dark and on its light ground.
@@ -20,6 +21,17 @@ pub(super) const PALETTE: [Colour; 7] = [SKY_BLUE, ORANGE, GREEN, YELLOW, VERMIL
 pub(super) fn rerun_colour(colour: Colour) -> ::rerun::Color {
     let [red, green, blue, opacity] = colour;
     ::rerun::Color::from_unmultiplied_rgba(red, green, blue, opacity)
+}
+
+/// The colour of what is shown, the same in every picture.
+pub(super) fn role_colour(role: BoardRole) -> Colour {
+    match role {
+        // Seen on the viewer's dark and on its light ground.
+        BoardRole::Measured => GREY,
+        BoardRole::Believed => ORANGE,
+        BoardRole::Improved => SKY_BLUE,
+        BoardRole::Guide => YELLOW,
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A number that follows from the content of a recording.
 
-use super::RerunOptions;
+use super::options::RerunOptions;
 use crate::recording::Recording;
 use crate::recording::scene::Scene;
 

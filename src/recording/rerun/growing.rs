@@ -10,10 +10,12 @@ use ::rerun::{EntityPath, StoreKind, TextDocument};
 
 use super::fingerprint::fingerprint;
 use super::footer::write_joined;
+use super::layout::write_layout;
+use super::options::{RerunOptions, SUMMARY, slug};
 use super::plots::{Plot, plots};
 use super::rrd::{RrdError, RrdWriter};
 use super::timelines::Axes;
-use super::{RerunOptions, SUMMARY, cell, signals, slug, write_layout};
+use super::{cell, signals};
 use crate::recording::atomic::write_atomic;
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError, schema};

@@ -12,14 +12,17 @@ use ::rerun::external::re_sdk_types::blueprint::components::{
 use ::rerun::{AsComponents, components::Range1D, datatypes};
 use glam::DVec3;
 
-use super::blueprint::{Panel, View, ViewKind};
+use super::blueprint::{Panel, View, ViewKind, write_blueprint};
 use super::cell::CELL;
 use super::colours::rerun_colour;
+use super::options::{PHASES, RerunOptions, SUMMARY};
 use super::plots::Plot;
+use super::rrd::{RrdError, RrdWriter};
 use super::timelines::SIM_TIME;
-use super::view_box::ViewBox;
-use super::{PHASES, RerunOptions, SUMMARY};
+use super::view_box::{ViewBox, cell_box};
+use crate::recording::Recording;
 use crate::recording::error_scale::ErrorScale;
+use crate::recording::scene::Scene;
 use crate::recording::schema::PlotGroup;
 
 /// Before any recording begins [s].
@@ -28,6 +31,27 @@ const BEFORE: f64 = -1.0;
 const CELL_EYE_RADII: f64 = 1.8;
 /// Distance of the eye from the edge: with room for the tool above it.
 const EDGE_EYE_RADII: f64 = 3.2;
+
+pub(super) fn write_layout(
+    rrd: &mut RrdWriter,
+    scene: &Scene,
+    plots: &[Plot],
+    recording: &Recording,
+    options: &RerunOptions,
+) -> Result<(), RrdError> {
+    let errors = &scene.edge_path.relative_force_error;
+    let known = errors.iter().any(|error| error.is_finite());
+    let screen = screen(&LayoutInput {
+        plots,
+        scale: known.then(|| ErrorScale::of(&scene.edge_path)),
+        cell: cell_box(scene),
+        edge: ViewBox::around(scene.edge_path.points_in_world.iter().copied()),
+        eye_direction: options.eye_direction,
+        has_phases: !recording.phases().is_empty(),
+        has_summary: !options.summary_markdown.is_empty(),
+    });
+    write_blueprint(rrd, &screen, &time_panel(options.opening.moment(recording)))
+}
 
 /// Quantities that the layout depends on.
 pub(super) struct LayoutInput<'a> {

@@ -11,10 +11,12 @@ use ::rerun::log::TimeColumn;
 use ::rerun::{EntityPath, StoreKind, TextDocument};
 
 use super::fingerprint::fingerprint;
+use super::layout::write_layout;
+use super::options::{PHASES, RerunOptions, SUMMARY, slug};
 use super::plots::{Plot, Series, plots};
 use super::rrd::{LiveWriter, RrdError, RrdWriter};
 use super::timelines::Axes;
-use super::{PHASES, RerunOptions, SUMMARY, cell, signals, slug, write_layout};
+use super::{cell, signals};
 use crate::recording::scene::Scene;
 use crate::recording::schema::{self, PlotGroup};
 use crate::recording::{Recording, RecordingError};

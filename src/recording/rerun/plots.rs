@@ -1,10 +1,10 @@
 //! Turns channels into plots: named, coloured series in the units an engineer reads, with their
 //! bands and limits.
 
-use super::FOLLOW_PHASE;
 use super::colours::{
     BLUE, GREEN, GREY, ORANGE, PALE_GREY, PALETTE, PURPLE, SKY_BLUE, VERMILLION, YELLOW,
 };
+use super::options::FOLLOW_PHASE;
 use crate::recording::scene::{Colour, SceneLimits};
 use crate::recording::schema::{self, JointSignal, PlotGroup};
 use crate::recording::{Recording, RecordingError, Unit};

@@ -3,8 +3,8 @@
 use ::rerun::Scalars;
 use ::rerun::archetypes::{SeriesLines, StateChange, StateConfiguration};
 
-use super::PHASES;
 use super::colours::rerun_colour;
+use super::options::PHASES;
 use super::plots::{Plot, Series, phase_colour};
 use super::rrd::{RrdError, RrdWriter};
 use super::timelines::Axes;

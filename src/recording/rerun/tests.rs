@@ -9,12 +9,14 @@ use ::rerun::log::Chunk;
 use ::rerun::{Arrows3D, ChunkStore, ChunkStoreConfig, Scalars, StateChange, Transform3D};
 use glamx::DPose3;
 
+use super::options::PHASES;
 use super::timelines::{PATH_LENGTH, SIM_TIME};
 use super::*;
 use crate::recording::scene::{
     ContactArrow, EdgePath, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
 };
 use crate::recording::{Channel, PhaseSpan, Unit, schema};
+use glam::DVec3;
 
 const SAMPLES: usize = 2001;
 const FRAMES: usize = 101;

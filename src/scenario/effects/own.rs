@@ -1,9 +1,9 @@
 //! A law of a user's own: `acts_on` a port, `is` an expression over the variables there and over constants that stand beside it.
 
-use super::super::check::Section;
+use super::super::check::{Section, plain};
 use super::super::error::ScenarioError;
+use super::keys::{JOINT, NAME, Table};
 use super::value::EffectValue;
-use super::{JOINT, NAME, Table};
 use crate::effects::Effect;
 use crate::plant::{
     Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, Port, SYMBOLS, Unit, kept_name,
@@ -139,7 +139,7 @@ fn constants(section: &Section<'_>, table: &Table) -> Result<Vec<Constant>, Scen
         let range = known.min.zip(known.max).map(|(min, max)| [min, max]);
         if range.is_some_and(|[min, max]| min >= max) {
             let expected = "more than min".to_owned();
-            return Err(inner.refuse("max", super::shown(known.value), expected));
+            return Err(inner.refuse("max", plain(known.value), expected));
         }
         if let Some(text) = &known.unit
             && let Err(symbol) = Unit::read(text)

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
+use super::keys::{EffectKeys, JOINT, NAME};
 use super::own::{ACTS_ON, IS};
-use super::{EffectKeys, JOINT, NAME};
 use crate::effects::{Effect, every};
 use crate::plant::{MOST_JOINTS, Port};
 

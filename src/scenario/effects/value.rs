@@ -4,9 +4,8 @@ use std::fmt;
 
 use serde::Deserialize;
 
-use super::super::check::Section;
+use super::super::check::{Section, plain};
 use super::super::error::ScenarioError;
-use super::shown;
 
 /// A value.
 #[derive(Debug, Clone, Deserialize)]
@@ -80,8 +79,8 @@ impl KnownNumber {
                 } else {
                     "least"
                 };
-                let expected = format!("at {side} the value, {}", shown(self.value));
-                return Err(section.refuse(key, shown(end), expected));
+                let expected = format!("at {side} the value, {}", plain(self.value));
+                return Err(section.refuse(key, plain(end), expected));
             }
         }
         for (one, other, given) in [
@@ -106,8 +105,8 @@ impl fmt::Display for EffectValue {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Text(text) => write!(formatter, "{text:?}"),
-            Self::Number(value) => formatter.write_str(&shown(*value)),
-            Self::Known(known) => formatter.write_str(&shown(known.value)),
+            Self::Number(value) => formatter.write_str(&plain(*value)),
+            Self::Known(known) => formatter.write_str(&plain(known.value)),
         }
     }
 }

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use toml_edit::{DocumentMut, value};
 
-use super::super::rig_file::plain;
-use super::LISTED;
+use super::super::check::plain;
+use super::keys::LISTED;
 use super::own::{ACTS_ON, IS};
 use crate::effects::{Effect, meaning};
 use crate::plant::LawText;

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, SeqAccess, Visitor};
 
-use super::values::plain;
+use super::super::check::plain;
 
 /// A value.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,8 +2,8 @@
 
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
+use super::super::check::plain;
 use super::super::effects::{WrittenEffect, append, as_written, remove_effects};
-use super::values::plain;
 use super::{RigFile, latent};
 use crate::plant::Latent;
 

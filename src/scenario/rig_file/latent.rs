@@ -16,13 +16,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::super::check::Section;
+use super::super::check::{Section, plain};
 use super::super::document::{Document, join};
 use super::super::effects::as_written;
 use super::super::error::ScenarioError;
 use super::super::suggestion::nearest;
 use super::entry::Entry;
-use super::values::plain;
 use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, Port, Variable};
 
 /// Name of the table.

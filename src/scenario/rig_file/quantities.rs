@@ -1,7 +1,7 @@
 //! The numbers of a rig file: where each stands in the rig's description, and the range in which it is plausible as SI.
 
+use super::super::check::plain;
 use super::super::units::Unit;
-use super::values::plain;
 use crate::device::DeviceParameters;
 use crate::physics::regulator::RegulatorParameters;
 use crate::plant::{CellParameters, Chain, Number, PlantParameters, registry};

@@ -1,15 +1,27 @@
 //! From the numbers of a rig file to the rig's description, each checked to be plausible as SI.
 
-use super::super::check::Section;
+use super::super::check::{Section, checked, plain};
 use super::super::document::{Document, join};
 use super::super::error::ScenarioError;
 use super::super::suggestion::advice;
-use super::super::units::{Unit, look_alike};
-use super::Tolerance;
+use super::super::units::Unit;
 use super::keys::{Numbers, RecordingsKeys, RigKeys, sections};
 use super::number::Number;
 use super::quantities::{DRIFT, NUMBERS, SENSOR_KEYS, needs, split};
-use crate::plant::{Chain, PlantParameters, registry};
+use crate::plant::{Chain, PlantParameters, Quantity, registry};
+
+/// A number of the rig that is not exactly known.
+#[derive(Debug, Clone, Copy)]
+pub struct Tolerance {
+    /// Dotted key in the file.
+    pub key: &'static str,
+    /// The number in the rig's description.
+    pub quantity: Quantity,
+    /// Its value [SI].
+    pub value: f64,
+    /// Half the width of what is believed, relative to the value [1].
+    pub tolerance: f64,
+}
 
 /// Sets the rig's numbers and returns those that are not exactly known.
 pub(super) fn base(
@@ -117,39 +129,6 @@ fn find<'a>(
         };
         section.missing(key, &expected)
     })
-}
-
-/// A value that is plausible in the unit of its key.
-pub(in super::super) fn checked(
-    section: &Section<'_>,
-    key: &str,
-    value: f64,
-    range: [f64; 2],
-) -> Result<f64, ScenarioError> {
-    if range[0] <= value && value <= range[1] {
-        return Ok(value);
-    }
-    let unit = Unit::of_key(key);
-    let with_unit = |value: f64| {
-        format!("{} {}", plain(value), unit.symbol)
-            .trim_end()
-            .to_owned()
-    };
-    let mut expected = format!("{} to {}", plain(range[0]), with_unit(range[1]));
-    if let Some(other) = look_alike(unit.symbol, value, range) {
-        expected += &format!(" (it looks like {other}; a rig file is in SI)");
-    }
-    Err(section.refuse(key, with_unit(value), expected))
-}
-
-/// A number in the shorter of its usual forms.
-pub(in super::super) fn plain(value: f64) -> String {
-    let usual = value == 0.0 || (1e-3..1e6).contains(&value.abs());
-    if usual || !value.is_finite() {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
 }
 
 /// A number that is taken to be exact.

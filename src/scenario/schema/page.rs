@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::Described;
+use super::described::Described;
 
 const SCENARIOS: &str = include_str!("../../../scenarios/README.md");
 

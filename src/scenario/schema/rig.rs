@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::super::rig_file::described_numbers;
-use super::DIALECT;
+use super::described::DIALECT;
 use crate::effects::candidates;
 use crate::plant::Chain;
 

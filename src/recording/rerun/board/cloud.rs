@@ -2,7 +2,7 @@
 
 use ::rerun::{LineStrips2D, Points2D, Radius};
 
-use super::role_colour;
+use super::super::colours::role_colour;
 use crate::recording::board::Cloud;
 use crate::recording::rerun::colours::{GREY, PALE_GREY, rerun_colour};
 use crate::recording::rerun::rrd::{RrdError, RrdWriter};
@@ -106,7 +106,10 @@ pub(super) fn write(rrd: &mut RrdWriter, entity: &str, cloud: &Cloud) -> Result<
     let width = FIELD[0] / cloud.groups.len().max(1) as f64;
     for (index, group) in cloud.groups.iter().enumerate() {
         let colour = rerun_colour(role_colour(group.role));
-        let own = format!("{entity}/{}", crate::recording::rerun::slug(&group.label));
+        let own = format!(
+            "{entity}/{}",
+            crate::recording::rerun::options::slug(&group.label)
+        );
         let places: Vec<[f32; 2]> = group.points.iter().map(|p| field.at(*p)).collect();
         if group.joined {
             let line = LineStrips2D::new([places])

@@ -15,11 +15,11 @@ use super::sheet::{self, TIME};
 use crate::recording::board::{Board, Cloud, Sheet, SheetPlot};
 use crate::recording::error_scale::ErrorScale;
 use crate::recording::rerun::RerunOptions;
-use crate::recording::rerun::SUMMARY;
 use crate::recording::rerun::blueprint::{Panel, View, ViewKind};
 use crate::recording::rerun::cell::CELL;
 use crate::recording::rerun::colours::rerun_colour;
 use crate::recording::rerun::layout::{cell_view, edge_heading, plain_view};
+use crate::recording::rerun::options::SUMMARY;
 use crate::recording::rerun::view_box::cell_box;
 
 /// Share of the longest recording that each must last for all to have one time axis.

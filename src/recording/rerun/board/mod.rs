@@ -12,13 +12,12 @@ use ::rerun::{EntityPath, StoreKind, TextDocument};
 use super::blueprint::write_blueprint;
 use super::fingerprint::Fingerprint;
 use super::footer::write_joined;
+use super::options::{SUMMARY, slug};
 use super::rrd::{RrdError, RrdWriter};
-use super::{RerunOptions, SUMMARY, cell, slug};
+use super::{RerunOptions, cell};
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_atomic;
-use crate::recording::board::{Board, BoardRole};
-use crate::recording::rerun::colours::{GREY, ORANGE, SKY_BLUE, YELLOW};
-use crate::recording::scene::Colour;
+use crate::recording::board::Board;
 
 /// Writes findings as a Rerun file that opens as a finished screen. Equal input gives equal bytes.
 ///
@@ -61,17 +60,6 @@ fn write_data(rrd: &mut RrdWriter, board: &Board, options: &RerunOptions) -> Res
         cell::write_frames(rrd, scene, 0.0, options)?;
     }
     Ok(())
-}
-
-/// The colour of what is shown, the same in every picture.
-fn role_colour(role: BoardRole) -> Colour {
-    match role {
-        // Seen on the viewer's dark and on its light ground.
-        BoardRole::Measured => GREY,
-        BoardRole::Believed => ORANGE,
-        BoardRole::Improved => SKY_BLUE,
-        BoardRole::Guide => YELLOW,
-    }
 }
 
 fn fingerprint(board: &Board) -> u64 {

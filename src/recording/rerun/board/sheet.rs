@@ -4,11 +4,11 @@ use ::rerun::Scalars;
 use ::rerun::archetypes::{SeriesLines, StateChange, StateConfiguration};
 use ::rerun::log::TimeColumn;
 
-use super::role_colour;
+use super::super::colours::role_colour;
 use crate::recording::board::{BoardRole, Lane, Sheet, SheetPlot};
 use crate::recording::rerun::colours::{VERMILLION, rerun_colour};
+use crate::recording::rerun::options::slug;
 use crate::recording::rerun::rrd::{RrdError, RrdWriter};
-use crate::recording::rerun::slug;
 use crate::recording::rerun::timelines::SIM_TIME;
 
 /// Timeline of the recordings' times: that of all of our files.

@@ -3,7 +3,7 @@
 use ::rerun::{ChunkStore, ChunkStoreConfig, Scalars, StateChange};
 
 use super::*;
-use crate::recording::board::{BoardLine, Cloud, CloudGroup, Lane, Sheet, SheetPlot};
+use crate::recording::board::{BoardLine, BoardRole, Cloud, CloudGroup, Lane, Sheet, SheetPlot};
 
 fn board() -> Board {
     let line = |label: &str, role, values: [f64; 3]| BoardLine {

@@ -1,0 +1,213 @@
+//! A run of a cell: simulated, watched part by part while it goes on, measured.
+
+use std::time::Instant;
+
+use super::super::error::AppError;
+use super::super::picture::{motion_of, scene_of};
+use super::super::viewer::{PART_INTERVAL, Watch};
+use super::source::Source;
+use crate::cell::Cell;
+use crate::metrics::{Summary, SummaryLimits, Timing, Verdict, summarise};
+use crate::recording::provenance::Provenance;
+use crate::recording::scene::Scene;
+use crate::recording::{Recording, RecordingError};
+use crate::simulation::{CellRun, FrameLog, SampleLog, SimulationError};
+
+/// Steps between two looks at the progress bar.
+const PROGRESS_STEPS: usize = 500;
+
+/// A run that has ended.
+pub struct Finished {
+    /// The recording.
+    pub recording: Recording,
+    /// Poses for the picture.
+    pub frames: FrameLog,
+    /// Its numbers.
+    pub summary: Summary,
+    /// Reason for an early stop.
+    pub stop: Option<SimulationError>,
+}
+
+/// Simulates the whole job. `progress` is told steps done and in all.
+///
+/// # Errors
+/// Nothing could be recorded or measured.
+pub fn run_cell(cell: &Cell, progress: &mut dyn FnMut(usize, usize)) -> Result<Finished, AppError> {
+    run_heard(cell, progress, Vec::new())
+}
+
+/// Simulates the whole job, and gives what is recorded to listeners while it goes on.
+pub(super) fn run_heard(
+    cell: &Cell,
+    progress: &mut dyn FnMut(usize, usize),
+    mut listeners: Vec<Listener<'_>>,
+) -> Result<Finished, AppError> {
+    let start = Instant::now();
+    let mut failed = None;
+    let run = cell.run(&mut |simulation| {
+        let (steps, last) = (simulation.steps(), simulation.total_steps());
+        if steps.is_multiple_of(PROGRESS_STEPS) {
+            progress(steps, last);
+        }
+        for listener in &mut listeners {
+            let due = simulation.done() || steps.is_multiple_of(listener.part);
+            if failed.is_none() && due {
+                failed = listener.hand_over(simulation.logs()).err();
+            }
+        }
+    })?;
+    if let Some(error) = failed {
+        return Err(error);
+    }
+    let wall = start.elapsed().as_secs_f64();
+    let CellRun {
+        recording,
+        frames,
+        stop,
+    } = run;
+    let mut summary = summarise(&recording, &limits(cell)).map_err(|source| AppError::Metrics {
+        file: cell.scenario.path.display().to_string(),
+        source,
+    })?;
+    summary.timing = Some(Timing::new(summary.duration_s, wall));
+    Ok(Finished {
+        recording,
+        frames,
+        summary,
+        stop,
+    })
+}
+
+/// Samples and frames of a run that have come since the last part.
+pub(in super::super) struct RunPart {
+    samples: SampleLog,
+    frames: FrameLog,
+    first: bool,
+}
+
+impl RunPart {
+    /// Signals shown of it: of the first part the cell as well, of others what moves.
+    pub(in super::super) fn shown(self, cell: &Cell) -> Result<(Recording, Scene), RecordingError> {
+        let samples = self.samples.into_recording()?;
+        let scene = if self.first {
+            scene_of(cell, &samples, &self.frames)?
+        } else {
+            motion_of(cell, &self.frames)
+        };
+        Ok((samples, scene))
+    }
+}
+
+/// Who is given a run part by part while it goes on.
+pub(in super::super) struct Listener<'a> {
+    /// Steps a part.
+    part: usize,
+    hear: Box<dyn FnMut(RunPart) -> Result<(), AppError> + 'a>,
+    /// Samples and frames that were handed over already.
+    samples: usize,
+    frames: usize,
+}
+
+impl<'a> Listener<'a> {
+    /// One that is given parts of so many steps.
+    pub(in super::super) fn new(
+        part: usize,
+        hear: impl FnMut(RunPart) -> Result<(), AppError> + 'a,
+    ) -> Self {
+        Self {
+            part: part.max(1),
+            hear: Box::new(hear),
+            samples: 0,
+            frames: 0,
+        }
+    }
+
+    /// One that shows the run in a viewer.
+    pub(super) fn watching(cell: &'a Cell, watch: &'a Watch) -> Self {
+        let part = (PART_INTERVAL / cell.scenario.simulation.step).round() as usize;
+        Self::new(part, move |part| {
+            let (samples, scene) = part.shown(cell)?;
+            watch.add(samples, scene);
+            Ok(())
+        })
+    }
+
+    fn hand_over(&mut self, (samples, frames): (&SampleLog, &FrameLog)) -> Result<(), AppError> {
+        if samples.count() == self.samples {
+            return Ok(());
+        }
+        let part = RunPart {
+            samples: samples.since(self.samples),
+            frames: frames.since(self.frames),
+            first: self.samples == 0,
+        };
+        self.samples = samples.count();
+        self.frames = frames.times.len();
+        (self.hear)(part)
+    }
+}
+
+fn limits(cell: &Cell) -> SummaryLimits {
+    let joints = &cell.arm.chain.joints;
+    SummaryLimits {
+        desired_force: cell.scenario.process.force,
+        stroke_limits: (0.0, cell.scenario.device.parameters.full_stroke),
+        joint_efforts: joints.iter().map(|joint| joint.effort).collect(),
+        joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),
+    }
+}
+
+/// Content of summary.json, which `--json` prints.
+#[derive(serde::Serialize)]
+pub(super) struct SummaryDocument<'a> {
+    schema: u32,
+    scenario: &'a str,
+    title: &'a str,
+    /// Keys that have other values than in the scenario's file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<serde_json::Value>,
+    /// Reason for an early stop of the run; null if it ran to its end.
+    stopped: Option<String>,
+    summary: &'a Summary,
+    expectations: &'a [Verdict],
+    joint_names: Vec<&'a str>,
+    samples: usize,
+    notes: &'a [String],
+    provenance: &'a Provenance,
+}
+
+impl<'a> SummaryDocument<'a> {
+    /// The document of a run.
+    pub(super) fn new(
+        cell: &'a Cell,
+        finished: &'a Finished,
+        expectations: &'a [Verdict],
+        source: &'a Source,
+        origin: &'a Provenance,
+    ) -> Self {
+        Self {
+            schema: 1,
+            scenario: &source.name,
+            title: &cell.scenario.title,
+            set: source.set(),
+            stopped: finished.stop.as_ref().map(ToString::to_string),
+            summary: &finished.summary,
+            expectations,
+            joint_names: cell
+                .arm
+                .chain
+                .joints
+                .iter()
+                .map(|joint| joint.name.as_str())
+                .collect(),
+            samples: finished.recording.sample_count(),
+            notes: &cell.notes,
+            provenance: origin,
+        }
+    }
+
+    /// As JSON.
+    pub(super) fn text(&self) -> Result<String, AppError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+}

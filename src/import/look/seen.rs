@@ -1,0 +1,153 @@
+//! A log as it was seen: its columns, and how sure what is said of them is.
+
+use std::path::PathBuf;
+
+use crate::import::map::{Column, Pressure};
+use crate::import::units::LogUnit;
+
+/// A map's text with what is left to be told by its owner.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Draft {
+    /// The map, commented.
+    pub text: String,
+    /// Questions that remain open, a sentence each; the map is not complete without an answer.
+    pub open: Vec<String>,
+    /// Quantities that were found, with their columns.
+    pub found: Vec<(String, String)>,
+}
+
+/// Certainty of something, and its reason.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Because {
+    pub is_certain: bool,
+    pub why: String,
+}
+
+impl Because {
+    pub fn certain(why: impl Into<String>) -> Self {
+        Self {
+            is_certain: true,
+            why: why.into(),
+        }
+    }
+
+    pub fn likely(why: impl Into<String>) -> Self {
+        Self {
+            is_certain: false,
+            why: why.into(),
+        }
+    }
+}
+
+impl std::fmt::Display for Because {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let sure = if self.is_certain { "certain" } else { "likely" };
+        write!(f, "{sure}: {}", self.why)
+    }
+}
+
+/// A unit that a name or a row of units says.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SaidUnit {
+    pub unit: &'static LogUnit,
+    /// Against what, where it says that of a pressure.
+    pub pressure: Option<Pressure>,
+    pub because: Because,
+}
+
+/// Kinds of a column's cells.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Cells {
+    /// Numbers, NaN where there is none.
+    Numbers(Vec<f64>),
+    /// Of two states.
+    States(Vec<f64>),
+    /// Stamps: have they dates, have they times; and how many of them differ.
+    Stamps {
+        has: [bool; 2],
+        distinct: usize,
+        rows: usize,
+        because: Because,
+        /// Their open question.
+        problem: Option<String>,
+    },
+    /// Something else.
+    Other,
+}
+
+/// A column of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Seen {
+    /// Its name in the map.
+    pub column: Column,
+    /// Its name, for people and to be recognised.
+    pub name: String,
+    /// Of a bag: the joint whose element it is.
+    pub joint: Option<String>,
+    /// Of a bag: the frames that its messages are of.
+    pub frames: Vec<String>,
+    pub unit: Option<SaidUnit>,
+    pub cells: Cells,
+}
+
+impl Seen {
+    /// Its numbers, those of states among them.
+    pub fn numbers(&self) -> &[f64] {
+        match &self.cells {
+            Cells::Numbers(numbers) | Cells::States(numbers) => numbers,
+            Cells::Stamps { .. } | Cells::Other => &[],
+        }
+    }
+
+    /// Least and largest number; none where there are none.
+    pub fn range(&self) -> Option<[f64; 2]> {
+        let there = self.numbers().iter().filter(|value| value.is_finite());
+        there.fold(None, |range, value| {
+            let [low, high] = range.unwrap_or([*value; 2]);
+            Some([low.min(*value), high.max(*value)])
+        })
+    }
+}
+
+/// A key of the map with its value as written, and how sure that is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Line {
+    pub key: &'static str,
+    pub value: String,
+    pub because: Because,
+}
+
+/// A log as it was seen.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Looked {
+    pub path: PathBuf,
+    /// Lines of the map on its form.
+    pub head: Vec<Line>,
+    pub columns: Vec<Seen>,
+    /// Whether the times are those at which messages were logged, not their stamps.
+    pub time: TimeSeen,
+}
+
+/// Where the times are, as far as the form tells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum TimeSeen {
+    /// In a column.
+    Column,
+    /// In the messages: all of them have a stamp, or when they were logged.
+    Messages { stamped: bool },
+}
+
+impl Looked {
+    /// Whether another log is written in the same way, with the same columns.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let plain = |log: &Self| -> Vec<(&'static str, String)> {
+            let head = log.head.iter();
+            head.map(|line| (line.key, line.value.clone())).collect()
+        };
+        let names = |log: &Self| -> Vec<String> {
+            let columns = log.columns.iter();
+            columns.map(|column| column.name.clone()).collect()
+        };
+        plain(self) == plain(other) && names(self) == names(other)
+    }
+}

@@ -1,0 +1,133 @@
+//! A job as it is asked for, and the stretches that it is planned in.
+
+use glam::DVec3;
+use glamx::DPose3;
+
+use super::error::{Obstacle, PlanError};
+use super::profile::{MotionLimits, Profile};
+use super::spline::Spline;
+use super::toolpath::ToolPath;
+use crate::arm::chain::Chain;
+
+/// Distance between the knots of the joint angles' spline [m].
+pub(super) const KNOT_SPACING: f64 = 1e-3;
+
+/// Part of the job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Towards the edge.
+    Approach,
+    /// Onto the edge, then at rest until the force has settled.
+    Engage,
+    /// Along the edge.
+    Follow,
+    /// Away from it.
+    Retract,
+}
+
+impl Phase {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Approach => "approach",
+            Self::Engage => "engage",
+            Self::Follow => "follow",
+            Self::Retract => "retract",
+        }
+    }
+}
+
+/// Request of a plan.
+#[derive(Debug, Clone)]
+pub struct PlanRequest<'a> {
+    /// The arm, base to flange.
+    pub arm: &'a Chain,
+    /// The arm with the slide as its last joint.
+    pub arm_with_slide: &'a Chain,
+    /// Its base in the world.
+    pub world_from_base: DPose3,
+    /// Gravity in the world [m/s2].
+    pub gravity: DVec3,
+    /// The tool's path.
+    pub tool_path: ToolPath,
+    /// Centre of the ball from the flange at the working stroke [m].
+    pub tool_distance: f64,
+    /// Radius of the ball [m].
+    pub tool_radius: f64,
+    /// Nominal penetration of the contact [m].
+    pub penetration: f64,
+    /// Stroke at which the device works [m].
+    pub working_stroke: f64,
+    /// Way that the slide is pushed back when the tool is set on the edge [m].
+    pub push_back: f64,
+    /// Desired force along the contact normal [N].
+    pub force: f64,
+    /// Coulomb friction coefficient between tool and part [1].
+    pub friction: f64,
+    /// Feed along the edge [m/s].
+    pub feed: f64,
+    /// Feed past corners [m/s].
+    pub corner_feed: f64,
+    /// Acceleration and jerk along the path.
+    pub limits: MotionLimits,
+    /// Distance before the edge at which the motion starts [m].
+    pub approach_distance: f64,
+    /// Speed of approach and retraction [m/s].
+    pub approach_speed: f64,
+    /// Speed at which the tool is set on [m/s].
+    pub engage_speed: f64,
+    /// Time at rest on the edge [s].
+    pub settle_time: f64,
+    /// Posture near which to look first [rad].
+    pub seed_posture: Option<&'a [f64]>,
+    /// Seed of the search.
+    pub seed: u64,
+}
+
+impl PlanRequest<'_> {
+    /// Force of the part on the tool while it follows the edge: contact force and friction against the motion [N].
+    pub(super) fn force_on_tool(&self, normal: DVec3, tangent: DVec3) -> DVec3 {
+        self.force * (normal - self.friction * tangent)
+    }
+}
+
+/// A stretch of the job over which one spline runs.
+#[derive(Debug, Clone)]
+pub(super) struct Leg {
+    pub(super) phase: Phase,
+    pub(super) start_time: f64,
+    /// Motion, then rest until the next leg starts.
+    pub(super) duration: f64,
+    pub(super) profile: Profile,
+    pub(super) spline: Spline,
+    pub(super) way: Way,
+}
+
+/// Map of a leg's place to space.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Way {
+    /// Along the tool's axis at a fixed place of the path: backed off by `from` at place 0 and moving by `sign`.
+    Axial { place: f64, from: f64, sign: f64 },
+    /// Along the edge.
+    Edge,
+}
+
+/// The error of a waypoint, counted from 0 here and from 1 in the message.
+pub(super) fn waypoint_error(
+    tool_path: &ToolPath,
+    phase: Phase,
+    index: usize,
+    count: usize,
+    place: f64,
+    obstacle: Obstacle,
+) -> PlanError {
+    let station = tool_path.at(place);
+    PlanError::Waypoint {
+        phase: phase.name(),
+        waypoint: index + 1,
+        waypoints: count,
+        edge_length: station.edge_length,
+        point: station.point,
+        obstacle,
+    }
+}
