@@ -17,6 +17,7 @@ mod equations;
 mod estimator;
 mod examples;
 mod first_diagnosis;
+mod functions;
 mod help;
 mod import;
 mod imports;

@@ -104,7 +104,7 @@ pub fn behind(tokens: &[Token], from: usize) -> usize {
 }
 
 /// Without items under `#[cfg(test)]`.
-fn product(tokens: &[Token]) -> Vec<Token> {
+pub fn product(tokens: &[Token]) -> Vec<Token> {
     let mark = ["#", "[", "cfg", "(", "test", ")", "]"];
     let (mut kept, mut at) = (Vec::new(), 0);
     while at < tokens.len() {

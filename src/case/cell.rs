@@ -98,8 +98,8 @@ fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, CaseError> 
     })
 }
 
-/// Reads a case.
-pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseError> {
+/// The recordings of a folder, and the one in which nothing was measured.
+fn named(cell: &LoadedCell, folder: &Path) -> Result<(Vec<Named>, Option<Named>), CaseError> {
     let mut known = Vec::new();
     let mut unseen = Vec::new();
     for path in recordings(folder) {
@@ -124,6 +124,12 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
             first: unseen[0].0.clone(),
         });
     }
+    Ok((known, unseen.pop()))
+}
+
+/// Reads a case.
+pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseError> {
+    let (known, mut unseen) = named(cell, folder)?;
     let scenario = &cell.scenario;
     let axes: Vec<Axes> = known
         .iter()
@@ -144,11 +150,11 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
         _ => scenario.servo_bandwidth,
     };
     let frictions = frictions(cell, &known, &believed);
-    let of_arm = unseen.first().map(|(name, _, recording)| {
+    let of_arm = unseen.as_ref().map(|(name, _, recording)| {
         let drives = drives(cell, recording);
         arm_prediction(cell, name, recording, servo.as_ref(), &frictions, &drives)
     });
-    for (_, _, recording) in &mut unseen {
+    if let Some((_, _, recording)) = &mut unseen {
         // Where the motors went is to be predicted too.
         recording.encoders.fill(None);
     }
@@ -163,7 +169,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
         .into_iter()
         .map(&mut named)
         .collect::<Result<_, _>>()?;
-    let unseen = unseen.into_iter().next().map(&mut named).transpose()?;
+    let unseen = unseen.map(&mut named).transpose()?;
     let [pressure, stroke, force] = scenario.noise;
     Ok(CellCase {
         input: DiagnosisInput {

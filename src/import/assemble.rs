@@ -72,29 +72,9 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
         // An unknown clock that counts from a start is no half century off one that counts from 1970, nor the other way round.
         let is_unknown = matches!(file_map.clock, Clock::Unknown { .. });
         if !is_unknown || (origin == 0.0) == (log.epoch == 0.0) {
-            let shift = log.epoch - origin;
-            let times = note.series.iter_mut().flat_map(|series| &mut series.time);
-            times.for_each(|time| *time += shift);
+            note.shift(log.epoch - origin);
         }
-        let offset = match &file_map.clock {
-            Clock::Shared { offset } => *offset,
-            Clock::Unknown { by, largest } => {
-                let first = series_of(&logs[0], &by[0]);
-                let own = series_of(&note, &by[1]);
-                let alignment = clock::align(first, own, *largest);
-                let alignment = alignment.map_err(|found| ImportError::Clock {
-                    file: note.file.clone(),
-                    first: by[0].clone(),
-                    own: by[1].clone(),
-                    correlation: found,
-                })?;
-                note.alignment = Some(alignment);
-                alignment.offset
-            }
-        };
-        for series in &mut note.series {
-            series.time.iter_mut().for_each(|time| *time += offset);
-        }
+        note.set_clock(&file_map.clock, &logs)?;
         logs.push(note);
     }
     let time = logs[0].series[0].time.clone();
@@ -129,10 +109,39 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
     })
 }
 
-fn series_of<'a>(log: &'a LogNote, quantity: &str) -> &'a Series {
-    let index = log.quantities.iter().position(|own| own == quantity);
-    // A map whose clocks are aligned by what is not there was refused.
-    &log.series[index.unwrap_or(0)]
+impl LogNote {
+    /// Moves its times [s].
+    fn shift(&mut self, by: f64) {
+        let times = self.series.iter_mut().flat_map(|series| &mut series.time);
+        times.for_each(|time| *time += by);
+    }
+
+    /// Moves its times to the first log's clock.
+    fn set_clock(&mut self, clock: &Clock, before: &[Self]) -> Result<(), ImportError> {
+        let offset = match clock {
+            Clock::Shared { offset } => *offset,
+            Clock::Unknown { by, largest } => {
+                let first = before[0].series_of(&by[0]);
+                let alignment = clock::align(first, self.series_of(&by[1]), *largest);
+                let alignment = alignment.map_err(|found| ImportError::Clock {
+                    file: self.file.clone(),
+                    first: by[0].clone(),
+                    own: by[1].clone(),
+                    correlation: found,
+                })?;
+                self.alignment = Some(alignment);
+                alignment.offset
+            }
+        };
+        self.shift(offset);
+        Ok(())
+    }
+
+    fn series_of(&self, quantity: &str) -> &Series {
+        let index = self.quantities.iter().position(|own| own == quantity);
+        // A map whose clocks are aligned by what is not there was refused.
+        &self.series[index.unwrap_or(0)]
+    }
 }
 
 fn check_overlap(

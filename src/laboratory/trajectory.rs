@@ -121,6 +121,60 @@ fn legs(rig: &Rig, concealed: &Concealed, programme: &Programme) -> Vec<(f64, Le
         .collect()
 }
 
+/// Readings at their times, taken while a solution goes on.
+struct Readings {
+    /// Times in order, each with its sample and whether it is that of the force.
+    wanted: Vec<(f64, usize, bool)>,
+    /// The first that is still to be taken.
+    next: usize,
+    is_late: bool,
+    taken: Vec<Reading>,
+}
+
+impl Readings {
+    /// Force is read when its stamp says less its delay.
+    fn new(samples: &[f64], late: f64) -> Self {
+        let is_late = late != 0.0;
+        let mut wanted: Vec<(f64, usize, bool)> = samples
+            .iter()
+            .enumerate()
+            .flat_map(|(i, t)| {
+                let both = [(*t, i, false), ((t - late).max(0.0), i, true)];
+                both.into_iter().take(if is_late { 2 } else { 1 })
+            })
+            .collect();
+        wanted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self {
+            wanted,
+            next: 0,
+            is_late,
+            taken: vec![Reading::default(); samples.len()],
+        }
+    }
+
+    /// Time of the next reading, if it is not after `until` [s].
+    fn due(&self, until: f64) -> Option<f64> {
+        let next = self.wanted.get(self.next)?.0;
+        (next <= until + 1e-12).then_some(next)
+    }
+
+    fn take(&mut self, reading: Reading) {
+        let (_, index, is_force) = self.wanted[self.next];
+        let own = &mut self.taken[index];
+        if is_force {
+            own.force = reading.force;
+        } else {
+            let force = if self.is_late {
+                own.force
+            } else {
+                reading.force
+            };
+            *own = Reading { force, ..reading };
+        }
+        self.next += 1;
+    }
+}
+
 /// Runs a device.
 ///
 /// # Errors
@@ -132,34 +186,9 @@ pub fn run(
 ) -> Result<LaboratoryTrajectory, LaboratoryError> {
     let mut equations = Equations::new(rig, concealed, programme.surface.as_ref());
     let mut state = equations.start();
-    let samples = &programme.times;
-    // Force is read when its stamp says less its delay; an index tells where it belongs.
-    let late = concealed.force_late;
-    let mut wanted: Vec<(f64, usize, bool)> = samples
-        .iter()
-        .enumerate()
-        .flat_map(|(i, t)| {
-            let both = [(*t, i, false), ((t - late).max(0.0), i, true)];
-            both.into_iter().take(if late == 0.0 { 1 } else { 2 })
-        })
-        .collect();
-    wanted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let end = wanted.last().map_or(0.0, |w| w.0) + 1e-6;
-    let mut readings = vec![Reading::default(); samples.len()];
-    let mut note = |at: &(f64, usize, bool), reading: Reading| {
-        if at.2 {
-            readings[at.1].force = reading.force;
-        } else {
-            let force = if late == 0.0 {
-                reading.force
-            } else {
-                readings[at.1].force
-            };
-            readings[at.1] = Reading { force, ..reading };
-        }
-    };
+    let mut readings = Readings::new(&programme.times, concealed.force_late);
+    let end = readings.wanted.last().map_or(0.0, |w| w.0) + 1e-6;
     let legs = legs(rig, concealed, programme);
-    let mut next = 0;
     for (index, (from, leg)) in legs.iter().enumerate() {
         let until = legs.get(index + 1).map_or(end, |l| l.0).min(end);
         if until <= *from {
@@ -167,9 +196,8 @@ pub fn run(
         }
         equations.leg = *leg;
         // What a sample at the very start of a leg reads is the state there.
-        while next < wanted.len() && wanted[next].0 <= from + 1e-12 {
-            note(&wanted[next], equations.read(*from, &state));
-            next += 1;
+        while readings.due(*from).is_some() {
+            readings.take(equations.read(*from, &state));
         }
         let stuck = |time: f64, what: String| LaboratoryError::Stuck {
             recording: programme.name.clone(),
@@ -204,18 +232,17 @@ pub fn run(
             if matches!(solver.status(), Status::RejectedStep) {
                 continue;
             }
-            while next < wanted.len() && wanted[next].0 <= solver.t() + 1e-12 {
-                let time = wanted[next].0.clamp(solver.t_prev(), solver.t());
+            while let Some(time) = readings.due(solver.t()) {
+                let time = time.clamp(solver.t_prev(), solver.t());
                 let there: State = solver
                     .interpolate(time)
                     .map_err(|error| stuck(time, format!("{error:?}")))?;
-                note(&wanted[next], equations.read(time, &there));
-                next += 1;
+                readings.take(equations.read(time, &there));
             }
         }
         state = *solver.y();
     }
-    Ok(trajectory(concealed, programme, &readings))
+    Ok(trajectory(concealed, programme, &readings.taken))
 }
 
 fn trajectory(

@@ -91,90 +91,104 @@ fn named(inputs: &[Vec<f64>; 3]) -> Vec<(&'static str, &[f64])> {
         .collect()
 }
 
+/// A table of a file: its name, its keys with their values.
+type Keys<'a> = (&'a str, Vec<(&'a str, String)>);
+
+fn plain(value: f64) -> String {
+    format!("{value:?}")
+}
+
 fn rig_text(believed: &Believed, fit: &[&str], predict: &str) -> String {
     let rig = &believed.rig;
-    let [volume, mass, gain, lag, supply, exhaust, stiffness, damping] = believed.tolerances;
-    let within =
-        |value: f64, tolerance: f64| format!("{{ value = {value:?}, tolerance = {tolerance:?} }}");
+    let noise = CHANNELS.into_iter().zip(rig.noise.map(plain));
     let quoted: Vec<String> = fit.iter().map(|name| format!("\"{name}.csv\"")).collect();
     let mut text = String::from(
         "# The device as its owner believes it to be. SI units; tolerances are relative.\nschema = 2\n",
     );
-    let mut table = |name: &str, rows: &[(&str, String)]| {
+    let rest = [
+        (
+            "sensors",
+            std::iter::once(("rate_hz", plain(rig.rate)))
+                .chain(noise)
+                .collect(),
+        ),
+        (
+            "recordings",
+            vec![
+                ("fit", format!("[{}]", quoted.join(", "))),
+                ("predict", format!("\"{predict}.csv\"")),
+            ],
+        ),
+    ];
+    for (name, rows) in device_keys(believed).into_iter().chain(rest) {
         // Writing into a text cannot fail.
         let _ = writeln!(text, "\n[{name}]");
         for (key, value) in rows {
             let _ = writeln!(text, "{key} = {value}");
         }
-    };
-    let plain = |value: f64| format!("{value:?}");
-    table(
-        "cylinder",
-        &[
-            ("count", rig.count.to_string()),
-            ("bore_m", plain(rig.bore)),
-            ("rod_m", plain(rig.rod)),
-            ("stroke_m", plain(rig.stroke)),
-            ("dead_volume_m3", within(rig.dead_volume, volume)),
-            ("moving_mass_kg", within(rig.mass, mass)),
-            ("gravity_along_axis_m_per_s2", plain(rig.gravity)),
-        ],
-    );
-    table(
-        "end_stop",
-        &[
-            ("stiffness_n_per_m", plain(rig.stop[0])),
-            ("damping_n_s_per_m", plain(rig.stop[1])),
-        ],
-    );
-    table(
-        "regulator",
-        &[
-            ("gain", within(rig.gain, gain)),
-            ("time_constant_s", within(rig.time_constant, lag)),
-        ],
-    );
-    table(
-        "valve",
-        &[
-            ("supply_orifice_m2", within(rig.supply_orifice, supply)),
-            ("exhaust_orifice_m2", within(rig.exhaust_orifice, exhaust)),
-            ("discharge_coefficient", plain(rig.discharge)),
-        ],
-    );
-    table(
-        "gas",
-        &[
-            ("specific_gas_constant_j_per_kg_k", plain(rig.gas.constant)),
-            ("heat_capacity_ratio", plain(rig.gas.ratio)),
-            ("temperature_k", plain(rig.gas.temperature)),
-            ("atmosphere_pa", plain(rig.gas.atmosphere)),
-        ],
-    );
-    table(
-        "contact",
-        &[
-            (
-                "stiffness_n_per_m",
-                within(rig.contact_stiffness, stiffness),
-            ),
-            ("damping_n_s_per_m", within(rig.contact_damping, damping)),
-        ],
-    );
-    let mut sensors = vec![("rate_hz", plain(rig.rate))];
-    sensors.extend(
-        CHANNELS
-            .iter()
-            .zip(rig.noise)
-            .map(|(name, noise)| (*name, plain(noise))),
-    );
-    table("sensors", &sensors);
-    table(
-        "recordings",
-        &[
-            ("fit", format!("[{}]", quoted.join(", "))),
-            ("predict", format!("\"{predict}.csv\"")),
-        ],
-    );
+    }
     text
+}
+
+/// What is believed of device and contact.
+fn device_keys(believed: &Believed) -> [Keys<'static>; 6] {
+    let rig = &believed.rig;
+    let [volume, mass, gain, lag, supply, exhaust, stiffness, damping] = believed.tolerances;
+    let within =
+        |value: f64, tolerance: f64| format!("{{ value = {value:?}, tolerance = {tolerance:?} }}");
+    [
+        (
+            "cylinder",
+            vec![
+                ("count", rig.count.to_string()),
+                ("bore_m", plain(rig.bore)),
+                ("rod_m", plain(rig.rod)),
+                ("stroke_m", plain(rig.stroke)),
+                ("dead_volume_m3", within(rig.dead_volume, volume)),
+                ("moving_mass_kg", within(rig.mass, mass)),
+                ("gravity_along_axis_m_per_s2", plain(rig.gravity)),
+            ],
+        ),
+        (
+            "end_stop",
+            vec![
+                ("stiffness_n_per_m", plain(rig.stop[0])),
+                ("damping_n_s_per_m", plain(rig.stop[1])),
+            ],
+        ),
+        (
+            "regulator",
+            vec![
+                ("gain", within(rig.gain, gain)),
+                ("time_constant_s", within(rig.time_constant, lag)),
+            ],
+        ),
+        (
+            "valve",
+            vec![
+                ("supply_orifice_m2", within(rig.supply_orifice, supply)),
+                ("exhaust_orifice_m2", within(rig.exhaust_orifice, exhaust)),
+                ("discharge_coefficient", plain(rig.discharge)),
+            ],
+        ),
+        (
+            "gas",
+            vec![
+                ("specific_gas_constant_j_per_kg_k", plain(rig.gas.constant)),
+                ("heat_capacity_ratio", plain(rig.gas.ratio)),
+                ("temperature_k", plain(rig.gas.temperature)),
+                ("atmosphere_pa", plain(rig.gas.atmosphere)),
+            ],
+        ),
+        (
+            "contact",
+            vec![
+                (
+                    "stiffness_n_per_m",
+                    within(rig.contact_stiffness, stiffness),
+                ),
+                ("damping_n_s_per_m", within(rig.contact_damping, damping)),
+            ],
+        ),
+    ]
 }

@@ -325,6 +325,23 @@ impl Standing<'_> {
         }
     }
 
+    /// Postures at the first pose: the one that a given posture leads to, or distinct ones.
+    fn starts(&self, pose: &DPose3, seed_posture: Option<&[f64]>, seed: u64) -> Vec<Vec<f64>> {
+        let options = self.options(seed);
+        let solutions: Vec<_> = match seed_posture {
+            Some(posture) => {
+                let options = IkOptions {
+                    random_starts: 0,
+                    ..options
+                };
+                let found = solve(self.chain, self.world_from_base, pose, posture, &options);
+                found.into_iter().collect()
+            }
+            None => distinct_solutions(self.chain, self.world_from_base, pose, STARTS, &options),
+        };
+        solutions.into_iter().map(|solution| solution.q).collect()
+    }
+
     /// Chooses spin and posture: `poses_at` gives the coarse poses of the whole job for a spin [rad], with the force on the tool at each.
     ///
     /// # Errors
@@ -340,32 +357,7 @@ impl Standing<'_> {
         let mut failure: Option<(usize, Obstacle)> = None;
         for spin in (0..spins).map(|i| i as f64 * std::f64::consts::TAU / spins as f64) {
             let (poses, forces) = poses_at(spin);
-            let options = self.options(seed);
-            let starts: Vec<Vec<f64>> = match seed_posture {
-                Some(posture) => solve(
-                    self.chain,
-                    self.world_from_base,
-                    &poses[0],
-                    posture,
-                    &IkOptions {
-                        random_starts: 0,
-                        ..options
-                    },
-                )
-                .into_iter()
-                .map(|solution| solution.q)
-                .collect(),
-                None => distinct_solutions(
-                    self.chain,
-                    self.world_from_base,
-                    &poses[0],
-                    STARTS,
-                    &options,
-                )
-                .into_iter()
-                .map(|solution| solution.q)
-                .collect(),
-            };
+            let starts = self.starts(&poses[0], seed_posture, seed);
             if starts.is_empty() && failure.is_none() {
                 let middle: Vec<f64> = self
                     .chain

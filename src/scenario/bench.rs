@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::bench_file::{
-    BenchFile, BenchSimulationKeys, CommandKeys, HandKeys, LoadKeys, LoadKind, ValveKeys,
+    BenchFile, BenchKeys, BenchSimulationKeys, CommandKeys, HandKeys, LoadKeys, LoadKind, ValveKeys,
 };
 use super::check::Section;
 use super::controller::{ControllerScenario, ForceLaw, check_force, controller};
@@ -195,6 +195,29 @@ fn effects_of_bench(
     Ok(effects)
 }
 
+/// Duration [s], gravity along extension [m/s2] and stroke at the start [m], for a device with its rig file's gravity.
+fn conditions(
+    section: &Section<'_>,
+    keys: &BenchKeys,
+    device: &DeviceScenario,
+    gravity: f64,
+) -> Result<(f64, f64, f64), ScenarioError> {
+    let duration = section.number("duration_s", keys.duration_s, 0.01..=3600.0)?;
+    let key = "start_stroke_mm";
+    let start_stroke = section.number(key, keys.start_stroke_mm.unwrap_or(0.0), 0.0..=500.0)?;
+    let full_stroke = device.parameters.full_stroke;
+    if start_stroke > full_stroke {
+        let expected = format!("at most the device's stroke_mm, {} mm", full_stroke * 1e3);
+        return Err(section.refuse_number(key, start_stroke * 1e3, expected));
+    }
+    let gravity = section.known(
+        &registry::GRAVITY,
+        "gravity_along_extension_m_per_s2",
+        keys.gravity_along_extension_m_per_s2.unwrap_or(gravity),
+    )?;
+    Ok((duration, gravity, start_stroke))
+}
+
 /// Reads a bench scenario from a document that says that it is one.
 pub(super) fn from_document(
     path: &Path,
@@ -211,34 +234,14 @@ pub(super) fn from_document(
         own,
     } = bench_device(&section("device"), &file.device)?;
     let bench = section("bench");
-    let duration = bench.number("duration_s", file.bench.duration_s, 0.01..=3600.0)?;
-    let start_stroke = bench.number(
-        "start_stroke_mm",
-        file.bench.start_stroke_mm.unwrap_or(0.0),
-        0.0..=500.0,
-    )?;
-    if start_stroke > device.parameters.full_stroke {
-        let expected = format!(
-            "at most the device's stroke_mm, {} mm",
-            device.parameters.full_stroke * 1e3
-        );
-        return Err(bench.refuse_number("start_stroke_mm", start_stroke * 1e3, expected));
-    }
+    let (duration, gravity_along_extension, start_stroke) =
+        conditions(&bench, &file.bench, &device, gravity_along_extension)?;
     if device.locked {
         let reason = "a bench has no locked device".to_owned();
         return Err(section("device").misplaced("locked", reason));
     }
     let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
     let sensing = sensing(document, &file.sensing, step)?;
-    let (key, given) = (
-        "gravity_along_extension_m_per_s2",
-        file.bench.gravity_along_extension_m_per_s2,
-    );
-    let gravity_along_extension = bench.known(
-        &registry::GRAVITY,
-        key,
-        given.unwrap_or(gravity_along_extension),
-    )?;
     let parameters = &device.parameters;
     let check_force = |section: &Section<'_>, force: f64| {
         let gravity = gravity_along_extension;
@@ -268,6 +271,7 @@ pub(super) fn from_document(
     };
     let estimator = file.estimator.as_ref();
     let estimator = estimator.map(|keys| set_up_estimator(document, keys, &base));
+    let hand = (file.hand.as_ref()).map(|keys| hand(&section("hand"), keys));
     let mut scenario = BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
@@ -278,11 +282,7 @@ pub(super) fn from_document(
         effects: Vec::new(),
         latent,
         own,
-        hand: file
-            .hand
-            .as_ref()
-            .map(|keys| hand(&section("hand"), keys))
-            .transpose()?,
+        hand: hand.transpose()?,
         command,
         valve: valve(document, &file.valve, duration)?,
         step,

@@ -458,7 +458,63 @@ impl<'a> Simulation<'a> {
         self.world.touches(&relief, &mut self.touches);
     }
 
-    #[expect(clippy::too_many_lines, reason = "one row, signal by signal")]
+    /// Positions, references, speeds, drive torques and encoder readings of the axes.
+    fn joint_signals(&self, reference: &Reference) -> [[f64; JointSignal::ALL.len()]; MAX_JOINTS] {
+        let mut joints = [[0.0; JointSignal::ALL.len()]; MAX_JOINTS];
+        for (axis, joint) in joints.iter_mut().enumerate().take(self.slide()) {
+            let velocity = self.world.velocities()[axis];
+            let (applied, at_drive) = match &self.motors[axis] {
+                None => self.world.applied(axis),
+                Some((motor, drive)) => {
+                    let (angle, speed) = motor.middle;
+                    (drive.at(angle, speed), speed)
+                }
+            };
+            *joint = [
+                self.world.positions()[axis],
+                reference.position[axis],
+                velocity,
+                self.servo.drive_torque(axis, applied, at_drive),
+                self.encoders[axis],
+            ];
+        }
+        joints
+    }
+
+    /// Reads the sensors.
+    fn read_sensors(&mut self, time: f64, there: &SensorReadings, acceleration: f64) {
+        let mut read = self.errors.read(time, there, acceleration);
+        if self.cell.plant.has_terms() {
+            let moment = self.moment(&self.carrier(time));
+            read.add(self.cell.plant.reading_terms(&moment));
+        }
+        self.readings = self.sensors.measure(
+            time,
+            &Truth {
+                force: read.force,
+                stroke: read.stroke,
+                acceleration,
+                regulator_pressure: read.regulator_pressure,
+            },
+        );
+        if self.sensors.sampled() {
+            self.read_encoders();
+        }
+    }
+
+    /// Sum of the contact's normal forces [N], as a vector [N], and along the stroke [N].
+    fn pressing(&self, carrier: &SlideCarrier<'_>, motion: PistonMotion) -> (f64, DVec3, f64) {
+        let none = (0.0, DVec3::ZERO, 0.0);
+        (self.touches.iter()).fold(none, |(sum, vector, load), touch| {
+            let force = carrier.normal_force(touch, 0.0, motion);
+            (
+                sum + force,
+                vector + touch.normal * force,
+                load + touch.share * force,
+            )
+        })
+    }
+
     fn sample(&mut self, reference: &Reference, set_pressure: f64) -> Result<(), SimulationError> {
         let (cell, n) = (self.cell, self.slide());
         let time = self.steps as f64 * cell.scenario.simulation.step;
@@ -466,15 +522,7 @@ impl<'a> Simulation<'a> {
         let stroke = motion.stroke;
         let carrier = self.with_terms(self.carrier(time), 0.0);
         let further = carrier.terms.force(time, motion);
-        let mut normal_force = 0.0;
-        let mut normal = DVec3::ZERO;
-        let mut load = 0.0;
-        for touch in &self.touches {
-            let force = carrier.normal_force(touch, 0.0, motion);
-            normal_force += force;
-            normal += touch.normal * force;
-            load += touch.share * force;
-        }
+        let (normal_force, normal, load) = self.pressing(&carrier, motion);
         let friction = self.world.contact().friction;
         let force_on_part = -(normal + friction);
         let normal = normal.normalize_or_zero();
@@ -490,23 +538,7 @@ impl<'a> Simulation<'a> {
             stroke,
             regulator_pressure: self.device.regulator.outlet + self.device.disturbance.outlet,
         };
-        let mut read = self.errors.read(time, &there, acceleration);
-        if cell.plant.has_terms() {
-            read.add(cell.plant.reading_terms(&self.moment(&self.carrier(time))));
-        }
-        self.readings = self.sensors.measure(
-            time,
-            &Truth {
-                force: read.force,
-                stroke: read.stroke,
-                acceleration,
-                regulator_pressure: read.regulator_pressure,
-            },
-        );
-        if self.sensors.sampled() {
-            self.read_encoders();
-        }
-
+        self.read_sensors(time, &there, acceleration);
         let off = self.world.tool_centre() - reference.centre;
         let across = off - reference.axis * off.dot(reference.axis);
         let signals = [
@@ -536,24 +568,7 @@ impl<'a> Simulation<'a> {
             self.readings.stroke,
             self.readings.force,
         ];
-        let mut joints = [[0.0; JointSignal::ALL.len()]; MAX_JOINTS];
-        for (axis, joint) in joints.iter_mut().enumerate().take(n) {
-            let velocity = self.world.velocities()[axis];
-            let (applied, at_drive) = match &self.motors[axis] {
-                None => self.world.applied(axis),
-                Some((motor, drive)) => {
-                    let (angle, speed) = motor.middle;
-                    (drive.at(angle, speed), speed)
-                }
-            };
-            *joint = [
-                self.world.positions()[axis],
-                reference.position[axis],
-                velocity,
-                self.servo.drive_torque(axis, applied, at_drive),
-                self.encoders[axis],
-            ];
-        }
+        let joints = self.joint_signals(reference);
         self.check_finite(&signals, &joints[..n], reference.phase, time)?;
         self.log.push(time, reference.phase, &signals, &joints[..n]);
         if time >= self.next_frame {

@@ -13,7 +13,22 @@ use crate::quantity::{change, significant};
 pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     let details = &answer.details;
     let yardstick = yardstick(details.remaining.is_some());
-    let mut blocks = Vec::new();
+    let tables = [
+        misfit(&details.misfit, yardstick),
+        prediction(&details.prediction, yardstick),
+    ];
+    let mut blocks: Vec<Block<'a>> = tables.into_iter().flatten().map(Block::Table).collect();
+    let kinds = [
+        SectionKind::Remaining,
+        SectionKind::UnseenRun,
+        SectionKind::Runs,
+    ];
+    blocks.extend(told(answer, &kinds));
+    (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
+}
+
+/// Departure of each channel of each recording, in multiples of `yardstick`.
+fn misfit(misfit: &[ChannelMisfit], yardstick: &str) -> Option<Table> {
     let row = |m: &ChannelMisfit| {
         let (words, unit, factor) = of_column(&m.channel);
         let sigmas = |v: f64| Cell::from(significant(v, 3));
@@ -35,11 +50,11 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
             m.left_out_sigmas.map_or(Cell::from("–"), sigmas),
         ]
     };
-    if !details.misfit.is_empty() {
+    (!misfit.is_empty()).then(|| {
         let caption = format!(
             "What the models leave of each channel: root mean square, then a robust one in multiples of {yardstick} (1 is as much). The last column is a fit to the other recordings."
         );
-        blocks.push(Block::Table(Table::new(
+        Table::new(
             &caption,
             &[
                 "recording",
@@ -52,9 +67,13 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
                 "#improved, σ",
                 "#not fitted to, σ",
             ],
-            details.misfit.iter().map(row).collect(),
-        )));
-    }
+            misfit.iter().map(row).collect(),
+        )
+    })
+}
+
+/// Errors on what was not fitted to.
+fn prediction(errors: &[PredictionError], yardstick: &str) -> Option<Table> {
     let row = |e: &PredictionError| {
         let (words, unit, factor) = of_column(&e.channel);
         let number = |v: f64| Cell::from(format!("{} {unit}", significant(factor * v, 3)));
@@ -70,8 +89,8 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
             }),
         ]
     };
-    if !details.prediction.is_empty() {
-        blocks.push(Block::Table(Table::new(
+    (!errors.is_empty()).then(|| {
+        Table::new(
             "Root mean square of the errors on what was not fitted to; σ: the robust one in multiples of the last but one column.",
             &[
                 "recording",
@@ -82,16 +101,9 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
                 &format!("#{yardstick}"),
                 "#improved, σ",
             ],
-            details.prediction.iter().map(row).collect(),
-        )));
-    }
-    let kinds = [
-        SectionKind::Remaining,
-        SectionKind::UnseenRun,
-        SectionKind::Runs,
-    ];
-    blocks.extend(told(answer, &kinds));
-    (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
+            errors.iter().map(row).collect(),
+        )
+    })
 }
 
 pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {

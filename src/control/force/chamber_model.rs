@@ -73,28 +73,15 @@ impl ChamberModel {
     pub(super) fn advance(&mut self, outlet: f64, stroke: f64, speed: f64, duration: f64) {
         let count = (duration / LONGEST_STEP - 1e-9).ceil().max(1.0);
         let h = duration / count;
+        let (supply, exhaust) = (
+            self.valve.supply_conductance,
+            self.valve.exhaust_conductance,
+        );
         for _ in 0..count as usize {
             let before = self.before_valve(outlet);
-            let [p1, p2] = self.pressures;
             self.pressures = [
-                self.stepped(
-                    0,
-                    self.valve.supply_conductance,
-                    before,
-                    p1,
-                    stroke,
-                    speed,
-                    h,
-                ),
-                self.stepped(
-                    1,
-                    self.valve.exhaust_conductance,
-                    self.gas.atmosphere,
-                    p2,
-                    stroke,
-                    speed,
-                    h,
-                ),
+                self.stepped(0, supply, before, stroke, speed, h),
+                self.stepped(1, exhaust, self.gas.atmosphere, stroke, speed, h),
             ];
         }
     }
@@ -111,20 +98,17 @@ impl ChamberModel {
         })
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the chamber's whole surroundings"
-    )]
+    /// Pressure of a chamber after a step [Pa], with another pressure beside it.
     fn stepped(
         &self,
         chamber: usize,
         conductance: f64,
         beside: f64,
-        pressure: f64,
         stroke: f64,
         speed: f64,
         h: f64,
     ) -> f64 {
+        let pressure = self.pressures[chamber];
         let volume = self.chambers[chamber].volume(stroke);
         let growth = self.growth(chamber, speed);
         let rate = self.rt() / volume * self.conductance(conductance, beside, pressure);

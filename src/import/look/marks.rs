@@ -8,6 +8,60 @@ use crate::import::map::Column;
 use crate::import::numbers::{self, Marks};
 use crate::import::text::Sheet;
 
+/// A number that shows a mark: its line, its text.
+type Shown<'a> = Option<(u64, &'a str)>;
+
+/// Marks that the numbers of a text show.
+struct Found<'a> {
+    /// The first number of each column with a decimal point, and with a decimal comma.
+    decimals: Vec<[Shown<'a>; 2]>,
+    /// A mark of thousands for certain.
+    grouped: Option<char>,
+    /// A mark of either.
+    open: Option<char>,
+    /// Whether there is a number without marks.
+    plain: bool,
+}
+
+impl<'a> Found<'a> {
+    fn new(sheet: &'a Sheet, of_numbers: &[bool]) -> Self {
+        let mut found = Self {
+            decimals: vec![[None; 2]; of_numbers.len()],
+            grouped: None,
+            open: None,
+            plain: false,
+        };
+        for (line, row) in &sheet.rows {
+            for (place, field) in row.iter().enumerate().take(of_numbers.len()) {
+                if !of_numbers[place] {
+                    continue;
+                }
+                let decimal = match numbers::seen(field) {
+                    numbers::Seen::Decimal(mark) => Some(mark),
+                    numbers::Seen::Grouped(mark, decimal) => {
+                        found.grouped = Some(mark);
+                        decimal
+                    }
+                    numbers::Seen::Open(mark) => {
+                        found.open = Some(mark);
+                        None
+                    }
+                    numbers::Seen::Plain => {
+                        found.plain = true;
+                        None
+                    }
+                    numbers::Seen::Other => None,
+                };
+                if let Some(mark) = decimal {
+                    let slot = &mut found.decimals[place][usize::from(mark == ',')];
+                    *slot = slot.or(Some((*line, field)));
+                }
+            }
+        }
+        found
+    }
+}
+
 /// Decimal and thousands marks of all columns of numbers together, and how sure they are.
 ///
 /// # Errors
@@ -17,38 +71,10 @@ pub(super) fn marks(
     sheet: &Sheet,
     of_numbers: &[bool],
 ) -> Result<(Marks, Because), ImportError> {
-    let mut all: Vec<[Option<(u64, &str)>; 2]> = vec![[None; 2]; of_numbers.len()];
-    let (mut grouped, mut open, mut plain) = (None, None, false);
-    for (line, row) in &sheet.rows {
-        for (place, field) in row.iter().enumerate().take(of_numbers.len()) {
-            if !of_numbers[place] {
-                continue;
-            }
-            let decimal = match numbers::seen(field) {
-                numbers::Seen::Decimal(mark) => Some(mark),
-                numbers::Seen::Grouped(mark, decimal) => {
-                    grouped = Some(mark);
-                    decimal
-                }
-                numbers::Seen::Open(mark) => {
-                    open = Some(mark);
-                    None
-                }
-                numbers::Seen::Plain => {
-                    plain = true;
-                    None
-                }
-                numbers::Seen::Other => None,
-            };
-            if let Some(mark) = decimal {
-                let slot = &mut all[place][usize::from(mark == ',')];
-                *slot = slot.or(Some((*line, field)));
-            }
-        }
-    }
-    check_alike(path, sheet, &all)?;
-    let decimals: [Option<(u64, &str)>; 2] =
-        [0, 1].map(|mark| all.iter().find_map(|column| column[mark]));
+    let found = Found::new(sheet, of_numbers);
+    check_alike(path, sheet, &found.decimals)?;
+    let decimals: [Shown<'_>; 2] =
+        [0, 1].map(|mark| found.decimals.iter().find_map(|column| column[mark]));
     let known = |mark: char| match mark {
         '.' => decimals[0],
         ',' => decimals[1],
@@ -64,7 +90,7 @@ pub(super) fn marks(
         let (line, field) = known(mark).unwrap_or((0, ""));
         Because::certain(format!("`{field}` in line {line}"))
     };
-    Ok(match (only, grouped, open) {
+    Ok(match (only, found.grouped, found.open) {
         (Some(decimal), grouped, _) if grouped.is_some() => {
             (marks(decimal, grouped), seen(decimal))
         }
@@ -83,7 +109,7 @@ pub(super) fn marks(
             ),
             Because::likely("no number has decimals"),
         ),
-        (None, None, Some(mark)) if plain => (
+        (None, None, Some(mark)) if found.plain => (
             marks(other(mark), Some(mark)),
             Because::likely(format!(
                 "`{mark}` stands before three digits and in large numbers alone"
@@ -98,11 +124,7 @@ pub(super) fn marks(
 }
 
 /// Refuses decimal marks of both kinds, in one column or in two.
-fn check_alike(
-    path: &Path,
-    sheet: &Sheet,
-    all: &[[Option<(u64, &str)>; 2]],
-) -> Result<(), ImportError> {
+fn check_alike(path: &Path, sheet: &Sheet, all: &[[Shown<'_>; 2]]) -> Result<(), ImportError> {
     let refuse = |place: usize, line: u64, found: &str, expected: String| ImportError::Number {
         file: path.to_owned(),
         line,

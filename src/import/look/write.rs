@@ -8,6 +8,7 @@ use super::seen::{Because, Draft, Looked, Seen, TimeSeen};
 use super::time::{self, toml_text, written};
 use super::units::{self, shown};
 use crate::import::map::Pressure;
+use crate::import::units::LogUnit;
 use crate::recording::{Unit, schema};
 
 /// Column at which comments begin.
@@ -217,13 +218,33 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
         },
     };
     page.line("unit", &format!("{:?}", unit.name), &because);
-    if pick.kind != Unit::Pascal {
-        return;
+    if pick.kind == Unit::Pascal {
+        let by_name = said.and_then(|said| Some((said.pressure?, said.because.clone())));
+        match by_name.or_else(|| against(pick, column, unit, columns, picks)) {
+            Some((pressure, because)) => {
+                let word = match pressure {
+                    Pressure::Gauge => "\"gauge\"",
+                    Pressure::Absolute => "\"absolute\"",
+                };
+                page.line("pressure", word, &because);
+            }
+            None => page.ask(
+                "pressure = \"gauge\"",
+                &format!("it never rests, so that {range} {} may be above the atmosphere (\"gauge\") or \"absolute\"", unit.name),
+                &described(column),
+            ),
+        }
     }
-    let by_name = said.and_then(|said| {
-        let pressure = said.pressure?;
-        Some((pressure, said.because.clone()))
-    });
+}
+
+/// What a pressure is against, by where it rests or as another one of its log.
+fn against(
+    pick: &Pick,
+    column: &Seen,
+    unit: &LogUnit,
+    columns: &[Seen],
+    picks: &[Pick],
+) -> Option<(Pressure, Because)> {
     let of_other = || {
         // What two pressures of one log are against is the same.
         let other = picks
@@ -237,23 +258,7 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
             Because::likely(format!("as {} is", described(own))),
         ))
     };
-    let found = by_name
-        .or_else(|| units::by_rest(column.numbers(), unit))
-        .or_else(of_other);
-    match found {
-        Some((pressure, because)) => {
-            let word = match pressure {
-                Pressure::Gauge => "\"gauge\"",
-                Pressure::Absolute => "\"absolute\"",
-            };
-            page.line("pressure", word, &because);
-        }
-        None => page.ask(
-            "pressure = \"gauge\"",
-            &format!("it never rests, so that {range} {} may be above the atmosphere (\"gauge\") or \"absolute\"", unit.name),
-            &described(column),
-        ),
-    }
+    units::by_rest(column.numbers(), unit).or_else(of_other)
 }
 
 /// Columns that were taken for nothing.
