@@ -14,6 +14,7 @@ const ALLOWED: [&[&str]; 2] = [
         "diagnosis/details.rs",
         "diagnosis/diagnose.rs",
         "diagnosis/estimate.rs",
+        "diagnosis/extent.rs",
         "diagnosis/unlisted/report.rs",
     ],
     &[
