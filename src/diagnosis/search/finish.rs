@@ -9,7 +9,7 @@ use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
 use super::{Search, same};
 use crate::effects::Effect;
-use crate::plant::CHANNELS;
+use crate::plant::{CHANNELS, Chain};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -51,7 +51,13 @@ impl Search<'_> {
             .filter(plainer)
             .map(|h| self.refit(h, Refit::FULL))
             .collect();
-        for (index, effect) in best.effects.iter().enumerate().skip(self.shown.len()) {
+        // Of a part of the device all such variants are fitted and told (`super::super::ruled_out`).
+        let own = match self.believed.chain {
+            Chain::Whole => self.shown.len()..best.effects.len(),
+            _ => 0..0,
+        };
+        for index in own {
+            let effect = best.effects[index];
             let numbers = |e: &Effect| e.parameters(&self.believed).len();
             let plain = |e: &&&'static Effect| e.excludes(effect) && numbers(e) < numbers(effect);
             for plain in self.candidates.iter().filter(plain) {
