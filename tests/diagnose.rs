@@ -165,7 +165,8 @@ fn nothing_is_found_where_nothing_was_planted() {
     let answer: Value = serde_json::from_str(&outcome.out).unwrap();
     assert_eq!(answer["verdict"], "nothing_missing", "{answer:#}");
     assert_eq!(answer["mismatch"].as_array().unwrap().len(), 0);
-    assert_eq!(answer["parts"].as_array().unwrap().len(), 0);
+    assert_eq!(answer["differences"].as_array().unwrap().len(), 0);
+    assert_eq!(answer["explained"], "fully");
     assert_eq!(answer["explained_share"], Value::Null);
     let account = std::fs::read_to_string(bench.path("out/account.txt")).unwrap();
     assert!(

@@ -48,8 +48,8 @@ impl Hypothesis {
 
 /// Whether a hypothesis has the effects of another, or laws in their place that exclude them.
 pub(super) fn covers(one: &Hypothesis, other: &Hypothesis) -> bool {
-    let in_one = |effect: &&Effect| one.effects.iter().any(|known| known.excludes(effect));
-    other.effects.iter().all(|effect| in_one(effect))
+    let mut others = other.effects.iter();
+    others.all(|effect| one.effects.iter().any(|known| known.excludes(effect)))
 }
 
 /// Whether the effects of two hypotheses are the same but for laws that exclude one another.

@@ -184,8 +184,6 @@ impl Search<'_> {
         if full.is_empty() {
             full = self.in_full(&all, &scale, &mut done, observer);
         }
-        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        self.add_unseen_roughly(&mut full, &all, &scale, observer);
         self.eliminate(&mut full, observer);
         self.add_plainer(&mut full, &all, observer);
         let weighed = self.weighed(&mut full, observer);

@@ -180,7 +180,7 @@ class Examination:
                     self.check.exact(f"prediction {e['channel']} {key}", e[f"{key}_sigmas"], sigmas, 1e-3)
         for recording in of.table.recording.unique():
             time = of.table[of.table.recording == recording].time_s
-            for span in of.json["mismatch"] + of.json["parts"]:
+            for span in of.json["mismatch"] + of.json["differences"]:
                 if span["recording"] == recording:
                     inside = time.min() - 1e-9 <= span["start_s"] <= span["end_s"] <= time.max() + 1e-9
                     self.check.fact(f"{recording}: {span['start_s']} to {span['end_s']} s lies within it", inside, True)
@@ -228,7 +228,7 @@ class Examination:
             rows = rows[rows.recording == match.group("recording")]
             if "from" in match.groupdict():
                 half = 0.5 * last_digit(match.group("from")) + 1e-9
-                spans = [p for p in of.json["parts"] if p["recording"] == match.group("recording") and p["channel"] == words[match.group("channel")][0]]
+                spans = [p for p in of.json["differences"] if p["recording"] == match.group("recording") and p["channel"] == words[match.group("channel")][0]]
                 start, end = min(p["start_s"] for p in spans), max(p["end_s"] for p in spans)
                 self.check.fact(f"{where}: from", abs(float(match.group("from")) - start) <= half, True)
                 self.check.fact(f"{where}: to", abs(float(match.group("to")) - end) <= half, True)

@@ -9,7 +9,7 @@ use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
 use super::{Search, same};
 use crate::effects::Effect;
-use crate::plant::CHANNELS;
+use crate::plant::{CHANNELS, Chain};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -51,7 +51,13 @@ impl Search<'_> {
             .filter(plainer)
             .map(|h| self.refit(h, Refit::FULL))
             .collect();
-        for (index, effect) in best.effects.iter().enumerate().skip(self.shown.len()) {
+        // Of a part of the device all such variants are fitted and told (`super::super::ruled_out`).
+        let own = match self.believed.chain {
+            Chain::Whole => self.shown.len()..best.effects.len(),
+            _ => 0..0,
+        };
+        for index in own {
+            let effect = best.effects[index];
             let numbers = |e: &Effect| e.parameters(&self.believed).len();
             let plain = |e: &&&'static Effect| e.excludes(effect) && numbers(e) < numbers(effect);
             for plain in self.candidates.iter().filter(plain) {
@@ -205,7 +211,12 @@ impl Search<'_> {
             && best.unlisted().is_none()
         {
             let score = self.score(best);
-            let known = |names: &[&str]| full.iter().find(|known| known.names() == names).cloned();
+            // Beside a model error a fit from another minimum says nothing new.
+            let weighed = !self.model_error.is_none();
+            let known = |names: &[&str]| {
+                let mut full = full.iter().filter(|_| weighed);
+                full.find(|known| known.names() == names).cloned()
+            };
             let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
                 .filter_map(|index| {
                     let mut names = best.effects.iter().map(|e| e.name).collect::<Vec<_>>();
@@ -283,38 +294,6 @@ impl Search<'_> {
         }
         let effects = rough.effects;
         Some(self.fitted(effects, from, &free, FULL, Refit::FULL.limit))
-    }
-
-    /// Where a rough fit leaves noise alone and a full one does not, adds effects that the free motion shows: a piston that is held to its measured motion
-    /// hides what moves it a little late.
-    pub(super) fn add_unseen_roughly(
-        &self,
-        full: &mut Vec<Hypothesis>,
-        rough: &[Hypothesis],
-        scale: &Scale,
-        observer: &mut Observer<'_>,
-    ) {
-        let noise = rough_noise(self.evidence);
-        let leaves_noise = |h: &Hypothesis| h.fit.rough - noise < scale.rough_spread();
-        while let Some(best) = full.first()
-            && best.effects.len() < self.most_effects + self.shown.len()
-            && rough.first().is_some_and(leaves_noise)
-            && !scale.is_adequate(best)
-        {
-            let score = self.score(best);
-            let candidates = self.screen(best, &FULL[1..], f64::INFINITY);
-            let more: Vec<Hypothesis> = (candidates.iter().take(self.settings.fitted_in_full))
-                .map(|candidate| self.refit(candidate, Refit::FULL))
-                .collect();
-            for h in &more {
-                observer(&Step::FullFit.of(h, format!("in free motion {:.1}", self.score(h))));
-            }
-            full.extend(more);
-            full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-            if self.score(&full[0]) >= score {
-                break;
-            }
-        }
     }
 
     /// Takes out of the best hypothesis what moves no channel by a share of its noise: recordings long enough show what nobody would miss.
