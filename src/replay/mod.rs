@@ -10,7 +10,7 @@ use crate::arm::chain::{BodyInertia, Chain, MAX_JOINTS};
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::link_poses;
 use crate::plant::{
-    ArmTrajectory, EdgeStation, INERTIA_EVERY, JointTrajectory, MOST_JOINTS, Observation,
+    ArmTrajectory, EdgeStation, Followed, INERTIA_EVERY, JointTrajectory, MOST_JOINTS, Observation,
     SharpEdge, follow, shown,
 };
 use glam::{DMat3, DVec3};
@@ -63,22 +63,20 @@ pub struct Commands<'a> {
 }
 
 impl ReplayCell {
-    /// The arm's trajectory on commands, its servos of a bandwidth [Hz].
-    pub fn trajectory(&self, commands: Commands<'_>, bandwidth: f64) -> ArmTrajectory {
+    /// Stroke at which the moving mass is taken to be [m].
+    fn usual_stroke(&self) -> f64 {
+        0.5 * self.full_stroke
+    }
+
+    /// A trajectory with what is the same at every sample, and the joints' motion.
+    fn begun(
+        &self,
+        commands: Commands<'_>,
+        bandwidth: f64,
+        followed: &[Followed],
+    ) -> ArmTrajectory {
         let count = commands.time.len();
-        let moved = |(joint, command): (usize, &Vec<f64>)| {
-            let led = follow(commands.time, command, bandwidth);
-            let encoder = commands.encoders.and_then(|all| all[joint].as_deref());
-            match encoder {
-                Some(encoder) => shown(commands.time, &led, encoder, self.encoder_noise),
-                None => led,
-            }
-        };
-        let followed: Vec<_> = commands.joints.iter().enumerate().map(moved).collect();
-        let usual_stroke = 0.5 * self.full_stroke;
-        let loaded = self.loaded(usual_stroke);
-        let joints = self.chain.len();
-        let mut trajectory = ArmTrajectory {
+        ArmTrajectory {
             time: commands.time.to_vec(),
             joints: followed
                 .iter()
@@ -104,9 +102,26 @@ impl ReplayCell {
             inertia: Vec::with_capacity(count / INERTIA_EVERY + 1),
             moving_mass: self.moving_mass,
             mass_behind_ball: self.ball_centre - self.mass_centre,
-            usual_stroke,
+            usual_stroke: self.usual_stroke(),
             gravity: self.gravity,
+        }
+    }
+
+    /// The arm's trajectory on commands, its servos of a bandwidth [Hz].
+    pub fn trajectory(&self, commands: Commands<'_>, bandwidth: f64) -> ArmTrajectory {
+        let count = commands.time.len();
+        let moved = |(joint, command): (usize, &Vec<f64>)| {
+            let led = follow(commands.time, command, bandwidth);
+            let encoder = commands.encoders.and_then(|all| all[joint].as_deref());
+            match encoder {
+                Some(encoder) => shown(commands.time, &led, encoder, self.encoder_noise),
+                None => led,
+            }
         };
+        let followed: Vec<_> = commands.joints.iter().enumerate().map(moved).collect();
+        let loaded = self.loaded(self.usual_stroke());
+        let joints = self.chain.len();
+        let mut trajectory = self.begun(commands, bandwidth, &followed);
         let mut poses = vec![DPose3::IDENTITY; joints];
         let (mut q, mut qdd) = (vec![0.0; joints], vec![0.0; joints]);
         let still = vec![0.0; joints];
