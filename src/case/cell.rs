@@ -99,7 +99,10 @@ fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, CaseError> 
 }
 
 /// The recordings of a folder, and the one in which nothing was measured.
-fn named(cell: &LoadedCell, folder: &Path) -> Result<(Vec<Named>, Option<Named>), CaseError> {
+fn known_and_unseen(
+    cell: &LoadedCell,
+    folder: &Path,
+) -> Result<(Vec<Named>, Option<Named>), CaseError> {
     let mut known = Vec::new();
     let mut unseen = Vec::new();
     for path in recordings(folder) {
@@ -129,7 +132,7 @@ fn named(cell: &LoadedCell, folder: &Path) -> Result<(Vec<Named>, Option<Named>)
 
 /// Reads a case.
 pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseError> {
-    let (known, mut unseen) = named(cell, folder)?;
+    let (known, mut unseen) = known_and_unseen(cell, folder)?;
     let scenario = &cell.scenario;
     let axes: Vec<Axes> = known
         .iter()
