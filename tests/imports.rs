@@ -255,7 +255,7 @@ impl Modules {
                             .map(|word| [import.path.clone(), vec![(*word).to_owned()]].concat()),
                     ),
                     name if !import.public || words.contains(name) => {
-                        used.push(import.path.clone())
+                        used.push(import.path.clone());
                     }
                     _ => (),
                 }

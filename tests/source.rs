@@ -25,7 +25,7 @@ pub fn sources() -> Sources {
             let inside = format!("{name}{}", path.file_name().unwrap().to_str().unwrap());
             if path.is_dir() {
                 read(&path, &format!("{inside}/"), found);
-            } else if inside.ends_with(".rs") {
+            } else if path.extension().is_some_and(|end| end == "rs") {
                 let text = std::fs::read_to_string(&path).unwrap();
                 found.insert(inside, product(&tokens(&text)));
             }
