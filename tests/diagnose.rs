@@ -405,6 +405,39 @@ fn a_rig_file_that_says_all_of_it_misses_nothing() {
     );
 }
 
+// Catches: effects told in another order, or each file in one of its own. What explains the most is told first, whatever its name.
+#[test]
+fn the_effect_that_explains_the_most_is_told_first_in_every_file() {
+    let gain = |gain: f64| format!("\n[effect.force_sensor_gain_error]\ngain = {gain}\n");
+    let delay = |seconds: f64| format!("\n[effect.transport_delay]\ndelay_s = {seconds}\n");
+    let of_gain = ["force_sensor_gain_error", "transport_delay"];
+    let of_delay = ["transport_delay", "force_sensor_gain_error"];
+    for (effects, order) in [
+        (gain(1.4) + &delay(0.01), of_gain),
+        (gain(1.02) + &delay(0.12), of_delay),
+    ] {
+        let bench = Bench::new("plate_edge");
+        case(&bench, "case", &effects, Dirt::None);
+        let outcome = diagnose(&bench, &["case", "--out", "out", "--quiet"]);
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+        assert_eq!(names(&json(&bench.path("out/diagnosis.json"))), order);
+        for (file, spoken) in [
+            ("improved.toml", false),
+            ("account.txt", false),
+            ("report.html", true),
+        ] {
+            let text = std::fs::read_to_string(bench.path("out").join(file)).unwrap();
+            let place = |name: &str| match (file, spoken) {
+                ("improved.toml", _) => text.find(&format!("name = \"{name}\"")),
+                (_, true) => text.find(&format!("<td>{}</td>", name.replace('_', " "))),
+                (_, false) => text.find(&format!("{name} (")),
+            };
+            let places = order.map(|name| place(name).unwrap_or_else(|| panic!("{file}: {text}")));
+            assert!(places[0] < places[1], "{file}: {text}");
+        }
+    }
+}
+
 #[test]
 fn a_practice_case_with_nothing_concealed_is_answered_so() {
     let Some(folder) = shared("concealed/practice/cases/case-01") else {

@@ -16,7 +16,7 @@ use idc_cell::plant::{
 };
 
 /// The same device in the simulator's own description.
-fn plant_of(rig: &Rig) -> PlantParameters {
+pub fn plant_of(rig: &Rig) -> PlantParameters {
     PlantParameters {
         device: DeviceParameters {
             cylinder_count: rig.count,
@@ -66,7 +66,8 @@ fn plant_of(rig: &Rig) -> PlantParameters {
     }
 }
 
-fn inputs_of(programme: &Programme) -> PlantInputs {
+/// A programme as the simulator takes it.
+pub fn inputs_of(programme: &Programme) -> PlantInputs {
     let time = programme.times.clone();
     PlantInputs {
         cell: None,

@@ -349,7 +349,7 @@ const SEALS: Planted = Planted {
 };
 
 /// Columns of a Parquet file, row by row; of one recording where it holds several.
-fn columns<const N: usize>(file: &Path, recording: &str, names: [&str; N]) -> Vec<[f64; N]> {
+pub fn columns<const N: usize>(file: &Path, recording: &str, names: [&str; N]) -> Vec<[f64; N]> {
     let reader = SerializedFileReader::new(File::open(file).unwrap()).unwrap();
     let number = |row: &Row, name: &str| {
         let mut fields = row.get_column_iter();

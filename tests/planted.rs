@@ -180,6 +180,12 @@ fn a_hose_is_no_dead_volume_and_the_regulators_gain_not_the_load_cells() {
     finds(88, &[("force_sensor_gain_error", 0.5)], 0.05);
 }
 
+// Catches: a limit that neither the model nor the search knows: peaks that are cut flat look like anything.
+#[test]
+fn a_load_cell_that_is_clipped_is_named_with_its_limit() {
+    finds(90, &[("force_sensor_saturation", 0.5)], 0.02);
+}
+
 #[test]
 fn two_effects_at_once_are_both_found() {
     let pair = [("cross_piston_leakage", 0.5), ("surface_waviness", 0.5)];

@@ -8,13 +8,14 @@ use idc_cell::cell::Cell;
 use idc_cell::diagnosis::answer::{Answer, Verdict};
 use idc_cell::path::Phase;
 use idc_cell::plant::{Burr, PlantInputs, PlantParameters, follow, simulate};
+use idc_cell::recording::schema;
 use idc_cell::replay::LoadedCell;
-use idc_cell::scenario::{load_any, load_recorded_cell};
+use idc_cell::scenario::{Scenario, load, load_any, load_recorded_cell};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use crate::common::{project, scenario, shared};
+use crate::common::{project, run, scenario, shared};
 use crate::program::Bench;
 
 const CELL: &str = r#"schema = 1
@@ -95,16 +96,20 @@ struct Commands {
     set_pressure: Vec<f64>,
 }
 
-/// The project's own plan of a program.
-fn commands(program: &Program) -> Commands {
-    let mut nominal = scenario("plate_edge");
+/// The project's own job in a program.
+fn job(mut nominal: Scenario, program: &Program) -> Scenario {
     nominal.workpiece.edge.start = 0.1;
     nominal.workpiece.edge.end = Some(0.2);
     nominal.process.lean = program.lean;
     nominal.process.feed = program.feed;
     nominal.process.corner_feed = program.feed;
     nominal.process.settle_time = 0.8;
-    let cell = Cell::new(nominal).unwrap();
+    nominal
+}
+
+/// The project's own plan of a program.
+fn commands(program: &Program) -> Commands {
+    let cell = Cell::new(job(scenario("plate_edge"), program)).unwrap();
     let axes = cell.arm.chain.len();
     let count = (cell.plan.duration() * RATE) as usize;
     let mut made = Commands {
@@ -324,6 +329,146 @@ fn what_is_planted_in_a_cell_is_found_placed_and_predicted_with() {
         .cell
         .joint_stiffness[1];
     assert!((stiffness / 8e4 - 1.0).abs() < 0.1);
+}
+
+/// A program's commands, and where the surface then stands along the slide at each sample [m], of a cell with something planted.
+fn surface(
+    cell: &LoadedCell,
+    made: &Commands,
+    joints: &[Vec<f64>],
+    plant: &PlantParameters,
+) -> Vec<f64> {
+    let believed = cell.plant().cell.servo_bandwidth;
+    let trajectory = cell.trajectory(&made.time, &made.path, joints, believed);
+    trajectory.contact_kinematics(&plant.cell).surface()
+}
+
+/// Catches: the sign of an encoder's offset, which a cell that is recorded and diagnosed by the same model does not show. A servo closes on the encoder: where
+/// that reads too much, the arm stands as if it had been commanded so much less.
+#[test]
+fn a_joint_whose_encoder_reads_too_much_stands_short_of_its_command() {
+    const OFFSET: f64 = 1e-3;
+    let bench = Bench::new("plate_edge");
+    bench.write("cell.toml", CELL);
+    let cell = LoadedCell::load(&bench.path("cell.toml")).unwrap();
+    let made = commands(&PROGRAMS[1]);
+    for bandwidth in [25.0, 11.0] {
+        let mut without = cell.plant();
+        without.cell.servo_bandwidth = bandwidth;
+        let as_commanded = surface(&cell, &made, &made.joints, &without);
+        let mut seen = 0;
+        for joint in 0..made.joints.len() {
+            let mut short = made.joints.clone();
+            for angle in &mut short[joint] {
+                *angle -= OFFSET;
+            }
+            let expected = surface(&cell, &made, &short, &without);
+            let mut with = without.clone();
+            with.cell.encoder_offset[joint] = OFFSET;
+            let found = surface(&cell, &made, &made.joints, &with);
+            let largest = |a: &[f64], b: &[f64]| {
+                let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+                apart.filter(|d| d.is_finite()).fold(0.0, f64::max)
+            };
+            let moved = largest(&expected, &as_commanded);
+            let off = largest(&expected, &found);
+            assert!(
+                off < 0.02 * moved + 1e-7,
+                "joint {}: {off} of {moved} m",
+                joint + 1
+            );
+            seen += usize::from(moved > 2e-4);
+        }
+        // A joint on which the ball hangs by a long lever across the edge.
+        assert!(seen > 0);
+    }
+}
+
+/// Catches: the same in the cell that is simulated, or in one of the two alone: Rapier's arm and the replayed one move the slide alike.
+#[test]
+fn an_encoder_s_offset_moves_the_simulated_slide_as_the_replayed_one() {
+    let bench = Bench::new("plate_edge");
+    bench.write("cell.toml", CELL);
+    let replayed = LoadedCell::load(&bench.path("cell.toml")).unwrap();
+    let program = &PROGRAMS[0];
+    let made = commands(program);
+    let mean = |values: &[f64], from: f64, to: f64, time: &[f64]| {
+        let within = time.iter().zip(values);
+        let within = within.filter(|(t, _)| (from..to).contains(*t));
+        let values: Vec<f64> = within.map(|(_, value)| *value).collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    let plain = std::fs::read_to_string(bench.path("scenario.toml")).unwrap();
+    // Joint 2, which lifts the arm; so little that the ball stays where the edge is met along its bisector.
+    let offset = "\n[[effect]]\nname = \"joint_encoder_offset\"\njoint = 2\noffset_rad = 2e-4\n";
+    let [without, with] = ["", offset].map(|effect| {
+        bench.write("with.toml", plain.clone() + effect);
+        let scenario = load(&bench.path("with.toml")).unwrap();
+        let finished = run(job(scenario, program));
+        let follow = finished.recording.phase("follow").unwrap();
+        let stroke = finished.recording.values(schema::STROKE).unwrap();
+        let mut plant = replayed.plant();
+        if !effect.is_empty() {
+            plant.cell.encoder_offset[1] = 2e-4;
+        }
+        let surface = surface(&replayed, &made, &made.joints, &plant);
+        let time = finished.recording.time();
+        [(stroke, time), (&surface[..], &made.time[..])]
+            .map(|(values, time)| mean(values, follow.start + 0.1, follow.end - 0.1, time))
+    });
+    let [simulated, expected] = [0, 1].map(|hand| with[hand] - without[hand]);
+    assert!(expected.abs() > 5e-5, "{expected} m");
+    let off = (simulated / expected - 1.0).abs();
+    assert!(off < 0.05, "{simulated} m for {expected} m");
+}
+
+/// Catches: a burr that is met a sample early or late. With servos that do not lag, the slide gives way where the burr stands.
+#[test]
+fn a_burr_is_met_where_it_stands_to_a_fraction_of_a_sample() {
+    let burr = Burr {
+        height: 2e-4,
+        position: 0.06,
+        width: 4e-3,
+    };
+    let bench = Bench::new("plate_edge");
+    bench.write("cell.toml", CELL);
+    let cell = LoadedCell::load(&bench.path("cell.toml")).unwrap();
+    for program in &PROGRAMS {
+        let made = commands(program);
+        let stroke = |burr: Burr| {
+            let mut plant = cell.plant();
+            plant.cell.burr = burr;
+            plant.cell.servo_bandwidth = f64::INFINITY;
+            // A damper holds the slide back by its share of the spring: here by a tenth of a sample.
+            plant.contact.damping = 50.0;
+            let trajectory = cell.trajectory(&made.time, &made.path, &made.joints, f64::INFINITY);
+            let inputs = PlantInputs {
+                time: made.time.clone(),
+                set_pressure: made.set_pressure.clone(),
+                extends: vec![true; made.time.len()],
+                surface: trajectory.contact_kinematics(&plant.cell).surface(),
+                cell: Some(std::sync::Arc::new(trajectory)),
+                motion: None,
+            };
+            simulate(&plant, &inputs).readings[1].clone()
+        };
+        let (plain, burred) = (stroke(Burr::NONE), stroke(burr));
+        // Centre of what the slide gave way, along the edge.
+        let (mut given, mut moment) = (0.0, 0.0);
+        for ((plain, burred), place) in plain.iter().zip(&burred).zip(&made.path) {
+            if (place - burr.position).abs() < 5.0 * burr.width {
+                given += plain - burred;
+                moment += (plain - burred) * place;
+            }
+        }
+        let sample = program.feed / RATE;
+        let off = (moment / given - burr.position) / sample;
+        assert!(
+            given > 0.0 && off.abs() < 0.3,
+            "{}: {off} samples",
+            program.name
+        );
+    }
 }
 
 /// The third program without its noise, within the sensors' noise.

@@ -2,7 +2,10 @@
 
 use std::fs;
 
+use serde_json::{Value, json};
+
 use crate::common::project;
+use crate::own_cell::columns;
 use crate::program::Bench;
 
 /// A bench with a diagnosis of one of the project's cases in `found`.
@@ -233,4 +236,186 @@ fn names_that_are_no_text_are_told_as_far_as_they_are() {
     );
     let told: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
     assert_eq!(told["file"], "odd\u{fffd}/report.html");
+}
+
+/// Rows of the tables of a page, cell by cell.
+fn rows(page: &str) -> Vec<Vec<&str>> {
+    fn row(text: &str) -> Vec<&str> {
+        let row = text.split("</tr>").next().unwrap();
+        let cells = row.split("<td").skip(1);
+        let content = |cell: &'_ str| cell.find('>').unwrap() + 1..cell.find("</td>").unwrap();
+        cells.map(|cell| &cell[content(cell)]).collect()
+    }
+    page.split("<tr>").skip(1).map(row).collect()
+}
+
+/// Whether a number on a page is one of a file, to three digits.
+fn shows(text: &str, number: f64) -> bool {
+    let shown = text.split([' ', '<']).next().unwrap().parse();
+    shown.is_ok_and(|shown: f64| (shown / number - 1.0).abs() < 2e-3)
+}
+
+/// Puts another number in place of each, all different, and of those in rows below it.
+fn tell_apart(value: &mut Value, next: &mut f64) {
+    match value {
+        Value::Object(map) => map.values_mut().for_each(|own| tell_apart(own, next)),
+        Value::Array(list) => list.iter_mut().for_each(|own| tell_apart(own, next)),
+        Value::Number(_) => {
+            *next *= 1.03;
+            *value = json!(*next);
+        }
+        _ => (),
+    }
+}
+
+/// A page made anew of a run whose results are all different, and the results.
+fn told_apart(scenario: &str) -> (String, Value) {
+    let bench = Bench::new(scenario);
+    let words = ["run", "scenario.toml", "--out", "out", "--quiet"];
+    assert!(bench.idc(&words, &[]).code < 2);
+    let text = fs::read_to_string(bench.path("out/summary.json")).unwrap();
+    let mut document: Value = serde_json::from_str(&text).unwrap();
+    document["expectations"] = json!([]);
+    tell_apart(&mut document["summary"], &mut 11.0);
+    bench.write("out/summary.json", document.to_string());
+    assert_eq!(bench.idc(&["report", "out", "--quiet"], &[]).code, 0);
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+    (page, document["summary"].take())
+}
+
+// Catches: a number that is taken from another field. In most runs some fields are equal or nearly so, here none are.
+#[test]
+fn each_number_on_the_page_of_a_run_is_that_of_its_name() {
+    for scenario in ["plate_edge", "paper_step"] {
+        let (page, summary) = told_apart(scenario);
+        let rows = rows(&page);
+        let by_key = |key: &str| rows.iter().find(|row| row.last() == Some(&key));
+        let mut seen = 0;
+        for (key, value) in summary.as_object().unwrap() {
+            if let (Some(number), Some(row)) = (value.as_f64(), by_key(key)) {
+                assert!(shows(row[1], number), "{key}: {} for {number}", row[1]);
+                seen += 1;
+            }
+        }
+        assert!(seen > 15, "{scenario}: {seen}");
+        // What stands at the top, by what it says it is.
+        let facts = page.split("<dt>").skip(1).map(|fact| {
+            let (name, rest) = fact.split_once("</dt><dd>").unwrap();
+            (name, rest.split(['<']).next().unwrap())
+        });
+        let of = |key: &str| summary[key].as_f64();
+        let peaks = ["approach", "engage", "follow", "retract"];
+        let peaks = peaks.map(|phase| of(&format!("force_peak_{phase}_n")));
+        let level = summary["levels"].as_array().and_then(|all| all.last());
+        let mut seen = 0;
+        for (name, value) in facts {
+            let number = match name {
+                "desired force" => of("desired_force_n"),
+                "force reached, mean" => of("force_mean_n"),
+                "largest force" => peaks.into_iter().flatten().reduce(f64::max),
+                "set pressure, last" => level.and_then(|l| l["set_pressure_bar_gauge"].as_f64()),
+                // The names of these stand more than once in the table, with other units.
+                _ => {
+                    let own = rows.iter().filter(|row| row.first() == Some(&name));
+                    let unit = value.split(' ').nth(1).unwrap_or_default();
+                    let mut own = own.filter(|row| row.get(2) == Some(&unit));
+                    own.next().and_then(|row| of(row[row.len() - 1]))
+                }
+            };
+            let number = number.unwrap_or_else(|| panic!("{name} is of no field"));
+            assert!(shows(value, number), "{name}: {value} for {number}");
+            seen += 1;
+        }
+        assert!(seen > 4, "{scenario}: {seen}");
+    }
+}
+
+// Catches: the same in the table of a bench's commands, whose columns have names of their own.
+#[test]
+fn each_number_of_a_command_is_that_of_its_column() {
+    let (page, summary) = told_apart("paper_stairstep");
+    let table = page.split("Steady values of each command").nth(1).unwrap();
+    let table = table.split("</table>").next().unwrap();
+    let heading = table.split("scope=\"col\">").skip(1);
+    let heading = heading.map(|text| text.split('<').next().unwrap());
+    let key = |column: &str| match column {
+        "at, s" => "start_s",
+        "set, bar" => "set_pressure_bar_gauge",
+        "outlet, bar" => "regulator_pressure_bar_gauge",
+        "delay, s" => "regulator_delay_s",
+        "force, N" => "force_mean_n",
+        "read, N" => "measured_force_mean_n",
+        "settled, s" => "force_settling_time_s",
+        "stroke, mm" => "stroke_mm",
+        other => panic!("{other} is of no field"),
+    };
+    let keys: Vec<&str> = heading.map(key).collect();
+    let levels = summary["levels"].as_array().unwrap();
+    let rows = rows(table);
+    let rows: Vec<_> = rows.iter().filter(|row| !row.is_empty()).collect();
+    assert_eq!([keys.len(), rows.len()], [8, levels.len()]);
+    assert!(levels.len() > 1);
+    for (row, level) in rows.iter().zip(levels) {
+        for (cell, key) in row.iter().zip(&keys) {
+            let number = level[key].as_f64().unwrap();
+            assert!(shows(cell, number), "{key}: {cell} for {number}");
+        }
+    }
+}
+
+// Catches: the same on the page of a diagnosis, and a row of its comparison that is lost.
+#[test]
+fn the_page_of_a_diagnosis_shows_its_own_numbers_and_the_comparison_every_sample() {
+    let bench = diagnosed("case-02");
+    let text = fs::read_to_string(bench.path("found/diagnosis.json")).unwrap();
+    let mut answer: Value = serde_json::from_str(&text).unwrap();
+    let effect = &mut answer["effects"][0];
+    effect["confidence"] = json!(0.66);
+    let names: Vec<String> = (effect["parameters"].as_object().unwrap().keys())
+        .cloned()
+        .collect();
+    let mut next = 11.0;
+    for name in &names {
+        for key in ["low", "value", "high"] {
+            next *= 1.1;
+            effect["parameters"][name][key] = json!(next);
+        }
+    }
+    let effect = effect.clone();
+    bench.write("found/diagnosis.json", answer.to_string());
+    assert_eq!(bench.idc(&["report", "found", "--quiet"], &[]).code, 0);
+    let page = fs::read_to_string(bench.path("found/report.html")).unwrap();
+    let rows = rows(&page);
+    let mut own = rows.iter();
+    for name in &names {
+        let row = own.find(|row| row.first() == Some(&"coulomb viscous friction"));
+        let row = row.unwrap();
+        let of = |key: &str| effect["parameters"][name][key].as_f64().unwrap();
+        assert!(
+            name.starts_with(&row[3].replace(' ', "_")),
+            "{name}: {}",
+            row[3]
+        );
+        for (cell, number) in [
+            (row[2], 66.0),
+            (row[4], of("value")),
+            (row[5], of("low")),
+            (row[6], of("high")),
+        ] {
+            assert!(shows(cell, number), "{name}: {cell} for {number}");
+        }
+    }
+    for recording in ["stairs.csv", "ride.csv", "cycle.csv", "predict.csv"] {
+        let case = project(&format!("assets/proof/cases/case-02/{recording}"));
+        let log = fs::read_to_string(case).unwrap();
+        let times = log.lines().skip(1);
+        let times: Vec<f64> = times
+            .map(|line| line.split(',').next().unwrap().parse().unwrap())
+            .collect();
+        let names = ["time_s", "believed_stroke_m", "improved_force_n"];
+        let compared = columns(&bench.path("found/comparison.parquet"), recording, names);
+        let shown: Vec<f64> = compared.iter().map(|row| row[0]).collect();
+        assert_eq!(shown, times, "{recording}");
+        assert!(compared.iter().flatten().all(|value| value.is_finite()));
+    }
 }

@@ -99,3 +99,40 @@ fn the_force_is_told_at_the_moment_that_is_shown() {
     // A scale of a round length: 50 mm of a plate of 200 mm.
     assert!(cell(&scene, 0.9).contains(" mm</text>"));
 }
+
+// Catches: a rotation that is drawn the other way round, or one before the other.
+#[test]
+fn a_turned_shape_on_a_turned_body_is_drawn_where_it_is() {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let mut scene = plate();
+    let corner = DVec3::new(1.0, 2.0, 3.0);
+    scene.bodies[0].shapes[0].geometry = SceneGeometry::Mesh {
+        vertices: vec![corner, corner + DVec3::X, corner + DVec3::Y],
+        triangles: vec![[0, 1, 2]],
+    };
+    let turned = |axis: DVec3, by: DVec3| {
+        let rotation = glam::DQuat::from_axis_angle(axis, quarter);
+        DPose3::from_parts(by, rotation)
+    };
+    // About x: y goes to z and z to -y; then about z: x goes to y and y to -x.
+    scene.bodies[0].shapes[0].body_from_shape = turned(DVec3::X, DVec3::new(10.0, 0.0, 0.0));
+    let body = turned(DVec3::Z, DVec3::new(0.0, 0.0, 100.0));
+    let expected = [
+        DVec3::new(3.0, 11.0, 102.0),
+        DVec3::new(3.0, 12.0, 102.0),
+        DVec3::new(3.0, 11.0, 103.0),
+    ];
+    let moving = ScenePoses::Moving(vec![DPose3::IDENTITY, body]);
+    for poses in [ScenePoses::Static(body), moving] {
+        scene.bodies[0].world_from_body = poses;
+        let drawn = faces(&scene, 1, |_| true);
+        for (corner, expected) in drawn[0].corners.into_iter().zip(expected) {
+            assert!(
+                (corner - expected).length() < 1e-9,
+                "{corner}, not {expected}"
+            );
+        }
+        // Of the triangle in its own plane it was z.
+        assert!((drawn[0].normals[0] - DVec3::X).length() < 1e-9);
+    }
+}

@@ -204,8 +204,10 @@ pub(super) fn printable(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::test_summaries::nominal;
     use super::*;
     use crate::metrics::Timing;
+    use serde_json::Value;
 
     #[test]
     fn every_row_names_a_metric() {
@@ -222,6 +224,29 @@ mod tests {
             (rows(&untimed).len(), rows(&timed).len()),
             (count - 1, count)
         );
+    }
+
+    // Catches: a number that is taken from another field. In most runs some fields are equal, here none are.
+    #[test]
+    fn each_row_shows_the_field_of_its_name() {
+        let mut file = serde_json::to_value(nominal()).unwrap();
+        let mut next = 1.0;
+        let mut tell_apart = |fields: &mut serde_json::Map<String, Value>| {
+            for number in fields.values_mut().filter(|value| value.is_number()) {
+                next += 1.0;
+                *number = Value::from(next);
+            }
+        };
+        tell_apart(file["timing"].as_object_mut().unwrap());
+        tell_apart(file.as_object_mut().unwrap());
+        let summary: Summary = serde_json::from_value(file.clone()).unwrap();
+        let rows = rows(&summary);
+        assert!(rows.len() > 20);
+        for row in &rows {
+            let name = row.metric.name;
+            let own = file.get(name).or_else(|| file["timing"].get(name));
+            assert_eq!(own.and_then(Value::as_f64), row.value, "{name}");
+        }
     }
 
     #[test]

@@ -307,6 +307,23 @@ fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
 mod tests {
     use super::*;
 
+    // Catches: an encoder's offset that is drawn the wrong way round.
+    #[test]
+    fn an_arm_whose_encoder_reads_too_much_is_drawn_short_of_its_command() {
+        let axes = Axes {
+            time: vec![0.0, 0.1],
+            commands: vec![vec![0.5; 2], vec![0.7; 2]],
+            encoders: vec![None, None],
+        };
+        let device = crate::device::DeviceParameters::default();
+        let rigid = crate::plant::CellParameters::RIGID;
+        let mut model = PlantParameters::of_cell(device, (1e5, 100.0), rigid);
+        model.cell.encoder_offset[1] = 0.2;
+        let drawn = simulated_angles(&axes, &model);
+        assert_eq!(drawn[0], [0.5; 2]);
+        assert!(drawn[1].iter().all(|angle| (angle - 0.5).abs() < 1e-12));
+    }
+
     #[test]
     fn departures_are_drawn_as_large_as_they_can_be_seen_and_it_is_said() {
         assert_eq!(scale(0.4e-3), 50.0);

@@ -438,3 +438,44 @@ fn ids_within_a_store_differ() {
         assert_eq!(ids.len(), count);
     }
 }
+
+// Catches: a quaternion that is written transposed, or with its numbers in another order.
+#[test]
+fn rotations_are_those_of_the_scene() {
+    let turned = DPose3::from_parts(
+        DVec3::new(1.0, 2.0, 3.0),
+        glam::DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, 0.8),
+    );
+    let mut scene = scene();
+    scene.bodies[0].world_from_body = ScenePoses::Moving(vec![turned; FRAMES]);
+    scene.bodies[1].world_from_body = ScenePoses::Static(turned);
+    for body in &mut scene.bodies {
+        body.shapes[0].body_from_shape = turned;
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("recording.rrd");
+    write_rrd(&path, &recording(), &scene, &options()).unwrap();
+    let (data, _) = read(&path);
+    // x, y, z, w as Rerun has them: the axis times the sine of half the angle, the cosine.
+    let (sine, cosine) = 0.4f64.sin_cos();
+    let expected = [sine / 3.0, 2.0 * sine / 3.0, 2.0 * sine / 3.0, cosine];
+    for (entity, count) in [
+        ("/cell/arm/link_1", FRAMES),
+        ("/cell/arm/link_1/part_1", 1),
+        ("/cell/workpiece", 1),
+        ("/cell/workpiece/part_1", 1),
+    ] {
+        let chunks = chunks(&data, entity);
+        let component = Transform3D::descriptor_quaternion().component;
+        let rows = chunks.iter();
+        let rows = rows.flat_map(|chunk| chunk.iter_slices::<[f32; 4]>(component));
+        let rows: Vec<[f32; 4]> = rows.map(|row| row[0]).collect();
+        assert_eq!(rows.len(), count, "{entity}");
+        for (found, expected) in rows[0].into_iter().zip(expected) {
+            assert!(
+                (f64::from(found) - expected).abs() < 1e-6,
+                "{entity}: {rows:?}"
+            );
+        }
+    }
+}
