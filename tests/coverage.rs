@@ -1,6 +1,6 @@
 //! Intervals of a diagnosis hold what they say: fits to devices of the laboratory, by the product's own fit and its own intervals, hold the truth in 95 of 100.
 
-use idc_cell::diagnosis::cross_validation::{CrossValidation, Depth};
+use idc_cell::diagnosis::cross_validation::{Depth, left_out};
 use idc_cell::diagnosis::diagnose::Ranked;
 use idc_cell::diagnosis::estimate::estimates;
 use idc_cell::diagnosis::evidence::{Evidence, Measured};
@@ -106,9 +106,8 @@ fn held(device: &Device, seed: u64) -> Vec<(&'static str, bool)> {
         Refit::FINEST.stages,
         Refit::FINEST.limit,
     );
-    let cross_validation = CrossValidation::of(&evidence).unwrap();
     let found = Ranked {
-        left_out: cross_validation.left_out(&fit, Depth::OneStep),
+        left_out: left_out(&evidence, &fit, Depth::OneStep),
         hypothesis: Hypothesis {
             effects,
             fit,

@@ -455,3 +455,23 @@ fn a_practice_case_with_nothing_concealed_is_answered_so() {
     let inputs = std::fs::read_to_string(folder.join("predict.csv")).unwrap();
     assert_eq!(text.lines().count(), inputs.lines().count());
 }
+
+/// A pressure that ripples is no effect of the list. Beside what the list leaves of it a delay gains less than is left, so it was taken out; a hypothesis
+/// with a second effect then led to the delay again, and so on without an end.
+#[test]
+fn an_effect_once_taken_out_does_not_come_back() {
+    let Some(folder) = shared("concealed/practice/cases/case-17") else {
+        return;
+    };
+    let bench = Bench::new("plate_edge");
+    let outcome = diagnose(
+        &bench,
+        &[folder.to_str().unwrap(), "--out", "out", "--quiet"],
+    );
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let answer = json(&bench.path("out/diagnosis.json"));
+    assert_eq!(answer["effects"].as_array().unwrap().len(), 1);
+    assert_eq!(answer["effects"][0]["name"], "unlisted");
+    assert_eq!(answer["effects"][0]["subsystem"], "regulator");
+    assert_eq!(answer["explained"], "fully");
+}

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use idc_cell::diagnosis::answer::Answer;
+use idc_cell::diagnosis::answer::{Answer, Extent};
 use idc_cell::laboratory::{EFFECTS, Known, LOST, Recipe, SealedCase, write_case};
 
 /// Makes a case, diagnoses it by the program, and returns the answer with what was concealed.
@@ -31,6 +31,17 @@ fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer,
         String::from_utf8_lossy(&done.stderr)
     );
     (answer(&place("answer")), case.sealed)
+}
+
+/// Ten seconds of recordings show a runout that moves the force by an eighth of its noise; nobody would miss it. Ten times as large it is named.
+#[test]
+fn an_effect_below_the_noise_is_not_named() {
+    let (answer, _) = diagnosed("below_noise", 77, &[("tool_runout", 0.04)]);
+    assert_eq!(named(&answer), [""; 0]);
+    assert_eq!(answer.explained, Some(Extent::Fully));
+    let (answer, _) = diagnosed("above_noise", 77, &[("tool_runout", 0.4)]);
+    assert_eq!(named(&answer), ["tool_runout"]);
+    assert_eq!(answer.explained, Some(Extent::Fully));
 }
 
 /// Rigs without an accelerometer: the rig file does not name it, the recordings lack its column or have one that counts nothing.

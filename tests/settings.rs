@@ -263,16 +263,12 @@ fn a_run_that_stands_is_kept_by_resume_if_it_is_the_same() {
     assert!(modified(60) > before[0]);
 }
 
-/// Nothing half written remains, what is whole does, and it is told.
+/// Two hundred runs, begun; their folder is `out`.
 #[cfg(unix)]
-#[test]
-fn an_interrupted_command_keeps_what_is_whole_and_says_so() {
-    use std::os::unix::process::ExitStatusExt as _;
-
-    let bench = bench();
+fn many_runs(bench: &Bench) -> std::process::Child {
     let values: Vec<String> = (50..250).map(|force| force.to_string()).collect();
     let set = format!("command[0].force_n={}", values.join(","));
-    let child = Command::new(env!("CARGO_BIN_EXE_idc"))
+    Command::new(env!("CARGO_BIN_EXE_idc"))
         .args([
             "run",
             "short.toml",
@@ -285,7 +281,53 @@ fn an_interrupted_command_keeps_what_is_whole_and_says_so() {
         .current_dir(bench.path(""))
         .stderr(std::process::Stdio::piped())
         .spawn()
-        .unwrap();
+        .unwrap()
+}
+
+#[cfg(unix)]
+fn signal(child: &std::process::Child, name: &str) {
+    let pid = child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args([name, &pid])
+            .status()
+            .unwrap()
+            .success()
+    );
+}
+
+/// One whose terminal was gone waited for ever: the message could not be written, and the thread that was to end the program ended in its place.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_command_ends_where_nobody_reads_its_message() {
+    use std::os::unix::process::ExitStatusExt as _;
+
+    let bench = bench();
+    let mut child = many_runs(&bench);
+    drop(child.stderr.take());
+    while std::fs::read_dir(bench.path("out")).map_or(0, Iterator::count) < 2 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    signal(&child, "-TERM");
+    for _ in 0..1000 {
+        if let Some(status) = child.try_wait().unwrap() {
+            assert_eq!(status.signal(), Some(15));
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    child.kill().unwrap();
+    panic!("it has not ended");
+}
+
+/// Nothing half written remains, what is whole does, and it is told.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_command_keeps_what_is_whole_and_says_so() {
+    use std::os::unix::process::ExitStatusExt as _;
+
+    let bench = bench();
+    let child = many_runs(&bench);
     let whole = || {
         let folders = std::fs::read_dir(bench.path("out")).into_iter().flatten();
         let whole = |entry: &std::fs::DirEntry| entry.path().join("summary.json").is_file();
@@ -296,14 +338,7 @@ fn an_interrupted_command_keeps_what_is_whole_and_says_so() {
     while whole() < 3 {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    let pid = child.id().to_string();
-    assert!(
-        Command::new("kill")
-            .args(["-INT", &pid])
-            .status()
-            .unwrap()
-            .success()
-    );
+    signal(&child, "-INT");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.signal(), Some(2), "130 in a shell");
     let told = String::from_utf8(output.stderr).unwrap();

@@ -95,22 +95,25 @@ pub fn listen(_json: bool) {}
 
 #[cfg(unix)]
 fn told(json: bool, code: i32) {
-    use std::io::IsTerminal as _;
+    use std::io::{IsTerminal as _, Write as _};
     let tell = TELL.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(text) = tell.as_ref().map(|tell| tell()) else {
         return;
     };
-    if json {
+    let mut stderr = std::io::stderr();
+    let line = if json {
         let error =
             serde_json::json!({"message": format!("interrupted: {text}"), "exit_code": code});
-        eprintln!("{}", serde_json::json!({ "error": error }));
-        return;
-    }
-    // A bar stands in the line.
-    let fresh = if std::io::stderr().is_terminal() {
-        "\r\x1b[2K"
+        serde_json::json!({ "error": error }).to_string()
     } else {
-        ""
+        // A bar stands in the line.
+        let fresh = if stderr.is_terminal() {
+            "\r\x1b[2K"
+        } else {
+            ""
+        };
+        format!("{fresh}interrupted: {text}")
     };
-    eprintln!("{fresh}interrupted: {text}");
+    // Nobody may read it any more; `eprintln!` would then end this thread, and with it nothing would end the program.
+    drop(writeln!(stderr, "{line}"));
 }

@@ -76,7 +76,7 @@ impl SectionKind {
     #[must_use]
     pub fn title(self) -> &'static str {
         match self {
-            Self::Mismatch => "Where it parts",
+            Self::Mismatch => "Where it differs",
             Self::Link => "Which link",
             Self::Missing => "What is missing",
             Self::Remaining => "What is left",

@@ -29,7 +29,7 @@ const MOST_CONSIDERED: usize = 8;
 
 impl Link {
     /// The link that a channel shows.
-    fn of(channel: Channel) -> Self {
+    pub(super) fn of(channel: Channel) -> Self {
         match channel {
             Channel::RegulatorPressure => Self::Regulator,
             Channel::Stroke | Channel::Acceleration => Self::Piston,

@@ -63,102 +63,90 @@ impl LeftOut {
     }
 }
 
-/// Each recording, and the others.
-#[derive(Debug)]
-pub struct CrossValidation<'a> {
-    evidence: &'a Evidence,
-    turns: Vec<(Evidence, Evidence)>,
+/// Each recording as predicted by a fit to the others; none where there are no others, or where derivatives are asked for that the fit has not.
+#[must_use]
+pub fn left_out(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<LeftOut> {
+    let values = values(evidence, whole, depth)?;
+    let residuals = values.par_iter().enumerate().map(|(left, values)| {
+        let plant = with_values(&whole.prediction.plant, &whole.free, values);
+        let own = evidence.of_those(|i| i == left);
+        by_channel(own.predict(&plant, false, None).residuals)
+    });
+    Some(LeftOut {
+        residuals: residuals.collect(),
+        values,
+    })
 }
 
-impl<'a> CrossValidation<'a> {
-    /// Of recordings; none where one stands alone.
-    #[must_use]
-    pub fn of(evidence: &'a Evidence) -> Option<Self> {
-        let count = evidence.recordings.len();
-        let turn = |left| {
-            let own = evidence.of_those(|i| i == left);
-            (own, evidence.of_those(|i| i != left))
-        };
-        (count > 1).then(|| Self {
-            evidence,
-            turns: (0..count).map(turn).collect(),
-        })
-    }
-
-    /// Samples of a recording among the residuals of all.
-    fn samples(&self, recording: usize) -> Range<usize> {
-        let count = |i: usize| CHANNELS.len() * self.evidence.recordings[i].inputs.time.len();
-        let start: usize = (0..recording).map(count).sum();
-        start..start + count(recording)
-    }
-
-    /// Standard deviations of the predictions of a recording by a fit to the others, by channel, noise included, in units of the noise's [1]; none where
-    /// the fit has no derivatives.
-    #[must_use]
-    pub fn predictive(&self, whole: &Fit, recording: usize) -> Option<[Vec<f64>; CHANNELS.len()]> {
-        if whole.columns.len() != whole.free.len() {
-            return None;
-        }
-        let all = predictive(whole, &self.samples(recording));
-        let count = all.len() / CHANNELS.len();
-        Some(std::array::from_fn(|channel| {
-            all[channel * count..(channel + 1) * count].to_vec()
-        }))
-    }
-
-    /// Values of what is free by a fit to all recordings but one, for each of them.
-    fn values(&self, whole: &Fit, depth: Depth) -> Vec<Vec<f64>> {
-        let turn = |left: usize| match depth {
-            Depth::Refit(refit) => {
-                let (free, from) = (refit.free(whole), (&whole.prediction.plant, None));
-                let others = &self.turns[left].1;
-                fit(others, from, (&free, &[]), refit.stages, refit.limit).values
-            }
-            Depth::OneStep => without(whole, &self.samples(left)),
-        };
-        (0..self.turns.len()).into_par_iter().map(turn).collect()
-    }
-
-    /// Each recording as predicted; none where derivatives are asked for that the fit has not.
-    #[must_use]
-    pub fn left_out(&self, whole: &Fit, depth: Depth) -> Option<LeftOut> {
-        if matches!(depth, Depth::OneStep) && whole.columns.len() != whole.free.len() {
-            return None;
-        }
-        let values = self.values(whole, depth);
-        let turns = self.turns.par_iter().zip(&values);
-        let residuals = turns.map(|((own, _), values)| {
-            let plant = with_values(&whole.prediction.plant, &whole.free, values);
-            let residuals = own.predict(&plant, false, None).residuals;
-            let count = own.recordings[0].inputs.time.len();
-            std::array::from_fn(|channel| {
-                residuals[channel * count..(channel + 1) * count].to_vec()
-            })
-        });
-        Some(LeftOut {
-            residuals: residuals.collect(),
-            values,
-        })
-    }
-
-    /// Cost of all recordings, the piston held to its measured motion and errors in time forgiven [1].
-    #[must_use]
-    pub fn rough_cost(&self, whole: &Fit, depth: Depth) -> f64 {
-        let values = self.values(whole, depth);
-        let turns = self.turns.iter().zip(&values).map(|((own, _), values)| {
-            let plant = &with_values(&whole.prediction.plant, &whole.free, values);
-            let shares = own.shares(ROUGH[0].forgiven, ROUGH[0].guided);
-            let left = own.predict(plant, ROUGH[0].guided, None).residuals;
-            let counted = left.iter().zip(shares.iter()).map(|(r, share)| r * share);
-            robust_sum(&counted.collect::<Vec<f64>>())
-        });
-        turns.sum()
-    }
+/// Cost of each recording by a fit to the others, the piston held to its measured motion and errors in time forgiven [1]; none where there are no others.
+#[must_use]
+pub fn rough_cost(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<f64> {
+    let values = values(evidence, whole, depth)?;
+    let turns = values.iter().enumerate().map(|(left, values)| {
+        let own = evidence.of_those(|i| i == left);
+        let plant = with_values(&whole.prediction.plant, &whole.free, values);
+        let shares = own.shares(ROUGH[0].forgiven, ROUGH[0].guided);
+        let left = own.predict(&plant, ROUGH[0].guided, None).residuals;
+        let counted = left.iter().zip(shares.iter()).map(|(r, share)| r * share);
+        robust_sum(&counted.collect::<Vec<f64>>())
+    });
+    Some(turns.sum())
 }
 
-/// Normal equations in the fit's coordinates without some samples, priors included: information and gradient.
-fn normal_without(fit: &Fit, left: &Range<usize>) -> (DMatrix<f64>, DVector<f64>) {
+/// Standard deviations of the predictions of a recording by a fit to the others, noise included, in standard deviations of the noise, by channel:
+/// sqrt(1 + c' V c), c the derivatives of a sample and V the covariance of that fit [1]; none where the fit has no derivatives.
+#[must_use]
+pub fn predictive(
+    evidence: &Evidence,
+    whole: &Fit,
+    left: usize,
+) -> Option<[Vec<f64>; CHANNELS.len()]> {
+    let samples = samples(evidence, left);
+    let known = normal_without(whole, &samples)?.0.cholesky()?;
+    let deviation = |i: usize| {
+        let slopes = whole.columns.iter().map(|column| column[i]);
+        let slopes = slopes.map(|c| if c.is_finite() { c } else { 0.0 });
+        let c = DVector::from_iterator(whole.columns.len(), slopes);
+        (1.0 + c.dot(&known.solve(&c))).sqrt()
+    };
+    Some(by_channel(samples.map(deviation).collect()))
+}
+
+/// Values of one recording's samples by channel.
+fn by_channel(all: Vec<f64>) -> [Vec<f64>; CHANNELS.len()] {
+    let count = all.len() / CHANNELS.len();
+    std::array::from_fn(|channel| all[channel * count..(channel + 1) * count].to_vec())
+}
+
+/// Samples of a recording among the residuals of all.
+fn samples(evidence: &Evidence, recording: usize) -> Range<usize> {
+    let count = |i: usize| CHANNELS.len() * evidence.recordings[i].inputs.time.len();
+    let start: usize = (0..recording).map(count).sum();
+    start..start + count(recording)
+}
+
+/// Values of what is free by a fit to all recordings but one, for each of them.
+fn values(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<Vec<Vec<f64>>> {
+    let count = evidence.recordings.len();
+    let turn = |left: usize| match depth {
+        Depth::Refit(refit) => {
+            let (free, from) = (refit.free(whole), (&whole.prediction.plant, None));
+            let others = evidence.of_those(|i| i != left);
+            Some(fit(&others, from, (&free, &[]), refit.stages, refit.limit).values)
+        }
+        Depth::OneStep => without(whole, &samples(evidence, left)),
+    };
+    let turns = (0..count).into_par_iter().filter(|_| count > 1).map(turn);
+    let values: Option<Vec<Vec<f64>>> = turns.collect();
+    values.filter(|values| !values.is_empty())
+}
+
+/// Normal equations in the fit's coordinates without some samples, priors included: information and gradient; none without derivatives.
+fn normal_without(fit: &Fit, left: &Range<usize>) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let count = fit.free.len();
+    if fit.columns.len() != count {
+        return None;
+    }
     let residuals = &fit.prediction.residuals;
     let weight = |i: usize| {
         let size = residuals[i].abs();
@@ -191,35 +179,75 @@ fn normal_without(fit: &Fit, left: &Range<usize>) -> (DMatrix<f64>, DVector<f64>
         // What the others do not tell stays where it is.
         normal[(i, i)] += 1e-6 * normal[(i, i)] + 1e-3;
     }
-    (normal, gradient)
+    Some((normal, gradient))
 }
 
-/// Values of the free quantities without some samples.
-fn without(fit: &Fit, left: &Range<usize>) -> Vec<f64> {
-    let (normal, gradient) = normal_without(fit, left);
+/// Values of the free quantities without some samples, by one step.
+fn without(fit: &Fit, left: &Range<usize>) -> Option<Vec<f64>> {
+    let (normal, gradient) = normal_without(fit, left)?;
     let Some(step) = normal.cholesky().map(|c| c.solve(&gradient)) else {
-        return fit.values.clone();
+        return Some(fit.values.clone());
     };
     let moved = |(i, free): (usize, &Free)| {
         let at = free.coordinate.of(fit.values[i]) - step[i].clamp(-LONGEST, LONGEST);
         free.clamp(free.coordinate.value(at))
     };
-    fit.free.iter().enumerate().map(moved).collect()
+    Some(fit.free.iter().enumerate().map(moved).collect())
 }
 
-/// Standard deviation of the prediction of samples by a fit to the others, noise included, in standard deviations of the noise: sqrt(1 + c' V c), c their
-/// derivatives and V the covariance of that fit [1].
-fn predictive(fit: &Fit, left: &Range<usize>) -> Vec<f64> {
-    let Some(known) = normal_without(fit, left).0.cholesky() else {
-        return vec![1.0; left.len()];
-    };
-    let of = |i: usize| {
-        let slopes = fit.columns.iter().map(|column| column[i]);
-        let c = DVector::from_iterator(
-            fit.columns.len(),
-            slopes.map(|c| if c.is_finite() { c } else { 0.0 }),
-        );
-        (1.0 + c.dot(&known.solve(&c))).sqrt()
-    };
-    left.clone().map(of).collect()
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{evidence, fit, free};
+    use super::*;
+
+    /// Of a mean the jackknife is the sample variance over the number, to the last digit.
+    #[test]
+    fn the_jackknife_of_a_mean_is_its_variance() {
+        let drawn = [3.0, -1.0, 4.0, 1.5, 9.0];
+        let sum: f64 = drawn.iter().sum();
+        let values = drawn.map(|left| vec![(sum - left) / 4.0]).to_vec();
+        let left = LeftOut {
+            residuals: Vec::new(),
+            values,
+        };
+        let mean = sum / 5.0;
+        let squares: f64 = drawn.iter().map(|x| (x - mean).powi(2)).sum();
+        let found = left.jackknife(&[free()]);
+        assert!((found[0] - squares / 4.0 / 5.0).abs() < 1e-12, "{found:?}");
+    }
+
+    /// A mean over two recordings: what one predicts of the other is uncertain by as much noise as one over the samples that it has.
+    #[test]
+    fn a_prediction_is_as_uncertain_as_what_it_was_fitted_to_says() {
+        let evidence = evidence(2);
+        let count = 2 * CHANNELS.len() * evidence.recordings[0].inputs.time.len();
+        let whole = fit(vec![0.0; count], vec![0.2; count], 0.0);
+        let known = 0.04 * (count / 2) as f64;
+        let expected = (1.0 + 0.04 / known).sqrt();
+        for deviation in predictive(&evidence, &whole, 1).unwrap().iter().flatten() {
+            assert!(
+                (deviation - expected).abs() < 1e-5,
+                "{deviation}, {expected}"
+            );
+        }
+        // One that tells nothing of it leaves it unknown.
+        let mut column = vec![0.2; count / 2];
+        column.extend(vec![0.0; count / 2]);
+        let blind = predictive(&evidence, &fit(vec![0.0; count], column, 0.0), 0).unwrap();
+        assert!(blind[0][0] > 5.0, "{}", blind[0][0]);
+    }
+
+    /// One step from the mean of both recordings is the mean of the other.
+    #[test]
+    fn one_step_goes_to_the_fit_to_the_others() {
+        let evidence = evidence(2);
+        let half = CHANNELS.len() * evidence.recordings[0].inputs.time.len();
+        let mut residuals = vec![1.0; half];
+        residuals.extend(vec![-1.0; half]);
+        // Measured less predicted: the derivative by a value added to the prediction is -1.
+        let whole = fit(residuals, vec![-1.0; 2 * half], 5.0);
+        let values = values(&evidence, &whole, Depth::OneStep).unwrap();
+        assert!((values[0][0] - 4.0).abs() < 1e-3, "{values:?}");
+        assert!((values[1][0] - 6.0).abs() < 1e-3, "{values:?}");
+    }
 }

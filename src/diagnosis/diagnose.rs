@@ -2,7 +2,7 @@
 
 use super::answer::UNLISTED;
 use super::clean::{Cleaning, clean};
-use super::cross_validation::{CrossValidation, Depth, LeftOut};
+use super::cross_validation::{Depth, LeftOut, left_out};
 use super::estimate::{Estimates, estimates};
 use super::evidence::{Evidence, Prediction};
 use super::extent::{Largest, percentile_90};
@@ -191,10 +191,8 @@ pub fn diagnose(
             }
         }
     };
-    if let Some(turns) = CrossValidation::of(&evidence) {
-        let whole = &ranked[0].hypothesis.fit;
-        ranked[0].left_out = turns.left_out(whole, Depth::Refit(LEFT_OUT));
-    }
+    let whole = &ranked[0].hypothesis.fit;
+    ranked[0].left_out = left_out(&evidence, whole, Depth::Refit(LEFT_OUT));
     let search = search_of(case, &evidence, settings);
     let best = &ranked[0].hypothesis;
     observer(&Step::Localisation.begins());
@@ -226,7 +224,7 @@ pub fn diagnose(
         estimates: estimates(&case.believed, &ranked, &evidence),
         shape: Shape::of(&evidence, best),
         mismatch: intervals(&evidence, &case.believed, best),
-        largest: Largest::of(&evidence, &ranked[0]),
+        largest: Largest::of(&evidence, &ranked[0], remaining.as_ref()),
         as_believed: evidence.predict(&case.believed, false, None),
         baseline,
         unseen,
@@ -263,15 +261,10 @@ fn against(
     for (place, ranked) in ranked.iter_mut().enumerate() {
         if place == 0 || ranked.odds >= search.settings.least_odds {
             ranked.hypothesis = search.refit(&ranked.hypothesis, Refit::FINEST);
-            ranked.left_out = left_out(&whole, &ranked.hypothesis);
+            ranked.left_out = left_out(&whole, &ranked.hypothesis.fit, Depth::OneStep);
         }
     }
     (ranked, whole)
-}
-
-/// Each recording as predicted by one step to a fit to the others; none where there are no others.
-fn left_out(evidence: &Evidence, hypothesis: &Hypothesis) -> Option<LeftOut> {
-    CrossValidation::of(evidence)?.left_out(&hypothesis.fit, Depth::OneStep)
 }
 
 /// The search in some evidence of a case.
@@ -310,7 +303,8 @@ fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
     let close = ranked[0].score + limit;
     let near = ranked.iter().take_while(|r| r.score <= close).count();
     for leading in &mut ranked[..near] {
-        leading.left_out = left_out(search.evidence, &leading.hypothesis);
+        let fit = &leading.hypothesis.fit;
+        leading.left_out = left_out(search.evidence, fit, Depth::OneStep);
     }
     let sums: Vec<Option<f64>> = (ranked[..near].iter())
         .map(|r| r.left_out_sum(&search.model_error))

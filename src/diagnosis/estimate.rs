@@ -230,8 +230,42 @@ fn amplitude(
 mod tests {
     use super::*;
     use crate::diagnosis::free::Prior;
+    use crate::diagnosis::hypothesis::Hypothesis;
     use crate::diagnosis::input::tolerated;
+    use crate::diagnosis::test_evidence::fit;
     use crate::plant::registry;
+
+    #[test]
+    fn a_covariance_is_widened_where_it_is_too_narrow_and_keeps_its_correlation() {
+        let mut covariance = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 1.0]);
+        at_least(&mut covariance, &[1.0, 9.0]);
+        assert_eq!(
+            covariance,
+            DMatrix::from_row_slice(2, 2, &[4.0, 3.0, 3.0, 9.0])
+        );
+    }
+
+    /// 7 to 3 between 1 and 3: 0.3 times the square of their difference. One without the number says nothing of it.
+    #[test]
+    fn models_that_are_nearly_as_good_widen_an_interval_by_their_probability() {
+        let ranked = |value: f64, probability: f64| Ranked {
+            hypothesis: Hypothesis {
+                effects: Vec::new(),
+                fit: fit(Vec::new(), Vec::new(), value),
+                depends_on: Vec::new(),
+            },
+            score: 0.0,
+            odds: 1.0,
+            probability,
+            left_out: None,
+        };
+        let alone = [ranked(1.0, 1.0)];
+        assert_eq!(between_models(&alone), [0.0]);
+        let mut other = ranked(0.0, 0.5);
+        other.hypothesis.fit.free.clear();
+        let three = [ranked(1.0, 0.35), ranked(3.0, 0.15), other];
+        assert!((between_models(&three)[0] - 0.3 * 4.0).abs() < 1e-12);
+    }
 
     #[test]
     fn a_number_at_the_end_of_its_range_is_told_from_one_between() {

@@ -9,7 +9,7 @@
 //! recording, and S cannot tell: all hats have as many coefficients. What happens in another recording they do not foretell, unless it is a matter of
 //! time. Where only one recording shows a term, L says nothing of it either way, and S decides.
 
-use super::cross_validation::{CrossValidation, Depth};
+use super::cross_validation::{Depth, rough_cost};
 use super::evidence::{Evidence, Prediction};
 use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start};
 use super::free::{Free, Prior};
@@ -285,13 +285,11 @@ impl Search<'_> {
             let fitted = self.refit(promising, curve(ROUGH, ROUGH_ITERATIONS));
             self.narrowed(base, fitted)
         });
-        let turns = CrossValidation::of(self.evidence);
         let mut fitted: Vec<(f64, Hypothesis)> = fitted
             .map(|h| {
                 let own = self.latent_score(&h);
-                let elsewhere = turns.as_ref().map_or(own, |turns| {
-                    turns.rough_cost(&h.fit, Depth::Refit(ELSEWHERE))
-                });
+                let elsewhere = rough_cost(self.evidence, &h.fit, Depth::Refit(ELSEWHERE));
+                let elsewhere = elsewhere.unwrap_or(own);
                 let detail = format!("{} {own:.0}, elsewhere {elsewhere:.0}", described(&h));
                 observer(&Step::Variation.of(&h, detail));
                 (0.5 * (own + elsewhere), h)

@@ -37,5 +37,7 @@ pub mod search;
 pub mod servo;
 pub mod settings;
 pub mod spectrum;
+#[cfg(test)]
+mod test_evidence;
 pub mod unlisted;
 pub mod words;

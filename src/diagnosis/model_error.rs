@@ -86,3 +86,59 @@ impl ModelError {
         finite.map(|r| loss(r / scale, HUBER)).sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{evidence, fit};
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_distr::StandardNormal;
+
+    /// Model error of residuals x_k = memory x_(k-1) + e of a size, the same process in each of four channels of some recordings.
+    fn planted(recordings: usize, memory: f64, size: f64) -> (Evidence, Vec<f64>, ModelError) {
+        let evidence = evidence(recordings);
+        let count = CHANNELS.len() * recordings * evidence.recordings[0].inputs.time.len();
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+        let mut last = 0.0;
+        let residuals: Vec<f64> = (0..count)
+            .map(|_| {
+                let drawn: f64 = random.sample(StandardNormal);
+                last = memory * last + (1.0f64 - memory * memory).sqrt() * drawn;
+                size * last
+            })
+            .collect();
+        let prediction = fit(residuals.clone(), vec![0.0; count], 0.0).prediction;
+        let error = ModelError::of(&evidence, &prediction);
+        (evidence, residuals, error)
+    }
+
+    #[test]
+    fn noise_alone_is_no_model_error_and_costs_what_it_did() {
+        let (evidence, residuals, error) = planted(40, 0.0, 1.0);
+        assert!(error.is_none(), "{error:?}");
+        assert_eq!(error.cost(&evidence, &residuals), robust_sum(&residuals));
+        assert_eq!(error.left(&evidence, &fit(residuals, Vec::new(), 0.0)), 0.0);
+    }
+
+    /// Closed form of a process of first order: tau = (1 + memory) / (1 - memory), of which the sum down to 0.05 has 0.95 of what exceeds 1.
+    #[test]
+    fn residuals_that_are_large_and_alike_count_for_as_many_as_theory_says() {
+        let (memory, size) = (0.8f64, 1.5);
+        let (evidence, residuals, error) = planted(40, memory, size);
+        let tau = 1.0 + 0.95 * 2.0 * memory / (1.0 - memory);
+        let expected = size * size * tau;
+        for variance in error.variance {
+            assert!(
+                (variance / expected - 1.0).abs() < 0.25,
+                "{variance}, {expected}"
+            );
+        }
+        // Each sample is worth one over the variance, so that the cost is that of the few that are independent.
+        let cost = error.cost(&evidence, &residuals);
+        let independent = residuals.len() as f64 / tau;
+        assert!(
+            (cost / independent - 1.0).abs() < 0.25,
+            "{cost}, {independent}"
+        );
+    }
+}

@@ -105,63 +105,19 @@ fn square(evidence: &Evidence, best: &Fit, rival: &PlantParameters, inputs: &Pla
 
 #[cfg(test)]
 mod tests {
-    use super::super::evidence::Measured;
     use super::super::fit::{Limit, ROUGH, fit};
     use super::super::free::{Free, Prior};
+    use super::super::test_evidence::{evidence, plant};
     use super::*;
     use crate::effects::Coordinate;
-    use crate::plant::{
-        Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, SensorErrors, registry,
-    };
-
-    fn plant() -> PlantParameters {
-        PlantParameters {
-            device: crate::device::DeviceParameters::default(),
-            gravity_along_extension: -9.81,
-            contact: ContactParameters {
-                law: ContactLaw::Linear { stiffness: 2e5 },
-                damping: 400.0,
-                surface_offset: 0.0,
-                runout: Periodic::NONE,
-                waviness: Periodic::NONE,
-            },
-            sensors: SensorErrors::NONE,
-            latent: None,
-            own: Vec::new(),
-            chain: Chain::Whole,
-            links: LinkParameters::NONE,
-            cell: crate::plant::CellParameters::RIGID,
-        }
-    }
-
-    /// Half a second on a surface, which says little.
-    fn evidence() -> Evidence {
-        let time: Vec<f64> = (0..126).map(|i| 0.004 * f64::from(i)).collect();
-        let count = time.len();
-        let inputs = PlantInputs {
-            cell: None,
-            motion: None,
-            set_pressure: vec![2e5; count],
-            extends: vec![true; count],
-            surface: vec![0.02; count],
-            time,
-        };
-        let readings = simulate(&plant(), &inputs).readings;
-        let measured = Measured {
-            name: "short.csv".to_owned(),
-            inputs,
-            readings,
-            free: false,
-        };
-        Evidence::new(vec![measured], [400.0, 2e-5, 0.8, 0.15])
-    }
+    use crate::plant::registry;
 
     fn fitted(evidence: &Evidence, plant: &PlantParameters, free: &[Free]) -> Fit {
         fit(evidence, (plant, None), (free, &[]), ROUGH, Limit::of(1))
     }
 
     fn best_for(rival: &PlantParameters) -> &'static str {
-        let evidence = evidence();
+        let evidence = evidence(1);
         let best = fitted(&evidence, &plant(), &[]);
         let rival = fitted(&evidence, rival, &[]);
         separations(&evidence, &best, &rival)[0].experiment.name
@@ -186,7 +142,7 @@ mod tests {
             bounds: [0.5, 2.0],
             prior: Prior::Flat,
         };
-        let evidence = evidence();
+        let evidence = evidence(1);
         let mut gained = plant();
         gained.sensors.force_gain = 1.01;
         let rival = fitted(&evidence, &gained, &[]);

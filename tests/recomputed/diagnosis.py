@@ -115,6 +115,13 @@ class Diagnosis:
         left = self.left(rows, model, channel)
         return rms(left), robust(left / self.noise[channel])
 
+    def percentile_90(self, recording, channel):
+        """Of what the improved model leaves of a recording fitted to, in standard deviations of the noise."""
+        rows = self.fitted[self.fitted.recording == recording]
+        sizes = numpy.sort(numpy.abs(self.left(rows, "improved", channel) / self.noise[channel]))
+        sizes = sizes[numpy.isfinite(sizes)]
+        return sizes[int(0.9 * (len(sizes) - 1))] if len(sizes) else 0.0
+
     def errors(self):
         """What the improved model leaves of each channel of each recording, the largest beside its noise first."""
         found = []
@@ -280,6 +287,23 @@ class Examination:
         beyond = [e for e in errors if e[0] > NOISE_ALONE]
         text = self.take(where, text, counts, lambda _: {"count": len(beyond), "all": len(errors)})
         text = self.take(where, text, r"and in (?P<more>\d+) more", lambda _: {"more": len(beyond) - 3})
+        largest = of.json.get("departure")
+        at_worst = rf"at worst, in the (?P<channel>{channel}) of (?P<recording>{name})(?P<predicted>, predicted by a fit to the others)?, 90 % of the samples lie within (?P<p90>{NUMBER}) standard deviations of the prediction, where noise alone gives 1\.6"
+
+        def departure(match):
+            column = words[match.group("channel")][0]
+            self.check.fact(f"{where}: channel of the largest departure", (column, match.group("recording")), (largest["channel"], largest["recording"]))
+            self.check.fact(f"{where}: left out", bool(match.group("predicted")), largest["left_out"])
+            # Within no more than what the fit leaves, and by the bound that `explained` stands for.
+            self.check.fact(f"{where}: explained fully", "explained fully" in text, of.json["explained"] == "fully")
+            self.check.fact(f"{where}: fully is near the noise", of.json["explained"] == "fully" and largest["p90_sigmas"] > 2.0, False)
+            fitted = max(of.percentile_90(r, c) for r in of.fitted.recording.unique() for c in of.channels())
+            self.check.fact(f"{where}: no channel fitted to is worse", fitted <= largest["p90_sigmas"] * 1.001, True)
+            if not largest["left_out"]:
+                self.number(f"{where}: 90th percentile", match.group("p90"), fitted)
+            return {"p90": largest["p90_sigmas"]}
+
+        text = self.take(where, text, at_worst, departure)
         # What the links lack.
         for link, start in (("regulator", "The regulator"), ("piston", "(?:Chambers and piston|Along its measured motion)"), ("contact", "The contact")):
             own = self.of.balance[self.of.balance.link == link]

@@ -1,9 +1,10 @@
 //! The missing physics, its share of the mismatch, and the rest.
 
-use super::super::answer::FoundLaw;
+use super::super::answer::{Extent, FoundLaw};
 use super::super::details::{IN_TURN, PredictionError, RemainingError};
 use super::super::diagnose::{Diagnosis, spoken_name};
 use super::super::estimate::Limit;
+use super::super::links::Link;
 use super::super::recorded::COLUMNS;
 use super::super::words::{
     CHANNEL_UNITS, CHANNEL_WORDS, capital, in_unit, listed, percent, spoken, with_interval,
@@ -213,7 +214,31 @@ impl Diagnosis {
                 listed(&beyond)
             )
         };
-        self.unexplained().into_iter().chain([rest]).collect()
+        let extent = self.extent_in_words();
+        (self.unexplained().into_iter().chain([rest]).chain(extent)).collect()
+    }
+
+    /// Whether the recordings are explained fully or in part, by the channel that differs most.
+    fn extent_in_words(&self) -> Option<String> {
+        let largest = self.largest?;
+        let name = &self.evidence.recordings[largest.recording].name;
+        let channel = CHANNEL_WORDS[largest.channel as usize];
+        let p90 = significant(largest.p90, 2);
+        let predicted = match largest.left_out {
+            true => ", predicted by a fit to the others",
+            false => "",
+        };
+        let extent = match self.extent()? {
+            Extent::Fully => "fully",
+            Extent::Partly => "in part",
+        };
+        let link = match largest.is_near_noise() {
+            true => String::new(),
+            false => format!("; that is in the link {}", Link::of(largest.channel).name()),
+        };
+        Some(format!(
+            "The recordings are explained {extent}: at worst, in the {channel} of {name}{predicted}, 90 % of the samples lie within {p90} standard deviations of the prediction, where noise alone gives 1.6{link}."
+        ))
     }
 
     /// Variants of the explanation of a part of the device, with what they leave.

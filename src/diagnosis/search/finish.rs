@@ -1,6 +1,6 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
-use super::super::cross_validation::{CrossValidation, Depth};
+use super::super::cross_validation::{Depth, left_out};
 use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, rough_noise};
 use super::super::free::{Free, free_of};
 use super::super::hypothesis::{Hypothesis, covers, stands_for};
@@ -233,12 +233,20 @@ impl Search<'_> {
             let gain = lighter.fit.cost() - best.fit.cost();
             let immaterial = !better && gain < self.model_error.left(self.evidence, &best.fit);
             if immaterial {
-                full.remove(0);
+                // With it goes what has all of its effects and scores worse still: taken apart, that would lead to it again.
+                let dropped = full.remove(0);
+                let has_all =
+                    |h: &Hypothesis| dropped.names().iter().all(|name| h.names().contains(name));
+                full.retain(|h| !has_all(h));
             }
-            // Each says how much its effect is needed.
-            let is_new = |h: &Hypothesis| !full.iter().any(|known| known.names() == h.names());
-            let fewer: Vec<Hypothesis> = fewer.into_iter().filter(is_new).collect();
-            full.extend(fewer);
+            // Each says how much its effect is needed. One fitted before may have come to rest in another minimum: the better fit counts.
+            for one in fewer {
+                match full.iter().position(|known| known.names() == one.names()) {
+                    None => full.push(one),
+                    Some(at) if self.score(&one) < self.score(&full[at]) => full[at] = one,
+                    Some(_) => {}
+                }
+            }
             full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
             if !better && !immaterial {
                 break;
@@ -296,10 +304,11 @@ impl Search<'_> {
         Some(self.fitted(effects, from, &free, FULL, Refit::FULL.limit))
     }
 
-    /// Takes out of the best hypothesis what moves no channel by a share of its noise: recordings long enough show what nobody would miss.
+    /// Takes out of the best hypothesis of a whole device what moves no channel by a share of its noise: recordings long enough show what nobody would miss.
     pub(super) fn drop_below_noise(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
         while let Some(best) = full.first()
             && best.unlisted().is_none()
+            && self.believed.chain == Chain::Whole
         {
             let own = self.shown.len()..best.effects.len();
             let sizes = own.map(|index| (index, self.influence(best, index)));
@@ -409,9 +418,8 @@ impl Search<'_> {
         simpler: &Hypothesis,
         observer: &mut Observer<'_>,
     ) -> bool {
-        let turns = CrossValidation::of(self.evidence);
         let cost = |h: &Hypothesis| {
-            let left = turns.as_ref()?.left_out(&h.fit, Depth::OneStep)?;
+            let left = left_out(self.evidence, &h.fit, Depth::OneStep)?;
             Some(left.sum(&self.model_error))
         };
         let (Some(without), Some(with)) = (cost(simpler), cost(more)) else {

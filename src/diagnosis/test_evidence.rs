@@ -1,0 +1,87 @@
+//! Evidence for unit tests.
+
+use super::evidence::{Evidence, Measured, Prediction};
+use super::fit::Fit;
+use super::free::{Free, Prior};
+use crate::device::DeviceParameters;
+use crate::effects::Coordinate;
+use crate::plant::{
+    CellParameters, Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, PlantInputs,
+    PlantParameters, SensorErrors, registry, simulate,
+};
+use nalgebra::DMatrix;
+
+/// A device on a stiff contact.
+pub(super) fn plant() -> PlantParameters {
+    PlantParameters {
+        device: DeviceParameters::default(),
+        gravity_along_extension: -9.81,
+        contact: ContactParameters {
+            law: ContactLaw::Linear { stiffness: 2e5 },
+            damping: 400.0,
+            surface_offset: 0.0,
+            runout: Periodic::NONE,
+            waviness: Periodic::NONE,
+        },
+        sensors: SensorErrors::NONE,
+        latent: None,
+        own: Vec::new(),
+        chain: Chain::Whole,
+        links: LinkParameters::NONE,
+        cell: CellParameters::RIGID,
+    }
+}
+
+/// Recordings of half a second on a surface, which say little.
+pub(super) fn evidence(recordings: usize) -> Evidence {
+    let time: Vec<f64> = (0..126).map(|i| 0.004 * f64::from(i)).collect();
+    let count = time.len();
+    let inputs = PlantInputs {
+        cell: None,
+        motion: None,
+        set_pressure: vec![2e5; count],
+        extends: vec![true; count],
+        surface: vec![0.02; count],
+        time,
+    };
+    let readings = simulate(&plant(), &inputs).readings;
+    let measured = |index: usize| Measured {
+        name: format!("{index}.csv"),
+        inputs: inputs.clone(),
+        readings: readings.clone(),
+        free: false,
+    };
+    let recordings = (0..recordings).map(measured).collect();
+    Evidence::new(recordings, [400.0, 2e-5, 0.8, 0.15])
+}
+
+/// A number that a fit may move, in its own unit.
+pub(super) fn free() -> Free {
+    Free {
+        quantity: registry::SURFACE_OFFSET.quantity(),
+        start: 0.0,
+        coordinate: Coordinate::Linear(1.0),
+        bounds: [-1e3, 1e3],
+        prior: Prior::Flat,
+    }
+}
+
+/// A fit that leaves these residuals, of one free number with these derivatives.
+pub(super) fn fit(residuals: Vec<f64>, column: Vec<f64>, value: f64) -> Fit {
+    let known: f64 = column.iter().map(|c| c * c).sum();
+    Fit {
+        free: vec![free()],
+        values: vec![value],
+        misfit: residuals.iter().map(|r| r * r).sum(),
+        prediction: Prediction {
+            plant: plant(),
+            guided: false,
+            trajectories: Vec::new(),
+            residuals,
+        },
+        rough: 0.0,
+        prior: 0.0,
+        columns: vec![column],
+        information: DMatrix::from_element(1, 1, known),
+    }
+}
