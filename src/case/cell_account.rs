@@ -3,7 +3,7 @@
 use super::Diagnosed;
 use super::cell::CellCase;
 use crate::diagnosis::account::SectionKind;
-use crate::diagnosis::diagnose::Diagnosis;
+use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::words::{of_column, with_interval};

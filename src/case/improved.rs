@@ -1,7 +1,7 @@
 //! improved.toml: the believed model's file with what was found, in the vocabulary of effects.
 
-use crate::diagnosis::diagnose::Diagnosis;
 use crate::diagnosis::estimate::Number;
+use crate::diagnosis::finding::Diagnosis;
 use crate::effects::PresentEffect;
 use crate::scenario::effects::WrittenEffect;
 use crate::scenario::rig_file::{RigFile, improved_text};

@@ -18,7 +18,8 @@ pub use rig::{RIG, rig_of, to_fit};
 
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::{Comparison, of_flange};
-use crate::diagnosis::diagnose::{self as search, Diagnosis};
+use crate::diagnosis::diagnose as search;
+use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
 use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::input::{DiagnosisInput, prepare};

@@ -9,6 +9,7 @@ use super::details::Details;
 use super::estimate::Limit;
 use super::unlisted::report::UnlistedReport;
 use super::words::spoken;
+use crate::effects::UNLISTED;
 use crate::effects::meaning;
 use crate::plant::LawText;
 use crate::recording::RecordingError;
@@ -283,9 +284,6 @@ impl Answer {
         numbers
     }
 }
-
-/// Name of an effect that the vocabulary does not have.
-pub const UNLISTED: &str = "unlisted";
 
 /// A list of names and values as a table that keeps their order.
 mod in_order {

@@ -3,7 +3,7 @@
 //! Plain data: the pictures, the recording for the viewer and the page are made of it, and it is what stands in comparison.parquet and balance.parquet.
 
 use super::clean::clean;
-use super::diagnose::Diagnosis;
+use super::finding::Diagnosis;
 use super::flange::Run;
 use super::input::{DiagnosisInput, NamedRecording};
 use super::links::{Link, left_by};

@@ -1,24 +1,24 @@
 //! From what was found to diagnosis.json.
 
 use super::answer::{
-    Alternative, Answer, Estimate, Extent, FoundEffect, FoundLaw, Mismatch, SCHEMA, UNLISTED,
-    Verdict,
+    Alternative, Answer, Estimate, Extent, FoundEffect, FoundLaw, Mismatch, SCHEMA, Verdict,
 };
 use super::details::{
     ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Departure, Details, IN_TURN,
     LinkReport, NextExperiment, PredictionError, RegimeReport, RemainingError, RemainingReport,
     RuledOutReport, ToleratedNumber, remaining_errors,
 };
-use super::diagnose::{Diagnosis, ErrorSize, Unseen, names_of, spoken_name};
 use super::estimate::Number;
 use super::evidence::Prediction;
 use super::extent::NEAR_NOISE;
+use super::finding::{Diagnosis, ErrorSize, Unseen};
 use super::fit::robust_sum;
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Hypothesis, spoken_name};
 use super::links::Link;
 use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms, root_mean_square};
 use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
+use crate::effects::UNLISTED;
 use crate::effects::{Effect, Which};
 use crate::plant::{CHANNELS, Chain, Channel, LawText};
 
@@ -79,7 +79,7 @@ impl Diagnosis {
             alternatives: self
                 .rivals()
                 .map(|ranked| Alternative {
-                    effects: names_of(&ranked.hypothesis),
+                    effects: ranked.hypothesis.spoken_names(),
                     odds: ranked.odds,
                 })
                 .collect(),
@@ -145,7 +145,7 @@ impl Diagnosis {
     /// it and L what all effects together leave beyond noise, of which what it gains may be a part.
     #[must_use]
     pub fn confidence(&self, name: &str) -> f64 {
-        let has = |r: &&super::diagnose::Ranked| {
+        let has = |r: &&super::ranking::Ranked| {
             let own = |e: &Effect| e.name == name;
             let unnamed = name == UNLISTED && r.hypothesis.unlisted().is_some();
             unnamed || r.hypothesis.effects.iter().any(|e| own(e))
@@ -155,7 +155,7 @@ impl Diagnosis {
         let own = &self.best().fit;
         let left = self.model_error.left(&self.evidence, own);
         // A law that excludes it is no explanation without what it stands for: the probability weighs that.
-        let in_place = |r: &super::diagnose::Ranked| {
+        let in_place = |r: &super::ranking::Ranked| {
             let mut effects = r.hypothesis.effects.iter();
             let named = self.best().effects.iter().find(|e| e.name == name);
             named.is_some_and(|own| effects.any(|e| e.excludes(own)))
@@ -237,7 +237,7 @@ impl Diagnosis {
         &'a self,
         residuals: &'a [f64],
     ) -> impl Iterator<Item = (usize, crate::plant::Channel, &'a [f64])> {
-        super::localise::by_channel(&self.evidence, residuals)
+        super::evidence::by_channel(&self.evidence, residuals)
     }
 
     /// Whether there is a part of the device alone.
@@ -303,13 +303,13 @@ impl Diagnosis {
         let power = |score: f64, best: f64| -0.5 * (score - best) / std::f64::consts::LN_10;
         let best = self.ranked[0].score;
         let others = self.ranked[1..].iter().map(|ranked| Considered {
-            effects: names_of(&ranked.hypothesis),
+            effects: ranked.hypothesis.spoken_names(),
             in_full: true,
             log10_odds: power(ranked.score, best),
             explained_share: self.share_explained_by(&ranked.hypothesis),
         });
         let mut found: Vec<Considered> = others.collect();
-        let own = names_of(self.best());
+        let own = self.best().spoken_names();
         for rough in &self.roughly {
             let effects: Vec<String> = rough.effects.iter().map(|e| spoken_name(e)).collect();
             let same = |known: &[String]| {
@@ -467,8 +467,8 @@ impl Diagnosis {
         Some(NextExperiment {
             name: best.experiment.name.to_owned(),
             instruction: best.experiment.instruction.clone(),
-            from: names_of(&self.ranked.get(1)?.hypothesis),
-            found: names_of(self.best()),
+            from: self.ranked.get(1)?.hypothesis.spoken_names(),
+            found: self.best().spoken_names(),
             sigmas: best.square.sqrt(),
             seconds: best.duration,
             others: others

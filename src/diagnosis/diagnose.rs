@@ -1,148 +1,31 @@
 //! From a case to everything that is found in it.
 
-use super::answer::UNLISTED;
-use super::clean::{Cleaning, clean};
-use super::cross_validation::{Depth, LeftOut, left_out};
-use super::estimate::{Estimates, estimates};
-use super::evidence::{Evidence, Prediction};
-use super::extent::{Largest, percentile_90};
+use super::clean::clean;
+use super::cross_validation::{Depth, left_out};
+use super::estimate::estimates;
+use super::evidence::Evidence;
+use super::extent::Largest;
+use super::finding::{Baseline, Diagnosis, ErrorSize, Unseen};
 use super::fit::{Limit, Refit, Start};
-use super::free::Free;
-use super::hypothesis::{Hypothesis, stands_for};
+use super::hypothesis::Hypothesis;
 use super::input::{DiagnosisInput, NamedRecording, Prepared};
-use super::links::{LinkResidual, links};
-use super::localise::{Difference, differences, robust_rms, root_mean_square};
-use super::mismatch::{Interval, intervals};
+use super::links::links;
+use super::localise::differences;
+use super::mismatch::intervals;
 use super::model_error::ModelError;
 use super::next_experiment::{Separation, separations};
 use super::progress::{Observer, Step};
-use super::regime::{Regime, regimes};
+use super::ranking::{Ranked, rank};
+use super::regime::regimes;
 use super::remaining::Remaining;
-use super::ruled_out::{RuledOut, ruled_out};
+use super::ruled_out::ruled_out;
 use super::search::{RoughFit, Search};
 use super::settings::Settings;
 use super::unlisted::Shape;
-use crate::effects::vocabulary;
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
 
 /// The fit of the answer to all recordings but one, from where that to all is.
 const LEFT_OUT: Refit<'static> = Refit::FINEST.from(Start::Here).until(Limit::of(8));
-
-/// An explanation among others.
-#[derive(Debug, Clone)]
-pub struct Ranked {
-    /// The explanation.
-    pub hypothesis: Hypothesis,
-    /// Its cost, penalty included [1].
-    pub score: f64,
-    /// Its odds against the best one [1].
-    pub odds: f64,
-    /// Its probability among those looked at in full [1].
-    pub probability: f64,
-    /// Each recording as predicted by a fit to the others; none where there are no others.
-    pub left_out: Option<LeftOut>,
-}
-
-impl Ranked {
-    /// Robust sum of squares of what was left out in turn.
-    fn left_out_sum(&self, model_error: &ModelError) -> Option<f64> {
-        Some(self.left_out.as_ref()?.sum(model_error))
-    }
-}
-
-/// The believed model, moved within its tolerances as far as recordings that it may not explain allow.
-#[derive(Debug)]
-pub struct Baseline {
-    /// The description.
-    pub plant: PlantParameters,
-    /// Its prediction.
-    pub prediction: Prediction,
-    /// Residual of each link of the chain, and the variable that explains it.
-    pub links: Vec<(LinkResidual, Vec<Regime>)>,
-    /// Where recordings differ from it.
-    pub differences: Vec<Difference>,
-}
-
-/// Errors of prediction of a channel of a recording that was not fitted to.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unseen {
-    /// The channel.
-    pub channel: Channel,
-    /// Of the believed model as it stands in the rig file.
-    pub believed: ErrorSize,
-    /// Of the believed model, moved within its tolerances.
-    pub before: ErrorSize,
-    /// Of the best explanation.
-    pub after: ErrorSize,
-}
-
-/// Size of an error of prediction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorSize {
-    /// Root mean square, in the channel's unit.
-    pub rms: f64,
-    /// Robust root mean square, in standard deviations of the noise [1].
-    pub sigmas: f64,
-    /// 90th percentile of its size, in standard deviations of the noise [1].
-    pub p90: f64,
-}
-
-impl ErrorSize {
-    /// Of residuals in standard deviations of a noise; none where nothing counts.
-    #[must_use]
-    pub fn of(residuals: &[f64], noise: f64) -> Option<Self> {
-        Some(Self {
-            rms: noise * root_mean_square(residuals.iter().copied())?,
-            sigmas: robust_rms(residuals)?.1,
-            p90: percentile_90(residuals.iter().copied())?,
-        })
-    }
-}
-
-/// The finding.
-#[derive(Debug)]
-pub struct Diagnosis {
-    /// Thresholds that it was made with.
-    pub settings: Settings,
-    /// The rig as believed.
-    pub believed: PlantParameters,
-    /// Its tolerated quantities.
-    pub tolerated: Vec<Free>,
-    /// The recordings, cleaned.
-    pub evidence: Evidence,
-    /// Readings set aside in each of them.
-    pub cleanings: Vec<Cleaning>,
-    /// Notes on the recordings for an engineer, a sentence each.
-    pub notes: Vec<String>,
-    /// Explanations, best first.
-    pub ranked: Vec<Ranked>,
-    /// Effects that were looked at.
-    pub looked_at: usize,
-    /// Explanations that were fitted roughly on the way, the best first.
-    pub roughly: Vec<RoughFit>,
-    /// What the best leaves beyond noise, by which the evidence was weighed.
-    pub model_error: ModelError,
-    /// Remainder that no law explains of a part of the device; none where that is noise, or where there is the whole of it.
-    pub remaining: Option<Remaining>,
-    /// Variants of the best that do worse, of a part of the device.
-    pub ruled_out: Vec<RuledOut>,
-    /// Numbers of the best.
-    pub estimates: Estimates,
-    /// Shape of its term without a name, if it has one.
-    pub shape: Option<Shape>,
-    /// Where its effects act.
-    pub mismatch: Vec<Interval>,
-    /// Largest departure of the best from the recordings; none where nothing was measured.
-    pub largest: Option<Largest>,
-    /// Prediction of the believed model, as it stands in the rig file.
-    pub as_believed: Prediction,
-    /// The believed model, moved within its tolerances.
-    pub baseline: Baseline,
-    /// Name of the recording to be predicted, and errors of its prediction where it has measured columns.
-    pub unseen: Option<(String, Vec<Unseen>)>,
-    /// Experiments that would tell the best from the next, best first; none where there is no next.
-    pub experiments: Vec<Separation>,
-}
 
 /// Diagnoses a case from its recordings as prepared; `observer` is told of its progress.
 #[must_use]
@@ -157,40 +40,13 @@ pub fn diagnose(
         cleanings,
         notes,
     } = prepared;
-    let remaining = (case.believed.chain.output())
-        .map(|channel| Remaining::of(&search_of(case, &evidence, settings), channel, observer))
-        .filter(|(remaining, _)| !remaining.is_noise());
-    let mut roughly = Vec::new();
-    let mut weight = ModelError::NONE;
-    let (mut ranked, evidence, remaining) = match remaining {
-        None => {
-            let search = search_of(case, &evidence, settings);
-            let (found, rough, model_error) = search.run_with_rough(observer);
-            roughly = rough;
-            let weighed = Search {
-                model_error,
-                ..search.clone()
-            };
-            weight = model_error;
-            (rank(&weighed, found), evidence, None)
-        }
-        Some((mut remaining, mut seed)) => {
-            let mut rounds = 0;
-            loop {
-                let (mut ranked, whole) =
-                    against((case, settings), &remaining, &seed, &evidence, observer);
-                let best = &ranked[0].hypothesis.fit.prediction;
-                let left = Remaining::left_by(best, &evidence, remaining.channel);
-                rounds += 1;
-                if rounds == settings.rounds || !remaining.is_more_than(&left) {
-                    break (ranked, whole, Some(left));
-                }
-                // The first look was too rough: what it left would hide what is still to be found.
-                remaining = left;
-                seed = ranked.swap_remove(0).hypothesis;
-            }
-        }
-    };
+    let Found {
+        mut ranked,
+        roughly,
+        model_error,
+        evidence,
+        remaining,
+    } = found(case, evidence, settings, observer);
     let whole = &ranked[0].hypothesis.fit;
     ranked[0].left_out = left_out(&evidence, whole, Depth::Refit(LEFT_OUT));
     let search = search_of(case, &evidence, settings);
@@ -202,13 +58,7 @@ pub fn diagnose(
         Some((unseen.name.clone(), errors))
     });
     observer(&Step::Experiments.begins());
-    // The experiments known are those of a bench: what an arm can do is in its programs.
-    let of_bench = case.believed.chain == Chain::Whole
-        && evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
-    let rival = ranked.get(1).filter(|_| of_bench);
-    let experiments = rival.map_or_else(Vec::new, |rival| {
-        separations(&evidence, &best.fit, &rival.hypothesis.fit)
-    });
+    let experiments = experiments(case, &evidence, &ranked);
     Diagnosis {
         settings: *settings,
         believed: case.believed.clone(),
@@ -219,7 +69,7 @@ pub fn diagnose(
             None => Vec::new(),
         },
         roughly,
-        model_error: weight,
+        model_error,
         remaining,
         estimates: estimates(&case.believed, &ranked, &evidence),
         shape: Shape::of(&evidence, best),
@@ -233,6 +83,74 @@ pub fn diagnose(
         cleanings,
         notes,
         evidence,
+    }
+}
+
+/// What a search came to.
+struct Found {
+    ranked: Vec<Ranked>,
+    roughly: Vec<RoughFit>,
+    model_error: ModelError,
+    /// With the noise that explanations were held against.
+    evidence: Evidence,
+    remaining: Option<Remaining>,
+}
+
+/// Searches a whole device against its sensors' noise, a part of one against what no law explains.
+fn found(
+    case: &DiagnosisInput,
+    evidence: Evidence,
+    settings: &Settings,
+    observer: &mut Observer<'_>,
+) -> Found {
+    let remaining = (case.believed.chain.output())
+        .map(|channel| Remaining::of(&search_of(case, &evidence, settings), channel, observer))
+        .filter(|(remaining, _)| !remaining.is_noise());
+    let Some((mut remaining, mut seed)) = remaining else {
+        let search = search_of(case, &evidence, settings);
+        let (found, roughly, model_error) = search.run_with_rough(observer);
+        let weighed = Search {
+            model_error,
+            ..search.clone()
+        };
+        return Found {
+            ranked: rank(&weighed, found),
+            roughly,
+            model_error,
+            remaining: None,
+            evidence,
+        };
+    };
+    let mut round = 0;
+    loop {
+        round += 1;
+        let (mut ranked, whole) = against((case, settings), &remaining, &seed, &evidence, observer);
+        let best = &ranked[0].hypothesis.fit.prediction;
+        let left = Remaining::left_by(best, &evidence, remaining.channel);
+        if round == settings.rounds || !remaining.is_more_than(&left) {
+            return Found {
+                ranked,
+                roughly: Vec::new(),
+                model_error: ModelError::NONE,
+                evidence: whole,
+                remaining: Some(left),
+            };
+        }
+        // The first look was too rough: what it left would hide what is still to be found.
+        remaining = left;
+        seed = ranked.swap_remove(0).hypothesis;
+    }
+}
+
+/// Experiments that would tell the best explanation from the next: those known are of a bench, what an arm can do is in its programs.
+fn experiments(case: &DiagnosisInput, evidence: &Evidence, ranked: &[Ranked]) -> Vec<Separation> {
+    let of_bench = case.believed.chain == Chain::Whole
+        && evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
+    match ranked {
+        [best, rival, ..] if of_bench => {
+            separations(evidence, &best.hypothesis.fit, &rival.hypothesis.fit)
+        }
+        _ => Vec::new(),
     }
 }
 
@@ -285,53 +203,6 @@ fn search_of<'a>(case: &DiagnosisInput, evidence: &'a Evidence, settings: &Setti
         model_error: ModelError::NONE,
         settings: *settings,
     }
-}
-
-/// Explanations by evidence, unless what was left out in turn speaks as clearly for another as evidence would have to.
-fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
-    let mut ranked: Vec<Ranked> = found
-        .into_iter()
-        .map(|hypothesis| Ranked {
-            score: search.score(&hypothesis),
-            odds: 1.0,
-            probability: 1.0,
-            left_out: None,
-            hypothesis,
-        })
-        .collect();
-    let limit = -2.0 * search.settings.least_odds.ln();
-    let close = ranked[0].score + limit;
-    let near = ranked.iter().take_while(|r| r.score <= close).count();
-    for leading in &mut ranked[..near] {
-        let fit = &leading.hypothesis.fit;
-        leading.left_out = left_out(search.evidence, fit, Depth::OneStep);
-    }
-    let sums: Vec<Option<f64>> = (ranked[..near].iter())
-        .map(|r| r.left_out_sum(&search.model_error))
-        .collect();
-    if let Some(first) = sums[0] {
-        let others = sums.iter().enumerate().skip(1);
-        // A richer law in place of a plain one predicts a little better whether or not it is at work: the search has weighed them.
-        let others =
-            others.filter(|(i, _)| !stands_for(&ranked[*i].hypothesis, &ranked[0].hypothesis));
-        let predicts = others.filter_map(|(i, sum)| Some((i, (*sum)?)));
-        let better = predicts.min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((index, sum)) = better
-            && first - sum > limit
-        {
-            let chosen = ranked.remove(index);
-            ranked.insert(0, chosen);
-        }
-    }
-    let best = ranked[0].score;
-    // One that was put first for what it predicts is not held to be less likely than those behind it.
-    let odds = |score: f64| (-0.5 * (score - best)).exp().min(1.0);
-    let sum: f64 = ranked.iter().map(|r| odds(r.score)).sum();
-    for r in &mut ranked {
-        r.odds = odds(r.score);
-        r.probability = r.odds / sum;
-    }
-    ranked
 }
 
 /// The baseline with what it leaves; of a rig that misses nothing, the best explanation is it.
@@ -407,36 +278,4 @@ fn unseen_errors(
         })
     });
     Some(channels.collect())
-}
-
-impl Diagnosis {
-    /// The best explanation.
-    pub fn best(&self) -> &Hypothesis {
-        &self.ranked[0].hypothesis
-    }
-
-    /// Rivals that the recordings do not rule out.
-    pub fn rivals(&self) -> impl Iterator<Item = &Ranked> {
-        self.ranked[1..]
-            .iter()
-            .filter(|r| r.odds >= self.settings.least_odds)
-    }
-}
-
-/// Names of an explanation's effects.
-pub fn names_of(hypothesis: &Hypothesis) -> Vec<String> {
-    let effects = hypothesis.effects.iter();
-    let unnamed = hypothesis.unlisted().map(|_| UNLISTED.to_owned());
-    effects
-        .map(|effect| spoken_name(effect.name))
-        .chain(unnamed)
-        .collect()
-}
-
-/// Name of an effect, with the joint that it is about.
-pub fn spoken_name(effect: &str) -> String {
-    match vocabulary(effect) {
-        (name, Some(joint)) => format!("{name} (joint {joint})"),
-        (name, None) => name.to_owned(),
-    }
 }

@@ -8,9 +8,9 @@
 //! where between two samples something happened: a delay or a time constant is uncertain by half a sample either way, evenly.
 
 use super::covariance::covariance;
-use super::diagnose::Ranked;
 use super::evidence::Evidence;
 use super::free::Free;
+use super::ranking::Ranked;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
 use nalgebra::DMatrix;

@@ -1,8 +1,8 @@
 //! Recordings as a fit sees them: inputs, readings, their noise, and which samples count.
 
 use crate::plant::{
-    CHANNELS, Nudging, PlantInputs, PlantParameters, PlantTrajectory, Trajectory, readings,
-    true_trajectory,
+    CHANNELS, Channel, Nudging, PlantInputs, PlantParameters, PlantTrajectory, Trajectory,
+    readings, true_trajectory,
 };
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
@@ -221,4 +221,22 @@ impl Evidence {
         }
         all
     }
+}
+
+/// Residuals of each recording and channel.
+pub fn by_channel<'a>(
+    evidence: &'a Evidence,
+    residuals: &'a [f64],
+) -> impl Iterator<Item = (usize, Channel, &'a [f64])> {
+    let mut start = 0;
+    let recordings = evidence.recordings.iter().enumerate();
+    recordings.flat_map(move |(recording, measured)| {
+        let count = measured.inputs.time.len();
+        let first = start;
+        start += CHANNELS.len() * count;
+        CHANNELS.into_iter().enumerate().map(move |(at, channel)| {
+            let from = first + at * count;
+            (recording, channel, &residuals[from..from + count])
+        })
+    })
 }

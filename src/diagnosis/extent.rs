@@ -1,9 +1,9 @@
 //! How far the best explanation goes: its largest departure from the recordings, each predicted by a fit to the others too.
 
 use super::cross_validation::predictive;
-use super::diagnose::Ranked;
 use super::evidence::Evidence;
-use super::localise::by_channel;
+use super::evidence::by_channel;
+use super::ranking::Ranked;
 use super::remaining::Remaining;
 use crate::plant::{CHANNELS, Channel};
 

@@ -1,8 +1,7 @@
 //! A set of effects with its fit.
 
 use super::fit::Fit;
-use super::latent;
-use crate::effects::Effect;
+use crate::effects::{Effect, UNLISTED, vocabulary};
 use crate::plant::{Latent, PlantParameters};
 
 /// A set of effects, fitted together with what is tolerated.
@@ -30,6 +29,16 @@ impl Hypothesis {
         names
     }
 
+    /// Names of the effects as people read them, the term without a name last.
+    pub fn spoken_names(&self) -> Vec<String> {
+        let effects = self.effects.iter();
+        let unnamed = self.unlisted().map(|_| UNLISTED.to_owned());
+        effects
+            .map(|effect| spoken_name(effect.name))
+            .chain(unnamed)
+            .collect()
+    }
+
     /// Whether the believed model is all that it takes.
     pub fn finds_nothing(&self) -> bool {
         self.effects.is_empty() && self.unlisted().is_none()
@@ -42,7 +51,7 @@ impl Hypothesis {
             .iter()
             .map(|effect| effect.parameters(believed).len())
             .sum();
-        self.fit.free.len() - own - latent::count(&self.fit.prediction.plant)
+        self.fit.free.len() - own - self.unlisted().map_or(0, Latent::numbers)
     }
 }
 
@@ -55,4 +64,12 @@ pub(super) fn covers(one: &Hypothesis, other: &Hypothesis) -> bool {
 /// Whether the effects of two hypotheses are the same but for laws that exclude one another.
 pub(super) fn stands_for(one: &Hypothesis, other: &Hypothesis) -> bool {
     one.effects.len() == other.effects.len() && covers(one, other) && covers(other, one)
+}
+
+/// Name of an effect, with the joint that it is about.
+pub fn spoken_name(effect: &str) -> String {
+    match vocabulary(effect) {
+        (name, Some(joint)) => format!("{name} (joint {joint})"),
+        (name, None) => name.to_owned(),
+    }
 }

@@ -18,9 +18,7 @@ use super::progress::{Observer, Step};
 use super::search::Search;
 use super::spectrum;
 use crate::effects::Coordinate;
-use crate::plant::{
-    Basis, Latent, MOST_COEFFICIENTS, PlantParameters, Port, Quantity, Variable, registry,
-};
+use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, Port, Quantity, Variable, registry};
 use rayon::prelude::*;
 
 /// Terms that get a second look after their first step: where the piston meets a stop a term over the stroke needs more than one.
@@ -146,15 +144,8 @@ fn free_of_latent(latent: &Latent) -> Vec<Free> {
             prior: Prior::Flat,
         });
     }
+    debug_assert_eq!(free.len(), latent.numbers());
     free
-}
-
-/// Number of free quantities of the latent term of a description.
-pub fn count(plant: &PlantParameters) -> usize {
-    plant
-        .latent
-        .as_ref()
-        .map_or(0, |latent| free_of_latent(latent).len())
 }
 
 /// Terms that make sense for what a description moves through.
@@ -342,7 +333,7 @@ impl Search<'_> {
     }
 
     fn latent_score(&self, hypothesis: &Hypothesis) -> f64 {
-        let numbers = count(&hypothesis.fit.prediction.plant) as f64;
+        let numbers = hypothesis.unlisted().map_or(0, Latent::numbers) as f64;
         hypothesis.fit.rough + numbers * (self.evidence.count() as f64).ln()
     }
 

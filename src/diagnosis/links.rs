@@ -4,10 +4,10 @@
 //! that it lacks, the contact and the load cell by the force that they should show where the tool is. What a joint fit of a model that lacks something
 //! would blame on one link for the sake of another does not show here.
 
-use super::evidence::{Evidence, Measured, Prediction};
+use super::evidence::{Evidence, Measured, Prediction, by_channel};
 use super::fit::with_values;
 use super::free::Free;
-use super::localise::{by_channel, robust_rms};
+use super::localise::robust_rms;
 use super::settings::HUBER;
 use crate::plant::{CHANNELS, Channel, PlantParameters, PlantTrajectory, Trajectory, readings};
 use nalgebra::{DMatrix, DVector};

@@ -1,9 +1,9 @@
 //! Where recordings differ from a model: by recording and channel, and as intervals.
 
-use super::evidence::Evidence;
+use super::evidence::{Evidence, by_channel};
 use super::fit::robust_sum;
 use super::mismatch::merged;
-use crate::plant::{CHANNELS, Channel};
+use crate::plant::Channel;
 
 /// Chance that any interval is flagged where there is noise alone [1].
 const FALSE_ALARM: f64 = 0.01;
@@ -36,24 +36,6 @@ pub struct Difference {
     pub channel: Channel,
     /// Its start and end [s].
     pub span: [f64; 2],
-}
-
-/// Residuals of each recording and channel.
-pub fn by_channel<'a>(
-    evidence: &'a Evidence,
-    residuals: &'a [f64],
-) -> impl Iterator<Item = (usize, Channel, &'a [f64])> {
-    let mut start = 0;
-    let recordings = evidence.recordings.iter().enumerate();
-    recordings.flat_map(move |(recording, measured)| {
-        let count = measured.inputs.time.len();
-        let first = start;
-        start += CHANNELS.len() * count;
-        CHANNELS.into_iter().enumerate().map(move |(at, channel)| {
-            let from = first + at * count;
-            (recording, channel, &residuals[from..from + count])
-        })
-    })
 }
 
 /// Root mean square of what is finite; none where nothing is.

@@ -2,6 +2,7 @@
 
 pub mod account;
 pub mod answer;
+mod autocorrelation;
 pub mod bumps;
 pub mod clean;
 pub mod comparison;
@@ -14,6 +15,7 @@ pub mod estimate;
 pub mod evidence;
 pub mod experiment;
 mod extent;
+pub mod finding;
 pub mod fit;
 pub mod flange;
 pub mod flange_answer;
@@ -28,6 +30,7 @@ pub mod mismatch;
 mod model_error;
 pub mod next_experiment;
 pub mod progress;
+pub mod ranking;
 pub mod recorded;
 pub mod regime;
 pub mod remaining;

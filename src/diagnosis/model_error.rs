@@ -9,10 +9,9 @@
 //! sign: tau of them tell as much as one, and each is worth one over s^2 of a sample with noise alone. Counted as independent, they would make anything
 //! certain that follows them (the likelihood is tempered: Grunwald and van Ommen, Bayesian Analysis 12, 2017).
 
-use super::evidence::{Evidence, Prediction};
+use super::autocorrelation::integrated_autocorrelation_time;
+use super::evidence::{Evidence, Prediction, by_channel};
 use super::fit::{Fit, loss, robust_sum};
-use super::localise::by_channel;
-use super::remaining::integrated_autocorrelation_time;
 use super::settings::HUBER;
 use crate::plant::CHANNELS;
 

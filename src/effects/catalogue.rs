@@ -52,6 +52,9 @@ pub fn every() -> impl Iterator<Item = &'static Effect> {
         .chain([&SERVO_LAG])
 }
 
+/// Name of an effect that the vocabulary does not have.
+pub const UNLISTED: &str = "unlisted";
+
 /// Name in the vocabulary of an effect, and the joint that it is about, from 1.
 #[must_use]
 pub fn vocabulary(name: &str) -> (&str, Option<usize>) {

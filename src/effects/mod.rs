@@ -14,7 +14,7 @@ mod quantity;
 mod regulator;
 mod sensors;
 
-pub use catalogue::{CATALOGUE, every, vocabulary};
+pub use catalogue::{CATALOGUE, UNLISTED, every, vocabulary};
 pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG};
 pub use effect::{Clues, Effect, Parameter, Subsystem, Which};
 pub use header::{Header, kinds, meaning};

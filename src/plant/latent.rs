@@ -247,6 +247,11 @@ impl Moment {
 }
 
 impl Latent {
+    /// Count of the numbers that it has: its coefficients and, of waves, their frequency.
+    pub fn numbers(&self) -> usize {
+        self.coefficients.len() + usize::from(matches!(self.basis, Basis::Waves { .. }))
+    }
+
     /// Its value at a value of its variable and a speed of extension [m/s].
     pub fn value(&self, at: f64, speed: f64) -> f64 {
         if !at.is_finite() {

@@ -9,7 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::diagnosis::answer::{Answer, UNLISTED, Verdict};
+use crate::diagnosis::answer::{Answer, Verdict};
+use crate::effects::UNLISTED;
 use crate::laboratory::{CHANNELS, Known, SealedCase, SealedEffect};
 
 /// Score of a case.

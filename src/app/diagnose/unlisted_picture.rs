@@ -1,7 +1,7 @@
 //! unlisted.svg: a term without a name against its variable, with its 95 % band, and what the recordings say is needed there.
 
 use super::super::error::AppError;
-use crate::diagnosis::diagnose::Diagnosis;
+use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::unlisted::words::{self, Shown};
 use crate::diagnosis::unlisted::{Row, Shape};
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};

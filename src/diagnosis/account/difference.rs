@@ -1,6 +1,6 @@
 //! Where the recordings differ from the believed model.
 
-use super::super::diagnose::Diagnosis;
+use super::super::finding::Diagnosis;
 use super::super::localise::{Misfit, NOISE_ALONE, misfits, root_mean_square};
 use super::super::words::{CHANNEL_WORDS, in_unit, listed};
 use super::MOST_OTHERS;
@@ -29,7 +29,7 @@ impl Diagnosis {
         in_unit(misfit.channel, sigmas * self.evidence.noise[channel])
     }
 
-    pub(super) fn where_it_parts(&self) -> Vec<String> {
+    pub(super) fn where_it_differs(&self) -> Vec<String> {
         if self.best().finds_nothing() {
             let count = self.evidence.recordings.len();
             let recordings = if count == 1 {

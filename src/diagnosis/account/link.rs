@@ -1,6 +1,6 @@
 //! Which link of the chain does not explain its own recording.
 
-use super::super::diagnose::Diagnosis;
+use super::super::finding::Diagnosis;
 use super::super::links::{Link, LinkResidual};
 use super::super::localise::{NOISE_ALONE, root_mean_square};
 use super::super::regime::Regime;

@@ -2,8 +2,9 @@
 
 use super::super::answer::{Extent, FoundLaw};
 use super::super::details::{IN_TURN, PredictionError, RemainingError};
-use super::super::diagnose::{Diagnosis, spoken_name};
 use super::super::estimate::Limit;
+use super::super::finding::Diagnosis;
+use super::super::hypothesis::spoken_name;
 use super::super::links::Link;
 use super::super::recorded::COLUMNS;
 use super::super::words::{

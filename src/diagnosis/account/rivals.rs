@@ -1,7 +1,8 @@
 //! Explanations that the recordings do not tell apart, and the next recording to make.
 
 use super::super::details::Considered;
-use super::super::diagnose::{Diagnosis, Ranked, names_of};
+use super::super::finding::Diagnosis;
+use super::super::ranking::Ranked;
 use super::super::settings::Settings;
 use super::super::unlisted::words::{port, variable};
 use super::super::words::{listed, odds};
@@ -49,8 +50,8 @@ impl Diagnosis {
 
     /// An explanation beside the best one.
     fn instead(&self, rival: &Ranked) -> String {
-        let names = names_of(&rival.hypothesis);
-        let best = names_of(self.best());
+        let names = rival.hypothesis.spoken_names();
+        let best = self.best().spoken_names();
         let beyond = |all: &[String], known: &[String]| -> Vec<String> {
             all.iter().filter(|n| !known.contains(n)).cloned().collect()
         };

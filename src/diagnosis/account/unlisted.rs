@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::super::diagnose::Diagnosis;
+use super::super::finding::Diagnosis;
 use super::super::unlisted::known::known;
 use super::super::unlisted::report::NearEffects;
 use super::super::unlisted::words::{port, variable};
@@ -23,7 +23,7 @@ impl Diagnosis {
         };
         let latent = &shape.latent;
         let known = known(latent, shape.form);
-        let confidence = probability(self.confidence(super::super::answer::UNLISTED));
+        let confidence = probability(self.confidence(crate::effects::UNLISTED));
         vec![
             format!("{}. Probability {confidence}.", self.where_and_what(shape)),
             format!(

@@ -1,10 +1,10 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
 use super::super::cross_validation::{Depth, left_out};
+use super::super::evidence::by_channel;
 use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, rough_noise};
 use super::super::free::{Free, free_of};
 use super::super::hypothesis::{Hypothesis, covers, stands_for};
-use super::super::localise::by_channel;
 use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
 use super::{Search, same};

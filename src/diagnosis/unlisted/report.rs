@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::diagnose::{Diagnosis, Ranked, names_of};
+use super::super::finding::Diagnosis;
+use super::super::ranking::Ranked;
 use super::known::known;
 use super::shape::Row;
 
@@ -111,7 +112,7 @@ impl Diagnosis {
         near.into_iter()
             .take(MOST_NEAR)
             .map(|r| NearEffects {
-                effects: names_of(&r.hypothesis),
+                effects: r.hypothesis.spoken_names(),
                 share_explained: self.share_explained_by(&r.hypothesis),
                 behind: r.score - self.ranked[0].score,
             })

@@ -142,7 +142,7 @@ struct Spread {
 impl Spread {
     fn of(evidence: &Evidence, hypothesis: &Hypothesis, latent: &Latent) -> Self {
         let fit = &hypothesis.fit;
-        let own = latent::count(&fit.prediction.plant);
+        let own = hypothesis.unlisted().map_or(0, Latent::numbers);
         let first = fit.free.len() - own;
         let all = covariance(evidence, fit);
         let scale = |index: usize| match fit.free[first + index].coordinate {
