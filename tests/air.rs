@@ -2,7 +2,7 @@
 
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::valve::ValvePosition;
-use idc_cell::recording::{Channel, Recording, schema};
+use idc_cell::recording::{RecordedChannel, Recording, schema};
 use idc_cell::scenario::load_device;
 
 use crate::common::{project, run, scenario};
@@ -26,7 +26,7 @@ fn gap(recording: &Recording) -> f64 {
 
 /// The recording with one channel changed.
 fn tampered(recording: &Recording, name: &str, change: fn(f64) -> f64) -> Recording {
-    let channels = recording.channels().iter().map(|channel| Channel {
+    let channels = recording.channels().iter().map(|channel| RecordedChannel {
         values: match channel.quantity == name {
             true => channel.values.iter().map(|&value| change(value)).collect(),
             false => channel.values.clone(),

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
-use idc_cell::arm::chain::{BodyInertia, Chain, Joint, JointKind};
+use idc_cell::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
 use idc_cell::control::law::JointLaw;
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::seal_friction::SealFriction;
@@ -68,7 +68,7 @@ impl Press {
         let down = DQuat::from_rotation_x(PI);
         let cross = slide(JointKind::Prismatic, DVec3::X, 20.0, DPose3::IDENTITY);
         let vertical = slide(JointKind::Prismatic, DVec3::Z, mass, DPose3::IDENTITY);
-        let chain = Chain {
+        let chain = KinematicChain {
             joints: vec![cross, vertical],
             tip_from_last: DPose3::IDENTITY,
         };

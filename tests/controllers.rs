@@ -259,7 +259,7 @@ fn in_the_cell_each_takes_out_the_friction() {
         "| at best | {:.3} N | {unavoidable:.0} % | {least:.3} s |",
         open[1].persistence_error(&device)
     );
-    // The slide hardly moves: there is little to foretell, and the simplest is the quietest.
+    // The slide hardly moves: there is little to predict, and the simplest is the quietest.
     assert!(rms[0] / rms[1] > 20.0 && rms[1] < rms[2] && rms[1] < rms[3]);
     assert!(rms[0] / rms[2] > 12.0 && rms[0] / rms[3] > 12.0);
 }

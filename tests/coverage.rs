@@ -8,7 +8,9 @@ use idc_cell::diagnosis::free::{Free, free_of};
 use idc_cell::diagnosis::hypothesis::Hypothesis;
 use idc_cell::diagnosis::ranking::Ranked;
 use idc_cell::effects::{Effect, every};
-use idc_cell::laboratory::{Concealed, LaboratoryTrajectory, Programme, Recipe, Rig, run};
+use idc_cell::laboratory::{
+    Concealed, LaboratoryRig, LaboratoryTrajectory, Programme, Recipe, run,
+};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -30,7 +32,7 @@ const RECORDINGS: usize = 3;
 
 /// A device of the laboratory with what was recorded of it but for the noise.
 struct Device {
-    rig: Rig,
+    rig: LaboratoryRig,
     concealed: Concealed,
     recorded: Vec<(Programme, LaboratoryTrajectory)>,
 }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use idc_cell::recording::parquet::{StoredRecording, read_parquet};
-use idc_cell::recording::{Channel, Recording, Unit};
+use idc_cell::recording::{RecordedChannel, Recording, Unit};
 
 use crate::program::Outcome;
 use files::{ROWS, START, Truth, dotted, truth, whole};
@@ -193,8 +193,8 @@ fn what_the_program_writes_is_imported_and_read_alike() {
     let own = Recording::new(
         time,
         vec![
-            Channel::new("force", Unit::Newton, values(|t| t.force)),
-            Channel::new("stroke", Unit::Metre, values(|t| t.stroke)),
+            RecordedChannel::new("force", Unit::Newton, values(|t| t.force)),
+            RecordedChannel::new("stroke", Unit::Metre, values(|t| t.stroke)),
         ],
         Vec::new(),
     )

@@ -6,32 +6,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::source::{Sources, Token, sources, tokens};
 
-/// Circles that wait for their end, in `src/diagnosis`.
-const ALLOWED: [&[&str]; 2] = [
-    &[
-        "diagnosis/account.rs",
-        "diagnosis/answer.rs",
-        "diagnosis/details.rs",
-        "diagnosis/diagnose.rs",
-        "diagnosis/estimate.rs",
-        "diagnosis/extent.rs",
-        "diagnosis/unlisted/report.rs",
-    ],
-    &[
-        "diagnosis/cross_validation.rs",
-        "diagnosis/hypothesis.rs",
-        "diagnosis/latent.rs",
-        "diagnosis/localise.rs",
-        "diagnosis/mismatch.rs",
-        "diagnosis/model_error.rs",
-        "diagnosis/progress.rs",
-        "diagnosis/remaining.rs",
-        "diagnosis/ruled_out.rs",
-        "diagnosis/scale.rs",
-        "diagnosis/search.rs",
-    ],
-];
-
 /// A file as a module.
 struct Module {
     file: String,
@@ -326,22 +300,8 @@ fn told(sources: &Sources, circle: &BTreeSet<String>) -> String {
 fn no_circle_of_imports_has_more_than_two_files() {
     let sources = sources();
     let found = circles(&sources);
-    let allowed: Vec<BTreeSet<String>> = ALLOWED
-        .iter()
-        .map(|files| files.iter().map(|file| (*file).to_owned()).collect())
-        .collect();
-    let new: Vec<_> = found
-        .iter()
-        .filter(|circle| !allowed.iter().any(|known| circle.is_subset(known)))
-        .collect();
-    let text: Vec<String> = new.iter().map(|circle| told(&sources, circle)).collect();
-    assert!(new.is_empty(), "circles of imports:\n{}", text.join("\n"));
-    for known in &allowed {
-        assert!(
-            found.iter().any(|circle| circle.is_subset(known)),
-            "{known:?} is a circle no longer"
-        );
-    }
+    let text: Vec<String> = found.iter().map(|circle| told(&sources, circle)).collect();
+    assert!(found.is_empty(), "circles of imports:\n{}", text.join("\n"));
 }
 
 /// Files of a small crate.

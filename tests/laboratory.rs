@@ -1,7 +1,7 @@
 //! The laboratory against the simulator that a diagnosis fits: with nothing concealed they are the same device in two hands.
 
 use idc_cell::device::DeviceParameters;
-use idc_cell::laboratory::{Believed, Concealed, EFFECTS, Programme, Recipe, Rig, run};
+use idc_cell::laboratory::{Believed, Concealed, EFFECTS, LaboratoryRig, Programme, Recipe, run};
 use idc_cell::physics::end_cushioning::EndCushioning;
 use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
@@ -16,7 +16,7 @@ use idc_cell::plant::{
 };
 
 /// The same device in the simulator's own description.
-pub fn plant_of(rig: &Rig) -> PlantParameters {
+pub fn plant_of(rig: &LaboratoryRig) -> PlantParameters {
     PlantParameters {
         device: DeviceParameters {
             cylinder_count: rig.count,
@@ -110,7 +110,7 @@ fn with_nothing_concealed_it_agrees_with_the_simulator() {
 }
 
 /// The same effect in the simulator, all its numbers as they are in the laboratory.
-fn with_effect(rig: &Rig, concealed: &Concealed, name: &str) -> PlantParameters {
+fn with_effect(rig: &LaboratoryRig, concealed: &Concealed, name: &str) -> PlantParameters {
     let mut plant = plant_of(rig);
     let device = &mut plant.device;
     if let Some(seals) = &concealed.seals {

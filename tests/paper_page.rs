@@ -10,7 +10,7 @@ use idc_cell::recording::schema;
 use idc_cell::rig::Rig;
 use idc_cell::scenario::bench::BenchScenario;
 use idc_cell::scenario::load_bench;
-use idc_cell::sensing::Channel;
+use idc_cell::sensing::Measurement;
 
 use crate::common::project;
 
@@ -169,7 +169,7 @@ fn force_is_proportional_to_pressure_until_the_adc_is_full() {
         read_line(&sensed.summary, 3),
     );
     assert!(off > 5.0, "the ADC is full at the third level: {off}");
-    let Channel::Real(cell) = &mut scenario.sensing.force else {
+    let Measurement::Real(cell) = &mut scenario.sensing.force else {
         panic!("the paper's load cell is real")
     };
     cell.assumed_gain_resistor = 100.0;
@@ -180,7 +180,7 @@ fn force_is_proportional_to_pressure_until_the_adc_is_full() {
         read_line(&known.summary, 3),
     );
     assert!(off > 5.0, "and to know the resistor does not help: {off}");
-    let Channel::Real(cell) = &mut scenario.sensing.force else {
+    let Measurement::Real(cell) = &mut scenario.sensing.force else {
         panic!("the paper's load cell is real")
     };
     (cell.amplifier.gain_resistor, cell.assumed_gain_resistor) = (121.0, 121.0);
@@ -198,7 +198,7 @@ fn force_is_proportional_to_pressure_until_the_adc_is_full() {
 fn the_load_cells_chain_in_numbers() {
     const KILOGRAM: f64 = 9.806_65;
     let (scenario, finished) = run("paper_stairstep_sensed");
-    let Channel::Real(cell) = &scenario.sensing.force else {
+    let Measurement::Real(cell) = &scenario.sensing.force else {
         panic!("the paper's load cell is real")
     };
     let assumed = idc_cell::sensing::InstrumentationAmplifierParameters::gain_with(

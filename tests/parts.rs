@@ -329,7 +329,7 @@ fn of_set(set: &str, map: &str, logs: &[&str], predict: Option<&str>) -> Option<
 }
 
 #[test]
-fn real_seals_fitted_at_1_and_7_bar_foretell_5_bar() {
+fn real_seals_fitted_at_1_and_7_bar_predict_5_bar() {
     for (seal, most) in [("O-ring", 1.6), ("KDN", 1.05)] {
         let logs = [1, 5, 7].map(|bar| format!("{seal}_{bar}bar.csv"));
         let logs: Vec<&str> = logs.iter().map(String::as_str).collect();

@@ -8,7 +8,7 @@ use super::bench_picture::scene_of;
 use super::error::AppError;
 use super::run::Source;
 use super::viewer::{PART_INTERVAL, Watch};
-use crate::metrics::{BenchLimits, BenchSummary, Timing, Verdict, summarise_bench};
+use crate::metrics::{BenchLimits, BenchSummary, BoundCheck, Timing, summarise_bench};
 use crate::recording::Recording;
 use crate::recording::provenance::Provenance;
 use crate::rig::{Rig, RigError};
@@ -103,7 +103,7 @@ fn limits(scenario: &BenchScenario) -> BenchLimits {
 pub(super) fn document(
     scenario: &BenchScenario,
     finished: &FinishedBench,
-    expectations: &[Verdict],
+    expectations: &[BoundCheck],
     source: &Source,
     origin: &Provenance,
 ) -> Result<String, AppError> {
@@ -119,7 +119,7 @@ pub(super) fn document(
         /// Reason for an early stop of the run; null if it ran to its end.
         stopped: Option<String>,
         summary: &'a BenchSummary,
-        expectations: &'a [Verdict],
+        expectations: &'a [BoundCheck],
         samples: usize,
         provenance: &'a Provenance,
     }

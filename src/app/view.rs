@@ -10,10 +10,10 @@ use super::diagnose::natural;
 use super::error::{AppError, ExitCode};
 use super::files::{BOARD, RECORDING};
 use super::output::say;
-use super::viewer::{NativeViewer, Shown, ViewerError, WebPage};
+use super::viewer::{NativeViewer, Served, ViewerError, WebPage};
 use crate::recording::rerun::{check_rrd, viewer_version};
 
-/// Shown below the help.
+/// Served below the help.
 pub(super) const EXAMPLES: &str = "\
 The native viewer is the program `rerun` on the PATH, or the one that IDC_RERUN
 names, of the version that wrote the recording; without it, or without a
@@ -155,7 +155,7 @@ fn show_native(
 }
 
 fn show_page(arguments: &ViewArguments, files: &[PathBuf]) -> Result<ExitCode, AppError> {
-    let recordings = files.iter().cloned().map(Shown::File).collect();
+    let recordings = files.iter().cloned().map(Served::File).collect();
     let page = Arc::new(WebPage::listen(arguments.port, recordings)?);
     let address = page.address();
     if arguments.json {

@@ -58,7 +58,7 @@ pub struct Joint {
 
 /// A serial chain from a base to a tip.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chain {
+pub struct KinematicChain {
     /// The moving joints, base first.
     pub joints: Vec<Joint>,
     /// Tip frame in the last link's frame.
@@ -138,7 +138,7 @@ impl Joint {
     }
 }
 
-impl Chain {
+impl KinematicChain {
     /// Number of moving joints.
     pub fn len(&self) -> usize {
         self.joints.len()

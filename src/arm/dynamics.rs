@@ -4,7 +4,7 @@
 //! algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 and 6), written with
 //! three-vectors. Joint damping and friction are not part of either: they belong to the joints' drives.
 
-use crate::arm::chain::{BodyInertia, Chain, JointKind, MAX_JOINTS};
+use crate::arm::chain::{BodyInertia, JointKind, KinematicChain, MAX_JOINTS};
 use crate::arm::kinematics::link_poses;
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
@@ -31,7 +31,7 @@ const AT_REST: LinkState = LinkState {
 /// `world_from_base` turns base axes into world axes, `gravity` is in world axes [m/s2]. The slices must
 /// have the chain's length, which is at most [`MAX_JOINTS`]. Allocates nothing.
 pub fn inverse_dynamics(
-    chain: &Chain,
+    chain: &KinematicChain,
     world_from_base: DQuat,
     gravity: DVec3,
     q: &[f64],
@@ -98,7 +98,7 @@ pub fn inverse_dynamics(
 
 /// Joint torques [N m] and forces [N] that hold the chain still against gravity [m/s2, world axes].
 pub fn gravity_torques(
-    chain: &Chain,
+    chain: &KinematicChain,
     world_from_base: DQuat,
     gravity: DVec3,
     q: &[f64],
@@ -112,7 +112,7 @@ pub fn gravity_torques(
 /// Writes the joint-space mass matrix [kg m2, kg m or kg] at positions `q`.
 ///
 /// `out` must be square and of the chain's length. Neither the base's pose nor gravity enters.
-pub fn mass_matrix(chain: &Chain, q: &[f64], out: &mut DMatrix<f64>) {
+pub fn mass_matrix(chain: &KinematicChain, q: &[f64], out: &mut DMatrix<f64>) {
     let count = chain.len();
     assert_eq!(out.shape(), (count, count), "one row and column a joint");
     let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
@@ -155,14 +155,20 @@ mod tests {
 
     const DOWN: DVec3 = DVec3::new(0.0, 0.0, -9.81);
 
-    fn torques(chain: &Chain, q: &[f64], qd: &[f64], qdd: &[f64], gravity: DVec3) -> Vec<f64> {
+    fn torques(
+        chain: &KinematicChain,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        gravity: DVec3,
+    ) -> Vec<f64> {
         let mut out = vec![0.0; chain.len()];
         let turned = DQuat::from_rotation_y(0.3);
         inverse_dynamics(chain, turned, gravity, q, qd, qdd, &mut out);
         out
     }
 
-    fn mass(chain: &Chain, q: &[f64]) -> DMatrix<f64> {
+    fn mass(chain: &KinematicChain, q: &[f64]) -> DMatrix<f64> {
         let mut out = DMatrix::zeros(chain.len(), chain.len());
         mass_matrix(chain, q, &mut out);
         out
@@ -250,7 +256,7 @@ mod tests {
         }
     }
 
-    fn potential_energy(chain: &Chain, turned: DQuat, q: &[f64]) -> f64 {
+    fn potential_energy(chain: &KinematicChain, turned: DQuat, q: &[f64]) -> f64 {
         let mut poses = vec![DPose3::IDENTITY; chain.len()];
         link_poses(chain, DPose3::from_rotation(turned), q, &mut poses);
         let bodies = chain.joints.iter().zip(&poses);

@@ -15,7 +15,7 @@ mod tests;
 
 pub use problem::{IkFailure, IkOptions, IkSolution, LimitingAxis, TipOrientation};
 
-use crate::arm::chain::Chain;
+use crate::arm::chain::KinematicChain;
 use descent::Search;
 use glamx::DPose3;
 use rand::SeedableRng;
@@ -29,7 +29,7 @@ use rand_chacha::ChaCha8Rng;
 /// # Errors
 /// No posture was found; `world_from_tip` or `start` is not finite.
 pub fn solve(
-    chain: &Chain,
+    chain: &KinematicChain,
     world_from_base: DPose3,
     world_from_tip: &DPose3,
     start: &[f64],
@@ -68,7 +68,7 @@ pub fn solve(
 /// Answers closer than 1e-3 rad or m in every joint count as one. For choosing a posture; a chain with
 /// spare degrees of freedom gives samples of its endless family.
 pub fn distinct_solutions(
-    chain: &Chain,
+    chain: &KinematicChain,
     world_from_base: DPose3,
     world_from_tip: &DPose3,
     starts: usize,

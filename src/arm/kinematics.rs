@@ -3,7 +3,7 @@
 //! Jacobian columns: `axis x (point - joint)` over `axis` for a revolute joint, `axis` over zero for a
 //! prismatic one, all in world axes (Siciliano et al., Robotics, 2009, sec. 3.1).
 
-use crate::arm::chain::{Chain, JointKind, MAX_JOINTS};
+use crate::arm::chain::{JointKind, KinematicChain, MAX_JOINTS};
 use glam::DVec3;
 use glamx::DPose3;
 use nalgebra::SMatrix;
@@ -15,7 +15,7 @@ pub type Jacobian = SMatrix<f64, 6, MAX_JOINTS>;
 /// Writes `world_from_link` of every link, base first.
 ///
 /// `q` and `out` must have the chain's length.
-pub fn link_poses(chain: &Chain, world_from_base: DPose3, q: &[f64], out: &mut [DPose3]) {
+pub fn link_poses(chain: &KinematicChain, world_from_base: DPose3, q: &[f64], out: &mut [DPose3]) {
     debug_assert!(q.len() == chain.len() && out.len() == chain.len());
     let mut world_from_link = world_from_base;
     for ((joint, position), pose) in chain.joints.iter().zip(q).zip(out) {
@@ -25,7 +25,7 @@ pub fn link_poses(chain: &Chain, world_from_base: DPose3, q: &[f64], out: &mut [
 }
 
 /// `world_from_tip` at joint positions `q`.
-pub fn tip_pose(chain: &Chain, world_from_base: DPose3, q: &[f64]) -> DPose3 {
+pub fn tip_pose(chain: &KinematicChain, world_from_base: DPose3, q: &[f64]) -> DPose3 {
     debug_assert_eq!(q.len(), chain.len());
     let last = chain
         .joints
@@ -39,7 +39,11 @@ pub fn tip_pose(chain: &Chain, world_from_base: DPose3, q: &[f64]) -> DPose3 {
 
 /// Jacobian of `point_in_world`, taken as rigidly on the last link, from poses of [`link_poses`].
 #[inline]
-pub fn jacobian_at(chain: &Chain, world_from_link: &[DPose3], point_in_world: DVec3) -> Jacobian {
+pub fn jacobian_at(
+    chain: &KinematicChain,
+    world_from_link: &[DPose3],
+    point_in_world: DVec3,
+) -> Jacobian {
     let mut jacobian = Jacobian::zeros();
     for (index, (joint, pose)) in chain.joints.iter().zip(world_from_link).enumerate() {
         // The joint turns the link about its own axis, so the axis is the same in the moved frame.
@@ -59,7 +63,7 @@ pub fn jacobian_at(chain: &Chain, world_from_link: &[DPose3], point_in_world: DV
 /// Torques [N m] and forces [N] by which a force [N] at a point of the last link drives the joints: J^T f, from poses of [`link_poses`].
 #[inline]
 pub fn point_force_torques(
-    chain: &Chain,
+    chain: &KinematicChain,
     world_from_link: &[DPose3],
     point_in_world: DVec3,
     force_in_world: DVec3,
@@ -78,7 +82,7 @@ pub fn point_force_torques(
 
 /// Jacobian of a point given in the last link's frame [m], at joint positions `q`.
 pub fn geometric_jacobian(
-    chain: &Chain,
+    chain: &KinematicChain,
     world_from_base: DPose3,
     q: &[f64],
     point_in_last_link: DVec3,

@@ -11,5 +11,5 @@ pub mod urdf;
 #[cfg(test)]
 pub(crate) mod test_chains;
 
-pub use chain::{BodyInertia, Chain, Joint, JointKind, MAX_JOINTS};
+pub use chain::{BodyInertia, Joint, JointKind, KinematicChain, MAX_JOINTS};
 pub use urdf::{Arm, ArmError, ArmOptions, LimitOverride, Visual, VisualShape, load_arm};

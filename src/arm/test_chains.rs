@@ -1,6 +1,6 @@
 //! Chains that several of the arm's unit tests share.
 
-use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind};
+use crate::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
 use crate::arm::urdf::{ArmOptions, load_arm};
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
@@ -34,10 +34,10 @@ fn point_mass(mass: f64, centre_of_mass: DVec3) -> BodyInertia {
 }
 
 /// Two links along x turning about z, point masses at their ends; and the two lengths [m].
-pub fn planar_two_link() -> (Chain, [f64; 2]) {
+pub fn planar_two_link() -> (KinematicChain, [f64; 2]) {
     let lengths = [0.7, 0.4];
     let ends = lengths.map(|length| DVec3::new(length, 0.0, 0.0));
-    let chain = Chain {
+    let chain = KinematicChain {
         joints: vec![
             joint(DPose3::IDENTITY, point_mass(2.5, ends[0])),
             joint(DPose3::from_translation(ends[0]), point_mass(1.2, ends[1])),
@@ -48,7 +48,7 @@ pub fn planar_two_link() -> (Chain, [f64; 2]) {
 }
 
 /// A pendulum about y hanging along -z at zero; mass [kg], length to the centre [m], inertia there [kg m2].
-pub fn vertical_pendulum() -> (Chain, f64, f64, f64) {
+pub fn vertical_pendulum() -> (KinematicChain, f64, f64, f64) {
     let (mass, length, inertia) = (3.0, 0.45, 0.07);
     let body = BodyInertia {
         mass,
@@ -58,7 +58,7 @@ pub fn vertical_pendulum() -> (Chain, f64, f64, f64) {
     let mut only = joint(DPose3::from_translation(DVec3::new(0.1, 0.2, 0.3)), body);
     // Positive angles swing towards -x.
     only.axis = DVec3::Y;
-    let chain = Chain {
+    let chain = KinematicChain {
         joints: vec![only],
         tip_from_last: DPose3::IDENTITY,
     };
@@ -66,7 +66,7 @@ pub fn vertical_pendulum() -> (Chain, f64, f64, f64) {
 }
 
 /// `count` joints with random frames, axes and bodies; every third joint slides.
-pub fn random_chain(seed: u64, count: usize) -> Chain {
+pub fn random_chain(seed: u64, count: usize) -> KinematicChain {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut vector = move || {
         DVec3::new(
@@ -92,7 +92,7 @@ pub fn random_chain(seed: u64, count: usize) -> Chain {
         }
         joint
     });
-    Chain {
+    KinematicChain {
         joints: joints.collect(),
         tip_from_last: DPose3::from_parts(DVec3::new(0.1, 0.2, -0.1), DQuat::from_rotation_y(0.4)),
     }
@@ -105,7 +105,7 @@ pub fn random_positions(seed: u64, count: usize) -> Vec<f64> {
 }
 
 /// The arm of models/arm.
-pub fn arm10() -> Chain {
+pub fn arm10() -> KinematicChain {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/arm/arm10.urdf");
     let options = ArmOptions {
         tip_link: "flange".into(),
@@ -115,7 +115,7 @@ pub fn arm10() -> Chain {
 }
 
 /// Seven axes, alternately along and across the links, as light arms with an elbow that swivels have.
-pub fn seven_axes() -> Chain {
+pub fn seven_axes() -> KinematicChain {
     let quarter = std::f64::consts::FRAC_PI_2;
     let frames = [
         (0.0, 0.36),
@@ -133,7 +133,7 @@ pub fn seven_axes() -> Chain {
             point_mass(3.0, DVec3::new(0.0, 0.05, 0.1)),
         )
     });
-    Chain {
+    KinematicChain {
         joints: joints.to_vec(),
         tip_from_last: DPose3::from_translation(DVec3::new(0.0, 0.0, 0.13)),
     }

@@ -1,6 +1,6 @@
 //! Loads a serial arm from a URDF file: everything is honoured, noted by name or refused by name.
 //!
-//! The path from base to tip becomes a [`Chain`]; whatever hangs on it by fixed joints, or by moving joints
+//! The path from base to tip becomes a [`KinematicChain`]; whatever hangs on it by fixed joints, or by moving joints
 //! off the path (gripper fingers), is welded on with its mass. Format: <http://wiki.ros.org/urdf/XML>.
 
 mod arm;
@@ -18,7 +18,7 @@ mod tests;
 pub use arm::{Arm, ArmOptions, LimitOverride, Visual, VisualShape};
 pub use error::{ArmError, Refusal};
 
-use crate::arm::chain::Chain;
+use crate::arm::chain::KinematicChain;
 use std::path::Path;
 use tree::Tree;
 
@@ -82,7 +82,7 @@ fn assemble(robot: &urdf_rs::Robot, folder: &Path, options: &ArmOptions) -> Resu
     notes.push("collision shapes of the arm are not simulated".to_string());
     Ok(Arm {
         name: robot.name.clone(),
-        chain: Chain {
+        chain: KinematicChain {
             joints,
             tip_from_last: tree.tip_from_last,
         },

@@ -34,7 +34,7 @@ use crate::scenario::files_of_cell;
 use crate::scenario::recorded_cell::improved_cell_text;
 use crate::scenario::rig_file::{RigFile, from_text, improved_text};
 use cell::CellCase;
-use rig::ShownRun;
+use rig::MeasuredRun;
 
 /// Name of the improved model's file.
 pub const IMPROVED: &str = "improved.toml";
@@ -60,8 +60,8 @@ enum Kind {
     /// A contact flange, seen from outside.
     Flange {
         rig: Box<RigFile>,
-        runs: Vec<ShownRun>,
-        unseen: Option<Box<ShownRun>>,
+        runs: Vec<MeasuredRun>,
+        unseen: Option<Box<MeasuredRun>>,
     },
 }
 
@@ -251,11 +251,11 @@ fn prediction(
 /// Results of the runs of a contact flange.
 fn of_flange_runs(
     rig: &RigFile,
-    runs: &[ShownRun],
-    unseen: Option<&ShownRun>,
+    runs: &[MeasuredRun],
+    unseen: Option<&MeasuredRun>,
     start: Instant,
 ) -> Diagnosed {
-    let named = |(run, shown): &ShownRun| (run.name.clone(), shown.clone());
+    let named = |(run, shown): &MeasuredRun| (run.name.clone(), shown.clone());
     let diagnosis = FlangeDiagnosis {
         runs: runs.iter().map(named).collect(),
         unseen: unseen.map(named),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::error::CaseError;
 use super::recordings::read_rig;
-use crate::diagnosis::flange::{NoContact, Run, Shown};
+use crate::diagnosis::flange::{NoContact, Run, RunMetrics};
 use crate::diagnosis::input::{DiagnosisInput, NamedRecording, of_link, tolerated};
 use crate::diagnosis::recorded::{recorded_of, run_of};
 use crate::effects::{candidates, sought};
@@ -101,14 +101,14 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
 }
 
 /// A run of a contact flange with its features.
-pub(super) type ShownRun = (Run, Shown);
+pub(super) type MeasuredRun = (Run, RunMetrics);
 
 /// Runs of a contact flange: those to diagnose from and the one to be predicted.
 pub(super) fn flange_runs(
     rig: &RigFile,
     folder: &Path,
-) -> Result<(Vec<ShownRun>, Option<ShownRun>), CaseError> {
-    let shown = |name: &String| -> Result<ShownRun, CaseError> {
+) -> Result<(Vec<MeasuredRun>, Option<MeasuredRun>), CaseError> {
+    let shown = |name: &String| -> Result<MeasuredRun, CaseError> {
         let path = folder.join(name);
         let file = path.display().to_string();
         let run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
@@ -116,7 +116,7 @@ pub(super) fn flange_runs(
             folder: folder.display().to_string(),
             source,
         };
-        let shown = run.shown().map_err(refused)?;
+        let shown = run.metrics().map_err(refused)?;
         Ok((run, shown))
     };
     let runs = to_fit(rig, folder)?

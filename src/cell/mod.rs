@@ -12,7 +12,7 @@ use glamx::DPose3;
 pub use error::CellError;
 pub use part::{Part, choose_edge, station};
 
-use crate::arm::chain::{BodyInertia, Chain, Joint, JointKind, MAX_JOINTS};
+use crate::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain, MAX_JOINTS};
 use crate::arm::kinematics::{jacobian_at, link_poses};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
 use crate::control::force::ForceController;
@@ -32,9 +32,9 @@ pub struct Cell {
     /// The arm.
     pub arm: Arm,
     /// The arm with the device's slide as its last joint, as its controller believes it to be.
-    pub arm_with_slide: Chain,
+    pub arm_with_slide: KinematicChain,
     /// The same as it is.
-    pub bodies: Chain,
+    pub bodies: KinematicChain,
     /// Transmission between motor and link of each of its joints, base first; none where they are one.
     pub transmissions: Vec<Option<TransmissionParameters>>,
     /// Its physics.
@@ -184,7 +184,7 @@ pub fn arm_options(arm: &ArmScenario) -> ArmOptions {
     }
 }
 
-fn check_drives(scenario: &Scenario, chain: &Chain) -> Result<(), CellError> {
+fn check_drives(scenario: &Scenario, chain: &KinematicChain) -> Result<(), CellError> {
     let known = |name: &str| chain.joints.iter().any(|joint| joint.name == name);
     match scenario.arm.drives.iter().find(|d| !known(&d.joint)) {
         None => Ok(()),
@@ -196,7 +196,7 @@ fn check_drives(scenario: &Scenario, chain: &Chain) -> Result<(), CellError> {
     }
 }
 
-fn check_seed_posture(scenario: &Scenario, arm: &Chain) -> Result<(), CellError> {
+fn check_seed_posture(scenario: &Scenario, arm: &KinematicChain) -> Result<(), CellError> {
     match &scenario.arm.seed_posture {
         Some(posture) if posture.len() != arm.len() => Err(CellError::SeedPosture {
             file: scenario.path.clone(),
@@ -208,7 +208,7 @@ fn check_seed_posture(scenario: &Scenario, arm: &Chain) -> Result<(), CellError>
 }
 
 /// The arm's chain with the device's moving part, of a mass [kg], on a prismatic joint along the flange's z.
-fn with_slide(arm: &Chain, scenario: &Scenario, mass: f64) -> Chain {
+fn with_slide(arm: &KinematicChain, scenario: &Scenario, mass: f64) -> KinematicChain {
     let device = &scenario.device;
     let gyration = device.moving_radius_of_gyration;
     let mut chain = arm.clone();
@@ -235,8 +235,8 @@ fn with_slide(arm: &Chain, scenario: &Scenario, mass: f64) -> Chain {
 
 fn plan_request<'a>(
     scenario: &'a Scenario,
-    arm: &'a Chain,
-    arm_with_slide: &'a Chain,
+    arm: &'a KinematicChain,
+    arm_with_slide: &'a KinematicChain,
     tool_path: ToolPath,
 ) -> PlanRequest<'a> {
     let (process, device) = (&scenario.process, &scenario.device);

@@ -1,7 +1,7 @@
 //! A cell's physics as one description, the same that a diagnosis compares with recordings: what its scenario says, and the effects put in.
 
 use super::error::CellError;
-use crate::arm::chain::Chain;
+use crate::arm::chain::KinematicChain;
 use crate::control::transmission::TransmissionParameters;
 use crate::effects::PresentEffect;
 use crate::plant::{CellParameters, OwnLaw, Periodic, PlantParameters};
@@ -11,7 +11,10 @@ use crate::scenario::Scenario;
 ///
 /// # Errors
 /// An effect that a running cell cannot have.
-pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, CellError> {
+pub(super) fn of(
+    scenario: &Scenario,
+    chain: &KinematicChain,
+) -> Result<PlantParameters, CellError> {
     let contact = &scenario.contact;
     let mut cell = CellParameters {
         servo_bandwidth: scenario.arm.servo.lag_bandwidth,
@@ -77,7 +80,7 @@ pub(super) fn of(scenario: &Scenario, chain: &Chain) -> Result<PlantParameters, 
 /// Transmission between motor and link of each joint; none where they are one.
 pub(super) fn transmissions(
     scenario: &Scenario,
-    chain: &Chain,
+    chain: &KinematicChain,
     cell: &CellParameters,
 ) -> Vec<Option<TransmissionParameters>> {
     let joints = chain.joints.iter().enumerate();

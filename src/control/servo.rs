@@ -11,7 +11,7 @@
 //! effort limit in the middle of the step is replaced by the constant torque at the limit, and the integral waits.
 
 use super::law::JointLaw;
-use crate::arm::chain::Chain;
+use crate::arm::chain::KinematicChain;
 
 /// Gains of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,7 +61,7 @@ pub struct AxisCommand {
 
 impl Servo {
     /// A servo for the axes of `arm` with their own inertias [kg m2].
-    pub fn new(arm: &Chain, inertias: &[f64], parameters: &ServoParameters) -> Self {
+    pub fn new(arm: &KinematicChain, inertias: &[f64], parameters: &ServoParameters) -> Self {
         let gains = arm
             .joints
             .iter()
@@ -163,7 +163,7 @@ mod tests {
             friction: 0.0,
             body: BodyInertia::ZERO,
         };
-        let arm = Chain {
+        let arm = KinematicChain {
             joints: vec![joint],
             tip_from_last: glamx::DPose3::IDENTITY,
         };

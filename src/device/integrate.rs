@@ -83,13 +83,13 @@ pub(super) struct Mode {
 }
 
 /// A sub-step's surroundings.
-pub(super) struct Leg<'a, C> {
+pub(super) struct Surroundings<'a, C> {
     pub(super) device: &'a Device,
     carrier: &'a C,
     pub(super) valve: ValvePosition,
     pub(super) trajectory: OutletTrajectory,
     /// Start of the trajectory in the step [s].
-    pub(super) course_start: f64,
+    pub(super) trajectory_start: f64,
     /// Deflection of the seals at the start of the sub-step [m].
     deflection: f64,
     pub(super) disturbance: Disturbance,
@@ -128,22 +128,22 @@ impl Device {
             // A hair's breadth less than one more sub-step is rounding.
             let count = (trajectory.duration / longest - 1e-9).ceil().max(0.0);
             let h = trajectory.duration / count.max(1.0);
-            let mut leg = Leg {
+            let mut surroundings = Surroundings {
                 device: self,
                 carrier,
                 valve: state.spool.position(state.valve),
                 trajectory,
-                course_start: time,
+                trajectory_start: time,
                 deflection: state.seal_deflection,
                 disturbance: state.disturbance,
             };
             if count > 0.0 {
-                leg.begin::<LEDGER>(&mut flow, time, h);
+                surroundings.begin::<LEDGER>(&mut flow, time, h);
             }
             for i in 1..count as usize {
-                leg.advance::<LEDGER>(&mut flow, time + h * i as f64, h);
+                surroundings.advance::<LEDGER>(&mut flow, time + h * i as f64, h);
             }
-            state.seal_deflection = leg.deflection;
+            state.seal_deflection = surroundings.deflection;
             state.regulator.follow(regulator, &trajectory);
             state.spool.advance(trajectory.duration);
             if let Some(reservoir) = &self.parameters.supply_reservoir {
@@ -193,7 +193,7 @@ impl Device {
     }
 }
 
-impl<C: Carrier> Leg<'_, C> {
+impl<C: Carrier> Surroundings<'_, C> {
     /// Advances over the first sub-step of a trajectory. Where the outlet leaves the chamber's pressure, the flow begins with the root of time, which a step
     /// of whatever order meets with an error of its length to the power 1.5 alone: that sub-step is halved towards its start.
     fn begin<const LEDGER: bool>(&mut self, flow: &mut Flow, start: f64, h: f64) {
@@ -295,7 +295,7 @@ impl<C: Carrier> Leg<'_, C> {
 
     /// Pressure at the regulator's outlet at a time in the step [Pa gauge].
     pub(super) fn outlet(&self, time: f64) -> f64 {
-        self.trajectory.at(time - self.course_start) + self.disturbance.outlet
+        self.trajectory.at(time - self.trajectory_start) + self.disturbance.outlet
     }
 
     /// One Runge-Kutta step.

@@ -5,7 +5,7 @@
 //! sub-step, and ends on its last stage, so that a fast line comes out where inflow and outflow balance.
 
 use super::carrier::{Carrier, PistonMotion};
-use super::integrate::{Flow, Leg, Mode};
+use super::integrate::{Flow, Mode, Surroundings};
 use super::pneumatics::Device;
 use super::state::AirState;
 use crate::physics::flow_slope::FlowSlope;
@@ -72,7 +72,7 @@ const IMPLICIT: [[f64; 5]; 6] = [
     ],
 ];
 
-impl<C: Carrier> Leg<'_, C> {
+impl<C: Carrier> Surroundings<'_, C> {
     /// One step of the pair.
     pub(super) fn line_step<const LEDGER: bool>(
         &self,

@@ -96,8 +96,8 @@ impl AirState {
 /// ```
 ///
 /// `Device::advance` moves the piston as predicted, at one speed throughout its step: there the second has no change on its left, and the carrier's
-/// work is what the foreteller puts in to hold that speed, the negative of the returned force times the way. What the mass gains from one step to
-/// the next is the foreteller's own account.
+/// work is what the caller's prediction puts in to hold that speed, the negative of the returned force times the way. What the mass gains from one step to
+/// the next is the caller's own account.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EnergyLedger {
     /// Enthalpy of the air that came into the chambers, less that of what went out.

@@ -48,7 +48,7 @@ pub struct Details {
     pub ruled_out: Vec<RuledOutReport>,
     /// Results of each run of a contact flange.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub runs: Vec<RunShown>,
+    pub runs: Vec<RunReport>,
     /// Prediction of a run of a contact flange that was not looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub predicted: Option<PredictedRun>,
@@ -171,7 +171,7 @@ pub struct RuledOutReport {
 
 /// Result of a run of a contact flange.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RunShown {
+pub struct RunReport {
     /// File name.
     pub recording: String,
     /// First contact.

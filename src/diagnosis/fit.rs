@@ -396,6 +396,72 @@ impl<'a> Refit<'a> {
     }
 }
 
+/// Cost of a prediction by the rough measure: the piston held to its measured motion.
+fn rough_cost(evidence: &Evidence, prediction: &Prediction) -> f64 {
+    let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
+    let held = (!prediction.guided).then(|| evidence.predict(&prediction.plant, true, None));
+    let weighing = Weighing {
+        shares: &shares,
+        limit: HUBER,
+        bounded: ROUGH[0].bounded,
+    };
+    weighing.sum(&held.as_ref().unwrap_or(prediction).residuals)
+}
+
+/// A fit on its way.
+struct Walk<'a> {
+    evidence: &'a Evidence,
+    free: &'a [Free],
+    values: Vec<f64>,
+    /// Prediction at these values.
+    here: Prediction,
+    /// Penalty of the prior at these values [1].
+    prior: f64,
+    /// Levenberg and Marquardt's damping [1].
+    damping: f64,
+    longest_step: f64,
+}
+
+impl Walk<'_> {
+    /// One iteration from where the cost is `before`: steps more and more damped, until one gains or none promises to. Returns the gain.
+    fn iterate(
+        &mut self,
+        weighing: &Weighing<'_>,
+        before: f64,
+        normal: &DMatrix<f64>,
+        gradient: &DVector<f64>,
+    ) -> f64 {
+        for _ in 0..MOST_TRIES {
+            let tried = step(
+                self.free,
+                &self.values,
+                normal,
+                gradient,
+                self.damping,
+                self.longest_step,
+            );
+            let Some((tried, promised)) = tried else {
+                self.damping *= 10.0;
+                continue;
+            };
+            if promised < LEAST_GAIN {
+                break;
+            }
+            let plant = with_values(&self.here.plant, self.free, &tried);
+            let there = (self.evidence).predict(&plant, self.here.guided, Some(&self.here));
+            let prior = prior_sum(self.free, &tried);
+            let after = weighing.sum(&there.residuals) + prior;
+            if after < before {
+                (self.values, self.here, self.prior) = (tried, there, prior);
+                self.damping = (self.damping * 0.1).max(1e-6);
+                return before - after;
+            }
+            self.damping *= 10.0;
+        }
+        0.0
+    }
+}
+
 /// Fits free quantities from where they start, the derivatives by the first of them `frozen`; `known` may spare simulations.
 pub fn fit(
     evidence: &Evidence,
@@ -404,12 +470,18 @@ pub fn fit(
     stages: &[Stage],
     limit: Limit,
 ) -> Fit {
-    let mut values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
-    let mut here = evidence.predict(&with_values(plant, free, &values), stages[0].guided, known);
-    let mut prior = prior_sum(free, &values);
+    let values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
+    let mut walk = Walk {
+        evidence,
+        free,
+        here: evidence.predict(&with_values(plant, free, &values), stages[0].guided, known),
+        prior: prior_sum(free, &values),
+        values,
+        damping: 1e-4,
+        longest_step: limit.longest_step,
+    };
     let mut information = DMatrix::zeros(free.len(), free.len());
     let mut columns: Vec<Vec<f64>> = frozen.to_vec();
-    let mut damping = 1e-4;
     let mut left = limit.iterations;
     for &Stage {
         forgiven,
@@ -418,67 +490,44 @@ pub fn fit(
         gain: least,
     } in stages
     {
-        if here.guided != guided {
-            here = evidence.predict(&here.plant, guided, None);
+        if walk.here.guided != guided {
+            walk.here = evidence.predict(&walk.here.plant, guided, None);
         }
         let shares = evidence.shares(forgiven, guided);
         while left > 0 {
             left -= 1;
             columns.truncate(frozen.len());
-            columns.extend(jacobian(evidence, &here, free, &values, frozen.len()));
+            columns.extend(jacobian(
+                evidence,
+                &walk.here,
+                free,
+                &walk.values,
+                frozen.len(),
+            ));
+            let residuals = &walk.here.residuals;
             let weighing = Weighing {
                 shares: &shares,
-                limit: limit_for(&here.residuals, &shares),
+                limit: limit_for(residuals, &shares),
                 bounded,
             };
-            let before = weighing.sum(&here.residuals) + prior;
+            let before = weighing.sum(residuals) + walk.prior;
             let (normal, gradient) =
-                normal_equations(&columns, &here.residuals, &weighing, free, &values);
-            information.copy_from(&normal);
-            let mut gain = 0.0;
-            for _ in 0..MOST_TRIES {
-                let tried = step(
-                    free,
-                    &values,
-                    &normal,
-                    &gradient,
-                    damping,
-                    limit.longest_step,
-                );
-                let Some((tried, promised)) = tried else {
-                    damping *= 10.0;
-                    continue;
-                };
-                if promised < LEAST_GAIN {
-                    break;
-                }
-                let there =
-                    evidence.predict(&with_values(&here.plant, free, &tried), guided, Some(&here));
-                let prior_there = prior_sum(free, &tried);
-                let after = weighing.sum(&there.residuals) + prior_there;
-                if after < before {
-                    gain = before - after;
-                    (values, here, prior) = (tried, there, prior_there);
-                    damping = (damping * 0.1).max(1e-6);
-                    break;
-                }
-                damping *= 10.0;
-            }
+                normal_equations(&columns, residuals, &weighing, free, &walk.values);
+            let gain = walk.iterate(&weighing, before, &normal, &gradient);
+            information = normal;
             if gain < LEAST_GAIN.max(least * before) {
                 break;
             }
         }
     }
+    let Walk {
+        values,
+        here,
+        prior,
+        ..
+    } = walk;
     let misfit = robust_sum(&here.residuals);
-    let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
-    let held = (!here.guided).then(|| evidence.predict(&here.plant, true, None));
-    let rough = Weighing {
-        shares: &shares,
-        limit: HUBER,
-        bounded: ROUGH[0].bounded,
-    }
-    .sum(&held.as_ref().unwrap_or(&here).residuals)
-        + prior;
+    let rough = rough_cost(evidence, &here) + prior;
     Fit {
         free: free.to_vec(),
         values,

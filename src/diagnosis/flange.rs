@@ -8,6 +8,7 @@
 //! they differ from run to run (Student's t), with the force sampled as it was. What cannot be told without pressure and stroke is said to be so.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// One run.
 #[derive(Debug, Clone)]
@@ -26,7 +27,7 @@ pub struct Run {
 
 /// Result of a run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shown {
+pub struct RunMetrics {
     /// Time of first contact [s].
     pub contact: f64,
     /// Speed at which the tool came [m/s].
@@ -123,60 +124,41 @@ pub enum NoContact {
     },
 }
 
+/// How the tool touches.
+struct Touch {
+    /// First sample in contact.
+    first: usize,
+    /// Its time [s].
+    contact: f64,
+    /// Force from which there is contact [N].
+    limit: f64,
+    /// Speed at which the tool came [m/s].
+    approach: f64,
+    /// Force desired before contact [N].
+    before: f64,
+    /// Force desired after it [N].
+    desired: f64,
+}
+
 impl Run {
     /// Result of the run.
     ///
     /// # Errors
     /// There is no contact, it is there from the start, or the run ends soon after it; the arm stands as it touches; nothing is desired.
-    pub fn shown(&self) -> Result<Shown, NoContact> {
+    pub fn metrics(&self) -> Result<RunMetrics, NoContact> {
         let (time, force) = (&self.time, &self.force);
-        let free = force.len().min(200);
-        let noise = deviation(&force[..free / 2]);
-        let limit = CONTACT.1.max(CONTACT.0 * noise);
-        let refused = || NoContact::Never {
-            run: self.name.clone(),
+        let touch = self.touch()?;
+        let Touch {
+            first,
+            contact,
             limit,
-        };
-        let first = force.iter().position(|f| *f > limit).ok_or_else(refused)?;
-        let contact = time[first];
-        let between = |from: f64, to: f64| {
-            time.partition_point(|t| *t < from)..time.partition_point(|t| *t < to)
-        };
-        let approaching = between(contact - APPROACH.0, contact - APPROACH.1);
-        if approaching.len() < 2 {
-            return Err(refused());
-        }
-        let approach = mean(&self.speed[approaching.clone()]);
-        let before = median(&self.desired[approaching]);
-        if approach.is_nan() || approach < COMES {
-            let run = self.name.clone();
-            return Err(NoContact::Stands { run, approach });
-        }
-        let left = time[time.len() - 1] - contact;
-        if left < PRESSED {
-            let run = self.name.clone();
-            return Err(NoContact::Short { run, left });
-        }
-        // The arm stands from when it has come to rest until it moves again, or another force is desired.
-        let held = between(contact, contact + LONGEST);
-        let desired = median(&self.desired[between(contact + 0.3, contact + 1.5)]);
-        if desired <= 0.0 {
-            let run = self.name.clone();
-            return Err(NoContact::Undesired { run, desired });
-        }
-        let rests = held
-            .clone()
-            .find(|i| time[*i] > contact + 0.3 && self.speed[*i].abs() < MOVES)
-            .unwrap_or(held.end.saturating_sub(1));
-        let leaves = (rests..held.end)
-            .find(|i| {
-                self.speed[*i].abs() > 3.0 * MOVES
-                    || (self.desired[*i] - desired).abs() > 0.1 * desired.abs().max(1.0)
-            })
-            .unwrap_or(held.end);
+            desired,
+            ..
+        } = touch;
+        let leaves = self.leaves(&touch);
         let stands_until = time[leaves.saturating_sub(1).max(first)];
         let hold = first..leaves.max(first + 2);
-        let settled = between(0.5 * (contact + stands_until), stands_until);
+        let settled = self.between(0.5 * (contact + stands_until), stands_until);
         let errors: Vec<f64> = settled
             .clone()
             .map(|i| force[i] - self.desired[i])
@@ -186,18 +168,103 @@ impl Run {
         let outside = smooth
             .iter()
             .rposition(|f| (f - level).abs() > BAND * desired.abs());
-        let settling = outside.map_or(0.0, |i| time[hold.start + i] - contact);
-        let impact = between(contact - 2e-3, contact + IMPACT);
-        let peak = force[impact].iter().copied().fold(f64::MIN, f64::max);
+        let impact = self.between(contact - 2e-3, contact + IMPACT);
         // While the tool still bounces it rings nowhere: after it was off for the last time.
-        let bounced = between(contact, contact + RUNG)
+        let bounced = self
+            .between(contact, contact + RUNG)
             .rev()
             .find(|i| force[*i] < limit)
             .map_or(contact, |i| time[i]);
-        let rings = between(bounced + SOON, bounced + SOON + RUNG);
-        let frequency = loudest(&time[rings.clone()], &force[rings.clone()]);
-        let ringing = power_at(&time[rings.clone()], &force[rings.clone()], frequency).sqrt();
-        let moving: Vec<usize> = (leaves..time.len())
+        let rings = self.between(bounced + SOON, bounced + SOON + RUNG);
+        let (times, forces) = (&time[rings.clone()], &force[rings]);
+        let frequency = loudest(times, forces);
+        let (moving, lost) = self.moving_error(leaves, &touch);
+        Ok(RunMetrics {
+            contact,
+            approach: touch.approach,
+            before: touch.before,
+            desired,
+            peak: force[impact].iter().copied().fold(f64::MIN, f64::max),
+            settling: outside.map_or(0.0, |i| time[hold.start + i] - contact),
+            decay: decay(times, forces, frequency),
+            frequency,
+            ringing: power_at(times, forces, frequency).sqrt(),
+            steady: mean(&errors),
+            unrest: deviation(&errors),
+            moving,
+            lost,
+            stands_until,
+        })
+    }
+
+    /// Samples from one time to another [s].
+    fn between(&self, from: f64, to: f64) -> Range<usize> {
+        let at = |limit: f64| self.time.partition_point(|t| *t < limit);
+        at(from)..at(to)
+    }
+
+    /// How the tool touches.
+    fn touch(&self) -> Result<Touch, NoContact> {
+        let (time, force) = (&self.time, &self.force);
+        let run = || self.name.clone();
+        let free = force.len().min(200);
+        let noise = deviation(&force[..free / 2]);
+        let limit = CONTACT.1.max(CONTACT.0 * noise);
+        let never = || NoContact::Never { run: run(), limit };
+        let first = force.iter().position(|f| *f > limit).ok_or_else(never)?;
+        let contact = time[first];
+        let approaching = self.between(contact - APPROACH.0, contact - APPROACH.1);
+        if approaching.len() < 2 {
+            return Err(never());
+        }
+        let approach = mean(&self.speed[approaching.clone()]);
+        let before = median(&self.desired[approaching]);
+        if approach.is_nan() || approach < COMES {
+            return Err(NoContact::Stands {
+                run: run(),
+                approach,
+            });
+        }
+        let left = time[time.len() - 1] - contact;
+        if left < PRESSED {
+            return Err(NoContact::Short { run: run(), left });
+        }
+        let desired = median(&self.desired[self.between(contact + 0.3, contact + 1.5)]);
+        if desired <= 0.0 {
+            return Err(NoContact::Undesired {
+                run: run(),
+                desired,
+            });
+        }
+        Ok(Touch {
+            first,
+            contact,
+            limit,
+            approach,
+            before,
+            desired,
+        })
+    }
+
+    /// Sample at which the arm, once it has come to rest, moves again, or another force is desired.
+    fn leaves(&self, touch: &Touch) -> usize {
+        let held = self.between(touch.contact, touch.contact + LONGEST);
+        let rests = held
+            .clone()
+            .find(|i| self.time[*i] > touch.contact + 0.3 && self.speed[*i].abs() < MOVES)
+            .unwrap_or(held.end.saturating_sub(1));
+        let another = |i: &usize| {
+            (self.desired[*i] - touch.desired).abs() > 0.1 * touch.desired.abs().max(1.0)
+        };
+        (rests..held.end)
+            .find(|i| self.speed[*i].abs() > 3.0 * MOVES || another(i))
+            .unwrap_or(held.end)
+    }
+
+    /// Force error while the arm moves in contact [N], root mean square, and the share of that time without contact [1].
+    fn moving_error(&self, leaves: usize, touch: &Touch) -> (Option<f64>, f64) {
+        let desired = touch.desired;
+        let moving: Vec<usize> = (leaves..self.time.len())
             .filter(|i| {
                 self.speed[*i].abs() > 3.0 * MOVES
                     && (self.desired[*i] - desired).abs() < 0.1 * desired.abs()
@@ -205,34 +272,22 @@ impl Run {
             .collect();
         let squares: f64 = moving
             .iter()
-            .map(|i| (force[*i] - self.desired[*i]).powi(2))
+            .map(|i| (self.force[*i] - self.desired[*i]).powi(2))
             .sum();
-        let gone = moving.iter().filter(|i| force[**i] < limit).count();
+        let lost = |i: &&usize| self.force[**i] < touch.limit;
+        let gone = moving.iter().filter(lost).count();
         let count = moving.len() as f64;
-        Ok(Shown {
-            contact,
-            approach,
-            before,
-            desired,
-            peak,
-            settling,
-            decay: decay(&time[rings.clone()], &force[rings], frequency),
-            frequency,
-            ringing,
-            steady: mean(&errors),
-            unrest: deviation(&errors),
-            moving: (count > 50.0).then(|| (squares / count).sqrt()),
-            lost: if count > 0.0 {
-                gone as f64 / count
-            } else {
-                0.0
+        (
+            (count > 50.0).then(|| (squares / count).sqrt()),
+            match moving.is_empty() {
+                true => 0.0,
+                false => gone as f64 / count,
             },
-            stands_until,
-        })
+        )
     }
 }
 
-impl Shown {
+impl RunMetrics {
     /// Growth of the peak with the speed of approach: sqrt(k m) [N s/m].
     pub fn impedance(&self) -> f64 {
         (self.peak - self.before) / self.approach
@@ -399,7 +454,7 @@ mod tests {
 
     #[test]
     fn what_was_planted_comes_back_and_a_run_at_another_speed_is_foretold() {
-        let shown = run(0.1, 1).shown().unwrap();
+        let shown = run(0.1, 1).metrics().unwrap();
         // An impact of 3.8 ms has its peak between two samples.
         assert!(
             (shown.impedance() / (2e6f64 * 3.0).sqrt() - 1.0).abs() < 0.05,
@@ -408,7 +463,7 @@ mod tests {
         assert!((shown.frequency - 80.0).abs() < 1.0, "{shown:?}");
         assert!((shown.decay.unwrap() / 12.0 - 1.0).abs() < 0.1, "{shown:?}");
         assert!((shown.steady - 1.5).abs() < 0.05, "{shown:?}");
-        let other = run(0.25, 2).shown().unwrap();
+        let other = run(0.25, 2).metrics().unwrap();
         let predicted = other.before + other.approach * shown.impedance();
         assert!((predicted / other.peak - 1.0).abs() < 0.05);
     }
@@ -418,7 +473,7 @@ mod tests {
         let mut away = run(0.1, 3);
         away.force.iter_mut().for_each(|f| *f = f.min(0.1));
         assert!(
-            away.shown()
+            away.metrics()
                 .unwrap_err()
                 .to_string()
                 .contains("never rises")

@@ -2,17 +2,17 @@
 
 use super::account::{Account, SectionKind};
 use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
-use super::details::{DETAILS_SCHEMA, Details, PredictedRun, RunShown};
-use super::flange::{AVERAGED, BAND, Shown, spread, spread_of_sizes};
+use super::details::{DETAILS_SCHEMA, Details, PredictedRun, RunReport};
+use super::flange::{AVERAGED, BAND, RunMetrics, spread, spread_of_sizes};
 use super::words::listed;
 
 /// Knowledge of a flange from its runs.
 #[derive(Debug, Clone)]
 pub struct FlangeDiagnosis {
     /// Runs by their names, with what they show.
-    pub runs: Vec<(String, Shown)>,
+    pub runs: Vec<(String, RunMetrics)>,
     /// The run to be predicted: its speed of approach, force before and after contact, and what it shows.
-    pub unseen: Option<(String, Shown)>,
+    pub unseen: Option<(String, RunMetrics)>,
     /// Moving mass [kg].
     pub mass: f64,
     /// Time constant with which the contact force is believed to follow the desired one [s].
@@ -27,7 +27,7 @@ const THERE: f64 = 5.0;
 const LATE: f64 = 1.5;
 
 impl FlangeDiagnosis {
-    fn of(&self, value: impl Fn(&Shown) -> f64) -> [f64; 3] {
+    fn of(&self, value: impl Fn(&RunMetrics) -> f64) -> [f64; 3] {
         let values: Vec<f64> = self.runs.iter().map(|(_, shown)| value(shown)).collect();
         spread_of_sizes(&values)
     }
@@ -36,7 +36,7 @@ impl FlangeDiagnosis {
     #[must_use]
     pub fn missing(&self) -> Vec<&'static str> {
         let limit = THERE * self.noise;
-        let any = |shows: &dyn Fn(&Shown) -> bool| self.runs.iter().any(|(_, s)| shows(s));
+        let any = |shows: &dyn Fn(&RunMetrics) -> bool| self.runs.iter().any(|(_, s)| shows(s));
         let believed = self.time_constant * (1.0 / BAND).ln() + AVERAGED;
         let shown = [
             (
@@ -57,7 +57,7 @@ impl FlangeDiagnosis {
 
     /// Growth of the peak with the speed [N s/m] with its interval.
     fn impedance(&self) -> [f64; 3] {
-        self.of(Shown::impedance)
+        self.of(RunMetrics::impedance)
     }
 
     fn decays(&self) -> Vec<f64> {
@@ -65,10 +65,10 @@ impl FlangeDiagnosis {
     }
 
     /// Peak [N] and settling [s] of a run at another speed.
-    fn predicted(&self, shown: &Shown) -> (f64, f64) {
+    fn predicted(&self, shown: &RunMetrics) -> (f64, f64) {
         let peak = shown.before + shown.approach * self.impedance()[0];
         // What settles is the flange's control: as in the runs of the nearest desired force.
-        let away = |s: &Shown| (s.desired / shown.desired).ln().abs();
+        let away = |s: &RunMetrics| (s.desired / shown.desired).ln().abs();
         let nearest = (self.runs.iter())
             .map(|(_, s)| away(s))
             .fold(f64::INFINITY, f64::min);
@@ -79,10 +79,8 @@ impl FlangeDiagnosis {
         (peak, spread_of_sizes(&alike)[0])
     }
 
-    /// diagnosis.json.
-    #[must_use]
-    #[expect(clippy::too_many_lines, reason = "one document, key by key")]
-    pub fn answer(&self, seconds: f64) -> Answer {
+    /// What is missing, as in diagnosis.json.
+    fn effects(&self, missing: &[&str]) -> Vec<FoundEffect> {
         let estimate = |[value, low, high]: [f64; 3]| Estimate::new(value, low, high);
         let effect = |name: &str, subsystem: &str, parameters: Vec<(&str, Estimate)>| FoundEffect {
             name: name.to_owned(),
@@ -138,8 +136,15 @@ impl FlangeDiagnosis {
                 vec![("rms_n", estimate(spread_of_sizes(&moving)))],
             ));
         }
-        let missing = self.missing();
         effects.retain(|effect| missing.contains(&effect.name.as_str()));
+        effects
+    }
+
+    /// diagnosis.json.
+    #[must_use]
+    pub fn answer(&self, seconds: f64) -> Answer {
+        let missing = self.missing();
+        let effects = self.effects(&missing);
         let unsteady = missing.contains(&"steady_force_error");
         let causes = [
             "regulator_hysteresis",
@@ -202,7 +207,6 @@ impl FlangeDiagnosis {
 
     /// The account.
     #[must_use]
-    #[expect(clippy::too_many_lines, reason = "one text, sentence by sentence")]
     pub fn account(&self) -> Account {
         let missing = self.missing();
         let names: Vec<String> = missing.iter().map(|name| (*name).to_owned()).collect();
@@ -213,21 +217,50 @@ impl FlangeDiagnosis {
             },
             sections: Vec::new(),
         };
-        let mut part = |name: &str, kind: SectionKind, paragraph: &str| {
-            if name.is_empty() || missing.contains(&name) {
-                account.add(kind, vec![paragraph.to_owned()]);
+        for (name, kind, paragraph) in [
+            ("contact_impact", SectionKind::Impact, self.impact()),
+            ("contact_ringing", SectionKind::Ringing, self.ringing()),
+            ("settling", SectionKind::Settling, self.settling()),
+            (
+                "steady_force_error",
+                SectionKind::SteadyError,
+                self.steady_error(),
+            ),
+            (
+                "force_error_while_moving",
+                SectionKind::ErrorWhileMoving,
+                self.error_while_moving(),
+            ),
+        ] {
+            if missing.contains(&name) {
+                account.add(kind, vec![paragraph]);
             }
-        };
+        }
+        let unseen = self
+            .unseen
+            .as_ref()
+            .map(|(name, shown)| self.unseen_run(name, shown));
+        account.add(SectionKind::UnseenRun, unseen.into_iter().collect());
+        let runs = self.runs.iter().map(|(name, s)| {
+            format!(
+                "{name}: {:.3} m/s, {:.0} N desired; peak {:.0} N, ringing {:.1} Hz, settled after {:.2} s, steady error {:+.2} N",
+                s.approach, s.desired, s.peak, s.frequency, s.settling, s.steady
+            )
+        });
+        account.add(SectionKind::Runs, runs.collect());
+        account
+    }
+
+    fn impact(&self) -> String {
         let [z, z_low, z_high] = self.impedance();
         let [k, low, high] = [z, z_low, z_high].map(|z| z.max(0.0).powi(2) / self.mass * 1e-3);
-        part(
-            "contact_impact",
-            SectionKind::Impact,
-            &format!(
-                "The tool of {} kg meets the surface and the force peaks at {z:.0} N for each m/s of approach ({z_low:.0} to {z_high:.0}) over what was desired before, as on a spring of {k:.0} N/mm ({low:.0} to {high:.0}). The believed first order has no impact. The intervals are those of 95 %, from how the runs differ.",
-                self.mass
-            ),
-        );
+        format!(
+            "The tool of {} kg meets the surface and the force peaks at {z:.0} N for each m/s of approach ({z_low:.0} to {z_high:.0}) over what was desired before, as on a spring of {k:.0} N/mm ({low:.0} to {high:.0}). The believed first order has no impact. The intervals are those of 95 %, from how the runs differ.",
+            self.mass
+        )
+    }
+
+    fn ringing(&self) -> String {
         let [f, f_low, f_high] = self.of(|s| s.frequency);
         let decays = self.decays();
         let dies = if decays.is_empty() {
@@ -239,23 +272,19 @@ impl FlangeDiagnosis {
                 d / (std::f64::consts::TAU * f)
             )
         };
-        part(
-            "contact_ringing",
-            SectionKind::Ringing,
-            &format!(
-                "After the impact the force rings at {f:.1} Hz ({f_low:.1} to {f_high:.1}){dies}."
-            ),
-        );
+        format!("After the impact the force rings at {f:.1} Hz ({f_low:.1} to {f_high:.1}){dies}.")
+    }
+
+    fn settling(&self) -> String {
         let [s, s_low, s_high] = self.of(|s| s.settling);
-        part(
-            "settling",
-            SectionKind::Settling,
-            &format!(
-                "The force, averaged over {:.0} ms, stays within {:.0} % of the desired force about its later level {s:.2} s after contact ({s_low:.2} to {s_high:.2}).",
-                AVERAGED * 1e3,
-                BAND * 100.0
-            ),
-        );
+        format!(
+            "The force, averaged over {:.0} ms, stays within {:.0} % of the desired force about its later level {s:.2} s after contact ({s_low:.2} to {s_high:.2}).",
+            AVERAGED * 1e3,
+            BAND * 100.0
+        )
+    }
+
+    fn steady_error(&self) -> String {
         let steady: Vec<f64> = self.runs.iter().map(|(_, s)| s.steady).collect();
         let [least, most] = extremes(&steady);
         let unrest = self.of(|s| s.unrest)[0];
@@ -263,51 +292,35 @@ impl FlangeDiagnosis {
             1 => format!("{least:+.2} N"),
             _ => format!("{least:+.2} to {most:+.2} N from run to run"),
         };
-        part(
-            "steady_force_error",
-            SectionKind::SteadyError,
-            &format!(
-                "Once settled, with the arm at rest, the force is off by {off}, where within a run it wanders by {unrest:.2} N. {CANNOT_TELL}."
-            ),
-        );
+        format!(
+            "Once settled, with the arm at rest, the force is off by {off}, where within a run it wanders by {unrest:.2} N. {CANNOT_TELL}."
+        )
+    }
+
+    /// Empty where no run moves in contact.
+    fn error_while_moving(&self) -> String {
         let moving: Vec<f64> = self.runs.iter().filter_map(|(_, s)| s.moving).collect();
-        if !moving.is_empty() {
-            let lost = self.runs.iter().map(|(_, s)| s.lost).fold(0.0, f64::max);
-            let [m, ..] = spread_of_sizes(&moving);
-            part(
-                "force_error_while_moving",
-                SectionKind::ErrorWhileMoving,
-                &format!(
-                    "In contact and moving, the force is off by {m:.1} N RMS, and contact is lost for up to {:.1} % of a run's time.",
-                    lost * 100.0
-                ),
-            );
+        if moving.is_empty() {
+            return String::new();
         }
-        if let Some((name, shown)) = &self.unseen {
-            let (peak, settling) = self.predicted(shown);
-            part(
-                "",
-                SectionKind::UnseenRun,
-                &format!(
-                    "{name} comes at {:.3} m/s. Predicted: a peak of {peak:.0} N, settled after {settling:.2} s; measured: {:.0} N ({:+.0} %) and {:.2} s ({:+.0} %).",
-                    shown.approach,
-                    shown.peak,
-                    100.0 * (peak / shown.peak - 1.0),
-                    shown.settling,
-                    100.0 * (settling / shown.settling - 1.0)
-                ),
-            );
-        }
-        let runs: Vec<String> = (self.runs.iter())
-            .map(|(name, s)| {
-                format!(
-                    "{name}: {:.3} m/s, {:.0} N desired; peak {:.0} N, ringing {:.1} Hz, settled after {:.2} s, steady error {:+.2} N",
-                    s.approach, s.desired, s.peak, s.frequency, s.settling, s.steady
-                )
-            })
-            .collect();
-        account.add(SectionKind::Runs, runs);
-        account
+        let lost = self.runs.iter().map(|(_, s)| s.lost).fold(0.0, f64::max);
+        let [m, ..] = spread_of_sizes(&moving);
+        format!(
+            "In contact and moving, the force is off by {m:.1} N RMS, and contact is lost for up to {:.1} % of a run's time.",
+            lost * 100.0
+        )
+    }
+
+    fn unseen_run(&self, name: &str, shown: &RunMetrics) -> String {
+        let (peak, settling) = self.predicted(shown);
+        format!(
+            "{name} comes at {:.3} m/s. Predicted: a peak of {peak:.0} N, settled after {settling:.2} s; measured: {:.0} N ({:+.0} %) and {:.2} s ({:+.0} %).",
+            shown.approach,
+            shown.peak,
+            100.0 * (peak / shown.peak - 1.0),
+            shown.settling,
+            100.0 * (settling / shown.settling - 1.0)
+        )
     }
 }
 
@@ -319,8 +332,8 @@ fn extremes(values: &[f64]) -> [f64; 2] {
     [least, most]
 }
 
-fn report(name: &str, shown: &Shown) -> RunShown {
-    RunShown {
+fn report(name: &str, shown: &RunMetrics) -> RunReport {
+    RunReport {
         recording: name.to_owned(),
         contact_s: shown.contact,
         approach_m_per_s: shown.approach,
@@ -374,7 +387,7 @@ mod tests {
 
     fn of(run: &Run) -> FlangeDiagnosis {
         FlangeDiagnosis {
-            runs: vec![(run.name.clone(), run.shown().unwrap())],
+            runs: vec![(run.name.clone(), run.metrics().unwrap())],
             unseen: None,
             mass: 3.0,
             time_constant: 0.05,
@@ -411,7 +424,7 @@ mod tests {
         ] {
             values.truncate(1000);
         }
-        let refused = run.shown().unwrap_err().to_string();
+        let refused = run.metrics().unwrap_err().to_string();
         assert!(refused.contains("expected at least 1.5 s"), "{refused}");
     }
 }

@@ -4,7 +4,7 @@ use super::clean::{Cleaning, clean};
 use super::evidence::{Evidence, Measured};
 use super::free::{Free, Prior};
 use super::recorded::{COLUMNS, Recorded, RecordedError};
-use super::search::Shown;
+use super::search::EstablishedEffect;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, Quantity};
@@ -39,7 +39,7 @@ pub struct DiagnosisInput {
     /// Effects that may be at work.
     pub candidates: Vec<&'static Effect>,
     /// Effects that a link of its own has shown.
-    pub shown: Vec<Shown>,
+    pub shown: Vec<EstablishedEffect>,
 }
 
 /// A number that is believed to lie within a relative tolerance of a value, any part of it being as likely: the normal distribution of that spread.

@@ -9,7 +9,7 @@
 //! tolerance. What a model leaves out is the same over a whole recording: friction is known no better than the recordings agree on it.
 
 use super::free::{Prior, free_of};
-use super::search::Shown;
+use super::search::EstablishedEffect;
 use super::settings::Settings;
 use crate::effects::JOINT_FRICTION;
 use crate::plant::PlantParameters;
@@ -144,7 +144,7 @@ impl JointFriction {
 
     /// The effect, if it does.
     #[must_use]
-    pub fn shown(&self, plant: &PlantParameters) -> Option<Shown> {
+    pub fn shown(&self, plant: &PlantParameters) -> Option<EstablishedEffect> {
         let effect = &JOINT_FRICTION[self.joint];
         let mut numbers = free_of(effect, plant, &[self.friction]);
         for number in &mut numbers {
@@ -153,7 +153,8 @@ impl JointFriction {
                 deviation: self.deviation,
             };
         }
-        self.differs().then_some(Shown { effect, numbers })
+        self.differs()
+            .then_some(EstablishedEffect { effect, numbers })
     }
 }
 

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! S is Schwarz's estimate of -2 ln p(all recordings), L the sum of -2 ln p(one recording | the others). Hats over time fit whatever happens in one
-//! recording, and S cannot tell: all hats have as many coefficients. What happens in another recording they do not foretell, unless it is a matter of
+//! recording, and S cannot tell: all hats have as many coefficients. What happens in another recording they do not predict, unless it is a matter of
 //! time. Where only one recording shows a term, L says nothing of it either way, and S decides.
 
 use super::cross_validation::{Depth, rough_cost};

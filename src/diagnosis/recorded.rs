@@ -328,16 +328,16 @@ fn bridge(time: &[f64], values: &mut [f64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::{Channel, Unit};
+    use crate::recording::{RecordedChannel, Unit};
 
     fn recording(count: usize) -> Recording {
         let time: Vec<f64> = (0..count).map(|i| 0.004 * i as f64).collect();
         let surface = time.iter().map(|t| 0.02 + 0.1 * t * t).collect();
         let channels = vec![
-            Channel::new(schema::SET_PRESSURE_GAUGE, Unit::Pascal, vec![2e5; count]),
-            Channel::new(schema::VALVE_EXTENDS, Unit::One, vec![1.0; count]),
-            Channel::new(schema::SURFACE_POSITION, Unit::Metre, surface),
-            Channel::new(schema::MEASURED_FORCE, Unit::Newton, vec![3.0; count]),
+            RecordedChannel::new(schema::SET_PRESSURE_GAUGE, Unit::Pascal, vec![2e5; count]),
+            RecordedChannel::new(schema::VALVE_EXTENDS, Unit::One, vec![1.0; count]),
+            RecordedChannel::new(schema::SURFACE_POSITION, Unit::Metre, surface),
+            RecordedChannel::new(schema::MEASURED_FORCE, Unit::Newton, vec![3.0; count]),
         ];
         Recording::new(time, channels, vec![]).unwrap()
     }

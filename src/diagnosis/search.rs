@@ -27,7 +27,7 @@ pub struct Search<'a> {
     /// Effects that may be at work.
     pub candidates: Vec<&'static Effect>,
     /// Effects that a link of its own has shown, with their numbers.
-    pub shown: Vec<Shown>,
+    pub shown: Vec<EstablishedEffect>,
     /// Iterations of the second look at an effect that promises most.
     pub look: usize,
     /// Effects at most, beside those shown.
@@ -40,7 +40,7 @@ pub struct Search<'a> {
 
 /// An effect that a link of its own has shown, such as a servo's in commands and encoders: what it found is what is believed of its numbers.
 #[derive(Debug, Clone)]
-pub struct Shown {
+pub struct EstablishedEffect {
     /// The effect.
     pub effect: &'static Effect,
     /// All its numbers.

@@ -5,7 +5,7 @@
 //! ```
 
 use super::free::{Prior, free_of};
-use super::search::Shown;
+use super::search::EstablishedEffect;
 use super::settings::Settings;
 use crate::effects::SERVO_LAG;
 use crate::plant::{PlantParameters, follow};
@@ -159,7 +159,7 @@ impl ServoLink {
 
     /// The effect, if they do.
     #[must_use]
-    pub fn shown(&self, plant: &PlantParameters) -> Option<Shown> {
+    pub fn shown(&self, plant: &PlantParameters) -> Option<EstablishedEffect> {
         let mut numbers = free_of(&SERVO_LAG, plant, &[self.bandwidth]);
         for number in &mut numbers {
             number.prior = Prior::Normal {
@@ -167,7 +167,7 @@ impl ServoLink {
                 deviation: self.deviation,
             };
         }
-        self.differs().then_some(Shown {
+        self.differs().then_some(EstablishedEffect {
             effect: &SERVO_LAG,
             numbers,
         })

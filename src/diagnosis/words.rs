@@ -8,11 +8,11 @@ use crate::quantity::significant;
 const WIDTH: usize = 100;
 
 /// A unit for people: suffix of a name in SI, unit, and what a value in SI is multiplied by.
-type Shown = (&'static str, &'static str, f64);
+type DisplayUnit = (&'static str, &'static str, f64);
 
 /// Units by the end of a name, longer ends first.
 #[rustfmt::skip] // A table: one unit a line.
-const UNITS: [Shown; 34] = [
+const UNITS: [DisplayUnit; 34] = [
     ("_1_per_pa_s", "1/(bar s)", 1e5),
     ("_1_per_pa", "1/bar", 1e5),
     ("_1_per_s", "1/s", 1.0),

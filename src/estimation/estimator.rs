@@ -7,7 +7,7 @@ use super::belief::{
 };
 use super::chambers::Chambers;
 use super::models::Models;
-use super::output::{Estimate, ForceOutput, coverage_factor};
+use super::output::{EstimatorOutput, ForceOutput, coverage_factor};
 use super::parameters::EstimatorParameters;
 use super::process::{ProcessNoise, first_belief, predict};
 use super::seals::{Seals, Way};
@@ -153,7 +153,7 @@ impl ContactForceEstimator {
     }
 
     /// Takes one set of samples in, a period after the one before.
-    pub fn update(&mut self, measurement: &Measurement) -> Estimate {
+    pub fn update(&mut self, measurement: &Measurement) -> EstimatorOutput {
         if self.started {
             self.models.mix();
             for (belief, noise) in self.models.beliefs.iter_mut().zip(&self.process) {
@@ -289,7 +289,7 @@ impl ContactForceEstimator {
         }
     }
 
-    fn estimate(&self, normalized_innovations: [f64; 3]) -> Estimate {
+    fn estimate(&self, normalized_innovations: [f64; 3]) -> EstimatorOutput {
         let parts: Vec<_> = self
             .models
             .beliefs
@@ -304,7 +304,7 @@ impl ContactForceEstimator {
         let variance =
             weighted(&|i| parts[i].variance + (parts[i].force - force) * (parts[i].force - force));
         let element = |index: usize| weighted(&|i| self.models.beliefs[i].mean[index]);
-        Estimate {
+        EstimatorOutput {
             force,
             standard_deviation: variance.sqrt(),
             coverage_factor: coverage_factor(

@@ -38,7 +38,7 @@ mod seals;
 
 pub use error::EstimationError;
 pub use estimator::{ContactForceEstimator, Measurement};
-pub use output::Estimate;
+pub use output::EstimatorOutput;
 pub use parameters::{EstimatorParameters, ProcessModel, SensorNoise, Tolerances};
 
 #[cfg(test)]

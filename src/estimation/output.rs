@@ -24,7 +24,7 @@ pub(super) fn coverage_factor(fourth_powers: f64) -> f64 {
 
 /// Estimate after a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
+pub struct EstimatorOutput {
     /// Contact force, positive when the tool presses [N].
     pub force: f64,
     /// Its standard deviation, tolerances of the device included [N].
@@ -48,7 +48,7 @@ pub struct Estimate {
     pub normalized_innovations: [f64; 3],
 }
 
-impl Estimate {
+impl EstimatorOutput {
     /// Limits of the 95 % band [N].
     pub fn band(&self) -> [f64; 2] {
         let half = self.coverage_factor * self.standard_deviation;

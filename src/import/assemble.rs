@@ -8,7 +8,7 @@ use super::log::{Series, read_log};
 use super::map::{Clock, ImportMap};
 use super::rows::Remark;
 use crate::recording::csv::median_step;
-use crate::recording::{Channel, Recording};
+use crate::recording::{RecordedChannel, Recording};
 
 /// Steps of a series beyond which nothing is read off between two of its samples.
 const GAP: f64 = 3.0;
@@ -87,7 +87,7 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
                 check_overlap(&log.file, &series.time, &logs[0].file, &time)?;
                 read_off(series, &time)
             };
-            channels.push(Channel::new(
+            channels.push(RecordedChannel::new(
                 channel.quantity.clone(),
                 channel.unit.si,
                 values,
@@ -96,7 +96,7 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
     }
     for constant in &map.constants {
         let values = vec![constant.value; time.len()];
-        channels.push(Channel::new(
+        channels.push(RecordedChannel::new(
             constant.quantity.clone(),
             constant.unit,
             values,

@@ -338,7 +338,7 @@ fn explained(time: &[f64], force: &[f64], x: &[f64], y: &[f64]) -> Option<f64> {
 mod tests {
     use super::super::findings;
     use super::*;
-    use crate::recording::Channel;
+    use crate::recording::RecordedChannel;
 
     fn doubts(channel: &ChannelMap, written: impl Fn(f64) -> f64) -> String {
         let time: Vec<f64> = (0..4000).map(|i| f64::from(i) * 0.01).collect();
@@ -472,9 +472,9 @@ mod tests {
         let recording = |force: &dyn Fn(usize) -> f64| {
             let force = (0..time.len()).map(force).collect();
             let channels = vec![
-                Channel::new("force", Unit::Newton, force),
-                Channel::new("x", Unit::Metre, x.clone()),
-                Channel::new("y", Unit::Metre, y.clone()),
+                RecordedChannel::new("force", Unit::Newton, force),
+                RecordedChannel::new("x", Unit::Metre, x.clone()),
+                RecordedChannel::new("y", Unit::Metre, y.clone()),
             ];
             Recording::new(time.clone(), channels, Vec::new()).unwrap()
         };

@@ -8,7 +8,7 @@ use super::dirt::Dirt;
 use super::draw::{Believed, TOLERANCES, stream, toleranced};
 use super::effects::{LabEffect, Scene, effect};
 use super::programme::Programme;
-use super::rig::Rig;
+use super::rig::LaboratoryRig;
 use super::sealed::{Known, SealedCase, SealedEffect, SealedInterval};
 use super::sensors::measured;
 use super::shown::intervals;
@@ -32,7 +32,7 @@ pub struct Recipe {
 
 /// A case.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Case {
+pub struct LaboratoryCase {
     /// The device as believed.
     pub believed: Believed,
     /// Programmes carried out; the last one is to be predicted.
@@ -45,14 +45,14 @@ pub struct Case {
 
 /// The device without what is concealed in it, and with it.
 struct Pair {
-    bare: Rig,
-    real: Rig,
+    bare: LaboratoryRig,
+    real: LaboratoryRig,
 }
 
 impl Pair {
     /// Numbers of the rig that are off stand in the real one; without the effect they are what is believed.
-    fn new(believed: &Rig, drawn: Rig, concealed: &Concealed) -> Self {
-        type Place = fn(&mut Rig) -> &mut f64;
+    fn new(believed: &LaboratoryRig, drawn: LaboratoryRig, concealed: &Concealed) -> Self {
+        type Place = fn(&mut LaboratoryRig) -> &mut f64;
         let (mut bare, mut real) = (drawn.clone(), drawn);
         let places: [(Option<f64>, Place); 6] = [
             (concealed.mass, |r| &mut r.mass),
@@ -100,7 +100,7 @@ impl Recipe {
     ///
     /// # Panics
     /// An effect that does not exist.
-    pub fn make(&self) -> Result<Case, LaboratoryError> {
+    pub fn make(&self) -> Result<LaboratoryCase, LaboratoryError> {
         let setting = self.setting()?;
         let real = setting.run(setting.programmes.len())?;
         let (mismatch, shows) = self.shown(&setting, &real)?;
@@ -116,7 +116,7 @@ impl Recipe {
         let names = TOLERANCES.iter().map(|(name, _)| (*name).to_owned());
         let values = toleranced(&mut rig).map(|value| *value);
         let noise = CHANNELS.iter().map(|name| (*name).to_owned());
-        Ok(Case {
+        Ok(LaboratoryCase {
             sealed: SealedCase {
                 case: self.name.clone(),
                 effects,
@@ -139,7 +139,7 @@ impl Recipe {
     ///
     /// # Panics
     /// An effect that does not exist.
-    pub fn reality(&self) -> Result<(Rig, Concealed, Vec<Programme>), LaboratoryError> {
+    pub fn reality(&self) -> Result<(LaboratoryRig, Concealed, Vec<Programme>), LaboratoryError> {
         let setting = self.setting()?;
         Ok((setting.pair.real, setting.concealed, setting.programmes))
     }
@@ -203,7 +203,11 @@ impl Recipe {
     }
 
     /// Largest force in the recordings to diagnose from, with nothing concealed [N].
-    fn peak_force(&self, rig: &Rig, programmes: &[Programme]) -> Result<f64, LaboratoryError> {
+    fn peak_force(
+        &self,
+        rig: &LaboratoryRig,
+        programmes: &[Programme],
+    ) -> Result<f64, LaboratoryError> {
         let clips = |(name, _): &(&str, f64)| *name == "force_sensor_saturation";
         if !self.effects.iter().any(clips) {
             return Ok(0.0);
@@ -255,7 +259,11 @@ impl Recipe {
         Ok((found, eye.visibility(&real[..seen])))
     }
 
-    fn measure(&self, rig: &Rig, trajectories: &[LaboratoryTrajectory]) -> Vec<[Vec<f64>; 4]> {
+    fn measure(
+        &self,
+        rig: &LaboratoryRig,
+        trajectories: &[LaboratoryTrajectory],
+    ) -> Vec<[Vec<f64>; 4]> {
         let (noise, spoil) = (&mut stream(self.seed, 6), &mut stream(self.seed, 7));
         let last = trajectories.len() - 1;
         let of = |(index, trajectory): (usize, &LaboratoryTrajectory)| {

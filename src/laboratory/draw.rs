@@ -4,7 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::programme::{Programme, Surface, Wave};
-use super::rig::{AIR, Rig};
+use super::rig::{AIR, LaboratoryRig};
 use super::sensors::{as_printed, between};
 
 /// The numbers that are believed within a tolerance, and how wide it is at its usual.
@@ -23,13 +23,13 @@ pub const TOLERANCES: [(&str, f64); 8] = [
 #[derive(Debug, Clone, PartialEq)]
 pub struct Believed {
     /// The numbers.
-    pub rig: Rig,
+    pub rig: LaboratoryRig,
     /// Relative tolerances, in the order of [`TOLERANCES`].
     pub tolerances: [f64; 8],
 }
 
 /// The toleranced numbers of a rig, in the order of [`TOLERANCES`].
-pub(super) fn toleranced(rig: &mut Rig) -> [&mut f64; 8] {
+pub(super) fn toleranced(rig: &mut LaboratoryRig) -> [&mut f64; 8] {
     [
         &mut rig.dead_volume,
         &mut rig.mass,
@@ -63,7 +63,7 @@ impl Believed {
         let stiffness = between(rng, 4e4, 3e5);
         let damping_share = rng.random_range(0.1..0.3);
         let noise = between(rng, 0.6, 1.7);
-        let rig = Rig {
+        let rig = LaboratoryRig {
             count,
             bore: as_printed(bore, 3),
             rod: as_printed(bore * rng.random_range(0.3..0.5), 2),
@@ -91,7 +91,7 @@ impl Believed {
     }
 
     /// The same device as it really is, every number within its tolerance.
-    pub fn real(&self, seed: u64) -> Rig {
+    pub fn real(&self, seed: u64) -> LaboratoryRig {
         let rng = &mut stream(seed, 2);
         let mut rig = self.rig.clone();
         for (number, tolerance) in toleranced(&mut rig).into_iter().zip(self.tolerances) {

@@ -8,7 +8,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::concealed::{Concealed, Seals, Swing};
-use super::rig::Rig;
+use super::rig::LaboratoryRig;
 
 /// An effect.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +28,7 @@ pub(super) struct Scene<'a> {
     /// Random numbers.
     pub rng: &'a mut ChaCha8Rng,
     /// The device as believed.
-    pub believed: &'a Rig,
+    pub believed: &'a LaboratoryRig,
     /// Largest force without the effect [N].
     pub peak_force: f64,
     /// Share of the largest plausible effect [1].

@@ -16,7 +16,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::concealed::{Concealed, Seals};
 use super::programme::Surface;
-use super::rig::Rig;
+use super::rig::LaboratoryRig;
 
 /// States, all scaled to the order of 1.
 pub(super) const STATES: usize = 30;
@@ -72,7 +72,7 @@ const FASTEST_CELL: f64 = 6e4;
 
 /// Commands between two of their changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Leg {
+pub(super) struct Command {
     /// Whether the valve extends.
     pub extends: bool,
     /// Pressure that the regulator goes to [Pa gauge].
@@ -100,10 +100,10 @@ pub(super) struct Reading {
 
 /// The equations of a device on a programme.
 pub(super) struct Equations<'a> {
-    pub rig: &'a Rig,
+    pub rig: &'a LaboratoryRig,
     pub concealed: &'a Concealed,
     pub surface: Option<&'a Surface>,
-    pub leg: Leg,
+    pub command: Command,
     areas: [f64; 2],
     cells: usize,
     swept: f64,
@@ -118,14 +118,18 @@ struct Line {
 }
 
 impl<'a> Equations<'a> {
-    pub fn new(rig: &'a Rig, concealed: &'a Concealed, surface: Option<&'a Surface>) -> Self {
+    pub fn new(
+        rig: &'a LaboratoryRig,
+        concealed: &'a Concealed,
+        surface: Option<&'a Surface>,
+    ) -> Self {
         let k = rig.gas.ratio;
         let areas = rig.areas();
         Self {
             rig,
             concealed,
             surface,
-            leg: Leg {
+            command: Command {
                 extends: true,
                 target: 0.0,
             },
@@ -252,7 +256,7 @@ impl<'a> Equations<'a> {
         let pressures = self.pressures(state);
         let warmth = [state[at::WARMTH], state[at::WARMTH + 1]];
         let chamber = |side: usize| (pressures[side], warmth[side]);
-        let (fed, emptied) = if self.leg.extends { (0, 1) } else { (1, 0) };
+        let (fed, emptied) = if self.command.extends { (0, 1) } else { (1, 0) };
         let outside = (gas.atmosphere, 1.0);
 
         // Each flow with where it comes from and where it goes to; chambers take part in the heat balance.
@@ -332,13 +336,13 @@ impl<'a> Equations<'a> {
         let pilot = state[at::PILOT] * UNIT;
         match self.concealed.second_order {
             None => {
-                let rate = (self.leg.target - pilot) / self.rig.time_constant;
+                let rate = (self.command.target - pilot) / self.rig.time_constant;
                 rates[at::PILOT] = limited(rate) / UNIT;
             }
             Some([frequency, damping]) => {
                 let rate = state[at::PILOT_RATE] * 1e6;
                 let pull =
-                    frequency * (frequency * (self.leg.target - pilot) - 2.0 * damping * rate);
+                    frequency * (frequency * (self.command.target - pilot) - 2.0 * damping * rate);
                 rates[at::PILOT] = limited(rate) / UNIT;
                 rates[at::PILOT_RATE] = pull / 1e6;
             }
@@ -455,7 +459,7 @@ impl<'a> Equations<'a> {
 }
 
 /// Cells of a line: as many as can be resolved, no more than there is room for.
-fn cells(rig: &Rig, concealed: &Concealed) -> usize {
+fn cells(rig: &LaboratoryRig, concealed: &Concealed) -> usize {
     let Some([volume, resistance]) = concealed.hose else {
         return 1;
     };

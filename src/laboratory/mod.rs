@@ -25,14 +25,14 @@ mod trajectory;
 mod visibility;
 mod write;
 
-pub use case::{Case, Recipe};
+pub use case::{LaboratoryCase, Recipe};
 pub use concealed::{Concealed, Seals, Swing};
 pub use dirt::Dirt;
 pub use draw::{Believed, TOLERANCES};
 pub use effects::{EFFECTS, LabEffect, UNLISTED_EFFECTS};
 pub use programme::{Programme, Surface, Wave};
 pub use recipes::{LOST, shipped, sizes};
-pub use rig::{AIR, Gas, Rig};
+pub use rig::{AIR, Gas, LaboratoryRig};
 pub use sealed::{Known, SealedCase, SealedEffect, SealedInterval};
 pub use trajectory::{LaboratoryError, LaboratoryTrajectory, run};
 pub use write::write_case;

@@ -25,7 +25,7 @@ pub const AIR: Gas = Gas {
 
 /// A device, its contact and its sensors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rig {
+pub struct LaboratoryRig {
     /// Cylinders in parallel.
     pub count: u32,
     /// Bore [m].
@@ -64,7 +64,7 @@ pub struct Rig {
     pub noise: [f64; 4],
 }
 
-impl Rig {
+impl LaboratoryRig {
     /// Areas on which chambers 1 and 2 press [m2].
     pub fn areas(&self) -> [f64; 2] {
         let circle = |d: f64| 0.25 * PI * d * d;

@@ -1,4 +1,4 @@
-//! A device run on a programme: legs between two changes of a command, on each of which the equations are smooth but for impacts.
+//! A device run on a programme: stretches between two changes of a command, on each of which the equations are smooth but for impacts.
 
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
@@ -6,9 +6,9 @@ use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
 
 use super::concealed::Concealed;
-use super::equations::{Equations, Leg, Reading, STATES, State};
+use super::equations::{Command, Equations, Reading, STATES, State};
 use super::programme::Programme;
-use super::rig::Rig;
+use super::rig::LaboratoryRig;
 
 /// Relative tolerance of a step.
 const TOLERANCE: f64 = 1e-8;
@@ -71,8 +71,12 @@ fn method(
     Some(method)
 }
 
-/// Changes of what acts on the device: time [s], leg from then on.
-fn legs(rig: &Rig, concealed: &Concealed, programme: &Programme) -> Vec<(f64, Leg)> {
+/// Changes of what acts on the device: time [s], command from then on.
+fn commands(
+    rig: &LaboratoryRig,
+    concealed: &Concealed,
+    programme: &Programme,
+) -> Vec<(f64, Command)> {
     let mut acted_on = 0.0f64;
     let mut targets = vec![(0.0, 0.0)];
     for (time, pressure) in &programme.set_pressures {
@@ -112,7 +116,7 @@ fn legs(rig: &Rig, concealed: &Concealed, programme: &Programme) -> Vec<(f64, Le
                 .is_none_or(|v| v.1);
             (
                 time,
-                Leg {
+                Command {
                     extends,
                     target: last(&targets, time),
                 },
@@ -180,7 +184,7 @@ impl Readings {
 /// # Errors
 /// The integrator cannot go on.
 pub fn run(
-    rig: &Rig,
+    rig: &LaboratoryRig,
     concealed: &Concealed,
     programme: &Programme,
 ) -> Result<LaboratoryTrajectory, LaboratoryError> {
@@ -188,14 +192,14 @@ pub fn run(
     let mut state = equations.start();
     let mut readings = Readings::new(&programme.times, concealed.force_late);
     let end = readings.wanted.last().map_or(0.0, |w| w.0) + 1e-6;
-    let legs = legs(rig, concealed, programme);
-    for (index, (from, leg)) in legs.iter().enumerate() {
-        let until = legs.get(index + 1).map_or(end, |l| l.0).min(end);
+    let commands = commands(rig, concealed, programme);
+    for (index, (from, command)) in commands.iter().enumerate() {
+        let until = commands.get(index + 1).map_or(end, |l| l.0).min(end);
         if until <= *from {
             continue;
         }
-        equations.leg = *leg;
-        // What a sample at the very start of a leg reads is the state there.
+        equations.command = *command;
+        // What a sample at the very start of a stretch reads is the state there.
         while readings.due(*from).is_some() {
             readings.take(equations.read(*from, &state));
         }

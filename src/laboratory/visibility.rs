@@ -13,7 +13,7 @@ use nalgebra::{SMatrix, SVector};
 use super::concealed::Concealed;
 use super::draw::{TOLERANCES, toleranced};
 use super::programme::Programme;
-use super::rig::Rig;
+use super::rig::LaboratoryRig;
 use super::trajectory::{LaboratoryError, LaboratoryTrajectory, run};
 
 /// Error in time that is forgiven [s].
@@ -38,12 +38,12 @@ pub(super) struct Eye {
 impl Eye {
     /// Of a device whose tolerances are relative to what is believed of it.
     pub fn new(
-        bare: &Rig,
-        believed: &Rig,
+        bare: &LaboratoryRig,
+        believed: &LaboratoryRig,
         tolerances: &[f64; TOLERATED],
         programmes: &[Programme],
     ) -> Result<Self, LaboratoryError> {
-        let all = |rig: &Rig| -> Result<Vec<LaboratoryTrajectory>, LaboratoryError> {
+        let all = |rig: &LaboratoryRig| -> Result<Vec<LaboratoryTrajectory>, LaboratoryError> {
             let nothing = Concealed::default();
             programmes.iter().map(|p| run(rig, &nothing, p)).collect()
         };

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use super::CHANNELS;
-use super::case::Case;
+use super::case::LaboratoryCase;
 use super::draw::Believed;
 use super::programme::Programme;
 use crate::recording::RecordingError;
@@ -19,7 +19,11 @@ const SURFACE_GRID: f64 = 1e7;
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_case(case: &Case, folder: &Path, sealed: Option<&Path>) -> Result<(), RecordingError> {
+pub fn write_case(
+    case: &LaboratoryCase,
+    folder: &Path,
+    sealed: Option<&Path>,
+) -> Result<(), RecordingError> {
     let make = |folder: &Path| {
         fs::create_dir_all(folder).map_err(|cause| RecordingError::write(folder, cause))
     };

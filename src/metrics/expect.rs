@@ -8,7 +8,7 @@ use crate::scenario::Expectation;
 
 /// Whether a result kept its bounds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Verdict {
+pub struct BoundCheck {
     /// Name of the metric as in summary.json.
     pub metric: &'static str,
     /// Its unit.
@@ -45,7 +45,7 @@ pub fn check<S>(
     metrics: &'static [Metric<S>],
     summary: &S,
     expectations: &[Expectation],
-) -> Result<Vec<Verdict>, MetricsError> {
+) -> Result<Vec<BoundCheck>, MetricsError> {
     expectations
         .iter()
         .map(|expectation| {
@@ -55,7 +55,7 @@ pub fn check<S>(
             let within = |value: f64| {
                 min.is_none_or(|min| value >= min) && max.is_none_or(|max| value <= max)
             };
-            Ok(Verdict {
+            Ok(BoundCheck {
                 metric: metric.name,
                 unit: metric.unit,
                 value,

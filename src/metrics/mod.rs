@@ -25,7 +25,7 @@ mod window;
 pub use bench::{BENCH_METRICS, BenchLimits, BenchSummary, LevelSummary, summarise_bench};
 pub use catalogue::{METRICS, Metric, metric};
 pub use error::MetricsError;
-pub use expect::{Verdict, check, validate};
+pub use expect::{BoundCheck, check, validate};
 pub use limits::{FOLLOW_PHASE, NARROW_BAND, SummaryLimits, TOUCH_SHARE, WIDE_BAND};
 pub use summary::{ForceTenth, JointTorqueShare, Summary, Timing};
 
@@ -59,7 +59,7 @@ pub fn summarise(recording: &Recording, limits: &SummaryLimits) -> Result<Summar
 mod tests {
     use super::test_recordings::{Builder, assert_near, limits};
     use super::*;
-    use crate::recording::{Channel, PhaseSpan, Unit, schema};
+    use crate::recording::{PhaseSpan, RecordedChannel, Unit, schema};
 
     #[test]
     fn an_empty_recording_leaves_everything_undefined_but_its_duration() {
@@ -133,7 +133,7 @@ mod tests {
         assert!(refuse(|limits| limits.joint_efforts = vec![1.0]).contains("2 joints is 1"));
         assert!(refuse(|limits| limits.joint_efforts[1] = f64::NAN).contains("`wrist`"));
 
-        let pascal = Channel::new(schema::CONTACT_FORCE, Unit::Pascal, vec![0.0]);
+        let pascal = RecordedChannel::new(schema::CONTACT_FORCE, Unit::Pascal, vec![0.0]);
         let recording = Recording::new(vec![0.0], vec![pascal], vec![]).unwrap();
         let error = summarise(&recording, &limits()).unwrap_err().to_string();
         assert_eq!(error, "channel `contact_force` is in Pa; expected N");

@@ -2,7 +2,7 @@
 
 use super::SummaryLimits;
 use crate::recording::schema::{self, JointSignal};
-use crate::recording::{Channel, PhaseSpan, Recording, Unit};
+use crate::recording::{PhaseSpan, RecordedChannel, Recording, Unit};
 
 /// Limits of the made-up cell: 100 N, 50 mm, two joints.
 pub(crate) fn limits() -> SummaryLimits {
@@ -122,8 +122,10 @@ impl Builder {
 
     /// The recording.
     pub(crate) fn build(&self) -> Recording {
-        let newton = |quantity, values: &[f64]| Channel::new(quantity, Unit::Newton, values.into());
-        let metre = |quantity, values: &[f64]| Channel::new(quantity, Unit::Metre, values.into());
+        let newton =
+            |quantity, values: &[f64]| RecordedChannel::new(quantity, Unit::Newton, values.into());
+        let metre =
+            |quantity, values: &[f64]| RecordedChannel::new(quantity, Unit::Metre, values.into());
         let friction: Vec<f64> = self.force.iter().map(|force| 0.2 * force).collect();
         let mut channels = vec![
             metre(schema::PATH_LENGTH, &self.path),
@@ -139,11 +141,15 @@ impl Builder {
             schema::MASS_LEFT,
         ];
         for (quantity, mass) in masses.into_iter().zip(&self.air) {
-            channels.push(Channel::new(quantity, Unit::Kilogram, mass.clone()));
+            channels.push(RecordedChannel::new(quantity, Unit::Kilogram, mass.clone()));
         }
         for (joint, torque) in (1..).zip(&self.torques) {
             let quantity = schema::joint_quantity(joint, JointSignal::Torque);
-            channels.push(Channel::new(quantity, Unit::NewtonMetre, torque.clone()));
+            channels.push(RecordedChannel::new(
+                quantity,
+                Unit::NewtonMetre,
+                torque.clone(),
+            ));
         }
         Recording::new(self.time.clone(), channels, self.phases.clone()).unwrap()
     }

@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
-use super::{Block, Cell, Chart, Page, Section, Strip, Table, Tone};
+use super::{Block, Chart, Page, PageSection, PageTable, Strip, TableCell, Tone};
 
 const STYLE: &str = include_str!("../../assets/page/page.css");
 const CHART_STYLE: &str = include_str!("../../assets/page/uplot/uPlot.min.css");
@@ -87,7 +87,7 @@ fn numbers(blocks: &[Block<'_>]) -> (usize, usize) {
     counts.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
 
-fn section(part: &Section<'_>, budget: &Budget) -> Markup {
+fn section(part: &PageSection<'_>, budget: &Budget) -> Markup {
     markup! {
         section id=(anchor(&part.title)) {
             h2 { (part.title) }
@@ -102,7 +102,7 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Heading(text) => h3 { (text) },
             Block::Paragraph(text) => p { (bound(text)) },
             Block::Hint(text) => p.hint { (bound(text)) },
-            Block::Table(of) => (table(of)),
+            Block::PageTable(of) => (table(of)),
             Block::Chart(of) => (chart(of, budget)),
             Block::Strip(of) => (strip(of)),
             Block::Lines(text) => pre { (text) },
@@ -144,7 +144,7 @@ fn chart(chart: &Chart<'_>, budget: &Budget) -> Markup {
     }
 }
 
-fn table(table: &Table) -> Markup {
+fn table(table: &PageTable) -> Markup {
     let numeric = |index: usize| table.columns[index].1.then_some("number");
     markup! {
         div.scroll { table {
@@ -152,10 +152,10 @@ fn table(table: &Table) -> Markup {
             thead { tr { @for (name, number) in &table.columns { th class=[number.then_some("number")] scope="col" { (name) } } } }
             tbody { @for row in &table.rows { tr { @for (index, cell) in row.iter().enumerate() {
                 @match cell {
-                    Cell::Text(text) => td class=[numeric(index)] { (text) },
-                    Cell::Judged(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
-                    Cell::Hash(text) => td.hash { (text) },
-                    Cell::Interval(ends) => td { (interval(*ends)) },
+                    TableCell::Text(text) => td class=[numeric(index)] { (text) },
+                    TableCell::Judged(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
+                    TableCell::Hash(text) => td.hash { (text) },
+                    TableCell::Interval(ends) => td { (interval(*ends)) },
                 }
             } } } }
         } }
@@ -226,7 +226,7 @@ mod tests {
         };
         let page = Page {
             title: "A & B".to_owned(),
-            sections: vec![Section::new("All of it", vec![Block::Chart(chart)])],
+            sections: vec![PageSection::new("All of it", vec![Block::Chart(chart)])],
             ..Page::default()
         };
         let text = html(&page);

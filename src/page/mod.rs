@@ -25,7 +25,7 @@ pub struct Page<'a> {
     /// Key numbers.
     pub facts: Vec<Fact>,
     /// Its parts.
-    pub sections: Vec<Section<'a>>,
+    pub sections: Vec<PageSection<'a>>,
     /// Last line.
     pub footer: String,
 }
@@ -59,7 +59,7 @@ pub struct Fact {
 
 /// A part of a page.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Section<'a> {
+pub struct PageSection<'a> {
     /// Heading, and name in the list of contents.
     pub title: String,
     /// Its blocks.
@@ -76,7 +76,7 @@ pub enum Block<'a> {
     /// A paragraph that helps to read what follows.
     Hint(String),
     /// Rows and columns.
-    Table(Table),
+    PageTable(PageTable),
     /// A chart.
     Chart(Chart<'a>),
     /// Times in which something is so, over a span that all rows share.
@@ -95,18 +95,18 @@ pub enum Block<'a> {
 
 /// Rows and columns.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Table {
+pub struct PageTable {
     /// Its caption; may be empty.
     pub caption: String,
     /// Names of the columns, and whether they hold numbers.
     pub columns: Vec<(String, bool)>,
     /// As many cells a row as there are columns.
-    pub rows: Vec<Vec<Cell>>,
+    pub rows: Vec<Vec<TableCell>>,
 }
 
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
+pub enum TableCell {
     /// Words or a number.
     Text(String),
     /// Words that are good news, or bad news.
@@ -126,7 +126,7 @@ pub struct Strip {
     pub rows: Vec<(String, Vec<[f64; 2]>)>,
 }
 
-impl<'a> Section<'a> {
+impl<'a> PageSection<'a> {
     /// A section with blocks.
     pub fn new(title: &str, blocks: Vec<Block<'a>>) -> Self {
         Self {
@@ -136,10 +136,10 @@ impl<'a> Section<'a> {
     }
 }
 
-impl Table {
+impl PageTable {
     /// A table; columns that begin with `#` hold numbers.
     #[must_use]
-    pub fn new(caption: &str, columns: &[&str], rows: Vec<Vec<Cell>>) -> Self {
+    pub fn new(caption: &str, columns: &[&str], rows: Vec<Vec<TableCell>>) -> Self {
         let column = |name: &&str| match name.strip_prefix('#') {
             Some(name) => (name.to_owned(), true),
             None => ((*name).to_owned(), false),
@@ -152,13 +152,13 @@ impl Table {
     }
 }
 
-impl From<&str> for Cell {
+impl From<&str> for TableCell {
     fn from(text: &str) -> Self {
         Self::Text(text.to_owned())
     }
 }
 
-impl From<String> for Cell {
+impl From<String> for TableCell {
     fn from(text: String) -> Self {
         Self::Text(text)
     }

@@ -7,7 +7,7 @@ use glamx::DPose3;
 use nalgebra::{DMatrix, DVector};
 
 use super::error::Obstacle;
-use crate::arm::chain::{Chain, MAX_JOINTS};
+use crate::arm::chain::{KinematicChain, MAX_JOINTS};
 use crate::arm::dynamics::gravity_torques;
 use crate::arm::inverse_kinematics::{IkOptions, TipOrientation, distinct_solutions, solve};
 use crate::arm::kinematics::{
@@ -33,9 +33,9 @@ const FLOOR: f64 = -0.05;
 #[derive(Debug, Clone, Copy)]
 pub struct Standing<'a> {
     /// The arm, base to flange.
-    pub chain: &'a Chain,
+    pub chain: &'a KinematicChain,
     /// The arm with the device's slide as its last joint.
-    pub loaded: &'a Chain,
+    pub loaded: &'a KinematicChain,
     /// Stroke at which the slide stands [m].
     pub stroke: f64,
     /// Its base in the world.

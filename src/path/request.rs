@@ -7,7 +7,7 @@ use super::error::{Obstacle, PlanError};
 use super::profile::{MotionLimits, Profile};
 use super::spline::Spline;
 use super::toolpath::ToolPath;
-use crate::arm::chain::Chain;
+use crate::arm::chain::KinematicChain;
 
 /// Distance between the knots of the joint angles' spline [m].
 pub(super) const KNOT_SPACING: f64 = 1e-3;
@@ -41,9 +41,9 @@ impl Phase {
 #[derive(Debug, Clone)]
 pub struct PlanRequest<'a> {
     /// The arm, base to flange.
-    pub arm: &'a Chain,
+    pub arm: &'a KinematicChain,
     /// The arm with the slide as its last joint.
-    pub arm_with_slide: &'a Chain,
+    pub arm_with_slide: &'a KinematicChain,
     /// Its base in the world.
     pub world_from_base: DPose3,
     /// Gravity in the world [m/s2].

@@ -51,7 +51,7 @@ pub enum Stretch {
 
 /// A stretch with its length along the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Section {
+pub struct ToolpathSection {
     /// Path length at its start [m].
     pub start: f64,
     /// Its path length [m].
@@ -66,7 +66,7 @@ pub struct ToolPath {
     curve: EdgeCurve,
     world_from_part: DPose3,
     lean: f64,
-    sections: Vec<Section>,
+    sections: Vec<ToolpathSection>,
 }
 
 impl ToolPath {
@@ -98,7 +98,7 @@ impl ToolPath {
 
     fn push(&mut self, length: f64, stretch: Stretch) {
         let start = self.length();
-        self.sections.push(Section {
+        self.sections.push(ToolpathSection {
             start,
             length,
             stretch,
@@ -140,7 +140,7 @@ impl ToolPath {
     }
 
     /// Its sections in order.
-    pub fn sections(&self) -> &[Section] {
+    pub fn sections(&self) -> &[ToolpathSection] {
         &self.sections
     }
 

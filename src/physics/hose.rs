@@ -8,7 +8,7 @@
 //! ```
 //!
 //! V_h volume [m3], m_h air in it [kg], l length [m], d inner diameter [m], mu viscosity [Pa s], f Darcy friction factor [1], p absolute pressures [Pa].
-//! For an ideal gas the mean density times the pressure drop is (p_in^2 - p_h^2) / (2 R T), whatever the trajectory of the pressure.
+//! For an ideal gas the mean density times the pressure drop is (p_in^2 - p_h^2) / (2 R T), whatever the pressure along the hose.
 //! Between the two regimes, where pipes do the one or the other (2300 to 4000: White, Fluid Mechanics, 6.1), a cubic in log Re over log K with the
 //! slopes of both: the flow has no kink and never falls as the pressure difference grows.
 //!

@@ -4,7 +4,7 @@
 //! minimise  sum K((t_i - t)/W) (x_i - c_0 - c_1 (t_i - t) - c_2 (t_i - t)^2 - c_3 (t_i - t)^3)^2,   x = c_0, v = c_1, a = 2 c_2
 //! ```
 //!
-//! K tricube weights (Cleveland 1979), W half-width [s]: the largest that foretells a reading from the others about as well as the best one does, because
+//! K tricube weights (Cleveland 1979), W half-width [s]: the largest that predicts a reading from the others about as well as the best one does, because
 //! derivatives need more smoothing than the readings themselves. Samples may be at unlike distances.
 
 use nalgebra::{Matrix4, Vector4};
@@ -26,7 +26,7 @@ const NARROWEST: f64 = 3.5;
 const WIDEST: f64 = 400.0;
 /// Each half-width over the one before.
 const WIDER: f64 = 1.2;
-/// Largest factor over the best that a half-width may foretell [1].
+/// Largest factor over the best that a half-width may predict with [1].
 const ABOUT_AS_WELL: f64 = 1.03;
 /// Factor over the best that ends the search [1].
 const FAR_WORSE: f64 = 2.0;
@@ -94,14 +94,14 @@ impl MeasuredMotion {
     }
 }
 
-/// The largest half-width [s] that foretells readings from the others about as well as the best.
+/// The largest half-width [s] that predicts readings from the others about as well as the best.
 fn best_width(known: &[(f64, f64)], usual: f64) -> f64 {
     let every = known.len().div_ceil(JUDGED);
     let mut tried: Vec<(f64, f64)> = Vec::new();
     let mut least = f64::INFINITY;
     let mut width = NARROWEST * usual;
     while width <= WIDEST * usual {
-        let error = foretelling_error(known, width, every);
+        let error = prediction_error(known, width, every);
         if error.is_finite() {
             least = least.min(error);
             tried.push((width, error));
@@ -119,7 +119,7 @@ fn best_width(known: &[(f64, f64)], usual: f64) -> f64 {
 }
 
 /// Root mean square error with which readings are predicted from the others about them; the largest hundredth, such as of jolts, does not count.
-fn foretelling_error(known: &[(f64, f64)], width: f64, every: usize) -> f64 {
+fn prediction_error(known: &[(f64, f64)], width: f64, every: usize) -> f64 {
     let mut squares: Vec<f64> = (known.iter().step_by(every))
         .filter_map(|(t, x)| {
             let cubic = Cubic::at(known, *t, width)?;

@@ -18,5 +18,5 @@ pub use outcome::{Made, Outcome};
 pub use prove::{Diagnose, folders, prove};
 pub use queue::all as in_order;
 pub use score::{CaseScore, judge, overlap, worst_channel};
-pub use summary::{Claims, Summary};
+pub use summary::{Claims, ProofSummary};
 pub use sweep::{SweepPlan, sweep};

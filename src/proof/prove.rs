@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::error::ProofError;
 use super::queue;
 use super::score::{CaseScore, judge, worst_channel};
-use super::summary::Summary;
+use super::summary::ProofSummary;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::recorded::QUANTITIES;
 use crate::laboratory::SealedCase;
@@ -31,7 +31,7 @@ pub fn prove(
     jobs: usize,
     diagnose: &Diagnose<'_>,
     told: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Summary, ProofError> {
+) -> Result<ProofSummary, ProofError> {
     let folders = folders(cases, only)?;
     let done = AtomicUsize::new(0);
     let answers = queue::all(folders.len(), jobs, |index| {
@@ -50,7 +50,7 @@ pub fn prove(
             sealed,
         )?);
     }
-    Ok(Summary::new(scores))
+    Ok(ProofSummary::new(scores))
 }
 
 /// Folders with a case, by name.

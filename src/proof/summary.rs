@@ -40,7 +40,7 @@ impl Claims {
 
 /// A proof's score.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Summary {
+pub struct ProofSummary {
     /// Case by case.
     pub cases: Vec<CaseScore>,
     /// Listed effects named exactly, of how many.
@@ -65,7 +65,7 @@ pub struct Summary {
     pub seconds: Option<f64>,
 }
 
-impl Summary {
+impl ProofSummary {
     /// Of all cases.
     pub fn new(cases: Vec<CaseScore>) -> Self {
         let count = |of: &dyn Fn(&&CaseScore) -> bool, hit: &dyn Fn(&&CaseScore) -> bool| {
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn what_is_claimed_is_asked_for() {
         let good = vec![case(&[], true, &[]), case(&["a"], true, &[0.01, 0.02])];
-        let summary = Summary::new(good.clone());
+        let summary = ProofSummary::new(good.clone());
         assert_eq!(
             (summary.named, summary.clean, summary.unlisted),
             ([1, 1], [1, 1], [0, 0])
@@ -283,7 +283,7 @@ mod tests {
         bad[1].covered = 0;
         bad[1].overlap = 0.1;
         bad[1].prediction = None;
-        let short = Summary::new(bad).shortfalls(&Claims::PAGE);
+        let short = ProofSummary::new(bad).shortfalls(&Claims::PAGE);
         assert_eq!(short.len(), 6, "{short:?}");
     }
 

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use super::atomic::write_atomic;
-use super::{Channel, Recording, RecordingError};
+use super::{RecordedChannel, Recording, RecordingError};
 use columns::{COLUMNS, Column, TIME};
 
 mod cell;
@@ -52,7 +52,11 @@ fn read(path: &Path, with_inputs: bool) -> Result<CsvRecording, RecordingError> 
         match values {
             Some(values) => {
                 check_plausible(path, column, values, &table.lines)?;
-                channels.push(Channel::new(column.quantity, column.unit, values.clone()));
+                channels.push(RecordedChannel::new(
+                    column.quantity,
+                    column.unit,
+                    values.clone(),
+                ));
             }
             None if column.is_input && with_inputs => {
                 return Err(RecordingError::Column {

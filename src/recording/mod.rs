@@ -32,7 +32,7 @@ use std::ops::Range;
 
 /// One signal, sampled at the recording's times.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Channel {
+pub struct RecordedChannel {
     /// The recorded quantity, without its unit: `contact_force`.
     pub quantity: String,
     /// Unit of `values`.
@@ -41,7 +41,7 @@ pub struct Channel {
     pub values: Vec<f64>,
 }
 
-impl Channel {
+impl RecordedChannel {
     /// A channel of `quantity` in `unit`.
     #[must_use]
     pub fn new(quantity: impl Into<String>, unit: Unit, values: Vec<f64>) -> Self {
@@ -71,7 +71,7 @@ pub struct PhaseSpan {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     time: Vec<f64>,
-    channels: Vec<Channel>,
+    channels: Vec<RecordedChannel>,
     phases: Vec<PhaseSpan>,
 }
 
@@ -83,7 +83,7 @@ impl Recording {
     /// Says which channel, sample or phase does not fit.
     pub fn new(
         time: Vec<f64>,
-        channels: Vec<Channel>,
+        channels: Vec<RecordedChannel>,
         phases: Vec<PhaseSpan>,
     ) -> Result<Self, RecordingError> {
         check_time(&time)?;
@@ -104,7 +104,7 @@ impl Recording {
 
     /// All channels, in the order they were given.
     #[must_use]
-    pub fn channels(&self) -> &[Channel] {
+    pub fn channels(&self) -> &[RecordedChannel] {
         &self.channels
     }
 
@@ -122,7 +122,7 @@ impl Recording {
 
     /// The channel of a quantity, if it was recorded.
     #[must_use]
-    pub fn channel(&self, quantity: &str) -> Option<&Channel> {
+    pub fn channel(&self, quantity: &str) -> Option<&RecordedChannel> {
         self.channels
             .iter()
             .find(|channel| channel.quantity == quantity)
@@ -176,7 +176,7 @@ fn check_time(time: &[f64]) -> Result<(), RecordingError> {
     Ok(())
 }
 
-fn check_channels(channels: &[Channel], sample_count: usize) -> Result<(), RecordingError> {
+fn check_channels(channels: &[RecordedChannel], sample_count: usize) -> Result<(), RecordingError> {
     let mut seen = BTreeSet::new();
     for channel in channels {
         if let Some(reason) = quantity_fault(&channel.quantity, channel.unit) {
@@ -271,8 +271,8 @@ mod tests {
         }
     }
 
-    fn force(values: Vec<f64>) -> Channel {
-        Channel::new(schema::CONTACT_FORCE, Unit::Newton, values)
+    fn force(values: Vec<f64>) -> RecordedChannel {
+        RecordedChannel::new(schema::CONTACT_FORCE, Unit::Newton, values)
     }
 
     #[test]
@@ -320,7 +320,7 @@ mod tests {
             ("", Unit::Newton),
             ("lever_n", Unit::Metre),
         ] {
-            let channel = Channel::new(name, unit, vec![0.0; 2]);
+            let channel = RecordedChannel::new(name, unit, vec![0.0; 2]);
             assert!(refuse(two.clone(), vec![channel], vec![]).contains("cannot be used"));
         }
         for phases in [

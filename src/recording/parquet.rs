@@ -24,7 +24,7 @@ use arrow::datatypes::{DataType, Field, Float64Type, Int32Type, Schema};
 
 use super::atomic::write_atomic;
 use super::unit::{column_name, parse_column_name};
-use super::{Channel, PhaseSpan, Recording, RecordingError, Unit, schema};
+use super::{PhaseSpan, RecordedChannel, Recording, RecordingError, Unit, schema};
 
 /// Version of the table's layout, raised when a reader of the old one would misread the new one.
 pub const LAYOUT_VERSION: &str = "1";
@@ -210,7 +210,7 @@ fn recording_of(path: &Path, table: &RecordBatch) -> Result<Recording, Recording
         if quantity == schema::TIME && unit == Unit::Second {
             time = Some(values);
         } else {
-            channels.push(Channel::new(quantity, unit, values));
+            channels.push(RecordedChannel::new(quantity, unit, values));
         }
     }
     let Some(time) = time else {
@@ -259,9 +259,9 @@ mod tests {
             span("retract", 1300, 4999),
         ];
         let channels = vec![
-            Channel::new(schema::CONTACT_FORCE, Unit::Newton, force),
-            Channel::new(schema::STROKE, Unit::Metre, stroke),
-            Channel::new(
+            RecordedChannel::new(schema::CONTACT_FORCE, Unit::Newton, force),
+            RecordedChannel::new(schema::STROKE, Unit::Metre, stroke),
+            RecordedChannel::new(
                 "joint_1_torque",
                 Unit::NewtonMetre,
                 vec![f64::MIN_POSITIVE; 5000],

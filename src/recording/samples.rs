@@ -90,18 +90,18 @@ fn rows(time: &[f64], rate: f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::{Channel, Unit};
+    use crate::recording::{RecordedChannel, Unit};
 
     #[test]
     fn rows_are_those_read_and_what_was_set_after_them_is_held_from_them_on() {
         let time: Vec<f64> = (1..=9).map(|i| f64::from(i) * 1e-3).collect();
         let ramp = |slope: f64| -> Vec<f64> { (1..=9).map(|i| slope * f64::from(i)).collect() };
         let mut channels = vec![
-            Channel::new(schema::PATH_LENGTH, Unit::Metre, ramp(1e-3)),
-            Channel::new(schema::SET_PRESSURE, Unit::Pascal, ramp(1e4)),
-            Channel::new(schema::MEASURED_REGULATOR_PRESSURE, Unit::Pascal, ramp(2e4)),
-            Channel::new(schema::MEASURED_STROKE, Unit::Metre, ramp(0.0)),
-            Channel::new(schema::MEASURED_FORCE, Unit::Newton, ramp(3.0)),
+            RecordedChannel::new(schema::PATH_LENGTH, Unit::Metre, ramp(1e-3)),
+            RecordedChannel::new(schema::SET_PRESSURE, Unit::Pascal, ramp(1e4)),
+            RecordedChannel::new(schema::MEASURED_REGULATOR_PRESSURE, Unit::Pascal, ramp(2e4)),
+            RecordedChannel::new(schema::MEASURED_STROKE, Unit::Metre, ramp(0.0)),
+            RecordedChannel::new(schema::MEASURED_FORCE, Unit::Newton, ramp(3.0)),
         ];
         for signal in [
             JointSignal::Reference,
@@ -109,7 +109,7 @@ mod tests {
             JointSignal::Torque,
         ] {
             let name = joint_quantity(1, signal);
-            channels.push(Channel::new(name, signal.unit(), ramp(0.1)));
+            channels.push(RecordedChannel::new(name, signal.unit(), ramp(0.1)));
         }
         let samples = Recording::new(time, channels, vec![]).unwrap();
         let taken = cell_recording(&samples, 1, 250.0, 1e4).unwrap();

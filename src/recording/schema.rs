@@ -315,16 +315,17 @@ pub fn meaning(quantity: &str) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::{Channel, Recording};
+    use crate::recording::{RecordedChannel, Recording};
 
     #[test]
     fn the_list_makes_a_recording() {
         let joint = (1..=7).flat_map(|joint| {
-            JointSignal::ALL.map(|s| Channel::new(joint_quantity(joint, s), s.unit(), vec![0.0]))
+            JointSignal::ALL
+                .map(|s| RecordedChannel::new(joint_quantity(joint, s), s.unit(), vec![0.0]))
         });
         let channels = SIGNALS
             .iter()
-            .map(|s| Channel::new(s.quantity, s.unit, vec![0.0]))
+            .map(|s| RecordedChannel::new(s.quantity, s.unit, vec![0.0]))
             .chain(joint)
             .collect();
         let recording = Recording::new(vec![0.0], channels, vec![]).unwrap();

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_course_beyond_a_thousand_is_seen_when_its_marks_were_misread() {
+    fn a_trajectory_beyond_a_thousand_is_seen_when_its_marks_were_misread() {
         let trajectory: Vec<f64> = (0..400)
             .map(|i| 900.0 + 200.0 * (0.05 * f64::from(i)).sin())
             .collect();
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steep_course_is_seen_as_well() {
+    fn a_steep_trajectory_is_seen_as_well() {
         // A pressure that is switched, read in millibars.
         let trajectory = |i: u32| 1500.0 * (0.5 + 0.5 * (0.35 * f64::from(i)).sin());
         let wild: Vec<f64> = (0..200)

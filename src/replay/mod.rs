@@ -6,7 +6,7 @@ mod load;
 pub use drive_torque::Drive;
 pub use load::LoadedCell;
 
-use crate::arm::chain::{BodyInertia, Chain, MAX_JOINTS};
+use crate::arm::chain::{BodyInertia, KinematicChain, MAX_JOINTS};
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::link_poses;
 use crate::plant::{
@@ -24,7 +24,7 @@ const _: () = assert!(MAX_JOINTS == MOST_JOINTS);
 #[derive(Debug, Clone)]
 pub struct ReplayCell {
     /// The arm up to its flange.
-    pub chain: Chain,
+    pub chain: KinematicChain,
     /// Pose of its base.
     pub world_from_base: DPose3,
     /// Gravity [m/s2].
@@ -174,7 +174,7 @@ impl ReplayCell {
     }
 
     /// The arm with the device's moving mass fixed at a stroke [m].
-    fn loaded(&self, stroke: f64) -> Chain {
+    fn loaded(&self, stroke: f64) -> KinematicChain {
         let mut chain = self.chain.clone();
         let device = BodyInertia {
             mass: self.moving_mass,

@@ -2,7 +2,7 @@
 
 use super::rows::{comparison, far_from_desired, printable, shown, tally};
 use super::text::Style;
-use crate::metrics::{BENCH_METRICS, BenchSummary, LevelSummary, Metric, Verdict};
+use crate::metrics::{BENCH_METRICS, BenchSummary, BoundCheck, LevelSummary, Metric};
 use crate::quantity::optional;
 
 /// A column of the table of levels.
@@ -59,7 +59,7 @@ fn far_of(summary: &BenchSummary) -> Option<String> {
 pub fn bench_text(
     title: &str,
     summary: &BenchSummary,
-    verdicts: &[Verdict],
+    verdicts: &[BoundCheck],
     style: Style,
 ) -> String {
     let rule = style.faint(&"-".repeat(80));
@@ -111,7 +111,7 @@ pub fn bench_text(
 
 /// The same as Markdown, without the timing, so that the same scenario gives the same text.
 #[must_use]
-pub fn bench_markdown(title: &str, summary: &BenchSummary, verdicts: &[Verdict]) -> String {
+pub fn bench_markdown(title: &str, summary: &BenchSummary, verdicts: &[BoundCheck]) -> String {
     let untimed = BenchSummary {
         timing: None,
         ..summary.clone()

@@ -2,14 +2,14 @@
 //!
 //! Timing is left out, so that the same scenario gives the same text.
 
-use super::rows::{Row, comparison, rows, tally};
+use super::rows::{ReportRow, comparison, rows, tally};
 use super::text::far_of;
-use crate::metrics::{ForceTenth, Summary, Verdict};
+use crate::metrics::{BoundCheck, ForceTenth, Summary};
 use crate::quantity::column;
 
 /// The results of a run as Markdown, with the scenario's expectations first.
 #[must_use]
-pub fn markdown(title: &str, summary: &Summary, verdicts: &[Verdict]) -> String {
+pub fn markdown(title: &str, summary: &Summary, verdicts: &[BoundCheck]) -> String {
     let untimed = Summary {
         timing: None,
         ..summary.clone()
@@ -50,7 +50,7 @@ fn row(out: &mut String, cells: &[&str]) {
     out.push_str(&format!("| {} |\n", cells.join(" | ")));
 }
 
-fn results(out: &mut String, part: &[Row]) {
+fn results(out: &mut String, part: &[ReportRow]) {
     let Some(first) = part.first() else {
         return;
     };
@@ -82,7 +82,7 @@ fn tenths(out: &mut String, tenths: &[ForceTenth]) {
     }
 }
 
-fn expectations(out: &mut String, verdicts: &[Verdict]) {
+fn expectations(out: &mut String, verdicts: &[BoundCheck]) {
     row(out, &["", "expected", "value", "bound"]);
     row(out, &["---", "---", "---:", "---"]);
     for verdict in verdicts {

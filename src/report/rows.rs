@@ -1,6 +1,6 @@
 //! The rows of the reports: which metrics, in which parts, with what beside them.
 
-use crate::metrics::{Metric, NARROW_BAND, Summary, Verdict, WIDE_BAND, metric};
+use crate::metrics::{BoundCheck, Metric, NARROW_BAND, Summary, WIDE_BAND, metric};
 use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
 /// Parts of a report and the metrics in each, by key.
@@ -46,7 +46,7 @@ const PARTS: [(&str, &[&str]); 6] = [
 ];
 
 /// One row: a metric, its value, and what a reader wants beside it.
-pub(super) struct Row {
+pub(super) struct ReportRow {
     /// Part of the report.
     pub(super) part: &'static str,
     /// The metric.
@@ -57,7 +57,7 @@ pub(super) struct Row {
     pub(super) note: String,
 }
 
-impl Row {
+impl ReportRow {
     /// The value as it is printed.
     pub(super) fn text(&self) -> String {
         shown(self.value, self.unit())
@@ -100,13 +100,13 @@ pub fn far_from_desired(desired: f64, mean: f64, rms_error_percent: f64) -> Opti
 }
 
 /// The rows in order; without that of the timing if there is none.
-pub(super) fn rows(summary: &Summary) -> Vec<Row> {
+pub(super) fn rows(summary: &Summary) -> Vec<ReportRow> {
     let row = |part, name: &str| {
         if name == "real_time_factor" && summary.timing.is_none() {
             return None;
         }
         let metric = metric(name)?;
-        Some(Row {
+        Some(ReportRow {
             part,
             metric,
             value: (metric.value)(summary),
@@ -157,7 +157,7 @@ fn fact(name: &str, summary: &Summary) -> Option<String> {
 }
 
 /// Value and bound of a verdict, with enough digits to tell them apart.
-pub(super) fn comparison(verdict: &Verdict) -> (String, String) {
+pub(super) fn comparison(verdict: &BoundCheck) -> (String, String) {
     let Some(value) = verdict.value else {
         return ("undefined".to_owned(), bound(verdict));
     };
@@ -179,7 +179,7 @@ pub(super) fn comparison(verdict: &Verdict) -> (String, String) {
     (told.unwrap_or_else(|| value.to_string()), bound(verdict))
 }
 
-fn bound(verdict: &Verdict) -> String {
+fn bound(verdict: &BoundCheck) -> String {
     match (verdict.min, verdict.max) {
         (Some(min), Some(max)) => format!("{min} to {max}"),
         (Some(min), None) => format!("at least {min}"),
@@ -189,7 +189,7 @@ fn bound(verdict: &Verdict) -> String {
 }
 
 /// Number of bounds that were kept, in one line.
-pub(super) fn tally(verdicts: &[Verdict]) -> String {
+pub(super) fn tally(verdicts: &[BoundCheck]) -> String {
     let kept = verdicts.iter().filter(|verdict| verdict.kept).count();
     match verdicts.len() {
         1 => format!("{kept} of 1 bound kept"),
@@ -260,7 +260,7 @@ mod tests {
             let row = rows
                 .iter()
                 .find(|row| row.metric.label == "within 5 % of desired");
-            row.map(Row::text)
+            row.map(ReportRow::text)
         };
         assert_eq!(shown(99.94).as_deref(), Some("99.94"));
         assert_eq!(shown(99.996).as_deref(), Some("<100"));
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn a_value_just_outside_does_not_look_like_its_bound() {
-        let verdict = |value, kept| Verdict {
+        let verdict = |value, kept| BoundCheck {
             metric: "force_mean_n",
             unit: "N",
             value,

@@ -1,6 +1,6 @@
 //! A made-up summary for the tests of the reports.
 
-use crate::metrics::{ForceTenth, METRICS, Summary, Timing, Verdict, check};
+use crate::metrics::{BoundCheck, ForceTenth, METRICS, Summary, Timing, check};
 use crate::scenario::Expectation;
 
 /// A run as one would like it.
@@ -50,7 +50,7 @@ pub(super) fn nominal() -> Summary {
 }
 
 /// One expectation that the run above keeps and one that it does not.
-pub(super) fn judged(summary: &Summary) -> Vec<Verdict> {
+pub(super) fn judged(summary: &Summary) -> Vec<BoundCheck> {
     let expectation = |metric: &str, min, max| Expectation {
         metric: metric.into(),
         min,

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::rows::{Row, comparison, far_from_desired, printable, rows, tally};
-use crate::metrics::{ForceTenth, Summary, Verdict};
+use super::rows::{ReportRow, comparison, far_from_desired, printable, rows, tally};
+use crate::metrics::{BoundCheck, ForceTenth, Summary};
 use crate::quantity::{UNKNOWN, column};
 
 const WIDTH: usize = 80;
@@ -41,7 +41,7 @@ impl Style {
 
 /// The results of a run as a table, with the scenario's expectations below it.
 #[must_use]
-pub fn text(title: &str, summary: &Summary, verdicts: &[Verdict], style: Style) -> String {
+pub fn text(title: &str, summary: &Summary, verdicts: &[BoundCheck], style: Style) -> String {
     let rule = style.faint(&"-".repeat(WIDTH));
     let mut out = format!("{}\n{rule}\n", style.heading(&printable(title)));
     let rows = rows(summary);
@@ -80,7 +80,7 @@ fn push(out: &mut String, line: &str) {
     out.push('\n');
 }
 
-fn line(out: &mut String, opening: &str, row: &Row, style: Style) {
+fn line(out: &mut String, opening: &str, row: &ReportRow, style: Style) {
     let text = format!(
         "{} {:<24} {:>9} {:<4}  {}",
         style.heading(&format!("{opening:<7}")),
@@ -115,8 +115,8 @@ fn tenths(out: &mut String, tenths: &[ForceTenth], style: Style) {
     push(out, &format!("{}{spreads}", name("SD N")));
 }
 
-fn expectations(out: &mut String, verdicts: &[Verdict], style: Style) {
-    let lines: Vec<(&Verdict, String, String)> = verdicts
+fn expectations(out: &mut String, verdicts: &[BoundCheck], style: Style) {
+    let lines: Vec<(&BoundCheck, String, String)> = verdicts
         .iter()
         .map(|verdict| {
             let (value, bound) = comparison(verdict);

@@ -1,6 +1,6 @@
 //! The estimator on the rig: fed with what the sensors read, at their rate.
 
-use crate::estimation::{ContactForceEstimator, Estimate, Measurement};
+use crate::estimation::{ContactForceEstimator, EstimatorOutput, Measurement};
 use crate::physics::valve::ValvePosition;
 use crate::sensing::Readings;
 use crate::sensing::sample_clock::SampleClock;
@@ -10,7 +10,7 @@ use crate::sensing::sample_clock::SampleClock;
 pub(super) struct RigEstimator {
     estimator: ContactForceEstimator,
     clock: SampleClock,
-    held: Option<Estimate>,
+    held: Option<EstimatorOutput>,
 }
 
 impl RigEstimator {
@@ -28,7 +28,7 @@ impl RigEstimator {
         time: f64,
         readings: &Readings,
         valve: ValvePosition,
-    ) -> Option<Estimate> {
+    ) -> Option<EstimatorOutput> {
         if self.clock.is_due(time) {
             self.held = Some(self.estimator.update(&Measurement {
                 stroke: readings.stroke,

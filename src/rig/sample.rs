@@ -3,10 +3,10 @@
 use super::carrier::BenchCarrier;
 use super::simulation::{Rig, RigTruth};
 use crate::device::DeviceState;
-use crate::estimation::Estimate;
+use crate::estimation::EstimatorOutput;
 use crate::physics::valve::ValvePosition;
 use crate::recording::schema;
-use crate::recording::{Channel, Recording, RecordingError};
+use crate::recording::{RecordedChannel, Recording, RecordingError};
 use crate::sensing::Readings;
 
 /// Channels of a bench recording, in the order of `RigLog::push`.
@@ -50,7 +50,7 @@ pub(super) struct RigSample<'a> {
     /// Contact force asked for [N]; NaN where pressures are.
     pub desired_force: f64,
     /// Contact force as the estimator has it, if there is one.
-    pub estimate: Option<Estimate>,
+    pub estimate: Option<EstimatorOutput>,
 }
 
 /// Samples by rows, until the run has ended.
@@ -134,13 +134,13 @@ impl RigLog {
         Recording::new(time, self.channels(first).collect(), Vec::new())
     }
 
-    fn channels(&self, first: usize) -> impl Iterator<Item = Channel> {
+    fn channels(&self, first: usize) -> impl Iterator<Item = RecordedChannel> {
         CHANNELS.iter().enumerate().map(move |(index, quantity)| {
             let values: Vec<f64> = self.rows[first..].iter().map(|row| row[index]).collect();
             let unit = schema::definition(quantity)
                 .expect("every channel is in the schema")
                 .unit;
-            Channel::new(*quantity, unit, values)
+            RecordedChannel::new(*quantity, unit, values)
         })
     }
 }

@@ -28,7 +28,7 @@ use super::suggestion::nearest;
 use super::units::Unit;
 use crate::effects::{Effect, Parameter, PresentEffect};
 use crate::plant::PlantParameters;
-use keys::{JOINT, LISTED, NAME, Table};
+use keys::{JOINT, KeyTable, LISTED, NAME};
 
 pub(super) use keys::EffectKeys;
 
@@ -87,7 +87,7 @@ fn section_of_name<'a>(document: &'a Document<'a>, key: &str, named: Option<&str
 }
 
 /// Key, name if the key says it, and content of each effect.
-type Entries<'k> = Vec<(String, Option<&'k str>, &'k Table)>;
+type Entries<'k> = Vec<(String, Option<&'k str>, &'k KeyTable)>;
 
 fn tables<'k>(document: &Document<'_>, keys: &'k EffectKeys) -> Result<Entries<'k>, ScenarioError> {
     let named = match keys {
@@ -145,7 +145,7 @@ fn named_effect(
 /// The effect that a table of the list names.
 fn listed_effect(
     section: &Section<'_>,
-    table: &Table,
+    table: &KeyTable,
     known: &[&'static Effect],
 ) -> Result<&'static Effect, ScenarioError> {
     let name = own::text(section, table, NAME, "the effect's name, of `idc effects`")?;
@@ -190,7 +190,7 @@ fn listed_effect(
 fn values(
     section: &Section<'_>,
     effect: &Effect,
-    table: &Table,
+    table: &KeyTable,
     plant: &PlantParameters,
 ) -> Result<Vec<f64>, ScenarioError> {
     let parameters = effect.parameters(plant);

@@ -11,7 +11,7 @@ use super::sensing::white;
 use crate::device::DeviceParameters;
 use crate::estimation::{ContactForceEstimator, EstimatorParameters, SensorNoise, Tolerances};
 use crate::plant::registry;
-use crate::sensing::{Channel, SensingParameters};
+use crate::sensing::{Measurement, SensingParameters};
 
 /// Name of the table.
 const TABLE: &str = "estimator";
@@ -142,11 +142,11 @@ fn noise(
 }
 
 /// Standard deviation of a channel; of one without noise that of usual white noise, for no filter can do without.
-fn believed<S>(channel: &Channel<S>, usual: f64, real: impl FnOnce(&S) -> f64) -> f64 {
+fn believed<S>(channel: &Measurement<S>, usual: f64, real: impl FnOnce(&S) -> f64) -> f64 {
     let deviation = match channel {
-        Channel::Ideal => 0.0,
-        Channel::White { standard_deviation } => *standard_deviation,
-        Channel::Real(sensor) => real(sensor),
+        Measurement::Ideal => 0.0,
+        Measurement::White { standard_deviation } => *standard_deviation,
+        Measurement::Real(sensor) => real(sensor),
     };
     if deviation > 0.0 { deviation } else { usual }
 }

@@ -6,7 +6,7 @@
 use super::check::Section;
 use super::document::Document;
 use super::error::ScenarioError;
-use crate::sensing::{Channel, CommandChain, FilterParameters, SensingParameters};
+use crate::sensing::{CommandChain, FilterParameters, Measurement, SensingParameters};
 use keys::{Preset, SensingKeys, SensorKind};
 use stages::Sensor;
 
@@ -46,8 +46,8 @@ pub(super) fn sensing(
             Some(keys) => stages::filter(&section("filter"), keys, sample_rate)?,
         },
     };
-    let has_adc = matches!(sensing.regulator_pressure, Channel::Real(_))
-        || matches!(sensing.force, Channel::Real(_));
+    let has_adc = matches!(sensing.regulator_pressure, Measurement::Real(_))
+        || matches!(sensing.force, Measurement::Real(_));
     if let (false, Some(key)) = (has_adc, section("adc").given().next()) {
         let reason = "it reads regulator pressure and force, and neither has kind = \"real\"";
         return Err(section("adc").misplaced(key, reason.to_owned()));

@@ -120,7 +120,7 @@ impl SensorChain {
 
 #[cfg(test)]
 mod tests {
-    use super::super::channel::Channel;
+    use super::super::channel::Measurement;
     use super::super::filter::FilterParameters;
     use super::*;
 
@@ -172,8 +172,8 @@ mod tests {
         assert_eq!(run(&paper, 7), run(&paper, 7));
         assert_ne!(run(&paper, 7), run(&paper, 8));
         let mut without = paper;
-        without.force = Channel::Ideal;
-        without.regulator_pressure = Channel::White {
+        without.force = Measurement::Ideal;
+        without.regulator_pressure = Measurement::White {
             standard_deviation: 50.0,
         };
         for (all, fewer) in run(&paper, 7).iter().zip(run(&without, 7)) {

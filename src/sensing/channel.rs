@@ -14,7 +14,7 @@ pub trait Sensor {
 
 /// Measurement of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Channel<S> {
+pub enum Measurement<S> {
     /// The truth.
     #[default]
     Ideal,
@@ -27,7 +27,7 @@ pub enum Channel<S> {
     Real(S),
 }
 
-impl<S: Sensor> Channel<S> {
+impl<S: Sensor> Measurement<S> {
     /// Number that the software gets for a true value.
     pub fn read(&self, truth: f64, noise: &mut Noise) -> f64 {
         match self {

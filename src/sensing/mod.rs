@@ -29,7 +29,7 @@ pub use accelerometer::AccelerometerParameters;
 pub use adc::AdcParameters;
 pub use amplifier::AmplifierParameters;
 pub use chain::{Readings, SensorChain, Truth};
-pub use channel::Channel;
+pub use channel::Measurement;
 pub use filter::{Filter, FilterParameters};
 pub use instrumentation_amplifier::InstrumentationAmplifierParameters;
 pub use load_cell::LoadCellParameters;

@@ -12,7 +12,7 @@
 use super::accelerometer::AccelerometerParameters;
 use super::adc::AdcParameters;
 use super::amplifier::AmplifierParameters;
-use super::channel::Channel;
+use super::channel::Measurement;
 use super::filter::FilterParameters;
 use super::instrumentation_amplifier::InstrumentationAmplifierParameters;
 use super::load_cell::LoadCellParameters;
@@ -40,13 +40,13 @@ pub struct SensingParameters {
     /// From the controller to the regulator.
     pub command: CommandChain,
     /// The regulator's outlet pressure.
-    pub regulator_pressure: Channel<OutletPressureParameters>,
+    pub regulator_pressure: Measurement<OutletPressureParameters>,
     /// The contact force along the device's axis.
-    pub force: Channel<LoadCellParameters>,
+    pub force: Measurement<LoadCellParameters>,
     /// The stroke.
-    pub stroke: Channel<PositionSensorParameters>,
+    pub stroke: Measurement<PositionSensorParameters>,
     /// The device's acceleration along its axis, without gravity.
-    pub acceleration: Channel<AccelerometerParameters>,
+    pub acceleration: Measurement<AccelerometerParameters>,
     /// Samples per second of every sensor [Hz], above 0 and at most one a step; infinite: at every call, only without a filter.
     pub sample_rate: f64,
     /// Treatment of the force's noise.
@@ -64,10 +64,10 @@ impl SensingParameters {
     pub fn ideal() -> Self {
         Self {
             command: CommandChain::Ideal,
-            regulator_pressure: Channel::Ideal,
-            force: Channel::Ideal,
-            stroke: Channel::Ideal,
-            acceleration: Channel::Ideal,
+            regulator_pressure: Measurement::Ideal,
+            force: Measurement::Ideal,
+            stroke: Measurement::Ideal,
+            acceleration: Measurement::Ideal,
             sample_rate: f64::INFINITY,
             force_filter: FilterParameters::None,
         }
@@ -76,16 +76,16 @@ impl SensingParameters {
     /// White noise of these standard deviations on the truth, [N], [m], [Pa], [m/s2], sampled at a rate [Hz].
     pub fn white(force: f64, stroke: f64, pressure: f64, acceleration: f64, rate: f64) -> Self {
         Self {
-            force: Channel::White {
+            force: Measurement::White {
                 standard_deviation: force,
             },
-            stroke: Channel::White {
+            stroke: Measurement::White {
                 standard_deviation: stroke,
             },
-            regulator_pressure: Channel::White {
+            regulator_pressure: Measurement::White {
                 standard_deviation: pressure,
             },
-            acceleration: Channel::White {
+            acceleration: Measurement::White {
                 standard_deviation: acceleration,
             },
             sample_rate: rate,
@@ -97,10 +97,10 @@ impl SensingParameters {
     pub fn paper() -> Self {
         Self {
             command: CommandChain::Real(paper_set_value()),
-            regulator_pressure: Channel::Real(paper_outlet_pressure()),
-            force: Channel::Real(paper_load_cell()),
-            stroke: Channel::Real(paper_position()),
-            acceleration: Channel::Real(paper_accelerometer()),
+            regulator_pressure: Measurement::Real(paper_outlet_pressure()),
+            force: Measurement::Real(paper_load_cell()),
+            stroke: Measurement::Real(paper_position()),
+            acceleration: Measurement::Real(paper_accelerometer()),
             sample_rate: 100.0,
             force_filter: FilterParameters::None,
         }

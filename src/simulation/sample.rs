@@ -5,7 +5,7 @@ use glamx::DPose3;
 
 use crate::path::Phase;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
-use crate::recording::{Channel, PhaseSpan, Recording, RecordingError};
+use crate::recording::{PhaseSpan, RecordedChannel, Recording, RecordingError};
 
 /// Signals of all steps, in the order of `schema::SIGNALS`, the sensors and then the joints. Kept by rows, which a step writes in one go, until the run has ended.
 #[derive(Debug, Clone)]
@@ -90,7 +90,7 @@ impl SampleLog {
         }
     }
 
-    fn channels(&self) -> Vec<Channel> {
+    fn channels(&self) -> Vec<RecordedChannel> {
         let singles = schema::SIGNALS
             .iter()
             .chain(
@@ -114,7 +114,7 @@ impl SampleLog {
         singles
             .chain(joints)
             .enumerate()
-            .map(|(index, (quantity, unit))| Channel::new(quantity, unit, column(index)))
+            .map(|(index, (quantity, unit))| RecordedChannel::new(quantity, unit, column(index)))
             .collect()
     }
 }

@@ -16,7 +16,7 @@ use glamx::DPose3;
 use rapier3d::prelude::*;
 
 use super::contact::{ContactReading, PartContact, Touch};
-use crate::arm::chain::{Chain, JointKind};
+use crate::arm::chain::{JointKind, KinematicChain};
 use crate::cell::Cell;
 use crate::control::law::JointLaw;
 use crate::device::PistonMotion;
@@ -38,7 +38,7 @@ pub struct ToolBall {
 /// Description from which the world is built.
 pub struct WorldDescription<'a> {
     /// Arm with the slide as its last joint.
-    pub chain: &'a Chain,
+    pub chain: &'a KinematicChain,
     /// Pose of the arm's base.
     pub world_from_base: DPose3,
     /// Gravity [m/s2].

@@ -3,7 +3,7 @@
 use super::super::report::{ROLES, RunResult, chart_groups};
 use super::{Compared, MOST, Row, short};
 use crate::figure::{Horizontal, Panel, Series, Stroke};
-use crate::page::{Block, Cell, Chart, Fact, Page, Section, Table, Tone};
+use crate::page::{Block, Chart, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::recording::schema;
 
 /// Names that a heading has room for.
@@ -32,8 +32,8 @@ pub(super) fn page(compared: &Compared) -> Page<'_> {
         let words = format!("Signals of {few} of the {many} runs, from the first to the last.");
         drawn.insert(0, Block::Paragraph(words));
     }
-    let signals = Section::new("Over one another", drawn);
-    let numbers = Section::new("Numbers", vec![Block::Table(table(compared, &names))]);
+    let signals = PageSection::new("Over one another", drawn);
+    let numbers = PageSection::new("Numbers", vec![Block::PageTable(table(compared, &names))]);
     let sections = [signals, numbers].into_iter();
     Page {
         title: "Comparison".to_owned(),
@@ -88,7 +88,7 @@ fn over_one_another<'a>(compared: &'a Compared, names: &[String]) -> Vec<Block<'
     blocks
 }
 
-fn table(compared: &Compared, names: &[String]) -> Table {
+fn table(compared: &Compared, names: &[String]) -> PageTable {
     let mut columns = vec!["number".to_owned(), "unit".to_owned()];
     for (place, name) in names.iter().enumerate() {
         columns.push(format!("#{name}"));
@@ -98,14 +98,17 @@ fn table(compared: &Compared, names: &[String]) -> Table {
     }
     let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
     let row = |row: &Row| {
-        let mut cells = vec![Cell::from(row.name.clone()), Cell::from(row.unit.clone())];
+        let mut cells = vec![
+            TableCell::from(row.name.clone()),
+            TableCell::from(row.unit.clone()),
+        ];
         for place in 0..row.values.len() {
-            cells.push(Cell::from(row.shown(place)));
+            cells.push(TableCell::from(row.shown(place)));
             if place > 0 {
-                cells.push(Cell::from(row.change(place).unwrap_or_default()));
+                cells.push(TableCell::from(row.change(place).unwrap_or_default()));
             }
         }
         cells
     };
-    Table::new("", &columns, compared.rows.iter().map(row).collect())
+    PageTable::new("", &columns, compared.rows.iter().map(row).collect())
 }

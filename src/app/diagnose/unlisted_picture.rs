@@ -2,8 +2,8 @@
 
 use super::super::error::AppError;
 use crate::diagnosis::finding::Diagnosis;
-use crate::diagnosis::unlisted::words::{self, Shown};
-use crate::diagnosis::unlisted::{Row, Shape};
+use crate::diagnosis::unlisted::words::{self, DisplayQuantity};
+use crate::diagnosis::unlisted::{Shape, ShapePoint};
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
 
 /// Half widths beyond so many times what the term moves through are not drawn: nothing was recorded there [1].
@@ -41,18 +41,18 @@ fn figure(shape: &Shape) -> Figure<'static> {
     }
 }
 
-fn series(shape: &Shape, port: Shown, variable: Shown) -> Vec<Series<'static>> {
+fn series(shape: &Shape, port: DisplayQuantity, variable: DisplayQuantity) -> Vec<Series<'static>> {
     let at = |value: f64| match shape.period {
         None => value * variable.factor,
         Some(_) => 1e3 * value,
     };
     let places: Vec<f64> = shape.curve.iter().map(|row| at(row.at)).collect();
     let most = UNKNOWN * shape.peak_to_peak;
-    let known = |row: &Row| row.half_width < most;
+    let known = |row: &ShapePoint| row.half_width < most;
     let runs = shape.curve.chunk_by(|a, b| known(a) == known(b));
     let runs = runs.filter(|run| run.len() > 1 && known(&run[0]));
-    let band = |(index, run): (usize, &[Row])| {
-        let edge = |row: &Row, side: f64| (row.value + side * row.half_width) * port.factor;
+    let band = |(index, run): (usize, &[ShapePoint])| {
+        let edge = |row: &ShapePoint, side: f64| (row.value + side * row.half_width) * port.factor;
         let there = run.iter().map(|row| (at(row.at), edge(row, -1.0)));
         let back = run.iter().rev().map(|row| (at(row.at), edge(row, 1.0)));
         let (places, values): (Vec<f64>, Vec<f64>) = there.chain(back).unzip();

@@ -72,7 +72,7 @@ impl Scene {
 }
 
 /// Presentation of an effect.
-pub(super) struct Shown {
+pub(super) struct Presentation {
     /// Where.
     pub scene: Scene,
     /// Between which times [s]; the whole run where there are none.
@@ -100,7 +100,7 @@ const fn size(asked: &'static str, key: &'static str, value: f64) -> Option<Size
 
 /// Presentation of an effect: by its row, or as a step is.
 #[rustfmt::skip] // A table: one effect a line.
-pub(super) fn of(effect: &Effect) -> Shown {
+pub(super) fn of(effect: &Effect) -> Presentation {
     let whole = [0.0, f64::INFINITY];
     let (run, window, signals, size): (_, _, &[&str], _) = match effect.vocabulary().0 {
         "coulomb_viscous_friction" => (&SWAY, [1.0, 5.0], &["force", "stroke"], None),
@@ -152,11 +152,11 @@ pub(super) fn of(effect: &Effect) -> Shown {
         },
         _ => (&STEPS, whole, &["outlet", "force"], None),
     };
-    Shown { scene: Scene::Run(run), window: (window != whole).then_some(window), signals, size }
+    Presentation { scene: Scene::Run(run), window: (window != whole).then_some(window), signals, size }
 }
 
-fn part(chain: Chain, size: Option<Size>) -> Shown {
-    Shown {
+fn part(chain: Chain, size: Option<Size>) -> Presentation {
+    Presentation {
         scene: Scene::Part(chain),
         window: None,
         signals: &["read", "speed"],

@@ -7,7 +7,7 @@ use super::provenance::provenance_of;
 use super::run::labels;
 use crate::design::{number, spoken};
 use crate::diagnosis::words::capital;
-use crate::page::{Block, Cell, Fact, Page, Section, Table, Tone};
+use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 
 /// The page.
@@ -136,7 +136,7 @@ fn facts(document: &Value) -> Vec<Fact> {
 }
 
 /// The chosen design beside the start, within what was varied.
-fn chosen<'a>(document: &Value) -> Section<'a> {
+fn chosen<'a>(document: &Value) -> PageSection<'a> {
     let bound = |key: &str| list(&document["active_bounds"]).find(|b| b["variable"] == key);
     let varied = |key: &str| list(&document["variables"]).find(|v| v["key"] == key);
     let row = |(key, value): (&String, &Value)| {
@@ -160,22 +160,22 @@ fn chosen<'a>(document: &Value) -> Section<'a> {
             _ => "at its upper end".to_owned(),
         });
         let drawn = match (ends, chosen) {
-            (Some([min, max]), Some(at)) => Cell::Interval([min, at, at, at, max]),
-            _ => Cell::from(""),
+            (Some([min, max]), Some(at)) => TableCell::Interval([min, at, at, at, max]),
+            _ => TableCell::from(""),
         };
         vec![
-            Cell::from(name),
-            Cell::from(unit),
-            Cell::from(start.map_or(UNKNOWN.to_owned(), number)),
-            Cell::from(chosen.map_or(UNKNOWN.to_owned(), number)),
-            Cell::from(range),
+            TableCell::from(name),
+            TableCell::from(unit),
+            TableCell::from(start.map_or(UNKNOWN.to_owned(), number)),
+            TableCell::from(chosen.map_or(UNKNOWN.to_owned(), number)),
+            TableCell::from(range),
             drawn,
-            Cell::from(remark),
+            TableCell::from(remark),
         ]
     };
     let design = document["chosen"]["design"].as_object();
-    let rows: Vec<Vec<Cell>> = design.into_iter().flatten().map(row).collect();
-    let table = Table::new(
+    let rows: Vec<Vec<TableCell>> = design.into_iter().flatten().map(row).collect();
+    let table = PageTable::new(
         "What was varied; the mark stands where the chosen value lies between its bounds.",
         &["variable", "unit", "#start", "#chosen", "bounds", "", ""],
         rows,
@@ -185,11 +185,11 @@ fn chosen<'a>(document: &Value) -> Section<'a> {
         (DESIGN, "all of this result, for programs"),
     ];
     let files = files.map(|(name, words)| Block::File(name.to_owned(), words.to_owned()));
-    let blocks = [Block::Table(table)].into_iter().chain(files);
-    Section::new("Chosen design", blocks.collect())
+    let blocks = [Block::PageTable(table)].into_iter().chain(files);
+    PageSection::new("Chosen design", blocks.collect())
 }
 
-fn trade_off<'a>(document: &Value, svg: &str) -> Section<'a> {
+fn trade_off<'a>(document: &Value, svg: &str) -> PageSection<'a> {
     let objectives = &document["objectives"];
     let [minimised, second] = ["minimised", "trade_off"].map(|key| text(&objectives[key]));
     let designs: Vec<&Value> = list(&document["front"]).collect();
@@ -215,16 +215,16 @@ fn trade_off<'a>(document: &Value, svg: &str) -> Section<'a> {
             let value = point["design"][key.as_str()].as_f64();
             value.map_or(UNKNOWN.to_owned(), number)
         });
-        own.into_iter().chain(values).map(Cell::from).collect()
+        own.into_iter().chain(values).map(TableCell::from).collect()
     };
     let caption = "Designs of which none is better in both.";
-    let table = Table::new(caption, &columns, designs.iter().map(row).collect());
+    let table = PageTable::new(caption, &columns, designs.iter().map(row).collect());
     let words = format!("The {} designs of the front", designs.len());
-    Section::new(
+    PageSection::new(
         "Trade-off",
         vec![
             Block::Picture(bare(svg).to_owned()),
-            Block::Folded(words, vec![Block::Table(table)]),
+            Block::Folded(words, vec![Block::PageTable(table)]),
         ],
     )
 }
@@ -235,7 +235,7 @@ fn bare(svg: &str) -> &str {
 }
 
 /// Bounds and limits that keep the objective from being lower.
-fn binding<'a>(document: &Value) -> Section<'a> {
+fn binding<'a>(document: &Value) -> PageSection<'a> {
     let (objective, _) = named(text(&document["objectives"]["minimised"]));
     let tried = |key: &Value| {
         let mut steps = list(&document["sensitivities"]);
@@ -270,20 +270,20 @@ fn binding<'a>(document: &Value) -> Section<'a> {
         ]
     });
     let rows = bounds.chain(limits);
-    let rows: Vec<Vec<Cell>> = rows.map(|row| row.map(Cell::from).to_vec()).collect();
+    let rows: Vec<Vec<TableCell>> = rows.map(|row| row.map(TableCell::from).to_vec()).collect();
     let block = match rows.is_empty() {
         true => Block::Paragraph("Nothing: neither a bound nor a limit.".to_owned()),
         false => {
             let effect = format!("#{objective}");
             let columns = ["what binds", "kind", "with more room", &effect];
             let caption = "What more room would do to what was minimised.";
-            Block::Table(Table::new(caption, &columns, rows))
+            Block::PageTable(PageTable::new(caption, &columns, rows))
         }
     };
-    Section::new("What binds", vec![block])
+    PageSection::new("What binds", vec![block])
 }
 
-fn limits<'a>(document: &Value) -> Option<Section<'a>> {
+fn limits<'a>(document: &Value) -> Option<PageSection<'a>> {
     let before = list(&document["start"]["limits"]);
     let after = list(&document["chosen"]["limits"]);
     let row = |(before, after): (&Value, &Value)| {
@@ -299,23 +299,23 @@ fn limits<'a>(document: &Value) -> Option<Section<'a>> {
             false => "broken",
         };
         vec![
-            Cell::from(limit_words(text(&after["limit"]))),
-            Cell::from(quantity(key, &before["value"])),
-            Cell::Judged(was.to_owned(), before["kept"] == true),
-            Cell::from(quantity(key, &after["value"])),
-            Cell::Judged(state.to_owned(), kept),
+            TableCell::from(limit_words(text(&after["limit"]))),
+            TableCell::from(quantity(key, &before["value"])),
+            TableCell::Judged(was.to_owned(), before["kept"] == true),
+            TableCell::from(quantity(key, &after["value"])),
+            TableCell::Judged(state.to_owned(), kept),
         ]
     };
-    let rows: Vec<Vec<Cell>> = before.zip(after).map(row).collect();
+    let rows: Vec<Vec<TableCell>> = before.zip(after).map(row).collect();
     let columns = ["limit", "#start", "", "#chosen", ""];
     let caption = "The worst of the scenarios.";
     (!rows.is_empty()).then(|| {
-        let table = Table::new(caption, &columns, rows);
-        Section::new("Limits", vec![Block::Table(table)])
+        let table = PageTable::new(caption, &columns, rows);
+        PageSection::new("Limits", vec![Block::PageTable(table)])
     })
 }
 
-fn steps<'a>(document: &Value) -> Section<'a> {
+fn steps<'a>(document: &Value) -> PageSection<'a> {
     let (objective, _) = named(text(&document["objectives"]["minimised"]));
     let row = |step: &Value| {
         let (name, unit) = spoken(text(&step["variable"]));
@@ -327,27 +327,27 @@ fn steps<'a>(document: &Value) -> Section<'a> {
             _ => String::new(),
         };
         vec![
-            Cell::from(name),
-            Cell::from(changed(&step["change_percent"])),
-            Cell::from(step["value"].as_f64().map_or(String::new(), number)),
-            Cell::from(unit),
-            Cell::from(changed(&step["objective_change_percent"])),
-            Cell::from(remark),
+            TableCell::from(name),
+            TableCell::from(changed(&step["change_percent"])),
+            TableCell::from(step["value"].as_f64().map_or(String::new(), number)),
+            TableCell::from(unit),
+            TableCell::from(changed(&step["objective_change_percent"])),
+            TableCell::from(remark),
         ]
     };
-    let rows: Vec<Vec<Cell>> = list(&document["sensitivities"]).map(row).collect();
+    let rows: Vec<Vec<TableCell>> = list(&document["sensitivities"]).map(row).collect();
     let effect = format!("#{objective}");
     let columns = ["variable", "#changed by", "#to", "unit", &effect, "remark"];
-    let table = Table::new(
+    let table = PageTable::new(
         "Each variable alone, a tenth more and less, or to the next entry of its catalogue.",
         &columns,
         rows,
     );
-    Section::new("One variable alone", vec![Block::Table(table)])
+    PageSection::new("One variable alone", vec![Block::PageTable(table)])
 }
 
 /// Scenarios, objectives, and what each scenario gave.
-fn measured_by<'a>(document: &Value) -> Section<'a> {
+fn measured_by<'a>(document: &Value) -> PageSection<'a> {
     let objectives = &document["objectives"];
     let mut keys: Vec<&str> = ["minimised", "trade_off"]
         .into_iter()
@@ -373,16 +373,16 @@ fn measured_by<'a>(document: &Value) -> Section<'a> {
             let percent = percent.map(|(to, from)| 100.0 * (to - from) / from.abs());
             let percent = percent.filter(|percent| percent.is_finite());
             Some(vec![
-                Cell::from(text(&scenario["name"])),
-                Cell::from(named(key).0),
-                Cell::from(quantity(key, start)),
-                Cell::from(quantity(key, chosen)),
-                Cell::from(percent.map_or(String::new(), change)),
+                TableCell::from(text(&scenario["name"])),
+                TableCell::from(named(key).0),
+                TableCell::from(quantity(key, start)),
+                TableCell::from(quantity(key, chosen)),
+                TableCell::from(percent.map_or(String::new(), change)),
             ])
         })
     });
     let columns = ["scenario", "number", "#start", "#chosen", "#change"];
-    let table = Table::new(
+    let table = PageTable::new(
         "What the study names, in each scenario.",
         &columns,
         rows.collect(),
@@ -396,27 +396,27 @@ fn measured_by<'a>(document: &Value) -> Section<'a> {
         },
         files.join(", ")
     );
-    let mut blocks = vec![Block::Paragraph(simulated), Block::Table(table)];
+    let mut blocks = vec![Block::Paragraph(simulated), Block::PageTable(table)];
     let reasons = document["infeasible"].as_object().into_iter().flatten();
-    let reasons: Vec<Vec<Cell>> = reasons
+    let reasons: Vec<Vec<TableCell>> = reasons
         .map(|(reason, count)| {
             let reason = match reason.contains(' ') && reason.contains('_') {
                 true => limit_words(reason),
                 false => reason.clone(),
             };
-            vec![Cell::from(reason), Cell::from(count.to_string())]
+            vec![TableCell::from(reason), TableCell::from(count.to_string())]
         })
         .collect();
     if !reasons.is_empty() {
         let caption =
             "Designs that were not feasible, by the limit most exceeded or by the reason.";
-        let table = Table::new(caption, &["reason", "#designs"], reasons);
+        let table = PageTable::new(caption, &["reason", "#designs"], reasons);
         blocks.push(Block::Folded(
             "Designs that were not feasible".to_owned(),
-            vec![Block::Table(table)],
+            vec![Block::PageTable(table)],
         ));
     }
-    Section::new("What it was measured by", blocks)
+    PageSection::new("What it was measured by", blocks)
 }
 
 #[cfg(test)]

@@ -1,16 +1,16 @@
 //! The part of a page that says where all comes from.
 
-use crate::page::{Block, Cell, Section, Table};
+use crate::page::{Block, PageSection, PageTable, TableCell};
 use crate::recording::provenance::Provenance;
 
 /// Where a document says that it comes from.
-pub(super) fn provenance_of(document: &serde_json::Value) -> Section<'static> {
+pub(super) fn provenance_of(document: &serde_json::Value) -> PageSection<'static> {
     let known = serde_json::from_value(document["provenance"].clone());
     provenance(&known.unwrap_or_default())
 }
 
 /// The part of a page that says where all comes from.
-pub(super) fn provenance(from: &Provenance) -> Section<'static> {
+pub(super) fn provenance(from: &Provenance) -> PageSection<'static> {
     let mut made = format!("Made by {}", from.program);
     if !from.libraries.is_empty() {
         made += &format!(" with {}", from.libraries.join(", "));
@@ -21,16 +21,16 @@ pub(super) fn provenance(from: &Provenance) -> Section<'static> {
     };
     let rows = from.files.iter().map(|file| {
         vec![
-            Cell::from(file.file.clone()),
-            Cell::from(file.bytes.to_string()),
-            Cell::Hash(file.sha256.clone()),
+            TableCell::from(file.file.clone()),
+            TableCell::from(file.bytes.to_string()),
+            TableCell::Hash(file.sha256.clone()),
         ]
     });
-    Section::new(
+    PageSection::new(
         "Provenance",
         vec![
             Block::Paragraph(made),
-            Block::Table(Table::new(
+            Block::PageTable(PageTable::new(
                 "Files that were read",
                 &["file", "#bytes", "SHA-256"],
                 rows.collect(),

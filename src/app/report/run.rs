@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::provenance::provenance_of;
 use super::signals::{along_the_path, joints, signals};
 use crate::metrics::{BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, WIDE_BAND};
-use crate::page::{Block, Cell, Fact, Page, Section, Table, Tone};
+use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 use crate::recording::Recording;
 use crate::report::{LEVELS, LevelColumn, far_from_desired, shown};
@@ -275,7 +275,7 @@ fn peak(run: &RunResult<'_>) -> Option<Fact> {
     })
 }
 
-fn pictures<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+fn pictures<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let is_bench = run.document["kind"] == "bench";
     let title = if is_bench {
         "The bench"
@@ -293,11 +293,11 @@ fn pictures<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let pictures: Vec<(String, String)> = (pictures.into_iter())
         .filter_map(|(words, svg)| Some((words.to_owned(), svg.as_ref()?.to_string())))
         .collect();
-    (!pictures.is_empty()).then(|| Section::new(title, vec![Block::Sketches(pictures)]))
+    (!pictures.is_empty()).then(|| PageSection::new(title, vec![Block::Sketches(pictures)]))
 }
 
 /// Result of each command of a bench.
-fn levels<'a>(run: &RunResult<'_>) -> Option<Section<'a>> {
+fn levels<'a>(run: &RunResult<'_>) -> Option<PageSection<'a>> {
     let levels = run.document["summary"]["levels"].clone();
     let levels: Vec<LevelSummary> = serde_json::from_value(levels).ok()?;
     let names: Vec<String> = LEVELS
@@ -306,20 +306,21 @@ fn levels<'a>(run: &RunResult<'_>) -> Option<Section<'a>> {
         .collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let row = |level: &LevelSummary| {
-        let cell = |column: &LevelColumn| Cell::from(optional((column.value)(level), column.unit));
+        let cell =
+            |column: &LevelColumn| TableCell::from(optional((column.value)(level), column.unit));
         LEVELS.iter().map(cell).collect()
     };
-    let rows: Vec<Vec<Cell>> = levels.iter().map(row).collect();
+    let rows: Vec<Vec<TableCell>> = levels.iter().map(row).collect();
     let caption = "Steady values of each command, up to the next or to where something else begins to move; settled: until the force stays within 5 % of its change.";
     (!rows.is_empty()).then(|| {
-        Section::new(
+        PageSection::new(
             "Commands",
-            vec![Block::Table(Table::new(caption, &names, rows))],
+            vec![Block::PageTable(PageTable::new(caption, &names, rows))],
         )
     })
 }
 
-fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+fn metrics<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let expectations = run.document["expectations"].as_array();
     let bounds = |key: &str| {
         let own = |e: &&Value| e["metric"] == key;
@@ -328,18 +329,18 @@ fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     };
     let row = |(label, value): (Label, Option<f64>)| {
         vec![
-            Cell::from(label.name),
-            Cell::from(shown(value, label.unit)),
-            Cell::from(label.unit),
+            TableCell::from(label.name),
+            TableCell::from(shown(value, label.unit)),
+            TableCell::from(label.unit),
             match bounds(label.key) {
-                Some((text, kept)) => Cell::Judged(text, kept),
-                None => Cell::from(""),
+                Some((text, kept)) => TableCell::Judged(text, kept),
+                None => TableCell::from(""),
             },
-            Cell::from(label.meaning),
-            Cell::from(label.key),
+            TableCell::from(label.meaning),
+            TableCell::from(label.key),
         ]
     };
-    let rows: Vec<Vec<Cell>> = run.metrics().into_iter().map(row).collect();
+    let rows: Vec<Vec<TableCell>> = run.metrics().into_iter().map(row).collect();
     let columns = [
         "number",
         "#value",
@@ -349,11 +350,11 @@ fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
         "key in summary.json",
     ];
     let caption = format!("{UNKNOWN}: not determined by this run.");
-    let table = Table::new(&caption, &columns, rows);
-    Some(Section::new("Numbers", vec![Block::Table(table)]))
+    let table = PageTable::new(&caption, &columns, rows);
+    Some(PageSection::new("Numbers", vec![Block::PageTable(table)]))
 }
 
-fn from<'a>(run: &RunResult<'_>) -> Section<'a> {
+fn from<'a>(run: &RunResult<'_>) -> PageSection<'a> {
     let mut section = provenance_of(&run.document);
     let of = |key: &str| run.document[key].as_str().unwrap_or("–").to_owned();
     let mut told = format!("Scenario {}", of("scenario"));

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::super::bench_figures::{FORCE, Line, PRESSURE, STROKE};
 use super::run::RunResult;
 use crate::figure::{Horizontal, Marker, Panel, Role, Series, Stroke};
-use crate::page::{Block, Cell, Chart, Section, Table};
+use crate::page::{Block, Chart, PageSection, PageTable, TableCell};
 use crate::quantity::column;
 use crate::recording::PhaseSpan;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
@@ -91,7 +91,7 @@ fn chart<'a>(run: &RunResult<'_>, title: &str, label: &str, series: Vec<Series<'
     }
 }
 
-pub(super) fn signals<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+pub(super) fn signals<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let hint = "Draw over a chart to zoom it, and all of the run; a double click shows all.";
     let mut blocks = vec![Block::Hint(hint.to_owned())];
     for group in chart_groups() {
@@ -108,11 +108,11 @@ pub(super) fn signals<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
             blocks.push(Block::Chart(chart(run, group.title, group.label, series)));
         }
     }
-    (blocks.len() > 1).then(|| Section::new("Signals", blocks))
+    (blocks.len() > 1).then(|| PageSection::new("Signals", blocks))
 }
 
 /// Force over the place on the edge: what a deburrer asks for.
-pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let places = &run.recording.channel(schema::PATH_LENGTH)?.values;
     let force = &run.recording.channel(schema::CONTACT_FORCE)?.values;
     let follow = run.recording.phases().iter().find(|p| p.name == "follow")?;
@@ -148,21 +148,21 @@ pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> 
         of("force_standard_deviation_n", "N"),
     ];
     let row = |index: usize| {
-        let cell = |column: &Vec<String>| Cell::from(column[index].clone());
+        let cell = |column: &Vec<String>| TableCell::from(column[index].clone());
         columns.iter().map(cell).collect()
     };
-    let rows: Vec<Vec<Cell>> = (0..tenths.len()).map(row).collect();
+    let rows: Vec<Vec<TableCell>> = (0..tenths.len()).map(row).collect();
     if !rows.is_empty() {
-        blocks.push(Block::Table(Table::new(
+        blocks.push(Block::PageTable(PageTable::new(
             "Contact force by tenths of the edge",
             &["#from, mm", "#to, mm", "#mean, N", "#standard deviation, N"],
             rows,
         )));
     }
-    Some(Section::new("Along the edge", blocks))
+    Some(PageSection::new("Along the edge", blocks))
 }
 
-pub(super) fn joints<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
+pub(super) fn joints<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let names = run.document["joint_names"].as_array()?;
     let line = |(index, role): (usize, Role)| {
         let quantity = joint_quantity(index + 1, JointSignal::Torque);
@@ -179,6 +179,6 @@ pub(super) fn joints<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let series: Vec<Series<'_>> = ROLES.into_iter().enumerate().filter_map(line).collect();
     (!series.is_empty()).then(|| {
         let chart = chart(run, "Torque of the drives", "torque [N m]", series);
-        Section::new("The arm", vec![Block::Chart(chart)])
+        PageSection::new("The arm", vec![Block::Chart(chart)])
     })
 }

@@ -7,7 +7,7 @@ use super::super::picture::{motion_of, scene_of};
 use super::super::viewer::{PART_INTERVAL, Watch};
 use super::source::Source;
 use crate::cell::Cell;
-use crate::metrics::{Summary, SummaryLimits, Timing, Verdict, summarise};
+use crate::metrics::{BoundCheck, Summary, SummaryLimits, Timing, summarise};
 use crate::recording::provenance::Provenance;
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
@@ -169,7 +169,7 @@ pub(super) struct SummaryDocument<'a> {
     /// Reason for an early stop of the run; null if it ran to its end.
     stopped: Option<String>,
     summary: &'a Summary,
-    expectations: &'a [Verdict],
+    expectations: &'a [BoundCheck],
     joint_names: Vec<&'a str>,
     samples: usize,
     notes: &'a [String],
@@ -181,7 +181,7 @@ impl<'a> SummaryDocument<'a> {
     pub(super) fn new(
         cell: &'a Cell,
         finished: &'a Finished,
-        expectations: &'a [Verdict],
+        expectations: &'a [BoundCheck],
         source: &'a Source,
         origin: &'a Provenance,
     ) -> Self {

@@ -12,7 +12,7 @@ use super::super::{bench, bench_figures, bench_picture};
 use super::cell_run::{Listener, SummaryDocument, run_heard};
 use super::source::Source;
 use crate::cell::Cell;
-use crate::metrics::{self, MetricsError, Verdict};
+use crate::metrics::{self, BoundCheck, MetricsError};
 use crate::recording::provenance::Provenance;
 use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::recording::scene::Scene;
@@ -247,7 +247,10 @@ fn unmeasured(path: &Path, source: MetricsError) -> AppError {
 }
 
 /// Why a run stopped early, if it did, or else which results lie outside their bounds.
-fn judged(stop: Option<&impl std::fmt::Display>, verdicts: &[Verdict]) -> (ExitCode, Vec<String>) {
+fn judged(
+    stop: Option<&impl std::fmt::Display>,
+    verdicts: &[BoundCheck],
+) -> (ExitCode, Vec<String>) {
     if let Some(stop) = stop {
         return (ExitCode::Stopped, vec![format!("stopped: {stop}")]);
     }

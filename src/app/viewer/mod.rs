@@ -6,7 +6,7 @@ mod page;
 mod watch;
 
 pub(super) use native::NativeViewer;
-pub(super) use page::{Shown, WebPage};
+pub(super) use page::{Served, WebPage};
 pub(super) use watch::{PART_INTERVAL, Viewing, Watch};
 
 use crate::recording::rerun::{RrdFault, viewer_version};

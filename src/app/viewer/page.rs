@@ -18,7 +18,7 @@ use super::live_buffer::LiveBuffer;
 const USUAL_PORT: u16 = 9090;
 
 /// A recording that is served.
-pub(in crate::app) enum Shown {
+pub(in crate::app) enum Served {
     /// A file.
     File(PathBuf),
     /// One that is being made.
@@ -29,7 +29,7 @@ pub(in crate::app) enum Shown {
 pub(in crate::app) struct WebPage {
     server: Server,
     viewer: WebViewerData,
-    recordings: Vec<Shown>,
+    recordings: Vec<Served>,
     port: u16,
 }
 
@@ -37,7 +37,7 @@ impl WebPage {
     /// Listens on a port, 0 for any; without one on the usual port or, if that is taken, any.
     pub(in crate::app) fn listen(
         port: Option<u16>,
-        recordings: Vec<Shown>,
+        recordings: Vec<Served>,
     ) -> Result<Self, ViewerError> {
         let listener = match port {
             Some(port) => bind(port)?,
@@ -131,7 +131,7 @@ impl WebPage {
         ];
         let sent = match recording {
             None => request.respond(Response::empty(404)),
-            Some(Shown::File(file)) => match File::open(file) {
+            Some(Served::File(file)) => match File::open(file) {
                 Err(_) => request.respond(Response::empty(404)),
                 Ok(file) => {
                     let length = file.metadata().ok().map(|data| data.len() as usize);
@@ -139,7 +139,7 @@ impl WebPage {
                     request.respond(Response::new(status, headers, file, length, None))
                 }
             },
-            Some(Shown::Live(buffer)) => {
+            Some(Served::Live(buffer)) => {
                 let reader = buffer.reader();
                 request.respond(Response::new(StatusCode(200), headers, reader, None, None))
             }

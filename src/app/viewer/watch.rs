@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::live_buffer::{LiveBuffer, LiveBufferWriter};
-use super::{NativeViewer, Shown, ViewerError, WebPage};
+use super::{NativeViewer, Served, ViewerError, WebPage};
 use crate::recording::rerun::{LiveOutlet, LiveRecording, RerunOptions};
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
@@ -65,7 +65,7 @@ impl Viewing {
     fn web(port: Option<u16>) -> Result<Self, ViewerError> {
         let buffer = Arc::new(LiveBuffer::default());
         let writer = buffer.writer();
-        let page = WebPage::listen(port, vec![Shown::Live(buffer)])?;
+        let page = WebPage::listen(port, vec![Served::Live(buffer)])?;
         Ok(Self::Web(Arc::new(page), writer))
     }
 }

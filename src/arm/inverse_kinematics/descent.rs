@@ -1,7 +1,7 @@
 //! One descent: damped Gauss-Newton steps from one start towards one target.
 
 use super::{IkOptions, IkSolution, TipOrientation};
-use crate::arm::chain::{Chain, MAX_JOINTS};
+use crate::arm::chain::{KinematicChain, MAX_JOINTS};
 use crate::arm::kinematics::{Jacobian, jacobian_at, link_poses};
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
@@ -16,7 +16,7 @@ pub(super) type Positions = [f64; MAX_JOINTS];
 
 /// One target with everything that stays the same over the steps.
 pub(super) struct Search<'a> {
-    chain: &'a Chain,
+    chain: &'a KinematicChain,
     world_from_base: DPose3,
     world_from_tip: DPose3,
     options: &'a IkOptions,
@@ -65,7 +65,7 @@ impl Descent {
 
 impl<'a> Search<'a> {
     pub fn new(
-        chain: &'a Chain,
+        chain: &'a KinematicChain,
         world_from_base: DPose3,
         world_from_tip: &DPose3,
         options: &'a IkOptions,

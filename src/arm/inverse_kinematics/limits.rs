@@ -2,7 +2,7 @@
 
 use super::descent::{Descent, Positions, Search};
 use super::{IkFailure, IkOptions, IkSolution, LimitingAxis};
-use crate::arm::chain::{Chain, Joint, JointKind};
+use crate::arm::chain::{Joint, JointKind, KinematicChain};
 use glamx::DPose3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 /// Solves again without limits and names the axis that is over its own by least; `best` is the nearest
 /// pose found within them. If a posture turns out to lie within the limits after all, it is the answer.
 pub(super) fn explain(
-    chain: &Chain,
+    chain: &KinematicChain,
     world_from_base: DPose3,
     world_from_tip: &DPose3,
     start: &[f64],
@@ -58,7 +58,7 @@ pub(super) fn explain(
 }
 
 /// Takes whole turns off revolute joints so that each is as near its mid range as it can be.
-fn wind_back(chain: &Chain, q: &mut Positions) {
+fn wind_back(chain: &KinematicChain, q: &mut Positions) {
     for (position, joint) in q.iter_mut().zip(&chain.joints) {
         if let (JointKind::Revolute, Some(middle)) = (joint.kind, joint.middle()) {
             *position -= TAU * ((*position - middle) / TAU).round();
@@ -67,7 +67,7 @@ fn wind_back(chain: &Chain, q: &mut Positions) {
 }
 
 /// The joint most over its limit and by how much [rad or m].
-fn most_over_limit(chain: &Chain, q: &Positions) -> Option<(f64, LimitingAxis)> {
+fn most_over_limit(chain: &KinematicChain, q: &Positions) -> Option<(f64, LimitingAxis)> {
     let over = |joint: &Joint, position: f64| (position - joint.upper).max(joint.lower - position);
     let joints = chain.joints.iter().zip(q).enumerate();
     joints
@@ -78,7 +78,7 @@ fn most_over_limit(chain: &Chain, q: &Positions) -> Option<(f64, LimitingAxis)> 
 }
 
 /// The joint with the smallest share of its range left.
-fn nearest_limit(chain: &Chain, q: &Positions) -> Option<LimitingAxis> {
+fn nearest_limit(chain: &KinematicChain, q: &Positions) -> Option<LimitingAxis> {
     let room = |index: usize| {
         let joint = &chain.joints[index];
         (q[index] - joint.lower).min(joint.upper - q[index]) / (joint.upper - joint.lower)
@@ -89,7 +89,7 @@ fn nearest_limit(chain: &Chain, q: &Positions) -> Option<LimitingAxis> {
         .map(|index| limiting_axis(chain, index, q[index]))
 }
 
-fn limiting_axis(chain: &Chain, index: usize, position: f64) -> LimitingAxis {
+fn limiting_axis(chain: &KinematicChain, index: usize, position: f64) -> LimitingAxis {
     let joint = &chain.joints[index];
     let nearer_upper = (joint.upper - position).abs() < (position - joint.lower).abs();
     LimitingAxis {

@@ -1,6 +1,6 @@
 //! What is loaded from a URDF file, and what is chosen of it.
 
-use crate::arm::chain::Chain;
+use crate::arm::chain::KinematicChain;
 use glam::DVec3;
 use glamx::DPose3;
 use std::collections::BTreeMap;
@@ -36,7 +36,7 @@ pub struct Arm {
     /// Name of the robot in the file.
     pub name: String,
     /// Joints, bodies and tip.
-    pub chain: Chain,
+    pub chain: KinematicChain,
     /// The base link's name, then the link's behind each moving joint.
     pub link_names: Vec<String>,
     /// Shapes to draw.

@@ -9,4 +9,4 @@ pub mod shape;
 pub mod words;
 
 pub use form::Form;
-pub use shape::{Row, Shape};
+pub use shape::{Shape, ShapePoint};

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::super::finding::Diagnosis;
 use super::super::ranking::Ranked;
 use super::known::known;
-use super::shape::Row;
+use super::shape::ShapePoint;
 
 /// Known explanations named at most.
 const MOST_NEAR: usize = 3;
@@ -77,7 +77,7 @@ impl Diagnosis {
     pub fn unlisted_report(&self) -> Option<UnlistedReport> {
         let shape = self.shape.as_ref()?;
         let latent = &shape.latent;
-        let row = |row: &Row| ShapeRow {
+        let row = |row: &ShapePoint| ShapeRow {
             at: row.at,
             value: row.value,
             half_width: row.half_width,

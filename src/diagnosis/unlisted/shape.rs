@@ -30,7 +30,7 @@ const BESIDE: f64 = 0.5;
 
 /// A value of the term.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct ShapePoint {
     /// Value of the variable, or time within a period [SI].
     pub at: f64,
     /// The term [SI].
@@ -49,11 +49,11 @@ pub struct Shape {
     /// One period with the half width of its 95 % interval [s], of a periodic term.
     pub period: Option<[f64; 2]>,
     /// Values at the knots, or over a period.
-    pub knots: Vec<Row>,
+    pub knots: Vec<ShapePoint>,
     /// The same, finely, where it acts.
-    pub curve: Vec<Row>,
+    pub curve: Vec<ShapePoint>,
     /// The same as a table for people.
-    pub table: Vec<Row>,
+    pub table: Vec<ShapePoint>,
     /// Between which values of its variable it acts.
     pub acts: [f64; 2],
     /// Residual of the balance, by the recordings; empty where no reading shows it.
@@ -70,7 +70,7 @@ impl Shape {
         let visited = balance::visited(evidence, hypothesis, &latent)?;
         let spread = Spread::of(evidence, hypothesis, &latent);
         let period = period(hypothesis, &spread, &latent);
-        let row = |at: f64| Row {
+        let row = |at: f64| ShapePoint {
             at,
             value: latent.shape(at),
             half_width: spread.half_width(&latent, at),
@@ -83,7 +83,7 @@ impl Shape {
             Basis::Hats { .. } => latent.coefficients.len() - 1,
             Basis::Waves { .. } => 24,
         };
-        let knots: Vec<Row> = even([from, to], steps).map(row).collect();
+        let knots: Vec<ShapePoint> = even([from, to], steps).map(row).collect();
         let form = form(&latent, visited);
         let acts = acting(&knots);
         let shown = if form == Form::Localised {
@@ -100,7 +100,7 @@ impl Shape {
         let kinks = kinks.filter(|at| (shown[0]..=shown[1]).contains(at));
         let mut places: Vec<f64> = even(shown, PLACES - 1).chain(kinks).collect();
         places.sort_by(f64::total_cmp);
-        let curve: Vec<Row> = places.into_iter().map(row).collect();
+        let curve: Vec<ShapePoint> = places.into_iter().map(row).collect();
         let values = || curve.iter().map(|row| row.value);
         let peak_to_peak =
             values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
@@ -119,7 +119,7 @@ impl Shape {
 }
 
 /// From the first to the last knot at which a term acts.
-fn acting(knots: &[Row]) -> [f64; 2] {
+fn acting(knots: &[ShapePoint]) -> [f64; 2] {
     let largest = knots
         .iter()
         .fold(0.0f64, |most, row| most.max(row.value.abs()));

@@ -4,7 +4,7 @@ use crate::plant::{Port, Variable};
 
 /// A quantity for people: its words, its unit, and what a value in SI is multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct DisplayQuantity {
     /// Words.
     pub words: &'static str,
     /// Unit.
@@ -15,7 +15,7 @@ pub struct Shown {
 
 /// Quantity added at a port.
 #[must_use]
-pub fn port(port: Port) -> Shown {
+pub fn port(port: Port) -> DisplayQuantity {
     let (words, unit, factor) = match port {
         Port::PistonForce => ("force on the piston", "N", 1.0),
         Port::OutletPressure => ("pressure at the regulator's outlet", "mbar", 1e-2),
@@ -26,7 +26,7 @@ pub fn port(port: Port) -> Shown {
         Port::StrokeReading => ("error of the position sensor's reading", "mm", 1e3),
         Port::PressureReading => ("error of the pressure sensor's reading", "mbar", 1e-2),
     };
-    Shown {
+    DisplayQuantity {
         words,
         unit,
         factor,
@@ -35,7 +35,7 @@ pub fn port(port: Port) -> Shown {
 
 /// On what it depends.
 #[must_use]
-pub fn variable(variable: Variable) -> Shown {
+pub fn variable(variable: Variable) -> DisplayQuantity {
     let (words, unit, factor) = match variable {
         Variable::Time => ("time", "s", 1.0),
         Variable::Stroke => ("stroke", "mm", 1e3),
@@ -47,7 +47,7 @@ pub fn variable(variable: Variable) -> Shown {
         Variable::Surface => ("place of the surface", "mm", 1e3),
         Variable::ContactForce => ("contact force", "N", 1.0),
     };
-    Shown {
+    DisplayQuantity {
         words,
         unit,
         factor,

@@ -4,8 +4,8 @@ use super::ensemble::parameters;
 use super::plant::{PERIOD, device};
 use crate::device::DeviceParameters;
 use crate::estimation::{
-    ContactForceEstimator, Estimate, EstimatorParameters, Measurement, ProcessModel, SensorNoise,
-    Tolerances,
+    ContactForceEstimator, EstimatorOutput, EstimatorParameters, Measurement, ProcessModel,
+    SensorNoise, Tolerances,
 };
 use crate::physics::seal_friction::SealFriction;
 use crate::physics::valve::ValvePosition;
@@ -25,7 +25,11 @@ fn rest(valve: ValvePosition) -> Measurement {
     }
 }
 
-fn settle(data: &DeviceParameters, told: &EstimatorParameters, sample: &Measurement) -> Estimate {
+fn settle(
+    data: &DeviceParameters,
+    told: &EstimatorParameters,
+    sample: &Measurement,
+) -> EstimatorOutput {
     let mut estimator = ContactForceEstimator::new(data, told, sample.stroke, PERIOD).unwrap();
     let mut estimate = estimator.update(sample);
     for _ in 0..3000 {

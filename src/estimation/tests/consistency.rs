@@ -3,14 +3,14 @@
 use super::ensemble::{moved, parameters};
 use super::plant::{Deviation, Motion, PERIOD, Sample, device, run};
 use crate::device::DeviceParameters;
-use crate::estimation::{ContactForceEstimator, Estimate, EstimatorParameters, Tolerances};
+use crate::estimation::{ContactForceEstimator, EstimatorOutput, EstimatorParameters, Tolerances};
 
 fn follow(
     data: &DeviceParameters,
     told: &EstimatorParameters,
     stroke: f64,
     samples: &[Sample],
-) -> Vec<Estimate> {
+) -> Vec<EstimatorOutput> {
     let mut estimator = ContactForceEstimator::new(data, told, stroke, PERIOD).unwrap();
     samples
         .iter()
@@ -18,7 +18,7 @@ fn follow(
         .collect()
 }
 
-fn exact(motion: &Motion) -> (Vec<Sample>, Vec<Estimate>) {
+fn exact(motion: &Motion) -> (Vec<Sample>, Vec<EstimatorOutput>) {
     let data = device();
     let told = parameters(&data, Tolerances::NONE);
     let samples = run(&data, &told, &Deviation::NONE, motion, 7);
@@ -112,7 +112,7 @@ fn samples_far_off_leave_no_lasting_trace() {
         samples[at + 100].measurement.regulator_pressure = pressure;
     }
     let estimates = follow(&data, &told, 0.035, &samples);
-    let finite = |e: &Estimate| e.force.is_finite() && e.standard_deviation.is_finite();
+    let finite = |e: &EstimatorOutput| e.force.is_finite() && e.standard_deviation.is_finite();
     assert_eq!(estimates.iter().position(|e| !finite(e)), None);
     for (sample, estimate) in samples.iter().zip(&estimates).skip(2000) {
         let error = estimate.force - sample.force;

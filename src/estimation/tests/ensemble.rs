@@ -2,7 +2,7 @@
 
 use super::plant::{Deviation, Motion, PERIOD, Sample, device, noise, run};
 use crate::device::DeviceParameters;
-use crate::estimation::{ContactForceEstimator, Estimate, EstimatorParameters, Tolerances};
+use crate::estimation::{ContactForceEstimator, EstimatorOutput, EstimatorParameters, Tolerances};
 use crate::physics::seal_friction::SealFriction;
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ struct Score {
 }
 
 impl Score {
-    fn add(&mut self, sample: &Sample, estimate: &Estimate) {
+    fn add(&mut self, sample: &Sample, estimate: &EstimatorOutput) {
         let error = estimate.force - sample.force;
         let variance = estimate.standard_deviation.powi(2);
         let covered = usize::from(estimate.covers(sample.force));

@@ -1,7 +1,7 @@
 //! Planted runs and the numbers that they must give.
 
 use super::*;
-use crate::recording::Channel;
+use crate::recording::RecordedChannel;
 
 /// Two seconds at 1 kHz: set to 1 bar at 0.5 s and 3 bar at 1.25 s, force 100 N/bar with a lag of 50 ms, after 10 ms of dead time.
 fn stairs(overshoot: f64) -> (Recording, BenchLimits) {
@@ -41,23 +41,23 @@ fn stairs(overshoot: f64) -> (Recording, BenchLimits) {
     };
     let absolute = |p: f64| p + 1e5;
     let channels = vec![
-        Channel::new(
+        RecordedChannel::new(
             schema::SET_PRESSURE,
             Unit::Pascal,
             time.iter().map(|&t| absolute(set(t))).collect(),
         ),
-        Channel::new(
+        RecordedChannel::new(
             schema::REGULATOR_PRESSURE,
             Unit::Pascal,
             gauge.iter().map(|&p| absolute(p)).collect(),
         ),
-        Channel::new(schema::CONTACT_FORCE, Unit::Newton, force.clone()),
-        Channel::new(
+        RecordedChannel::new(schema::CONTACT_FORCE, Unit::Newton, force.clone()),
+        RecordedChannel::new(
             schema::MEASURED_FORCE,
             Unit::Newton,
             force.iter().map(|f| 1.208 * f).collect(),
         ),
-        Channel::new(
+        RecordedChannel::new(
             schema::STROKE,
             Unit::Metre,
             time.iter().map(|t| 0.01 + 0.01 * t).collect(),
@@ -158,12 +158,12 @@ fn the_moving_section_counts_where_the_surface_moves() {
         }
     };
     let channels = vec![
-        Channel::new(
+        RecordedChannel::new(
             schema::CONTACT_FORCE,
             Unit::Newton,
             time.iter().map(|&t| force(t)).collect(),
         ),
-        Channel::new(schema::DESIRED_FORCE, Unit::Newton, vec![200.0; 1000]),
+        RecordedChannel::new(schema::DESIRED_FORCE, Unit::Newton, vec![200.0; 1000]),
     ];
     let recording = Recording::new(time, channels, vec![]).unwrap();
     let limits = BenchLimits {

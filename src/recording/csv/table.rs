@@ -6,7 +6,7 @@ use super::super::RecordingError;
 use super::columns::{Column, TIME};
 
 /// Content of a file.
-pub(super) struct Table {
+pub(super) struct ParsedTable {
     /// Sample times [s], increasing.
     pub time: Vec<f64>,
     /// Values in the order of the columns asked for, NaN for an empty field; none for a column that the file lacks.
@@ -27,14 +27,14 @@ struct Places {
 }
 
 /// Reads a file's fields.
-pub(super) fn read(path: &Path, columns: &[Column]) -> Result<Table, RecordingError> {
+pub(super) fn read(path: &Path, columns: &[Column]) -> Result<ParsedTable, RecordingError> {
     let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
     let header = reader.headers().map_err(|e| fault(path, &e))?.clone();
     let places = places(path, &header, columns)?;
-    let mut table = Table {
+    let mut table = ParsedTable {
         time: Vec::new(),
         columns: places
             .columns
@@ -193,7 +193,7 @@ fn value(path: &Path, line: u64, column: &str, text: &str) -> Result<f64, Record
 }
 
 /// Commands are held, so one that is lost is known by the one before it; the valve has two positions.
-fn check_held(path: &Path, table: &Table, columns: &[Column]) -> Result<(), RecordingError> {
+fn check_held(path: &Path, table: &ParsedTable, columns: &[Column]) -> Result<(), RecordingError> {
     for (column, values) in columns.iter().zip(&table.columns) {
         let Some(values) = values.as_ref().filter(|_| column.is_held) else {
             continue;

@@ -82,12 +82,12 @@ fn add(hash: &mut u64, word: u64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::{Channel, Unit};
+    use crate::recording::{RecordedChannel, Unit};
 
     #[test]
     fn every_bit_of_every_value_counts() {
         let hash = |values: [f64; 6]| {
-            let force = Channel::new("contact_force", Unit::Newton, values.to_vec());
+            let force = RecordedChannel::new("contact_force", Unit::Newton, values.to_vec());
             let time = (0..6).map(f64::from).collect();
             let recording = Recording::new(time, vec![force], vec![]).unwrap();
             fingerprint("", &recording, &Scene::default(), &RerunOptions::default())

@@ -361,9 +361,9 @@ pub(super) fn phase_colour(name: &str, index: usize) -> Colour {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::{Channel, PhaseSpan};
+    use crate::recording::{PhaseSpan, RecordedChannel};
 
-    fn recording(channels: Vec<Channel>) -> Recording {
+    fn recording(channels: Vec<RecordedChannel>) -> Recording {
         let time = (0..6_i32).map(f64::from).collect();
         Recording::new(time, channels, vec![]).unwrap()
     }
@@ -388,8 +388,8 @@ mod tests {
     fn force_is_drawn_in_its_band() {
         let plots = plots(
             &recording(vec![
-                Channel::new(schema::CONTACT_FORCE, Unit::Newton, vec![900.0; 6]),
-                Channel::new(schema::DESIRED_FORCE, Unit::Newton, vec![100.0; 6]),
+                RecordedChannel::new(schema::CONTACT_FORCE, Unit::Newton, vec![900.0; 6]),
+                RecordedChannel::new(schema::DESIRED_FORCE, Unit::Newton, vec![100.0; 6]),
             ]),
             &SceneLimits::default(),
         )
@@ -412,8 +412,8 @@ mod tests {
         };
         let force = vec![0.0, 700.0, 101.0, 118.0, 0.0, 0.0];
         let channels = vec![
-            Channel::new(schema::CONTACT_FORCE, Unit::Newton, force),
-            Channel::new(schema::DESIRED_FORCE, Unit::Newton, vec![100.0; 6]),
+            RecordedChannel::new(schema::CONTACT_FORCE, Unit::Newton, force),
+            RecordedChannel::new(schema::DESIRED_FORCE, Unit::Newton, vec![100.0; 6]),
         ];
         let recording = Recording::new(time, channels, vec![follow]).unwrap();
         let plots = plots(&recording, &SceneLimits::default()).unwrap();
@@ -431,7 +431,7 @@ mod tests {
             stroke: Some([0.0, 0.05]),
             joint_torque: vec![],
         };
-        let stroke = Channel::new(schema::STROKE, Unit::Metre, vec![0.025; 6]);
+        let stroke = RecordedChannel::new(schema::STROKE, Unit::Metre, vec![0.025; 6]);
         let plots = plots(&recording(vec![stroke]), &limits).unwrap();
         assert_eq!(find(&plots[0], "stroke").values, [25.0; 6]);
         assert_eq!(find(&plots[0], "extended").values, [50.0, 50.0]);
@@ -440,7 +440,7 @@ mod tests {
 
     #[test]
     fn torque_is_a_share_of_its_limit_and_needs_one() {
-        let torque = || Channel::new("joint_2_torque", Unit::NewtonMetre, vec![-30.0; 6]);
+        let torque = || RecordedChannel::new("joint_2_torque", Unit::NewtonMetre, vec![-30.0; 6]);
         let mut limits = SceneLimits {
             stroke: None,
             joint_torque: vec![100.0, 120.0],
@@ -460,7 +460,8 @@ mod tests {
 
     #[test]
     fn pressure_is_in_bar_and_absent_signals_make_no_plot() {
-        let pressure = Channel::new(schema::CHAMBER_1_PRESSURE, Unit::Pascal, vec![4.0e5; 6]);
+        let pressure =
+            RecordedChannel::new(schema::CHAMBER_1_PRESSURE, Unit::Pascal, vec![4.0e5; 6]);
         let plots = plots(&recording(vec![pressure]), &SceneLimits::default()).unwrap();
         assert_eq!(plots.len(), 1);
         assert_eq!(plots[0].series.len(), 1);

@@ -15,7 +15,7 @@ use super::*;
 use crate::recording::scene::{
     ContactArrow, EdgePath, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
 };
-use crate::recording::{Channel, PhaseSpan, Unit, schema};
+use crate::recording::{PhaseSpan, RecordedChannel, Unit, schema};
 use glam::DVec3;
 
 const SAMPLES: usize = 2001;
@@ -30,10 +30,10 @@ fn recording() -> Recording {
         .map(|t| after_contact(100.0 + 2.0 * (9.0 * t).sin(), t));
     let path = time.iter().map(|t| after_contact(0.05 * (t - 0.5), t));
     let channels = vec![
-        Channel::new(schema::PATH_LENGTH, Unit::Metre, path.collect()),
-        Channel::new(schema::CONTACT_FORCE, Unit::Newton, force.collect()),
-        Channel::new(schema::DESIRED_FORCE, Unit::Newton, vec![100.0; SAMPLES]),
-        Channel::new("joint_1_torque", Unit::NewtonMetre, vec![30.0; SAMPLES]),
+        RecordedChannel::new(schema::PATH_LENGTH, Unit::Metre, path.collect()),
+        RecordedChannel::new(schema::CONTACT_FORCE, Unit::Newton, force.collect()),
+        RecordedChannel::new(schema::DESIRED_FORCE, Unit::Newton, vec![100.0; SAMPLES]),
+        RecordedChannel::new("joint_1_torque", Unit::NewtonMetre, vec![30.0; SAMPLES]),
     ];
     let span = |name: &str, start, end| PhaseSpan {
         name: name.to_owned(),
@@ -276,7 +276,7 @@ fn equal_input_gives_equal_bytes_and_other_input_another_id() {
 fn part(samples: std::ops::Range<usize>, frames: std::ops::Range<usize>) -> (Recording, Scene) {
     let whole = recording();
     let channels = whole.channels().iter();
-    let channels = channels.map(|channel| Channel {
+    let channels = channels.map(|channel| RecordedChannel {
         values: channel.values[samples.clone()].to_vec(),
         ..channel.clone()
     });

@@ -89,11 +89,11 @@ impl Axes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::{Channel, Unit};
+    use crate::recording::{RecordedChannel, Unit};
 
     #[test]
     fn time_is_in_nanoseconds_and_path_length_in_micrometres() {
-        let length = Channel::new(
+        let length = RecordedChannel::new(
             schema::PATH_LENGTH,
             Unit::Metre,
             vec![f64::NAN, 0.0, 0.012_345_6, f64::NAN],

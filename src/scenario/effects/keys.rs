@@ -16,15 +16,15 @@ pub(super) const NAME: &str = "name";
 pub(super) const JOINT: &str = "joint";
 
 /// One effect's keys.
-pub(super) type Table = BTreeMap<String, EffectValue>;
+pub(super) type KeyTable = BTreeMap<String, EffectValue>;
 
 /// The effects of a file.
 #[derive(Debug)]
 pub(in super::super) enum EffectKeys {
     /// `[[effect]]`.
-    List(Vec<Table>),
+    List(Vec<KeyTable>),
     /// `[effect.NAME]`, of schema 1.
-    Named(BTreeMap<String, Table>),
+    Named(BTreeMap<String, KeyTable>),
 }
 
 impl Default for EffectKeys {

@@ -2,7 +2,7 @@
 
 use super::super::check::{Section, plain};
 use super::super::error::ScenarioError;
-use super::keys::{JOINT, NAME, Table};
+use super::keys::{JOINT, KeyTable, NAME};
 use super::value::EffectValue;
 use crate::effects::Effect;
 use crate::plant::{
@@ -17,7 +17,7 @@ pub(super) const IS: &str = "is";
 /// Reads a law.
 pub(super) fn law(
     section: &Section<'_>,
-    table: &Table,
+    table: &KeyTable,
     known: &[&'static Effect],
 ) -> Result<LawText, ScenarioError> {
     let name = text(
@@ -85,7 +85,7 @@ pub(super) fn free_values(law: &LawText) -> Vec<f64> {
 /// A text of a table.
 pub(super) fn text<'t>(
     section: &Section<'_>,
-    table: &'t Table,
+    table: &'t KeyTable,
     key: &str,
     expected: &str,
 ) -> Result<&'t str, ScenarioError> {
@@ -96,7 +96,7 @@ pub(super) fn text<'t>(
     }
 }
 
-fn port(section: &Section<'_>, table: &Table) -> Result<Port, ScenarioError> {
+fn port(section: &Section<'_>, table: &KeyTable) -> Result<Port, ScenarioError> {
     let names = Port::ALL.map(Port::name).join(", ");
     let expected = format!("one of {names}");
     let name = text(section, table, ACTS_ON, &expected)?;
@@ -112,7 +112,7 @@ fn is_name(text: &str) -> bool {
     first && letters.all(|c| c.is_alphanumeric() || c == '_')
 }
 
-fn constants(section: &Section<'_>, table: &Table) -> Result<Vec<Constant>, ScenarioError> {
+fn constants(section: &Section<'_>, table: &KeyTable) -> Result<Vec<Constant>, ScenarioError> {
     let own = table
         .iter()
         .filter(|(key, _)| ![NAME, ACTS_ON, IS].contains(&key.as_str()));

@@ -7,7 +7,7 @@ use super::super::sensing::white;
 use super::super::{BurrScenario, Misplacement, Scenario};
 use super::RecordedCell;
 use crate::plant::{Observation, registry};
-use crate::sensing::{Channel, FilterParameters};
+use crate::sensing::{FilterParameters, Measurement};
 
 /// Relative tolerance of a number that a scenario states: none of a data sheet is truer.
 const TOLERANCE: f64 = 0.005;
@@ -83,13 +83,17 @@ pub(super) fn of_scenario(
 }
 
 /// Standard deviation of a sensor's noise; usual white noise of one that has none, for nothing is weighed by it.
-fn noise<S>(section: &Section<'_>, channel: &Channel<S>, usual: f64) -> Result<f64, ScenarioError> {
+fn noise<S>(
+    section: &Section<'_>,
+    channel: &Measurement<S>,
+    usual: f64,
+) -> Result<f64, ScenarioError> {
     match channel {
-        Channel::White { standard_deviation } if *standard_deviation > 0.0 => {
+        Measurement::White { standard_deviation } if *standard_deviation > 0.0 => {
             Ok(*standard_deviation)
         }
-        Channel::Ideal | Channel::White { .. } => Ok(usual),
-        Channel::Real(_) => {
+        Measurement::Ideal | Measurement::White { .. } => Ok(usual),
+        Measurement::Real(_) => {
             let expected =
                 "\"ideal\" or \"white\": a diagnosis finds what sensors do to what they measure";
             Err(section.refuse("kind", "\"real\"".to_owned(), expected.to_owned()))

@@ -12,9 +12,9 @@ use crate::sensing::parameters::{
     paper_accelerometer, paper_load_cell, paper_outlet_pressure, paper_position, paper_set_value,
 };
 use crate::sensing::{
-    AccelerometerParameters, AdcParameters, AmplifierParameters, Channel, CommandChain,
-    FilterParameters, InstrumentationAmplifierParameters, LoadCellParameters,
-    OutletPressureParameters, PositionSensorParameters, PwmFilterParameters, SetValueParameters,
+    AccelerometerParameters, AdcParameters, AmplifierParameters, CommandChain, FilterParameters,
+    InstrumentationAmplifierParameters, LoadCellParameters, Measurement, OutletPressureParameters,
+    PositionSensorParameters, PwmFilterParameters, SetValueParameters,
 };
 
 /// Standard gravity [m/s2], with which a capacity in kg is a force.
@@ -50,7 +50,7 @@ impl Sensor<'_> {
         &self,
         deviation: (&str, Option<f64>, f64, RangeInclusive<f64>),
         real: impl FnOnce(&Section<'_>) -> Result<S>,
-    ) -> Result<Channel<S>> {
+    ) -> Result<Measurement<S>> {
         let (key, given, default, range) = deviation;
         let kind = self.given.unwrap_or(match self.preset {
             Preset::Ideal => SensorKind::Ideal,
@@ -61,15 +61,15 @@ impl Sensor<'_> {
         Ok(match kind {
             SensorKind::Ideal => {
                 only(&self.section, "ideal", by_preset, &[])?;
-                Channel::Ideal
+                Measurement::Ideal
             }
             SensorKind::White => {
                 only(&self.section, "white", by_preset, &[key])?;
-                Channel::White {
+                Measurement::White {
                     standard_deviation: self.section.number_or(key, given, default, range)?,
                 }
             }
-            SensorKind::Real => Channel::Real(real(&self.section)?),
+            SensorKind::Real => Measurement::Real(real(&self.section)?),
         })
     }
 }
@@ -125,7 +125,7 @@ pub fn regulator_pressure(
     sensor: &Sensor<'_>,
     keys: &RegulatorPressureKeys,
     adc: AdcParameters,
-) -> Result<Channel<OutletPressureParameters>> {
+) -> Result<Measurement<OutletPressureParameters>> {
     let (key, given, range) = ("standard_deviation_pa", keys.standard_deviation_pa, 0.0..=1e6);
     sensor.channel((key, given, white::PRESSURE, range.clone()), |section| {
         let paper = paper_outlet_pressure();
@@ -147,7 +147,7 @@ pub fn regulator_pressure(
 
 /// The contact force.
 #[rustfmt::skip] // A table: one key a line.
-pub fn force(sensor: &Sensor<'_>, keys: &ForceKeys, adc: AdcParameters) -> Result<Channel<LoadCellParameters>> {
+pub fn force(sensor: &Sensor<'_>, keys: &ForceKeys, adc: AdcParameters) -> Result<Measurement<LoadCellParameters>> {
     let (key, given, range) = ("standard_deviation_n", keys.standard_deviation_n, 0.0..=1000.0);
     sensor.channel((key, given, white::FORCE, range.clone()), |section| {
         let paper = paper_load_cell();
@@ -182,7 +182,7 @@ pub fn force(sensor: &Sensor<'_>, keys: &ForceKeys, adc: AdcParameters) -> Resul
 
 /// The stroke.
 #[rustfmt::skip] // A table: one key a line.
-pub fn stroke(sensor: &Sensor<'_>, keys: &StrokeKeys) -> Result<Channel<PositionSensorParameters>> {
+pub fn stroke(sensor: &Sensor<'_>, keys: &StrokeKeys) -> Result<Measurement<PositionSensorParameters>> {
     let (key, given, range) = ("standard_deviation_mm", keys.standard_deviation_mm, 0.0..=10.0);
     sensor.channel((key, given, white::STROKE, range.clone()), |section| {
         let paper = paper_position();
@@ -200,7 +200,7 @@ pub fn stroke(sensor: &Sensor<'_>, keys: &StrokeKeys) -> Result<Channel<Position
 pub fn acceleration(
     sensor: &Sensor<'_>,
     keys: &AccelerationKeys,
-) -> Result<Channel<AccelerometerParameters>> {
+) -> Result<Measurement<AccelerometerParameters>> {
     let (key, given, range) = ("standard_deviation_m_per_s2", keys.standard_deviation_m_per_s2, 0.0..=1000.0);
     sensor.channel((key, given, white::ACCELERATION, range.clone()), |section| {
         let paper = paper_accelerometer();

@@ -6,10 +6,9 @@ use crate::sensing::parameters::{
     paper_accelerometer, paper_load_cell, paper_position, paper_set_value,
 };
 use crate::sensing::{
-    AccelerometerParameters, AdcParameters, AmplifierParameters, Channel, CommandChain,
-    FilterParameters, InstrumentationAmplifierParameters, LoadCellParameters,
-    OutletPressureParameters, PositionSensorParameters, PwmFilterParameters, SensingParameters,
-    SetValueParameters,
+    AccelerometerParameters, AdcParameters, AmplifierParameters, CommandChain, FilterParameters,
+    InstrumentationAmplifierParameters, LoadCellParameters, Measurement, OutletPressureParameters,
+    PositionSensorParameters, PwmFilterParameters, SensingParameters, SetValueParameters,
 };
 
 /// Reads tables at the end of both formats, which must agree.
@@ -41,9 +40,9 @@ fn the_presets_are_those_of_the_chain() {
 fn a_stages_own_kind_goes_before_the_presets() {
     let paper = SensingParameters::paper();
     let mut expected = paper;
-    expected.force = Channel::Ideal;
+    expected.force = Measurement::Ideal;
     expected.command = CommandChain::Ideal;
-    expected.stroke = Channel::White {
+    expected.stroke = Measurement::White {
         standard_deviation: 2e-5,
     };
     let keys = "[sensing]\npreset = \"paper\"\nforce.kind = \"ideal\"\ncommand.kind = \"ideal\"\nstroke.kind = \"white\"";
@@ -128,8 +127,8 @@ fn every_key_of_pressure_force_and_adc_reaches_its_field() {
         adc,
     };
     let read = sensing(keys);
-    assert_eq!(read.regulator_pressure, Channel::Real(pressure));
-    let Channel::Real(cell) = read.force else {
+    assert_eq!(read.regulator_pressure, Measurement::Real(pressure));
+    let Measurement::Real(cell) = read.force else {
         panic!("{:?}", read.force)
     };
     assert!((cell.capacity - force.capacity).abs() < 1e-12);
@@ -149,14 +148,14 @@ fn every_key_of_stroke_and_acceleration_reaches_its_field() {
         noise: 5e-4,
         resolution: 1e-4,
     };
-    assert_eq!(read.stroke, Channel::Real(stroke));
+    assert_eq!(read.stroke, Measurement::Real(stroke));
     let acceleration = AccelerometerParameters {
         bias: -0.3,
         noise: 0.04,
         range: 20.0,
         resolution: 0.0,
     };
-    assert_eq!(read.acceleration, Channel::Real(acceleration));
+    assert_eq!(read.acceleration, Measurement::Real(acceleration));
     assert_eq!(
         (paper_position().noise, paper_accelerometer().noise),
         (2e-5, 0.02)
