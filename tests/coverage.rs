@@ -9,7 +9,7 @@ use idc_cell::diagnosis::hypothesis::Hypothesis;
 use idc_cell::diagnosis::ranking::Ranked;
 use idc_cell::effects::{Effect, every};
 use idc_cell::laboratory::{
-    Concealed, LaboratoryRig, LaboratoryTrajectory, Programme, Recipe, run,
+    Concealed, Conditions, LaboratoryRig, LaboratoryTrajectory, Programme, Recipe, run,
 };
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -43,7 +43,7 @@ fn device(seed: u64) -> Device {
         seed,
         effects: EFFECTS.to_vec(),
         duration: 3.0,
-        dirt: None,
+        conditions: Conditions::default(),
     };
     let (rig, concealed, programmes) = recipe.reality().unwrap();
     let recorded = programmes[..RECORDINGS].iter().map(|programme| {

@@ -1,7 +1,9 @@
 //! The laboratory against the simulator that a diagnosis fits: with nothing concealed they are the same device in two hands.
 
 use idc_cell::device::DeviceParameters;
-use idc_cell::laboratory::{Believed, Concealed, EFFECTS, LaboratoryRig, Programme, Recipe, run};
+use idc_cell::laboratory::{
+    Believed, Concealed, Conditions, EFFECTS, LaboratoryRig, Programme, Recipe, run,
+};
 use idc_cell::physics::end_cushioning::EndCushioning;
 use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
@@ -11,9 +13,11 @@ use idc_cell::physics::regulator::{RateLimit, RegulatorParameters, SecondOrder};
 use idc_cell::physics::seal_friction::SealFriction;
 use idc_cell::physics::supply_reservoir::SupplyReservoir;
 use idc_cell::plant::{
-    Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, PlantInputs, PlantParameters,
-    SensorErrors, simulate,
+    Chain, ContactLaw, ContactParameters, InitialState, LinkParameters, Periodic, PlantInputs,
+    PlantParameters, SensorErrors, simulate,
 };
+use rand::{Rng, SeedableRng};
+use rand_distr::StandardNormal;
 
 /// The same device in the simulator's own description.
 pub fn plant_of(rig: &LaboratoryRig) -> PlantParameters {
@@ -72,6 +76,7 @@ pub fn inputs_of(programme: &Programme) -> PlantInputs {
     PlantInputs {
         cell: None,
         motion: None,
+        initial: InitialState::AtRest,
         set_pressure: time.iter().map(|t| programme.set_pressure(*t)).collect(),
         extends: time.iter().map(|t| programme.extends(*t)).collect(),
         surface: time
@@ -104,6 +109,41 @@ fn with_nothing_concealed_it_agrees_with_the_simulator() {
                 let most = off[off.len() * 98 / 100];
                 assert!(most < 0.6, "{seed} {} {channel}: {most}", programme.name);
                 assert!(off[off.len() / 2] < 0.05);
+            }
+        }
+    }
+}
+
+/// A recording that begins in mid-motion is followed from the end of the time in which its piston is held.
+#[test]
+fn a_recording_that_begins_in_mid_motion_is_followed_after_half_a_second() {
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+    for seed in 0..8 {
+        let believed = Believed::draw(seed);
+        let rig = believed.real(seed);
+        for mut programme in believed.programmes(seed, 5.0) {
+            let begins = 0.9 + 0.13 * seed as f64;
+            programme.times.retain(|time| *time >= begins);
+            let ours = run(&rig, &Concealed::default(), &programme)
+                .unwrap()
+                .readings;
+            let mut noisy = |channel: usize| -> Vec<f64> {
+                let noise = |value: &f64| {
+                    let drawn: f64 = random.sample(StandardNormal);
+                    value + NOISE[channel] * drawn
+                };
+                ours[channel].iter().map(noise).collect()
+            };
+            let mut inputs = inputs_of(&programme);
+            let (pressure, stroke) = (noisy(0), noisy(1));
+            inputs.initial = InitialState::of(&inputs.time, &pressure, &stroke);
+            let held = inputs.initial.samples();
+            assert_eq!(held, 125, "{seed} {}", programme.name);
+            let theirs = simulate(&plant_of(&rig), &inputs).readings;
+            for channel in 0..4 {
+                let most = bulk(&ours[channel][held..], &theirs[channel][held..], channel);
+                println!("{seed} {} {channel} {most:.2}", programme.name);
+                assert!(most < 1.0, "{seed} {} {channel}: {most}", programme.name);
             }
         }
     }
@@ -205,7 +245,7 @@ fn effects_mean_the_same_in_the_laboratory_and_in_the_simulator() {
                 seed,
                 effects: vec![(effect.name, 0.5)],
                 duration: 4.0,
-                dirt: None,
+                conditions: Conditions::default(),
             };
             let (rig, concealed, programmes) = recipe.reality().unwrap();
             let plant = with_effect(&rig, &concealed, effect.name);

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use idc_cell::diagnosis::answer::{Answer, Extent};
-use idc_cell::laboratory::{EFFECTS, Known, LOST, Recipe, SealedCase, write_case};
+use idc_cell::laboratory::{Conditions, EFFECTS, Known, LOST, Recipe, SealedCase, write_case};
 
 /// Makes a case, diagnoses it by the program, and returns the answer with what was concealed.
 fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer, SealedCase) {
@@ -13,7 +13,7 @@ fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer,
         seed,
         effects: effects.to_vec(),
         duration: 5.0,
-        dirt: None,
+        conditions: Conditions::default(),
     }
     .make()
     .unwrap();
@@ -52,7 +52,7 @@ fn a_device_without_an_accelerometer_is_diagnosed_by_its_other_sensors() {
         seed: 31,
         effects: vec![("coulomb_viscous_friction", 1.0)],
         duration: 5.0,
-        dirt: None,
+        conditions: Conditions::default(),
     }
     .make()
     .unwrap();

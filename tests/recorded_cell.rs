@@ -7,7 +7,7 @@ use std::path::Path;
 use idc_cell::cell::Cell;
 use idc_cell::diagnosis::answer::{Answer, Verdict};
 use idc_cell::path::Phase;
-use idc_cell::plant::{Burr, PlantInputs, PlantParameters, follow, simulate};
+use idc_cell::plant::{Burr, InitialState, PlantInputs, PlantParameters, follow, simulate};
 use idc_cell::recording::schema;
 use idc_cell::replay::LoadedCell;
 use idc_cell::scenario::{Scenario, load, load_any, load_recorded_cell};
@@ -161,6 +161,7 @@ fn record(
         surface: trajectory.contact_kinematics(&plant.cell).surface(),
         cell: Some(std::sync::Arc::new(trajectory)),
         motion: None,
+        initial: InitialState::AtRest,
     };
     let readings = simulate(plant, &inputs).readings;
     let mut random =
@@ -449,6 +450,7 @@ fn a_burr_is_met_where_it_stands_to_a_fraction_of_a_sample() {
                 surface: trajectory.contact_kinematics(&plant.cell).surface(),
                 cell: Some(std::sync::Arc::new(trajectory)),
                 motion: None,
+                initial: InitialState::AtRest,
             };
             simulate(&plant, &inputs).readings[1].clone()
         };

@@ -1,6 +1,6 @@
 //! A rig file as the device of `idc run`'s bench moves and reads as the same rig does in a prediction.
 
-use idc_cell::plant::{PlantInputs, simulate};
+use idc_cell::plant::{InitialState, PlantInputs, simulate};
 use idc_cell::recording::schema;
 use idc_cell::rig::Rig;
 use idc_cell::scenario::load_bench;
@@ -68,6 +68,7 @@ fn bench_and_prediction_agree_with_every_effect_that_both_have() {
         time,
         cell: None,
         motion: None,
+        initial: InitialState::AtRest,
     };
     let plant = load_rig(&path("rig.toml")).unwrap().plant;
     let readings = simulate(&plant, &inputs).readings;

@@ -11,7 +11,7 @@ use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
 use crate::laboratory::{Recipe, shipped, write_case};
-use crate::proof::{Claims, Diagnose, SweepPlan, folders, page, prove, sweep};
+use crate::proof::{CaseConditions, Claims, Diagnose, SweepPlan, folders, page, prove, sweep};
 use crate::quantity::counted;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 
@@ -66,6 +66,9 @@ pub(super) struct SweepArguments {
     /// Length of each recording [s].
     #[arg(long, default_value_t = 4.0, value_parser = duration)]
     duration_s: f64,
+    /// Conditions under which the devices are recorded.
+    #[arg(long, value_enum, default_value_t)]
+    conditions: CaseConditions,
     /// Cases at a time [default: as many as there are processors].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
@@ -179,6 +182,7 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
         sizes: usize::from(arguments.sizes),
         empty: arguments.empty,
         duration: arguments.duration_s,
+        conditions: arguments.conditions,
         jobs: jobs(arguments.jobs),
         resume: arguments.resume,
         replace: arguments.force,

@@ -13,7 +13,7 @@ use crate::diagnosis::joint_friction::{DriveLoad, JointFriction, joint_friction}
 use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, check, hold};
 use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
 use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, sought};
-use crate::plant::{CHANNELS, PlantInputs, PlantParameters, Quantity, registry};
+use crate::plant::{CHANNELS, InitialState, PlantInputs, PlantParameters, Quantity, registry};
 use crate::recording::csv::{CellRecording, read_cell_csv};
 use crate::recording::read_table;
 use crate::recording::samples::cell_recording;
@@ -275,6 +275,7 @@ fn recorded(
         surface: trajectory.contact_kinematics(&cell.plant().cell).surface(),
         cell: Some(Arc::new(trajectory)),
         motion: None,
+        initial: InitialState::AtRest,
         time,
     };
     check(file, &inputs)?;

@@ -259,6 +259,9 @@ fn unseen_errors(
         &case.noise,
         case.believed.device.moving_mass,
     );
+    for readings in &mut measured {
+        readings[..inputs.initial.samples()].fill(f64::NAN);
+    }
     let models = [&case.believed, baseline, &best.fit.prediction.plant];
     let predictions = models.map(|plant| simulate(plant, inputs).readings);
     let error = |channel: Channel, predicted: &[Vec<f64>; CHANNELS.len()]| {

@@ -49,7 +49,8 @@ pub struct Evidence {
 
 impl Evidence {
     /// Recordings with the standard deviation of each channel's noise, in the order of [`CHANNELS`].
-    pub fn new(recordings: Vec<Measured>, noise: [f64; 4]) -> Self {
+    /// The motion in a time in which a recording's piston is held is used, and no reading of that time is compared with.
+    pub fn new(mut recordings: Vec<Measured>, noise: [f64; 4]) -> Self {
         let nudging = |measured: &Measured| {
             let force = &measured.readings[2];
             let touching = |i: usize| force[i].abs() > 6.0 * noise[2];
@@ -62,8 +63,14 @@ impl Evidence {
                 touching,
             )
         };
+        let nudgings = recordings.iter().map(nudging).collect();
+        for measured in &mut recordings {
+            for readings in &mut measured.readings {
+                readings[..measured.inputs.initial.samples()].fill(f64::NAN);
+            }
+        }
         Self {
-            nudgings: recordings.iter().map(nudging).collect(),
+            nudgings,
             recordings,
             noise,
             block: BLOCK,

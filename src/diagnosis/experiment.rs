@@ -1,7 +1,7 @@
 //! Experiments that a bench can do, within what its recordings show that it does.
 
 use super::evidence::Evidence;
-use crate::plant::{PlantInputs, PlantParameters};
+use crate::plant::{InitialState, PlantInputs, PlantParameters};
 use std::f64::consts::TAU;
 
 /// An experiment.
@@ -62,6 +62,7 @@ impl Limits {
             surface: values.iter().map(|v| v.2).collect(),
             cell: None,
             motion: None,
+            initial: InitialState::AtRest,
             time,
         }
     }

@@ -117,6 +117,13 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
         if case.believed.chain == Chain::Whole {
             notes.extend(missing(name, &readings, &case.noise));
         }
+        let held = inputs.initial.samples();
+        if held > 0 {
+            let until = inputs.time[held.min(inputs.time.len() - 1)] - inputs.time[0];
+            notes.push(format!(
+                "{name} begins in mid-motion or under pressure: its first {until:.2} s bring the model to that state, and are compared with nothing"
+            ));
+        }
         if recording.recorded.filled > 0 {
             notes.push(format!(
                 "{name}: {} lost values of the inputs filled in",

@@ -1,7 +1,9 @@
 //! From a recording of a rig to what drove it and what was measured of it.
 
 use super::flange::Run;
-use crate::plant::{CHANNELS, Chain, InputError, MeasuredMotion, PlantInputs};
+use crate::plant::{
+    CHANNELS, Chain, Channel, InitialState, InputError, MeasuredMotion, PlantInputs,
+};
 use crate::recording::{Recording, RecordingError, schema};
 use std::sync::Arc;
 
@@ -120,13 +122,14 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
     let mut surface = values(schema::SURFACE_POSITION)?;
     let filled =
         hold(&mut set_pressure) + hold(&mut valve) + bridge(recording.time(), &mut surface);
-    let inputs = PlantInputs {
+    let mut inputs = PlantInputs {
         time: recording.time().to_vec(),
         set_pressure,
         extends: valve.iter().map(|position| *position > 0.5).collect(),
         surface,
         cell: None,
         motion: None,
+        initial: InitialState::AtRest,
     };
     check(file, &inputs)?;
     let nothing = || vec![f64::NAN; recording.sample_count()];
@@ -135,6 +138,9 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
             .channel(quantity)
             .map_or_else(nothing, |channel| channel.values.clone())
     });
+    let [pressure, stroke] =
+        [Channel::RegulatorPressure, Channel::Stroke].map(|channel| &readings[channel as usize]);
+    inputs.initial = InitialState::of(&inputs.time, pressure, stroke);
     Ok(Recorded {
         inputs,
         readings,
@@ -175,6 +181,7 @@ pub fn recorded_of(
         time,
         cell: None,
         motion: None,
+        initial: InitialState::AtRest,
     };
     check(file, &inputs)?;
     if chain.takes_motion() {

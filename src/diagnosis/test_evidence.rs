@@ -6,8 +6,8 @@ use super::free::{Free, Prior};
 use crate::device::DeviceParameters;
 use crate::effects::Coordinate;
 use crate::plant::{
-    CellParameters, Chain, ContactLaw, ContactParameters, LinkParameters, Periodic, PlantInputs,
-    PlantParameters, SensorErrors, registry, simulate,
+    CellParameters, Chain, ContactLaw, ContactParameters, InitialState, LinkParameters, Periodic,
+    PlantInputs, PlantParameters, SensorErrors, registry, simulate,
 };
 use nalgebra::DMatrix;
 
@@ -39,6 +39,7 @@ pub(super) fn evidence(recordings: usize) -> Evidence {
     let inputs = PlantInputs {
         cell: None,
         motion: None,
+        initial: InitialState::AtRest,
         set_pressure: vec![2e5; count],
         extends: vec![true; count],
         surface: vec![0.02; count],

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use super::CHANNELS;
 use super::concealed::Concealed;
-use super::dirt::Dirt;
+use super::conditions::{Conditions, IMPERFECTIONS};
 use super::draw::{Believed, TOLERANCES, stream, toleranced};
 use super::effects::{LabEffect, Scene, effect};
 use super::programme::Programme;
 use super::rig::LaboratoryRig;
 use super::sealed::{Known, SealedCase, SealedEffect, SealedInterval};
-use super::sensors::measured;
+use super::sensors::{measured, step_of};
 use super::shown::intervals;
 use super::trajectory::{LaboratoryError, LaboratoryTrajectory, run};
 use super::visibility::Eye;
@@ -26,8 +26,8 @@ pub struct Recipe {
     pub effects: Vec<(&'static str, f64)>,
     /// Length of each recording [s].
     pub duration: f64,
-    /// Dirt on the recordings.
-    pub dirt: Option<Dirt>,
+    /// Conditions under which it is recorded.
+    pub conditions: Conditions,
 }
 
 /// A case.
@@ -80,14 +80,21 @@ struct Setting {
     pair: Pair,
     concealed: Concealed,
     effects: Vec<SealedEffect>,
+    conditions: Conditions,
+    seed: u64,
 }
 
 impl Setting {
     /// True trajectories of the first recordings.
     fn run(&self, count: usize) -> Result<Vec<LaboratoryTrajectory>, LaboratoryError> {
-        let programmes = self.programmes[..count].iter();
+        let programmes = self.programmes[..count].iter().enumerate();
         programmes
-            .map(|p| run(&self.pair.real, &self.concealed, p))
+            .map(|(index, programme)| {
+                let concealed = self
+                    .conditions
+                    .in_recording(&self.concealed, self.seed, index);
+                run(&self.pair.real, &concealed, programme)
+            })
             .collect()
     }
 }
@@ -111,16 +118,19 @@ impl Recipe {
             effects,
             ..
         } = setting;
-        let measured = self.measure(&believed.rig, &real);
+        let sheet = believed.rig.noise;
+        let noise = sheet.map(|sheet| self.conditions.noise * sheet);
+        let measured = self.measure(noise, &real);
         let mut rig = pair.real;
         let names = TOLERANCES.iter().map(|(name, _)| (*name).to_owned());
         let values = toleranced(&mut rig).map(|value| *value);
-        let noise = CHANNELS.iter().map(|name| (*name).to_owned());
+        let channels = CHANNELS.iter().map(|name| (*name).to_owned());
         Ok(LaboratoryCase {
             sealed: SealedCase {
                 case: self.name.clone(),
+                also_there: self.also_there(&effects),
                 effects,
-                noise: noise.zip(believed.rig.noise).collect(),
+                noise: channels.zip(noise).collect(),
                 mismatch,
                 true_parameters: names.zip(values).collect(),
                 shows,
@@ -169,15 +179,17 @@ impl Recipe {
     }
 
     fn setting(&self) -> Result<Setting, LaboratoryError> {
-        let believed = Believed::draw(self.seed);
+        let mut believed = Believed::draw(self.seed);
+        self.conditions.on_believed(&mut believed);
         let drawn = believed.real(self.seed);
         let mut programmes = believed.programmes(self.seed, self.duration).to_vec();
-        if let Some(dirt) = &self.dirt {
+        if let Some(dirt) = &self.conditions.dirt {
             let rng = &mut stream(self.seed, 4);
             for programme in &mut programmes {
                 dirt.on_times(programme, rng);
             }
         }
+        self.conditions.on_programmes(&mut programmes);
         let peak_force = self.peak_force(&drawn, &programmes)?;
         let mut concealed = Concealed::default();
         let rng = &mut stream(self.seed, 5);
@@ -193,7 +205,10 @@ impl Recipe {
             });
             effects.push(sealed_effect(effect, numbers));
         }
+        self.conditions.on_device(&mut concealed, &drawn, self.seed);
         Ok(Setting {
+            conditions: self.conditions,
+            seed: self.seed,
             pair: Pair::new(&believed.rig, drawn, &concealed),
             believed,
             programmes,
@@ -259,18 +274,30 @@ impl Recipe {
         Ok((found, eye.visibility(&real[..seen])))
     }
 
+    /// Effects that are there beside those concealed, of a size that may be seen.
+    fn also_there(&self, effects: &[SealedEffect]) -> Vec<String> {
+        let concealed = |name: &str| effects.iter().any(|effect| effect.name == name);
+        let others = IMPERFECTIONS.iter().filter(|name| !concealed(name));
+        let there = others.filter(|name| self.conditions.has(name));
+        there.map(|name| (*name).to_owned()).collect()
+    }
+
     fn measure(
         &self,
-        rig: &LaboratoryRig,
+        noise: [f64; CHANNELS.len()],
         trajectories: &[LaboratoryTrajectory],
     ) -> Vec<[Vec<f64>; 4]> {
-        let (noise, spoil) = (&mut stream(self.seed, 6), &mut stream(self.seed, 7));
+        let (random, spoil) = (&mut stream(self.seed, 6), &mut stream(self.seed, 7));
         let last = trajectories.len() - 1;
         let of = |(index, trajectory): (usize, &LaboratoryTrajectory)| {
             [0, 1, 2, 3].map(|channel| {
-                let deviation = rig.noise[channel];
-                let mut values = measured(&trajectory.readings[channel], deviation, noise);
-                if let Some(dirt) = self.dirt.filter(|_| index < last) {
+                let deviation = noise[channel];
+                let step = self.conditions.coarseness * step_of(deviation);
+                let mut values = measured(&trajectory.readings[channel], deviation, step, random);
+                if self.conditions.missing == Some(channel) {
+                    values.fill(f64::NAN);
+                }
+                if let Some(dirt) = self.conditions.dirt.filter(|_| index < last) {
                     dirt.on_values(&mut values, deviation, spoil);
                 }
                 values

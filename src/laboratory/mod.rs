@@ -11,6 +11,7 @@
 
 mod case;
 mod concealed;
+mod conditions;
 mod dirt;
 mod draw;
 mod effects;
@@ -27,6 +28,7 @@ mod write;
 
 pub use case::{LaboratoryCase, Recipe};
 pub use concealed::{Concealed, Seals, Swing};
+pub use conditions::Conditions;
 pub use dirt::Dirt;
 pub use draw::{Believed, TOLERANCES};
 pub use effects::{EFFECTS, LabEffect, UNLISTED_EFFECTS};

@@ -1,6 +1,7 @@
 //! Which cases there are: those that the project ships, and the sizes of a sweep.
 
 use super::case::Recipe;
+use super::conditions::Conditions;
 use super::dirt::Dirt;
 use super::trajectory::LaboratoryError;
 
@@ -43,7 +44,7 @@ fn lost_share(effect: &'static str, seed: u64, duration: f64) -> Result<f64, Lab
         seed,
         effects: Vec::new(),
         duration,
-        dirt: None,
+        conditions: Conditions::default(),
     };
     let mut shows = recipe.visibility(effect)?;
     let mut seen = 1.0;
@@ -76,10 +77,13 @@ pub fn shipped() -> Vec<Recipe> {
         seed,
         effects: effects.to_vec(),
         duration: 4.0,
-        dirt: None,
+        conditions: Conditions::default(),
     };
     let dirty = |recipe: Recipe| Recipe {
-        dirt: Some(Dirt::USUAL),
+        conditions: Conditions {
+            dirt: Some(Dirt::USUAL),
+            ..Conditions::default()
+        },
         ..recipe
     };
     vec![

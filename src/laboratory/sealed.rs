@@ -11,6 +11,9 @@ pub struct SealedCase {
     pub case: String,
     /// Effects at work.
     pub effects: Vec<SealedEffect>,
+    /// Effects of the vocabulary that are there too, of a size that may be seen: to name them is no error.
+    #[serde(default)]
+    pub also_there: Vec<String>,
     /// Standard deviation of each channel's noise, by column.
     pub noise: BTreeMap<String, f64>,
     /// Where it shows.

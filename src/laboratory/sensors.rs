@@ -7,9 +7,18 @@ use rand_distr::{Distribution, StandardNormal};
 /// Steps of a converter in a standard deviation of its noise: fine enough that it adds less than 1 % to it.
 const STEPS: f64 = 8.0;
 
-/// Readings with noise of a standard deviation, rounded as a converter does.
-pub(super) fn measured(values: &[f64], deviation: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {
-    let step = decimal(deviation / STEPS);
+/// Step of a usual converter of a sensor with noise of a standard deviation.
+pub(super) fn step_of(deviation: f64) -> f64 {
+    decimal(deviation / STEPS)
+}
+
+/// Readings with noise of a standard deviation, rounded as a converter of a step does.
+pub(super) fn measured(
+    values: &[f64],
+    deviation: f64,
+    step: f64,
+    rng: &mut ChaCha8Rng,
+) -> Vec<f64> {
     values
         .iter()
         .map(|value| {

@@ -1,6 +1,7 @@
 //! Inputs of a rig in a recording: set pressure, valve, surface.
 
 use super::arm_trajectory::ArmTrajectory;
+use super::initial_state::InitialState;
 use super::measured_motion::MeasuredMotion;
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -20,6 +21,8 @@ pub struct PlantInputs {
     pub cell: Option<Arc<ArmTrajectory>>,
     /// The motion of the piston, where a rig or a drive moves it; the set pressure is then that in chamber 1, as it was measured.
     pub motion: Option<Arc<MeasuredMotion>>,
+    /// State in which it starts.
+    pub initial: InitialState,
 }
 
 /// Inputs that do not fit together.
@@ -112,7 +115,7 @@ impl PlantInputs {
 
 #[cfg(test)]
 mod tests {
-    use super::PlantInputs;
+    use super::{InitialState, PlantInputs};
 
     #[test]
     fn a_parabola_has_its_slope_at_every_distance_of_samples() {
@@ -125,6 +128,7 @@ mod tests {
             time: time.clone(),
             cell: None,
             motion: None,
+            initial: InitialState::AtRest,
         };
         for (i, t) in time.iter().enumerate().take(4).skip(1) {
             let slope = inputs.slope(&values, i);

@@ -15,6 +15,7 @@ mod cell_parameters;
 mod chain;
 mod contact;
 mod contact_friction;
+mod initial_state;
 mod inputs;
 mod joint_deflections;
 mod latent;
@@ -39,6 +40,7 @@ pub use arm_trajectory::{
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS, Relief};
 pub use chain::{Chain, LinkParameters};
 pub use contact::{ContactLaw, ContactParameters, Periodic};
+pub use initial_state::{HeldMotion, InitialState};
 pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
 pub use measured_motion::MeasuredMotion;

@@ -4,6 +4,7 @@ use super::arm_trajectory::ContactKinematics;
 use super::carrier::{Hold, ReplayCarrier, hermite};
 use super::chain;
 use super::contact_friction::{AxialFriction, ContactFriction};
+use super::initial_state::{HeldMotion, InitialState};
 use super::inputs::PlantInputs;
 use super::joint_deflections::{Bending, DeflectedContact, JointDeflections};
 use super::latent::{Moment, Port};
@@ -13,6 +14,7 @@ use super::riding::Riding;
 use super::terms::ForceTerms;
 use super::trajectory::Trajectory;
 use crate::device::{Device, DeviceState, PistonMotion};
+use crate::physics::regulator::RegulatorState;
 use crate::physics::valve::ValvePosition;
 
 /// A simulated recording.
@@ -75,8 +77,8 @@ pub fn readings(
     readings
 }
 
-/// Runs a rig from rest on the retracted stop, both chambers and the regulator's outlet at the atmosphere. A rig that is out of all proportion
-/// gives values that are not finite. A nudging holds the piston to a measured motion.
+/// Runs a rig from the state in which a recording starts. A rig that is out of all proportion gives values that are not finite. A nudging holds the piston
+/// to a measured motion.
 #[expect(
     clippy::too_many_lines,
     reason = "the loop of all fits: its state stays in registers"
@@ -105,7 +107,10 @@ pub fn true_trajectory(
         .cell
         .as_ref()
         .is_some_and(|c| c.observed.starts_pressing);
-    let (mut motion, mut state) = at_rest(plant, &device, inputs, pressing, pull(0));
+    let (mut motion, mut state) = match &inputs.initial {
+        InitialState::AtRest => at_rest(plant, &device, inputs, pressing, pull(0)),
+        InitialState::Anywhere(held) => on_its_way(plant, &device, inputs, held),
+    };
     let mut joint_deflections = inputs
         .cell
         .as_ref()
@@ -160,16 +165,14 @@ pub fn true_trajectory(
             let rise = (kinematics.burr[next] - kinematics.burr[i]) / h;
             carrier.burr = Some([kinematics.burr[i], rise]);
         }
-        if let Some(nudging) = nudging {
-            let (stiffness, damping) = Nudging::gains(mass);
-            let gain = plant.sensors.stroke_gain;
-            let pair = |values: &[f64]| [values[i] / gain, values[next] / gain];
-            carrier.hold = Some(Hold {
-                stroke: hermite(h, pair(&nudging.stroke), pair(&nudging.speed)),
-                stiffness: nudging.gain[i] * stiffness,
-                damping: nudging.gain[i] * damping,
-            });
-        }
+        carrier.hold = match (nudging, inputs.initial.held_at(i)) {
+            (_, Some(held)) => Some(hold(plant, h, [&held.stroke, &held.speed], (i, next), 1.0)),
+            (Some(nudging), None) => {
+                let motion = [nudging.stroke.as_slice(), &nudging.speed];
+                Some(hold(plant, h, motion, (i, next), nudging.gain[i]))
+            }
+            (None, None) => None,
+        };
         if present {
             carrier.surface = hermite(
                 h,
@@ -294,6 +297,54 @@ fn at_rest(
     let push = device.piston_force(&device.at_rest(out, set), resting(out)) + pull;
     let motion = resting(out + push.max(0.0) / stop);
     (motion, device.at_rest(motion.stroke, set))
+}
+
+/// In mid-motion: the piston where it was measured, else on the surface if there is pressure behind it, else on the stop that the valve sends it to.
+fn on_its_way(
+    plant: &PlantParameters,
+    device: &Device,
+    inputs: &PlantInputs,
+    held: &HeldMotion,
+) -> (PistonMotion, DeviceState) {
+    let full = plant.device.full_stroke;
+    let gain = plant.sensors.stroke_gain;
+    let motion = match &held.motion {
+        Some(measured) => PistonMotion {
+            stroke: measured.stroke[0] / gain,
+            speed: measured.speed[0] / gain,
+        },
+        None => PistonMotion {
+            stroke: match (inputs.extends[0], inputs.surface[0].is_finite()) {
+                (true, true) => inputs.surface[0].clamp(0.0, full),
+                (true, false) => full,
+                (false, _) => 0.0,
+            },
+            speed: 0.0,
+        },
+    };
+    let set = held.outlet / plant.device.regulator.gain;
+    // What the valve lets out is at the atmosphere by then.
+    let mut state = device.at_rest(motion.stroke, if inputs.extends[0] { set } else { 0.0 });
+    state.regulator = RegulatorState::at_rest(&plant.device.regulator, set);
+    (motion, state)
+}
+
+/// A hold to a measured stroke [m] and speed [m/s] from one sample to the next, h [s] later.
+fn hold(
+    plant: &PlantParameters,
+    h: f64,
+    [stroke, speed]: [&[f64]; 2],
+    (i, next): (usize, usize),
+    share: f64,
+) -> Hold {
+    let (stiffness, damping) = Nudging::gains(plant.device.moving_mass);
+    let gain = plant.sensors.stroke_gain;
+    let pair = |values: &[f64]| [values[i] / gain, values[next] / gain];
+    Hold {
+        stroke: hermite(h, pair(stroke), pair(speed)),
+        stiffness: share * stiffness,
+        damping: share * damping,
+    }
 }
 
 /// Steps into which a sample is cut where links swing.

@@ -5,9 +5,13 @@ use std::fmt::Write as _;
 
 use super::binomial::upper_bound;
 use super::outcome::Outcome;
+use super::reliability::Reliability;
 use super::summary::percentile;
 use crate::laboratory::LOST;
 use crate::quantity::significant;
+
+/// 90th percentile of a prediction's error from which an explanation is not a full one [standard deviations].
+const FAR: f64 = 4.0;
 
 /// A page in Markdown; outcomes in any order.
 pub fn page(outcomes: &[Outcome]) -> String {
@@ -24,8 +28,44 @@ the effect could add to twice the log-likelihood (`src/laboratory/visibility.rs`
     false_alarms(&mut text, outcomes);
     sizes(&mut text, outcomes);
     matrix(&mut text, outcomes);
+    reliability(&mut text, outcomes);
     numbers(&mut text, outcomes);
     text
+}
+
+/// Conditions, and for each the share of right names among those stated with about a probability.
+fn reliability(text: &mut String, outcomes: &[Outcome]) {
+    let stated = outcomes.iter().flat_map(|outcome| &outcome.score.stated);
+    let Some(found) = Reliability::of(stated) else {
+        return;
+    };
+    let [right, sure] = found.sure;
+    let [_, all] = found.sure_of_right;
+    let _ = writeln!(
+        text,
+        "## What a stated probability is worth\n\nOf the names stated with a probability above 0.9, {right} of {sure} are right; they are {right} of the {all} right names. The Brier score is {:.3}.\n\n| stated | names | mean stated | right |\n| --- | --- | --- | --- |",
+        found.brier
+    );
+    for bin in &found.bins {
+        let _ = writeln!(
+            text,
+            "| {} to {} | {} | {:.3} | {:.3} |",
+            bin.stated[0],
+            bin.stated[1],
+            bin.count,
+            bin.mean,
+            bin.right as f64 / bin.count as f64
+        );
+    }
+    let fully = |outcome: &&Outcome| outcome.score.explained_fully == Some(true);
+    let missed = |outcome: &&Outcome| outcome.score.prediction.is_none_or(|p| p > FAR);
+    let all = outcomes.iter().filter(fully);
+    let _ = writeln!(
+        text,
+        "\nOf {} answers that say to explain the recordings fully, {} miss the unseen recording by more than {FAR} standard deviations (90th percentile, worst channel).\n",
+        all.clone().count(),
+        all.filter(missed).count()
+    );
 }
 
 fn effects(outcomes: &[Outcome]) -> BTreeMap<&str, Vec<&Outcome>> {
@@ -211,6 +251,7 @@ fn numbers(text: &mut String, outcomes: &[Outcome]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::case_conditions::CaseConditions;
     use super::super::outcome::Made;
     use super::super::score::CaseScore;
     use super::*;
@@ -225,6 +266,7 @@ mod tests {
                 sizes: 2,
                 seed: 7,
                 duration_s: 5.0,
+                conditions: CaseConditions::Laboratory,
             },
             share: 0.1f64.powi(size as i32),
             shows: 30.0,
@@ -234,6 +276,8 @@ mod tests {
                 named_exactly: answered == truth,
                 truth,
                 answered: Some(answered),
+                stated: Vec::new(),
+                explained_fully: None,
                 unlisted: false,
                 verdict_right: true,
                 placed: true,

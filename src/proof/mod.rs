@@ -3,20 +3,24 @@
 //! An answer is scored that stands already: the sealed file of a case is opened only after its diagnosis has been written.
 
 mod binomial;
+mod case_conditions;
 mod confusion;
 mod error;
 mod outcome;
 mod prove;
 mod queue;
+mod reliability;
 mod score;
 mod summary;
 mod sweep;
 
+pub use case_conditions::CaseConditions;
 pub use confusion::page;
 pub use error::ProofError;
 pub use outcome::{Made, Outcome};
 pub use prove::{Diagnose, folders, prove};
 pub use queue::all as in_order;
-pub use score::{CaseScore, judge, overlap, worst_channel};
+pub use reliability::{Reliability, ReliabilityBin};
+pub use score::{CaseScore, StatedName, judge, overlap, worst_channel};
 pub use summary::{Claims, ProofSummary};
 pub use sweep::{SweepPlan, sweep};

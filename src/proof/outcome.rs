@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::case_conditions::CaseConditions;
 use super::score::CaseScore;
 
 /// A case of a sweep and its score.
@@ -34,6 +35,9 @@ pub struct Made {
     pub seed: u64,
     /// Length of each recording [s].
     pub duration_s: f64,
+    /// Conditions under which it was made.
+    #[serde(default)]
+    pub conditions: CaseConditions,
 }
 
 impl std::fmt::Display for Made {
@@ -44,11 +48,12 @@ impl std::fmt::Display for Made {
             sizes,
             seed,
             duration_s,
+            conditions,
             ..
         } = self;
         write!(
             formatter,
-            "{effect}, size {size} of {sizes}, seed {seed}, {duration_s} s"
+            "{effect}, size {size} of {sizes}, seed {seed}, {duration_s} s, {conditions:?}"
         )
     }
 }

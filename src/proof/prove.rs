@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use crate::diagnosis::answer::{SCHEMA, Verdict};
     use crate::diagnosis::details::Details;
-    use crate::laboratory::{Recipe, write_case};
+    use crate::laboratory::{Conditions, Recipe, write_case};
 
     fn nothing() -> Answer {
         Answer {
@@ -157,7 +157,7 @@ mod tests {
             seed: 1,
             effects: Vec::new(),
             duration: 2.0,
-            dirt: None,
+            conditions: Conditions::default(),
         };
         let case = recipe.make().unwrap();
         write_case(&case, &place("cases").join("one"), Some(&place("safe"))).unwrap();

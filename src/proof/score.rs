@@ -9,9 +9,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::diagnosis::answer::{Answer, Verdict};
+use crate::diagnosis::answer::{Answer, Extent, Verdict};
 use crate::effects::UNLISTED;
 use crate::laboratory::{CHANNELS, Known, SealedCase, SealedEffect};
+
+/// A name of an answer with its stated probability.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StatedName {
+    /// The name.
+    pub name: String,
+    /// Its stated probability [1].
+    pub probability: f64,
+    /// Whether such an effect is there.
+    pub right: bool,
+}
 
 /// Score of a case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,6 +33,12 @@ pub struct CaseScore {
     pub truth: Vec<String>,
     /// Effects answered; none where there was no answer.
     pub answered: Option<Vec<String>>,
+    /// The names answered, with their stated probabilities.
+    #[serde(default)]
+    pub stated: Vec<StatedName>,
+    /// Whether the answer says that it explains the recordings fully; none where it does not say.
+    #[serde(default)]
+    pub explained_fully: Option<bool>,
     /// Whether an unlisted effect is at work.
     pub unlisted: bool,
     /// Whether the effects at work are named, and nothing else.
@@ -53,6 +70,8 @@ impl CaseScore {
             case: truth.case.clone(),
             truth: truth.effects.iter().map(|e| e.truth.clone()).collect(),
             answered: None,
+            stated: Vec::new(),
+            explained_fully: None,
             unlisted: is_unlisted(truth),
             named_exactly: false,
             verdict_right: false,
@@ -86,9 +105,21 @@ pub fn judge(answer: &Answer, truth: &SealedCase, prediction: Option<f64>) -> Ca
         (false, true) => Verdict::Unlisted,
         (false, false) => Verdict::Explained,
     };
-    let verdict_right = answer.verdict == verdict;
+    // What is there beside may be named or not, and no list holds all of it.
+    let beside = !truth.also_there.is_empty();
+    let there = |name: &String| truth.also_there.contains(name) || (beside && name == UNLISTED);
+    let all_named = wanted.iter().all(|name| answered.contains(name));
+    let others: Vec<&String> = answered.iter().filter(|n| !wanted.contains(n)).collect();
+    let verdict_right = answer.verdict == verdict || (beside && all_named);
+    let stated = answer.effects.iter().map(|effect| StatedName {
+        name: effect.name.clone(),
+        probability: effect.confidence,
+        right: wanted.contains(&effect.name) || there(&effect.name),
+    });
     let mut score = CaseScore {
-        named_exactly: answered == wanted && verdict_right,
+        named_exactly: all_named && others.into_iter().all(there) && verdict_right,
+        stated: stated.collect(),
+        explained_fully: answer.explained.map(|extent| extent == Extent::Fully),
         placed: !unlisted || truth.effects.iter().all(|effect| places(answer, effect)),
         verdict_right,
         answered: Some(answered),
@@ -238,6 +269,7 @@ mod tests {
                 .iter()
                 .map(|name| ((*name).to_owned(), 2.0))
                 .collect(),
+            also_there: Vec::new(),
             mismatch: vec![SealedInterval {
                 recording: "ride".to_owned(),
                 channel: "force_n".to_owned(),

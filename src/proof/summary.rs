@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use super::reliability::Reliability;
 use super::score::CaseScore;
 
 /// Claims that a proof must reach.
@@ -61,6 +62,8 @@ pub struct ProofSummary {
     pub overlap: Option<f64>,
     /// Predictions within the bound, of how many.
     pub predicted: [usize; 2],
+    /// Reliability of the stated probabilities; none where nothing was named.
+    pub reliability: Option<Reliability>,
     /// Median time of a diagnosis [s].
     pub seconds: Option<f64>,
 }
@@ -99,6 +102,7 @@ impl ProofSummary {
             half_width: percentile(&widths, 0.5),
             overlap: percentile(&at_work.map(|c| c.overlap).collect::<Vec<f64>>(), 0.5),
             predicted: count(&any, &within),
+            reliability: Reliability::of(cases.iter().flat_map(|case| &case.stated)),
             seconds: percentile(
                 &cases.iter().filter_map(|c| c.seconds).collect::<Vec<f64>>(),
                 0.5,
@@ -192,6 +196,14 @@ impl ProofSummary {
                 "predictions within 2.0 standard deviations",
                 of(self.predicted),
             ),
+            (
+                "right of the names stated above 0.9",
+                of(self.reliability.as_ref().map_or([0, 0], |r| r.sure)),
+            ),
+            (
+                "Brier score of the stated probabilities",
+                number(self.reliability.as_ref().map(|r| r.brier), 3),
+            ),
             ("median time [s]", number(self.seconds, 1)),
         ];
         let _ = writeln!(text);
@@ -245,6 +257,7 @@ mod tests {
             case: "case".to_owned(),
             effects: Vec::new(),
             noise: std::collections::BTreeMap::default(),
+            also_there: Vec::new(),
             mismatch: Vec::new(),
             true_parameters: std::collections::BTreeMap::default(),
             shows: 0.0,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::case_conditions::CaseConditions;
 use super::error::ProofError;
 use super::outcome::{Made, Outcome};
 use super::prove::{Diagnose, score};
@@ -34,6 +35,8 @@ pub struct SweepPlan {
     pub empty: u64,
     /// Length of each recording [s].
     pub duration: f64,
+    /// Conditions under which they are made.
+    pub conditions: CaseConditions,
     /// Cases at a time.
     pub jobs: usize,
     /// Go on with what is there.
@@ -99,6 +102,7 @@ impl SweepPlan {
             sizes: if task.effect.is_some() { self.sizes } else { 1 },
             seed: task.seed,
             duration_s: self.duration,
+            conditions: self.conditions,
         }
     }
 }
@@ -202,7 +206,7 @@ fn attempt(
         seed: task.seed,
         effects,
         duration: plan.duration,
-        dirt: None,
+        conditions: plan.conditions.of(task.seed, plan.duration),
     };
     let case = recipe.make()?;
     let room = UnfinishedFolder::within(out)?;
@@ -243,6 +247,7 @@ mod tests {
             sizes: 2,
             empty: 1,
             duration: 2.0,
+            conditions: CaseConditions::Laboratory,
             jobs: 2,
             resume: false,
             replace: false,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use idc_cell::plant::{PlantInputs, simulate};
+use idc_cell::plant::{InitialState, PlantInputs, simulate};
 use idc_cell::scenario::rig_file::load_rig;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -52,6 +52,7 @@ pub fn case_files(bench: &Bench, folder: &str, effects: &str, dirt: Dirt) {
         let inputs = PlantInputs {
             cell: None,
             motion: None,
+            initial: InitialState::AtRest,
             set_pressure: values.iter().map(|v| v.0).collect(),
             extends: values.iter().map(|v| v.1).collect(),
             surface: values.iter().map(|v| v.2).collect(),

@@ -7,7 +7,9 @@ use super::super::error::AppError;
 use super::super::run::put_in;
 use crate::cell::Cell;
 use crate::effects::{Effect, LINK_EFFECTS, Subsystem};
-use crate::plant::{Chain, Channel, MeasuredMotion, PlantInputs, PlantParameters, simulate};
+use crate::plant::{
+    Chain, Channel, InitialState, MeasuredMotion, PlantInputs, PlantParameters, simulate,
+};
 use crate::recording::Recording;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
 use crate::rig::Rig;
@@ -474,6 +476,7 @@ fn inputs_of(chain: Chain, name: &str) -> PlantInputs {
         cell: None,
         motion,
         time,
+        initial: InitialState::AtRest,
     }
 }
 

@@ -58,6 +58,7 @@ fn recording(contact: bool, seed: u64) -> (Vec<f64>, [Vec<f64>; 4]) {
         time: time.clone(),
         cell: None,
         motion: None,
+        initial: crate::plant::InitialState::AtRest,
     };
     let mut readings = simulate(&plant(), &inputs).readings;
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);

@@ -61,7 +61,9 @@ impl Search<'_> {
             let numbers = |e: &Effect| e.parameters(&self.believed).len();
             let plain = |e: &&&'static Effect| e.excludes(effect) && numbers(e) < numbers(effect);
             for plain in self.candidates.iter().filter(plain) {
-                let other = self.exchanged(best, index, plain);
+                let Some(other) = self.exchanged(best, index, plain) else {
+                    continue;
+                };
                 let names = other.names();
                 if !(full.iter().chain(&more)).any(|known| known.names() == names) {
                     more.push(other);
@@ -75,15 +77,29 @@ impl Search<'_> {
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
     }
 
-    /// A hypothesis with a plainer law in the place of one of its own, its numbers from there where both have them.
-    fn exchanged(&self, best: &Hypothesis, index: usize, plain: &'static Effect) -> Hypothesis {
+    /// A hypothesis with a plainer law in the place of one of its own, its numbers from there where both have them; none where the plainer
+    /// one has no start, as a periodic one has none where nothing periodic is left.
+    fn exchanged(
+        &self,
+        best: &Hypothesis,
+        index: usize,
+        plain: &'static Effect,
+    ) -> Option<Hypothesis> {
         let there = &best.fit.prediction.plant;
         let mut effects = best.effects.clone();
         effects[index] = plain;
         let mut free: Vec<Free> = self.tolerated.iter().map(|f| f.from_where(there)).collect();
-        for effect in &effects {
-            let starts = effect.starts(&self.clues(best, &[], &[]));
-            let own = free_of(effect, &self.believed, &starts[0])
+        for (place, effect) in effects.iter().enumerate() {
+            let start: Vec<f64> = match place == index {
+                true => effect
+                    .starts(&self.clues(best, &[], &[]))
+                    .into_iter()
+                    .next()?,
+                false => (effect.parameters(&self.believed).iter())
+                    .map(|parameter| parameter.quantity.get(there))
+                    .collect(),
+            };
+            let own = free_of(effect, &self.believed, &start)
                 .into_iter()
                 .map(|f| {
                     let same = |other: &&Free| other.quantity.is(&f.quantity);
@@ -97,7 +113,7 @@ impl Search<'_> {
             free.extend(own);
         }
         let limit = Refit::FULL.limit;
-        self.fitted(effects, (&self.believed, None), &free, FULL, limit)
+        Some(self.fitted(effects, (&self.believed, None), &free, FULL, limit))
     }
 
     /// Fits in full the explanations that a rough fit cannot rule out beside the best one: nothing is said of a close rival by a rough fit. Where the best
