@@ -180,3 +180,88 @@ impl Conditions {
         own
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::case::{LaboratoryCase, Recipe};
+    use super::*;
+
+    fn case(conditions: Conditions, effects: &[(&'static str, f64)]) -> LaboratoryCase {
+        let recipe = Recipe {
+            name: String::new(),
+            seed: 3,
+            effects: effects.to_vec(),
+            duration: 3.0,
+            conditions,
+        };
+        recipe.make().unwrap()
+    }
+
+    /// Root mean square of the difference of a channel in the first recording, in standard deviations of the sheet's noise.
+    fn apart(one: &LaboratoryCase, other: &LaboratoryCase, channel: usize) -> f64 {
+        let pairs = (one.measured[0][channel].iter()).zip(&other.measured[0][channel]);
+        let squares: Vec<f64> = pairs.map(|(a, b)| (a - b).powi(2)).collect();
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        mean.sqrt() / one.believed.rig.noise[channel]
+    }
+
+    #[test]
+    fn imperfections_of_a_twelfth_are_below_the_noise_and_whole_ones_are_not() {
+        let ideal = case(Conditions::default(), &[]);
+        let of = |imperfection: f64| {
+            let conditions = Conditions {
+                imperfection,
+                ..Conditions::default()
+            };
+            case(conditions, &[])
+        };
+        let (small, whole) = (of(1.0 / 12.0), of(1.0));
+        // The median channel: what an impact is moved by is seen in all of them for a moment.
+        for channel in [0, 1, 2] {
+            let size = apart(&small, &ideal, channel);
+            assert!(size > 0.0 && size < 1.0, "{channel}: {size}");
+        }
+        assert!(apart(&whole, &ideal, 1) > 2.0);
+        assert!(small.sealed.also_there.is_empty() && whole.sealed.also_there.len() == 11);
+    }
+
+    #[test]
+    fn what_is_concealed_is_not_among_what_is_there_beside_it() {
+        let shop = Conditions {
+            imperfection: 1.0,
+            ..Conditions::default()
+        };
+        let found = case(shop, &[("external_leakage", 1.0)]).sealed;
+        assert_eq!(found.effects[0].name, "external_leakage");
+        assert!(!found.also_there.contains(&"external_leakage".to_owned()));
+    }
+
+    #[test]
+    fn noise_channels_beginnings_and_phases_are_as_asked() {
+        let ideal = case(Conditions::default(), &[("tool_runout", 1.0)]);
+        let loud = case(
+            Conditions {
+                noise: 2.0,
+                ..Conditions::default()
+            },
+            &[("tool_runout", 1.0)],
+        );
+        // The same numbers drawn, twice as large: what is left between the two is noise once over.
+        assert!((apart(&loud, &ideal, 0) - 1.0).abs() < 0.1);
+        assert_eq!(loud.believed.rig.noise, ideal.believed.rig.noise);
+        let other = case(
+            Conditions {
+                missing: Some(3),
+                begins: 1.0,
+                phases_drawn: true,
+                ..Conditions::default()
+            },
+            &[("tool_runout", 1.0)],
+        );
+        assert!(other.measured[0][3].iter().all(|value| value.is_nan()));
+        assert!(other.programmes[0].times[0] >= 1.0 && other.programmes[3].times[0] == 0.0);
+        let from = ideal.measured[3][2].iter().zip(&other.measured[3][2]);
+        let moved = from.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(moved > 10.0 * ideal.believed.rig.noise[2], "{moved}");
+    }
+}

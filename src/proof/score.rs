@@ -322,6 +322,31 @@ mod tests {
     }
 
     #[test]
+    fn what_is_there_beside_may_be_named_and_what_is_not_may_not() {
+        let mut truth = truth();
+        truth.also_there = vec!["tool_runout".to_owned()];
+        let named = |others: &[&str]| {
+            let mut answer = answer(0.9, 0.8, 1.0);
+            for name in others {
+                let mut more = answer.effects[0].clone();
+                (*name).clone_into(&mut more.name);
+                more.confidence = 0.6;
+                answer.effects.push(more);
+            }
+            judge(&answer, &truth, None)
+        };
+        assert!(named(&[]).named_exactly && named(&["tool_runout"]).named_exactly);
+        let wrong = named(&["tool_runout", "force_sensor_lag"]);
+        assert!(!wrong.named_exactly);
+        let stated: Vec<(f64, bool)> = wrong
+            .stated
+            .iter()
+            .map(|name| (name.probability, name.right))
+            .collect();
+        assert_eq!(stated, [(1.0, true), (0.6, true), (0.6, false)]);
+    }
+
+    #[test]
     fn what_is_too_much_too_little_or_another_is_not_named_exactly() {
         let mut nothing = answer(0.9, 0.8, 1.0);
         nothing.effects.clear();

@@ -71,14 +71,16 @@ impl Diagnosis {
             ));
         }
         if let Some(share) = self.explained_share() {
+            let several = self.best().effects.len() + usize::from(self.shape.is_some()) > 1;
             paragraphs.push(format!(
-                "{} {} of the mismatch, {}{}.",
-                if self.best().effects.len() + usize::from(self.shape.is_some()) > 1 {
+                "{} {} of the mismatch, and {} {}{}.",
+                if several {
                     "Together they explain"
                 } else {
                     "It explains"
                 },
                 percent(share),
+                if several { "leave" } else { "leaves" },
                 self.most_left(),
                 self.prediction_words()
             ));
@@ -90,10 +92,8 @@ impl Diagnosis {
     fn most_left(&self) -> String {
         let errors = self.remaining_errors();
         match errors.first() {
-            Some(error) if error.is_beyond_noise() => {
-                format!("and leaves {}", error.words(self.yardstick()))
-            }
-            _ => format!("and leaves no more than {}", self.yardstick()),
+            Some(error) if error.is_beyond_noise() => error.words(self.yardstick()),
+            _ => format!("no more than {}", self.yardstick()),
         }
     }
 
