@@ -138,7 +138,7 @@ fn a_recording_that_begins_in_mid_motion_is_followed_after_half_a_second() {
             let (pressure, stroke) = (noisy(0), noisy(1));
             inputs.initial = InitialState::of(&inputs.time, &pressure, &stroke);
             let held = inputs.initial.samples();
-            assert_eq!(held, 125, "{seed} {}", programme.name);
+            assert!(held.abs_diff(125) < 2, "{held} {seed} {}", programme.name);
             let theirs = simulate(&plant_of(&rig), &inputs).readings;
             for channel in 0..4 {
                 let most = bulk(&ours[channel][held..], &theirs[channel][held..], channel);

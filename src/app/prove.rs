@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::diagnose::answer_case;
 use clap::Args;
+use clap::builder::PossibleValue;
 
 use super::error::{AppError, ExitCode};
 use super::files::{OutputFolder, Standing, prepare_file};
@@ -356,5 +357,38 @@ fn shipped_names(only: &[String]) -> Result<Vec<String>, AppError> {
         }),
         None if only.is_empty() => Ok(names),
         None => Ok(only.to_vec()),
+    }
+}
+
+impl clap::ValueEnum for CaseConditions {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[
+            Self::Laboratory,
+            Self::Shop,
+            Self::Imperfect,
+            Self::MidMotion,
+            Self::MissingChannel,
+            Self::FreePhases,
+            Self::WrongNoise,
+        ]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Self::Laboratory => ("laboratory", "An ideal laboratory"),
+            Self::Shop => (
+                "shop",
+                "A real device's imperfections, 50 to 1000 Hz, sheet noise off by up to two, coarse converters, dirt",
+            ),
+            Self::Imperfect => ("imperfect", "Imperfections below the noise"),
+            Self::MidMotion => ("mid-motion", "Recordings that begin in mid-motion"),
+            Self::MissingChannel => ("missing-channel", "One channel missing"),
+            Self::FreePhases => (
+                "free-phases",
+                "Periodic phases drawn anew in each recording",
+            ),
+            Self::WrongNoise => ("wrong-noise", "Sheet noise off by two"),
+        };
+        Some(PossibleValue::new(name).help(help))
     }
 }

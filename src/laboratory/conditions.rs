@@ -115,7 +115,7 @@ impl Conditions {
         let leak = drawn(1.5e-3 * rig.exhaust_orifice);
         let play = drawn(300.0);
         let [gain, bias, lag, stroke_gain] = [4e-3, 0.4, 4e-4, 6e-4].map(&mut drawn);
-        let [coulomb, per_pressure, volume, resistance] = [1.0, 2e-6, 1e-6, 2e5].map(&mut drawn);
+        let [coulomb, per_pressure, volume, resistance] = [1.0, 2e-6, 1.5e-5, 3e7].map(&mut drawn);
         let mut sign = |value: f64| value * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
         let (gain, bias, stroke_gain) = (sign(gain), sign(bias), sign(stroke_gain));
         let frequency = between(rng, 15.0, 60.0);

@@ -9,7 +9,7 @@ use super::measured_motion::MeasuredMotion;
 
 /// Time for which the piston is held [s]: several times as long as a chamber takes to fill.
 const HELD: f64 = 0.5;
-/// Samples at the beginning whose median says where a recording starts.
+/// Samples at the beginning that say where a recording starts: one of them may be an outlier.
 const FEW: usize = 5;
 /// Stroke up to which the piston counts as retracted [m].
 const RETRACTED: f64 = 1e-3;
@@ -41,7 +41,7 @@ impl InitialState {
     /// From readings of the regulator's pressure [Pa gauge] and of the stroke [m] at times [s]; NaN where there is none.
     #[must_use]
     pub fn of(time: &[f64], pressure: &[f64], stroke: &[f64]) -> Self {
-        let [outlet, retracted] = [pressure, stroke].map(level);
+        let [outlet, retracted] = [pressure, stroke].map(|readings| level(time, readings));
         let at_rest = |level: Option<f64>, limit: f64| level.is_none_or(|level| level <= limit);
         if at_rest(outlet, ATMOSPHERE) && at_rest(retracted, RETRACTED) {
             return Self::AtRest;
@@ -79,12 +79,33 @@ impl InitialState {
     }
 }
 
-/// Median of the first readings; none where there are none.
-fn level(readings: &[f64]) -> Option<f64> {
-    let finite = readings.iter().take(4 * FEW).filter(|r| r.is_finite());
-    let mut first: Vec<f64> = finite.take(FEW).copied().collect();
-    first.sort_by(f64::total_cmp);
-    first.get(first.len() / 2).copied()
+/// Level from which the first readings go on: the line of Theil and Sen through them, carried back to the start. Of what is left beside the line the
+/// second lowest is taken: a recording that starts at rest and leaves it on a curve within a few samples has started at rest. None where there are no
+/// readings.
+fn level(time: &[f64], readings: &[f64]) -> Option<f64> {
+    let few: Vec<(f64, f64)> = (time.iter().zip(readings).take(4 * FEW))
+        .filter(|(_, reading)| reading.is_finite())
+        .take(FEW)
+        .map(|(time, reading)| (*time, *reading))
+        .collect();
+    let pairs = (few.iter().enumerate()).flat_map(|(i, a)| few[..i].iter().map(move |b| (a, b)));
+    let slope = median(pairs.map(|(a, b)| (a.1 - b.1) / (a.0 - b.0)).collect()).unwrap_or(0.0);
+    let mut starts: Vec<f64> = (few.iter())
+        .map(|(at, reading)| reading - slope * (at - time[0]))
+        .collect();
+    starts.sort_by(f64::total_cmp);
+    starts.get(1).or(starts.first()).copied()
+}
+
+/// Median of values, the mean of the two in the middle of an even number; none of none.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = *values.get(middle)?;
+    Some(match values.len() % 2 {
+        0 => 0.5 * (values[middle - 1] + upper),
+        _ => upper,
+    })
 }
 
 #[cfg(test)]
@@ -116,6 +137,21 @@ mod tests {
             panic!("it starts at 2 bar");
         };
         assert_eq!((held.motion.as_ref(), held.outlet), (None, 2e5));
+    }
+
+    /// A regulator that answers at once, recorded at 50 Hz, is far from rest by its second sample.
+    #[test]
+    fn a_slow_recording_of_a_device_that_leaves_its_rest_starts_at_rest() {
+        let time: Vec<f64> = (0..100).map(|i| 2e-2 * f64::from(i)).collect();
+        let pressure: Vec<f64> = time
+            .iter()
+            .map(|t| 2e5 * (1.0 - (-t / 0.1).exp()))
+            .collect();
+        let stroke: Vec<f64> = time.iter().map(|t| 0.05 * (t - 0.06).max(0.0)).collect();
+        assert_eq!(
+            InitialState::of(&time, &pressure, &stroke),
+            InitialState::AtRest
+        );
     }
 
     #[test]

@@ -11,7 +11,6 @@ const LOST_BEFORE: [f64; 2] = [0.2, 0.4];
 
 /// Conditions under which all cases of a sweep are recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "snake_case")]
 pub enum CaseConditions {
     /// An ideal laboratory.
@@ -58,7 +57,7 @@ impl CaseConditions {
                 ..ideal
             },
             Self::WrongNoise => Conditions {
-                noise: if seed % 2 == 0 { 2.0 } else { 0.5 },
+                noise: if seed.is_multiple_of(2) { 2.0 } else { 0.5 },
                 ..ideal
             },
         }

@@ -431,7 +431,7 @@ class Examination:
         fact("`no more than noise is left` agrees with every channel, the kept-back ones too", bool(re.search(r"\bNo more than", left)), not beyond)
         fact("`more than noise` agrees", bool(re.search(r"More than .* in \d+ of", left)), bool(beyond))
         if of.json["effects"]:
-            fact("a share explained comes with what it leaves", bool(re.search(r"of the mismatch, and leaves no more than", text)), not beyond and of.json["explained_share"] is not None)
+            fact("a share explained comes with what it leaves", bool(re.search(r"of the mismatch, and leaves? no more than", text)), not beyond and of.json["explained_share"] is not None)
         else:
             fact("`nothing is missing`", account["headline"] == "nothing is missing", not beyond and not of.json["remaining"])
             fact("`Nowhere.`", "Nowhere." in text, not any(e[0] > NOISE_ALONE and not e[4] for e in of.errors()))
