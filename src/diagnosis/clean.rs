@@ -32,6 +32,8 @@ pub struct Cleaning {
     pub jitter: f64,
     /// Standard deviation of each channel's noise, from the recording alone; none where there are too few readings.
     pub noise: [Option<f64>; CHANNELS.len()],
+    /// Distance of neighbouring readings of each channel's converter; none where it is finer than the readings tell.
+    pub resolution: [Option<f64>; CHANNELS.len()],
 }
 
 /// Sets outliers aside (they become NaN); `noise` is what the sensors' sheets say, in the order of [`CHANNELS`], `mass` the moving mass [kg].
@@ -69,6 +71,7 @@ pub fn clean(
     set_aside(time, readings, noise, mass, &mut cleaning);
     for (channel, values) in readings.iter().enumerate() {
         cleaning.noise[channel] = noise_of(&departures(time, values, cleaning.step));
+        cleaning.resolution[channel] = resolution(values);
         cleaning.outliers[channel].sort_by(f64::total_cmp);
     }
     cleaning
@@ -95,6 +98,19 @@ fn set_aside(
             }
         }
     }
+}
+
+/// Distance of neighbouring readings of a converter; none where most readings differ from all others.
+fn resolution(values: &[f64]) -> Option<f64> {
+    let mut readings: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let count = readings.len();
+    readings.sort_by(f64::total_cmp);
+    readings.dedup();
+    if 2 * readings.len() > count {
+        return None;
+    }
+    let gaps = readings.windows(2).map(|pair| pair[1] - pair[0]);
+    gaps.min_by(f64::total_cmp)
 }
 
 impl Cleaning {
@@ -126,6 +142,14 @@ impl Cleaning {
                         "noise of {column} is {noise:.3e}, {ratio:.2} times what [sensors] says"
                     ));
                 }
+            }
+        }
+        for (channel, column) in COLUMNS.into_iter().enumerate() {
+            if let Some(step) = self.resolution[channel].filter(|step| *step > sheet[channel]) {
+                let ratio = step / sheet[channel];
+                sentences.push(format!(
+                    "readings of {column} are {step:.3e} apart, {ratio:.1} times its noise: a coarse converter"
+                ));
             }
         }
         if !self.gaps.is_empty() {

@@ -4,9 +4,9 @@ use super::answer::{
     Alternative, Answer, Estimate, Extent, FoundEffect, FoundLaw, Mismatch, SCHEMA, Verdict,
 };
 use super::details::{
-    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Departure, Details, IN_TURN,
-    LinkReport, NextExperiment, PredictionError, RegimeReport, RemainingError, RemainingReport,
-    RuledOutReport, ToleratedNumber, remaining_errors,
+    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Departure, Details, DetectableReport,
+    IN_TURN, LinkReport, NextExperiment, PredictionError, RegimeReport, RemainingError,
+    RemainingReport, RuledOutReport, ToleratedNumber, remaining_errors,
 };
 use super::estimate::Number;
 use super::evidence::Prediction;
@@ -287,6 +287,14 @@ impl Diagnosis {
                         .collect(),
                     rms: variant.rms,
                     parameters: (variant.numbers.iter())
+                        .map(|(name, value)| ((*name).to_owned(), *value))
+                        .collect(),
+                })
+                .collect(),
+            detectable: (self.detectable.iter())
+                .map(|smallest| DetectableReport {
+                    effect: spoken_name(smallest.effect.name),
+                    parameters: (smallest.numbers.iter())
                         .map(|(name, value)| ((*name).to_owned(), *value))
                         .collect(),
                 })

@@ -52,6 +52,9 @@ pub struct Details {
     /// Prediction of a run of a contact flange that was not looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub predicted: Option<PredictedRun>,
+    /// Smallest effects that the recordings would have shown, where none is named.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub detectable: Vec<DetectableReport>,
     /// Numbers of the rig file within their tolerances.
     pub tolerated: Vec<ToleratedNumber>,
     /// Errors of prediction on what was not fitted to.
@@ -165,6 +168,15 @@ pub struct RuledOutReport {
     pub effects: Vec<String>,
     /// Root mean square of what it leaves, in the unit of the part's channel.
     pub rms: f64,
+    /// Its numbers.
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// An effect at the smallest size that recordings would have shown, with nine chances in ten.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DetectableReport {
+    /// Name.
+    pub effect: String,
     /// Its numbers.
     pub parameters: Vec<(String, f64)>,
 }

@@ -2,6 +2,7 @@
 
 use super::clean::clean;
 use super::cross_validation::{Depth, left_out};
+use super::detectable::detectable;
 use super::estimate::estimates;
 use super::evidence::Evidence;
 use super::extent::Largest;
@@ -67,6 +68,10 @@ pub fn diagnose(
         ruled_out: match case.believed.chain.output() {
             Some(channel) => ruled_out(&search, best, channel),
             None => Vec::new(),
+        },
+        detectable: match case.believed.chain == Chain::Whole && best.finds_nothing() {
+            true => detectable(&search, best),
+            false => Vec::new(),
         },
         roughly,
         model_error,

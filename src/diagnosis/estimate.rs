@@ -9,7 +9,8 @@
 
 use super::covariance::covariance;
 use super::evidence::Evidence;
-use super::free::Free;
+use super::fit::Fit;
+use super::free::{Free, Prior};
 use super::ranking::Ranked;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
@@ -117,6 +118,15 @@ fn at_least(covariance: &mut DMatrix<f64>, variances: &[f64]) {
     }
 }
 
+/// Variance of what a channel of its own has told, in the fit's coordinates; 0 of the others.
+fn settled(fit: &Fit) -> Vec<f64> {
+    let of = |(free, value): (&Free, &f64)| match free.prior {
+        Prior::Settled { .. } => free.departure_slope(*value).powi(-2),
+        _ => 0.0,
+    };
+    fit.free.iter().zip(&fit.values).map(of).collect()
+}
+
 /// Variance of each free quantity of the first explanation over those that have it too, weighed by their probabilities, in the fit's coordinates
 /// (Bayesian model averaging: Hoeting et al., Stat. Sci. 14, 1999).
 fn between_models(ranked: &[Ranked]) -> Vec<f64> {
@@ -146,6 +156,7 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
     if let Some(left) = &ranked[0].left_out {
         at_least(&mut covariance, &left.jackknife(&fit.free));
     }
+    at_least(&mut covariance, &settled(fit));
     let first = hypothesis.tolerated(believed);
     for (index, between) in between_models(ranked).into_iter().enumerate() {
         covariance[(index, index)] += between;

@@ -92,6 +92,18 @@ impl Evidence {
             ..*self
         }
     }
+
+    /// The same with the readings of one channel alone.
+    #[must_use]
+    pub fn of_channel(&self, channel: Channel) -> Self {
+        let mut own = self.of_those(|_| true);
+        for measured in &mut own.recordings {
+            for other in CHANNELS.into_iter().filter(|other| *other != channel) {
+                measured.readings[other as usize].fill(f64::NAN);
+            }
+        }
+        own
+    }
 }
 
 /// A description with what it gives.

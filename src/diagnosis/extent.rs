@@ -10,6 +10,9 @@ use crate::plant::{CHANNELS, Channel};
 /// 90th percentile of a departure up to which it is near the noise, in standard deviations [1]: of noise alone it is 1.64.
 pub(super) const NEAR_NOISE: f64 = 2.0;
 
+/// The same of a recording predicted by a fit to the others [1]: its deviation is linear in the numbers, an impact at the end of the stroke is not.
+const NEAR_NOISE_LEFT_OUT: f64 = 2.5;
+
 /// A departure of an explanation from a channel of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Largest {
@@ -67,13 +70,22 @@ impl Largest {
             None => largest,
         };
         let all = all.into_iter().map(of_noise);
-        all.max_by(|a, b| a.p90.total_cmp(&b.p90))
+        // One beyond its bound comes before a larger one that is within its own.
+        let order = |one: &Self| (!one.is_near_noise(), one.p90);
+        all.max_by(|a, b| {
+            let [(a, a_size), (b, b_size)] = [order(a), order(b)];
+            a.cmp(&b).then(a_size.total_cmp(&b_size))
+        })
     }
 
     /// Whether it is near the noise.
     #[must_use]
     pub fn is_near_noise(&self) -> bool {
-        self.p90 <= NEAR_NOISE
+        let near = match self.left_out {
+            true => NEAR_NOISE_LEFT_OUT,
+            false => NEAR_NOISE,
+        };
+        self.p90 <= near
     }
 }
 
@@ -137,6 +149,17 @@ mod tests {
         };
         assert_eq!(found, expected);
         assert!(!found.is_near_noise());
+
+        // A fit to all has less of an excuse than one to the others.
+        let left = best.left_out.as_mut().unwrap();
+        left.residuals[1][Channel::Force as usize] = vec![-2.4; samples];
+        let found = Largest::of(&evidence, &best, None).unwrap();
+        assert!(found.left_out && found.is_near_noise(), "{found:?}");
+        best.hypothesis.fit = fit(vec![2.2; count], vec![0.0; count], 0.0);
+        let found = Largest::of(&evidence, &best, None).unwrap();
+        assert!(!found.left_out && !found.is_near_noise(), "{found:?}");
+        best.hypothesis.fit = fit(vec![1.0; count], vec![0.0; count], 0.0);
+        best.left_out.as_mut().unwrap().residuals[1][Channel::Force as usize] = vec![-7.0; samples];
 
         // What was taken as the noise of a part is none of its sensor's.
         let remaining = Remaining {

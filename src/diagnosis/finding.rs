@@ -1,6 +1,7 @@
 //! Everything that is found in a case.
 
 use super::clean::Cleaning;
+use super::detectable::Detectable;
 use super::estimate::Estimates;
 use super::evidence::{Evidence, Prediction};
 use super::extent::{Largest, percentile_90};
@@ -96,6 +97,8 @@ pub struct Diagnosis {
     pub remaining: Option<Remaining>,
     /// Variants of the best that do worse, of a part of the device.
     pub ruled_out: Vec<RuledOut>,
+    /// Smallest effects that the recordings would have shown, where the best has none.
+    pub detectable: Vec<Detectable>,
     /// Numbers of the best.
     pub estimates: Estimates,
     /// Shape of its term without a name, if it has one.

@@ -389,7 +389,7 @@ impl<'a> Refit<'a> {
             Start::Believed => here
                 .map(|f| match f.prior {
                     Prior::Normal { mean, .. } => f.from(mean),
-                    Prior::Flat => f,
+                    Prior::Flat | Prior::Settled { .. } => f,
                 })
                 .collect(),
         }
@@ -586,14 +586,7 @@ fn step(
         damped[(i, i)] += damping * normal[(i, i)].max(1e-9);
     }
     // Ways to the bounds in the coordinates.
-    let room: Vec<[f64; 2]> = free
-        .iter()
-        .zip(values)
-        .map(|(f, v)| {
-            let at = f.coordinate.of(*v);
-            f.bounds.map(|bound| f.coordinate.of(bound) - at)
-        })
-        .collect();
+    let room: Vec<[f64; 2]> = free.iter().zip(values).map(|(f, v)| f.room(*v)).collect();
     // Where a coordinate is held at a bound, its way there.
     let mut held: Vec<Option<f64>> = vec![None; count];
     let mut way = DVector::zeros(count);

@@ -16,6 +16,11 @@ pub enum Prior {
     },
     /// Anything between the bounds.
     Flat,
+    /// Held where it stands: a channel of its own has told it, with a standard deviation in the quantity's unit.
+    Settled {
+        /// Standard deviation.
+        deviation: f64,
+    },
 }
 
 /// A quantity that a fit may move.
@@ -51,18 +56,28 @@ impl Free {
         value.clamp(self.bounds[0], self.bounds[1])
     }
 
+    /// Ways that a fit may move it from a value, in the fit's coordinate.
+    pub fn room(&self, value: f64) -> [f64; 2] {
+        match self.prior {
+            Prior::Settled { .. } => [0.0, 0.0],
+            _ => (self.bounds).map(|bound| self.coordinate.of(bound) - self.coordinate.of(value)),
+        }
+    }
+
     /// Departure from the prior in its standard deviations.
     pub fn departure(&self, value: f64) -> f64 {
         match self.prior {
             Prior::Normal { mean, deviation } => (value - mean) / deviation,
-            Prior::Flat => 0.0,
+            Prior::Flat | Prior::Settled { .. } => 0.0,
         }
     }
 
     /// d departure / d coordinate at a value.
     pub fn departure_slope(&self, value: f64) -> f64 {
         match self.prior {
-            Prior::Normal { deviation, .. } => self.coordinate.slope(value) / deviation,
+            Prior::Normal { deviation, .. } | Prior::Settled { deviation } => {
+                self.coordinate.slope(value) / deviation
+            }
             Prior::Flat => 0.0,
         }
     }

@@ -10,6 +10,7 @@ pub mod conclude;
 mod covariance;
 pub mod cross_validation;
 pub mod details;
+pub mod detectable;
 pub mod diagnose;
 pub mod estimate;
 pub mod evidence;

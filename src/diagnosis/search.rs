@@ -1,6 +1,7 @@
 //! Which effects explain what the believed model leaves.
 
-mod finish;
+pub(super) mod finish;
+mod modular;
 mod screen;
 
 use super::evidence::{Evidence, Prediction};
@@ -92,7 +93,7 @@ impl Search<'_> {
             ..self.fitted(
                 effects,
                 from,
-                &refit.free(fitted),
+                &self.settled(refit.free(fitted)),
                 refit.stages,
                 refit.limit,
             )
@@ -214,9 +215,13 @@ impl Search<'_> {
         if self.believed.chain != Chain::Whole {
             return weighed;
         }
-        for _ in 0..self.settings.rounds {
+        for round in 0..self.settings.rounds {
             let Some(best) = full.first() else { break };
-            let left = ModelError::of(self.evidence, &best.fit.prediction);
+            let mut left = ModelError::of(self.evidence, &best.fit.prediction);
+            if round == 0 && !left.is_none() {
+                weighed.settle_regulator(full, observer);
+                left = ModelError::of(self.evidence, &full[0].fit.prediction);
+            }
             if left == weighed.model_error {
                 break;
             }

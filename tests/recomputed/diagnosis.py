@@ -296,7 +296,7 @@ class Examination:
             self.check.fact(f"{where}: left out", bool(match.group("predicted")), largest["left_out"])
             # Within no more than what the fit leaves, and by the bound that `explained` stands for.
             self.check.fact(f"{where}: explained fully", "explained fully" in text, of.json["explained"] == "fully")
-            self.check.fact(f"{where}: fully is near the noise", of.json["explained"] == "fully" and largest["p90_sigmas"] > 2.0, False)
+            self.check.fact(f"{where}: fully is near the noise", of.json["explained"] == "fully" and largest["p90_sigmas"] > (2.5 if largest["left_out"] else 2.0), False)
             fitted = max(of.percentile_90(r, c) for r in of.fitted.recording.unique() for c in of.channels())
             self.check.fact(f"{where}: no channel fitted to is worse", fitted <= largest["p90_sigmas"] * 1.001, True)
             if not largest["left_out"]:

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::report::{Report, shown};
-use crate::case::{read_rig, rig_of, to_fit};
+use crate::case::{Case, CaseError, read_rig, rig_of, to_fit};
+use crate::diagnosis::input::{DiagnosisInput, prepare};
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
-use crate::plant::Chain;
+use crate::plant::{Chain, InitialState};
 use crate::recording::csv::median_step;
 use crate::recording::thousandfold::thousandfold;
 use crate::scenario::rig_file::{RigFile, load_rig};
@@ -54,8 +55,29 @@ pub(super) fn case(folder: &Path) -> Result<Report, AppError> {
         recording(&mut report, &rig, folder, name, "to be predicted")?;
     }
     report.number("recordings", names.len());
+    if let Some(input) = Case::from_folder(folder)?.input() {
+        conditions(&mut report, input)?;
+    }
     report.next(format!("idc diagnose {} --out DIR", folder.display()));
     Ok(report)
+}
+
+/// How the recordings to diagnose from differ from those of a laboratory, which start at rest and measure all, with the noise that the file states.
+fn conditions(report: &mut Report, input: &DiagnosisInput) -> Result<(), AppError> {
+    let prepared = prepare(input).map_err(CaseError::from)?;
+    let starts = (prepared.evidence.recordings.iter())
+        .filter(|measured| measured.inputs.initial == InitialState::AtRest)
+        .count();
+    let all = prepared.evidence.recordings.len();
+    report.fact(
+        "start",
+        format!("{starts} of {all} recordings begin at rest"),
+    );
+    report.number("begin_at_rest", starts);
+    for note in prepared.notes {
+        report.note(note);
+    }
+    Ok(())
 }
 
 fn describe(report: &mut Report, rig: &RigFile) {

@@ -2,6 +2,7 @@
 
 use super::super::answer::{Extent, FoundLaw};
 use super::super::details::{IN_TURN, PredictionError, RemainingError};
+use super::super::detectable::Detectable;
 use super::super::estimate::Limit;
 use super::super::finding::Diagnosis;
 use super::super::hypothesis::spoken_name;
@@ -63,6 +64,7 @@ impl Diagnosis {
             ));
         }
         paragraphs.extend(self.unlisted_words());
+        paragraphs.extend(self.smallest_that_show());
         let displaced = self.displaced();
         if !displaced.is_empty() {
             paragraphs.push(format!(
@@ -86,6 +88,30 @@ impl Diagnosis {
             ));
         }
         paragraphs
+    }
+
+    /// The smallest effects that the recordings would have shown, where there is none.
+    fn smallest_that_show(&self) -> Option<String> {
+        let of = |smallest: &Detectable| {
+            let numbers = smallest.numbers.iter().map(|(name, value)| {
+                let (words, unit, factor) = spoken(name);
+                let value = significant(value * factor, 2);
+                format!("{words} {value} {unit}").trim_end().to_owned()
+            });
+            let numbers: Vec<String> = numbers.collect();
+            format!(
+                "{} ({})",
+                spoken_name(smallest.effect.name),
+                numbers.join(", ")
+            )
+        };
+        let all: Vec<String> = self.detectable.iter().map(of).collect();
+        (!all.is_empty()).then(|| {
+            format!(
+                "The smallest effects that these recordings would have shown, each alone, nine times in ten: {}.",
+                all.join("; ")
+            )
+        })
     }
 
     /// The largest remaining error beside its noise: a share of what is explained says nothing of the size of the rest.

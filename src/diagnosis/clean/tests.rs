@@ -157,6 +157,29 @@ fn noise_is_that_of_the_sensors_whatever_the_sheet_says() {
 }
 
 #[test]
+fn a_coarse_converter_is_noticed_and_one_below_the_noise_is_not() {
+    for (share, sentences) in [(4.0, 1), (0.3, 0)] {
+        let (time, mut readings) = recording(true, 8);
+        let step = share * NOISE[1];
+        for value in &mut readings[1] {
+            *value = (*value / step).round() * step;
+        }
+        let cleaning = clean(&time, &mut readings, &NOISE, MASS);
+        let account = cleaning.account(&NOISE);
+        let coarse = |sentence: &&String| sentence.contains("a coarse converter");
+        assert_eq!(
+            account.iter().filter(coarse).count(),
+            sentences,
+            "{account:?}"
+        );
+        if share > 1.0 {
+            let found = cleaning.resolution[1].unwrap();
+            assert!((found / step - 1.0).abs() < 1e-6, "{found}");
+        }
+    }
+}
+
+#[test]
 fn gaps_lost_values_and_jitter_are_counted_and_do_no_harm() {
     let (time, readings) = recording(true, 6);
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(7);

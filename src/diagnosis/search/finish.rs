@@ -16,7 +16,7 @@ const CHANCE: f64 = 6.0;
 /// Close rivals that are fitted in full beside those that the search has fitted, at most.
 const MOST_CLOSE: usize = 6;
 /// Influence of an effect on the channel that it moves most below which it is not named, in standard deviations of that channel's noise [1].
-const BELOW_NOISE: f64 = 0.5;
+pub(in crate::diagnosis) const BELOW_NOISE: f64 = 0.5;
 /// Iterations of a rough fit without one of the effects.
 const LIGHTER: usize = 8;
 /// The last stages of a full fit, for what is all but there.

@@ -1,0 +1,164 @@
+//! Smallest effect of each kind that recordings would have shown, where none was found.
+//!
+//! ```text
+//! |d|^2 - b^T H^-1 b >= (sqrt(P) + z)^2,   b = C^T d
+//! ```
+//!
+//! d change of the residuals by the effect, C derivatives of the residuals by what a fit may move and H their information with priors: what is left of
+//! the change after a fit without the effect. P penalty of the effect. The gain of a fit is a noncentral chi-square, whose root has a standard deviation of
+//! one: z = 1.28 finds nine in ten. An effect that moves no channel by what is named is none (`Search::influence`).
+
+use super::evidence::{Prediction, by_channel};
+use super::fit::with_values;
+use super::free::{Free, free_of};
+use super::hypothesis::Hypothesis;
+use super::search::Search;
+use super::search::finish::BELOW_NOISE;
+use crate::effects::Effect;
+use crate::plant::CHANNELS;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+/// Standard normal quantile of nine in ten [1].
+const NINE_IN_TEN: f64 = 1.282;
+/// Steps in size, at most.
+const MOST_STEPS: usize = 5;
+/// Share of a size to which it is found [1].
+const NEAR: f64 = 0.05;
+/// Change of a residual that is none [1].
+const UNCHANGED: f64 = 1e-6;
+/// Largest and smallest size that is looked for, over the usual one [1].
+const SIZES: [f64; 2] = [1e-4, 10.0];
+
+/// An effect at the smallest size that recordings would have shown.
+#[derive(Debug, Clone)]
+pub struct Detectable {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Its reported numbers at that size: name, value.
+    pub numbers: Vec<(&'static str, f64)>,
+}
+
+/// Smallest effects that would have been named beside an explanation that names none; without those that these recordings show at no size.
+pub fn detectable(search: &Search<'_>, best: &Hypothesis) -> Vec<Detectable> {
+    let effects = search.candidates.par_iter();
+    effects
+        .filter_map(|effect| Change::of(search, best, effect)?.smallest())
+        .collect()
+}
+
+/// An effect on its way from none to its usual size.
+struct Change<'a> {
+    search: &'a Search<'a>,
+    best: &'a Hypothesis,
+    effect: &'static Effect,
+    free: Vec<Free>,
+    /// Values without the effect; of what only shapes it, the usual one.
+    absent: Vec<f64>,
+    usual: Vec<f64>,
+}
+
+impl<'a> Change<'a> {
+    /// None where no number of its own takes an effect away.
+    fn of(search: &'a Search<'a>, best: &'a Hypothesis, effect: &'static Effect) -> Option<Self> {
+        let plant = &best.fit.prediction.plant;
+        let usual = effect.usual(plant);
+        let free = free_of(effect, &search.believed, &usual);
+        let now: Vec<f64> = free.iter().map(|f| f.quantity.get(plant)).collect();
+        let mut change = Self {
+            search,
+            best,
+            effect,
+            absent: usual.clone(),
+            free,
+            usual,
+        };
+        // A number that alone takes the effect away is its size; otherwise all that can be are.
+        let finite: Vec<usize> = (0..now.len()).filter(|i| now[*i].is_finite()).collect();
+        let switch = finite.iter().copied().find(|index| {
+            let mut values = change.usual.clone();
+            values[*index] = now[*index];
+            values != change.usual && !change.at(&values).iter().any(|d| d.abs() > UNCHANGED)
+        });
+        let sizes = switch.map_or(finite, |index| vec![index]);
+        for index in &sizes {
+            change.absent[*index] = now[*index];
+        }
+        (change.absent != change.usual).then_some(change)
+    }
+
+    fn values(&self, share: f64) -> Vec<f64> {
+        let pairs = self.absent.iter().zip(&self.usual);
+        pairs
+            .map(|(absent, usual)| absent + share * (usual - absent))
+            .collect()
+    }
+
+    /// Change of the residuals where the effect has these values.
+    fn at(&self, values: &[f64]) -> Vec<f64> {
+        let here: &Prediction = &self.best.fit.prediction;
+        let plant = with_values(&here.plant, &self.free, values);
+        let there = self
+            .search
+            .evidence
+            .predict(&plant, here.guided, Some(here));
+        let pairs = there.residuals.iter().zip(&here.residuals);
+        pairs.map(|(there, here)| there - here).collect()
+    }
+
+    /// Root of what a change leaves after a fit without the effect, over what it must be, and the same of the largest channel; the smaller one.
+    fn seen(&self, change: &[f64]) -> f64 {
+        let fit = &self.best.fit;
+        let product = |one: &[f64], other: &[f64]| -> f64 {
+            let products = one.iter().zip(other).map(|(a, b)| a * b);
+            products.filter(|product| product.is_finite()).sum()
+        };
+        let along = DVector::from_iterator(
+            fit.columns.len(),
+            fit.columns.iter().map(|column| product(column, change)),
+        );
+        let explained = (fit.information.clone().cholesky())
+            .filter(|_| fit.information.nrows() == fit.columns.len())
+            .map_or(0.0, |h| along.dot(&h.solve(&along)));
+        let gain = self.search.evidence.worth * (product(change, change) - explained).max(0.0);
+        let numbers = self.free.len() as f64;
+        let penalty = numbers * (self.search.evidence.count() as f64).ln()
+            + self.search.settings.look_elsewhere;
+        let largest = CHANNELS.into_iter().map(|channel| {
+            let own = by_channel(self.search.evidence, change).filter(|(_, c, _)| *c == channel);
+            let all = own
+                .flat_map(|(_, _, values)| values)
+                .filter(|v| v.is_finite());
+            let (squares, count) = all.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));
+            (squares / f64::max(count, 1.0)).sqrt()
+        });
+        let moved = largest.fold(0.0, f64::max) / BELOW_NOISE;
+        moved.min(gain.sqrt() / (penalty.sqrt() + NINE_IN_TEN))
+    }
+
+    fn smallest(&self) -> Option<Detectable> {
+        let mut share = 1.0;
+        for _ in 0..MOST_STEPS {
+            let seen = self.seen(&self.at(&self.values(share)));
+            if !seen.is_finite() || seen <= 0.0 {
+                return None;
+            }
+            if (seen - 1.0).abs() < NEAR {
+                break;
+            }
+            share = (share / seen).clamp(SIZES[0], SIZES[1]);
+        }
+        if share >= SIZES[1] {
+            return None;
+        }
+        let parameters = self.effect.parameters(&self.search.believed);
+        let numbers = parameters.iter().zip(self.values(share));
+        Some(Detectable {
+            effect: self.effect,
+            numbers: numbers
+                .filter(|(parameter, _)| parameter.reported)
+                .map(|(parameter, value)| (parameter.quantity.name, value))
+                .collect(),
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! Numbers of the regulator from its own channel, where what is behind it is not explained to the noise.
+//!
+//! The outlet pressure is told by the set pressure alone. A joint fit of a model that lacks something behind the outlet bends the regulator's numbers for
+//! the sake of channels that it cannot explain anyway. So the feedback from there is cut: the tolerated numbers that the outlet depends on are fitted to its
+//! channel alone and held, the others then to all (modularisation: Liu, Bayarri and Berger, Bayesian Analysis 4, 2009; cutting feedback: Plummer,
+//! Statistics and Computing 25, 2015).
+
+use super::super::covariance::covariance;
+use super::super::evidence::by_channel;
+use super::super::fit::{Fit, Limit, Refit, Start, fit};
+use super::super::free::{Free, Prior};
+use super::super::hypothesis::Hypothesis;
+use super::super::progress::{Observer, Step};
+use super::{Search, same};
+use crate::effects::Subsystem;
+use crate::plant::Channel;
+
+/// Residual by the step of a coordinate below which a channel does not depend on it, in standard deviations of its noise [1].
+const NOTHING: f64 = 1e-6;
+/// Explanations that are fitted again with the regulator's numbers held; those behind them are given up.
+const MOST: usize = 6;
+
+impl Search<'_> {
+    /// Takes the regulator's numbers from its own channel for all that is fitted from here on, and fits the first explanations again; best first as before.
+    pub(super) fn settle_regulator(
+        &mut self,
+        full: &mut Vec<Hypothesis>,
+        observer: &mut Observer<'_>,
+    ) {
+        let settled = full.first().and_then(|best| self.regulator_alone(best));
+        let Some(settled) = settled else { return };
+        for free in &mut self.tolerated {
+            let own = settled.iter().find(|own| same(own, free, &self.believed));
+            *free = *own.unwrap_or(free);
+        }
+        full.truncate(MOST);
+        for hypothesis in full {
+            *hypothesis = self.refit(hypothesis, Refit::FINEST.from(Start::Here));
+            let detail = format!("regulator settled {:.1}", self.score(hypothesis));
+            observer(&Step::Variation.of(hypothesis, detail));
+        }
+    }
+
+    /// Free quantities with those held that are settled.
+    pub(super) fn settled(&self, mut free: Vec<Free>) -> Vec<Free> {
+        let is_settled = |f: &&Free| matches!(f.prior, Prior::Settled { .. });
+        for settled in self.tolerated.iter().filter(is_settled) {
+            for own in free.iter_mut().filter(|f| f.quantity.is(&settled.quantity)) {
+                *own = *settled;
+            }
+        }
+        free
+    }
+
+    /// Tolerated numbers that the outlet depends on, from its channel alone; none where that depends on more than the regulator and its sensor.
+    fn regulator_alone(&self, hypothesis: &Hypothesis) -> Option<Vec<Free>> {
+        let fitted = &hypothesis.fit;
+        let upstream = self.upstream(hypothesis)?;
+        let own = self.evidence.of_channel(Channel::RegulatorPressure);
+        let free: Vec<Free> = (upstream.iter())
+            .map(|i| fitted.free[*i].from(fitted.values[*i]))
+            .collect();
+        let plant = &fitted.prediction.plant;
+        let (stages, limit) = (Refit::FINEST.stages, Limit::of(20));
+        let alone = fit(&own, (plant, None), (&free, &[]), stages, limit);
+        let variances = covariance(&own, &alone).diagonal();
+        let tolerated = hypothesis.tolerated(&self.believed);
+        let of = |(place, free): (usize, &Free)| {
+            let value = alone.values[place];
+            let deviation = variances[place].max(0.0).sqrt() * free.coordinate.slope(value);
+            Free {
+                prior: Prior::Settled { deviation },
+                ..free.from(value)
+            }
+        };
+        let places = alone.free.iter().enumerate();
+        Some(
+            (places.filter(|(place, _)| upstream[*place] < tolerated))
+                .map(of)
+                .collect(),
+        )
+    }
+
+    /// Which numbers of an explanation its outlet pressure depends on; none where it depends on more than the regulator and its sensor.
+    fn upstream(&self, hypothesis: &Hypothesis) -> Option<Vec<usize>> {
+        let fitted = &hypothesis.fit;
+        let moves = |index: &usize| self.moves_outlet(fitted, *index);
+        let found: Vec<usize> = (0..fitted.free.len()).filter(moves).collect();
+        let mut first = hypothesis.tolerated(&self.believed);
+        for effect in &hypothesis.effects {
+            let numbers = first..first + effect.parameters(&self.believed).len();
+            first = numbers.end;
+            let is_own = matches!(effect.subsystem, Subsystem::Regulator | Subsystem::Sensors);
+            if !is_own && found.iter().any(|index| numbers.contains(index)) {
+                return None;
+            }
+        }
+        (!found.is_empty()).then_some(found)
+    }
+
+    fn moves_outlet(&self, fitted: &Fit, index: usize) -> bool {
+        let Some(column) = fitted.columns.get(index) else {
+            return false;
+        };
+        by_channel(self.evidence, column)
+            .filter(|(_, channel, _)| *channel == Channel::RegulatorPressure)
+            .any(|(_, _, slopes)| slopes.iter().any(|slope| slope.abs() > NOTHING))
+    }
+}
