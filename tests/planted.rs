@@ -21,10 +21,11 @@ fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer,
     let place = |part: &str| room.path().join(part);
     write_case(&case, &place("case"), None).unwrap();
     let done = Command::new(env!("CARGO_BIN_EXE_idc"))
-        .args(["diagnose", "--quiet", "--out"])
+        .args(["diagnose", "--verbose", "--out"])
         .args([place("answer"), place("case")])
         .output()
         .unwrap();
+    eprintln!("{}", String::from_utf8_lossy(&done.stderr));
     assert!(
         done.status.success(),
         "{}",
@@ -42,6 +43,31 @@ fn an_effect_below_the_noise_is_not_named() {
     let (answer, _) = diagnosed("above_noise", 77, &[("tool_runout", 0.4)]);
     assert_eq!(named(&answer), ["tool_runout"]);
     assert_eq!(answer.explained, Some(Extent::Fully));
+}
+
+/// What is told as the smallest leak that would have shown is that: twice as large it is named, a third as large it is not.
+#[test]
+fn the_smallest_effect_that_shows_is_that() {
+    let (nothing, _) = diagnosed("nothing", 78, &[]);
+    assert_eq!(named(&nothing), [""; 0]);
+    let mut detectable = nothing.details.detectable.iter();
+    let leak = detectable
+        .find(|smallest| smallest.effect == "external_leakage")
+        .unwrap();
+    assert_eq!(leak.parameters.len(), 1);
+    let smallest = leak.parameters[0].value;
+    let area = |sealed: &SealedCase| match sealed.effects[0].parameters["orifice_area_m2"] {
+        Known::Number(area) => area,
+        Known::Names(_) => panic!("an area is a number"),
+    };
+    let of_size = |size: f64| diagnosed("leak", 78, &[("external_leakage", size)]);
+    let (_, sealed) = of_size(0.01);
+    let size = 0.01 * smallest / area(&sealed);
+    let (twice, sealed) = of_size(2.0 * size);
+    println!("{smallest:.2e} would show; {:.2e} planted", area(&sealed));
+    assert_eq!(named(&twice), ["external_leakage"]);
+    let (third, _) = of_size(0.33 * size);
+    assert_eq!(named(&third), [""; 0]);
 }
 
 /// Rigs without an accelerometer: the rig file does not name it, the recordings lack its column or have one that counts nothing.

@@ -29,7 +29,7 @@ impl Diagnosis {
         account.add(SectionKind::Link, self.which_link());
         account.add(SectionKind::Missing, self.what_is_missing());
         if let Some(section) = account.sections.last_mut() {
-            section.table = self.shape_table();
+            section.table = self.shape_table().or_else(|| self.smallest_table());
         }
         account.add(SectionKind::Remaining, self.what_is_left());
         account.add(SectionKind::RuledOut, vec![self.what_was_ruled_out()]);

@@ -4,10 +4,12 @@ use super::answer::{
     Alternative, Answer, Estimate, Extent, FoundEffect, FoundLaw, Mismatch, SCHEMA, Verdict,
 };
 use super::details::{
-    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Departure, Details, DetectableReport,
-    IN_TURN, LinkReport, NextExperiment, PredictionError, RegimeReport, RemainingError,
-    RemainingReport, RuledOutReport, ToleratedNumber, remaining_errors,
+    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Departure, Details,
+    DetectableParameter, DetectableReport, IN_TURN, LinkReport, NextExperiment, PredictionError,
+    RegimeReport, RemainingError, RemainingReport, RuledOutReport, ToleratedNumber,
+    remaining_errors,
 };
+use super::detectable::DetectableNumber;
 use super::estimate::Number;
 use super::evidence::Prediction;
 use super::extent::NEAR_NOISE;
@@ -95,6 +97,21 @@ impl Diagnosis {
         let near = |error: &Unseen| error.after.p90 <= NEAR_NOISE;
         let fully = self.largest?.is_near_noise() && unseen.into_iter().all(near);
         Some(if fully { Extent::Fully } else { Extent::Partly })
+    }
+
+    /// The smallest effects that the recordings would have shown, where none is named.
+    pub(super) fn smallest_reported(&self) -> Vec<DetectableReport> {
+        let number = |number: &DetectableNumber| DetectableParameter {
+            name: number.name.to_owned(),
+            value: number.value,
+            without: number.without,
+        };
+        (self.detectable.iter())
+            .map(|smallest| DetectableReport {
+                effect: spoken_name(smallest.effect.name),
+                parameters: smallest.numbers.iter().map(number).collect(),
+            })
+            .collect()
     }
 
     /// The law that an effect is which a user wrote.
@@ -291,14 +308,7 @@ impl Diagnosis {
                         .collect(),
                 })
                 .collect(),
-            detectable: (self.detectable.iter())
-                .map(|smallest| DetectableReport {
-                    effect: spoken_name(smallest.effect.name),
-                    parameters: (smallest.numbers.iter())
-                        .map(|(name, value)| ((*name).to_owned(), *value))
-                        .collect(),
-                })
-                .collect(),
+            detectable: self.smallest_reported(),
             tolerated: self.tolerated(),
             prediction: self.prediction_errors(),
             next_experiment: self.next_experiment(),

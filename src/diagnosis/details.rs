@@ -6,6 +6,8 @@ use super::account::Account;
 use super::answer::Estimate;
 use super::localise::NOISE_ALONE;
 use super::recorded::COLUMNS;
+use super::words::spoken;
+use crate::quantity::{change, significant};
 use crate::recording::provenance::Provenance;
 
 /// Stands for each recording in turn.
@@ -178,7 +180,40 @@ pub struct DetectableReport {
     /// Name.
     pub effect: String,
     /// Its numbers.
-    pub parameters: Vec<(String, f64)>,
+    pub parameters: Vec<DetectableParameter>,
+}
+
+/// A number of an effect at its smallest size.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DetectableParameter {
+    /// Name with its unit.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Value without the effect; none where there is none, or that is 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without: Option<f64>,
+}
+
+impl DetectableReport {
+    /// Its numbers for people: as a change where there is something to change, otherwise as they are.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let words = self.parameters.iter().map(|parameter| {
+            let (words, unit, factor) = spoken(&parameter.name);
+            match parameter.without {
+                Some(without) => {
+                    let percent = 100.0 * (parameter.value / without - 1.0);
+                    format!("{words} {}", change(percent))
+                }
+                None => {
+                    let value = significant(parameter.value * factor, 2);
+                    format!("{words} {value} {unit}").trim_end().to_owned()
+                }
+            }
+        });
+        words.collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// Result of a run of a contact flange.

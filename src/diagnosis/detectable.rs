@@ -23,8 +23,8 @@ use rayon::prelude::*;
 const NINE_IN_TEN: f64 = 1.282;
 /// Steps in size, at most.
 const MOST_STEPS: usize = 5;
-/// Share of a size to which it is found [1].
-const NEAR: f64 = 0.05;
+/// Share of a size to which it is found, and up to which one is told [1].
+const NEAR: [f64; 2] = [0.05, 0.3];
 /// Change of a residual that is none [1].
 const UNCHANGED: f64 = 1e-6;
 /// Largest and smallest size that is looked for, over the usual one [1].
@@ -35,8 +35,19 @@ const SIZES: [f64; 2] = [1e-4, 10.0];
 pub struct Detectable {
     /// The effect.
     pub effect: &'static Effect,
-    /// Its reported numbers at that size: name, value.
-    pub numbers: Vec<(&'static str, f64)>,
+    /// Its numbers at that size, an amplitude in the place of a sine and a cosine.
+    pub numbers: Vec<DetectableNumber>,
+}
+
+/// A number of an effect at its smallest size.
+#[derive(Debug, Clone, Copy)]
+pub struct DetectableNumber {
+    /// Name with its unit.
+    pub name: &'static str,
+    /// Value.
+    pub value: f64,
+    /// Value without the effect; none where there is none, or that is 0.
+    pub without: Option<f64>,
 }
 
 /// Smallest effects that would have been named beside an explanation that names none; without those that these recordings show at no size.
@@ -137,28 +148,51 @@ impl<'a> Change<'a> {
     }
 
     fn smallest(&self) -> Option<Detectable> {
-        let mut share = 1.0;
+        let (mut share, mut seen) = (1.0, 0.0);
         for _ in 0..MOST_STEPS {
-            let seen = self.seen(&self.at(&self.values(share)));
+            seen = self.seen(&self.at(&self.values(share)));
             if !seen.is_finite() || seen <= 0.0 {
                 return None;
             }
-            if (seen - 1.0).abs() < NEAR {
+            if (seen - 1.0).abs() < NEAR[0] {
                 break;
             }
             share = (share / seen).clamp(SIZES[0], SIZES[1]);
         }
-        if share >= SIZES[1] {
+        let values = self.values(share);
+        let mut bounds = self.free.iter().zip(&values);
+        let within = bounds.all(|(free, value)| (free.bounds[0]..=free.bounds[1]).contains(value));
+        if (seen - 1.0).abs() > NEAR[1] || !within {
             return None;
         }
-        let parameters = self.effect.parameters(&self.search.believed);
-        let numbers = parameters.iter().zip(self.values(share));
         Some(Detectable {
             effect: self.effect,
-            numbers: numbers
-                .filter(|(parameter, _)| parameter.reported)
-                .map(|(parameter, value)| (parameter.quantity.name, value))
-                .collect(),
+            numbers: self.numbers(&values),
         })
+    }
+
+    fn numbers(&self, values: &[f64]) -> Vec<DetectableNumber> {
+        let plant = &self.best.fit.prediction.plant;
+        let parameters = self.effect.parameters(&self.search.believed);
+        let place = |name: &str| parameters.iter().position(|p| p.quantity.name == name);
+        let amplitude = place("sine_m").zip(place("cosine_m"));
+        let amplitude = amplitude.map(|(sine, cosine)| DetectableNumber {
+            name: "amplitude_m",
+            value: values[sine].hypot(values[cosine]),
+            without: None,
+        });
+        let sized = self
+            .absent
+            .iter()
+            .zip(&self.usual)
+            .map(|(absent, usual)| absent != usual);
+        let all = parameters.iter().zip(values).zip(sized);
+        let reported = all.filter(|((parameter, _), _)| parameter.reported);
+        let own = reported.map(|((parameter, value), sized)| DetectableNumber {
+            name: parameter.quantity.name,
+            value: *value,
+            without: Some(parameter.quantity.get(plant)).filter(|own| sized && *own != 0.0),
+        });
+        amplitude.into_iter().chain(own).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::charts::{balance, channel, origin, unlisted};
 use super::provenance::provenance;
-use super::tables::{how_well, own_numbers, ruled_out, told};
+use super::tables::{detectable, how_well, own_numbers, ruled_out, told};
 use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, Verdict};
 use crate::diagnosis::comparison::{Compared, Comparison};
@@ -38,6 +38,7 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> 
         before_and_after(answer, comparison),
         balances(comparison),
         how_well(answer),
+        detectable(answer),
         own_numbers(answer),
         ruled_out(answer),
         next_experiment(answer),

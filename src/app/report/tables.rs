@@ -3,7 +3,7 @@
 use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::details::{
-    ChannelMisfit, Considered, PredictionError, RuledOutReport, ToleratedNumber,
+    ChannelMisfit, Considered, DetectableReport, PredictionError, RuledOutReport, ToleratedNumber,
 };
 use crate::diagnosis::estimate::Limit;
 use crate::diagnosis::words::{odds, of_column, percent, spoken, yardstick};
@@ -103,6 +103,25 @@ fn prediction(errors: &[PredictionError], yardstick: &str) -> Option<PageTable> 
             ],
             errors.iter().map(row).collect(),
         )
+    })
+}
+
+/// The smallest effects that the recordings would have shown.
+pub(super) fn detectable<'a>(answer: &Answer) -> Option<PageSection<'a>> {
+    let all = &answer.details.detectable;
+    let row = |smallest: &DetectableReport| {
+        vec![
+            TableCell::from(smallest.effect.clone()),
+            TableCell::from(smallest.words()),
+        ]
+    };
+    (!all.is_empty()).then(|| {
+        let table = PageTable::new(
+            "The smallest effects that these recordings would have shown, each alone, nine times in ten.",
+            &["effect", "numbers"],
+            all.iter().map(row).collect(),
+        );
+        PageSection::new("What would have shown", vec![Block::PageTable(table)])
     })
 }
 

@@ -1,8 +1,7 @@
 //! The missing physics, its share of the mismatch, and the rest.
 
 use super::super::answer::{Extent, FoundLaw};
-use super::super::details::{IN_TURN, PredictionError, RemainingError};
-use super::super::detectable::Detectable;
+use super::super::details::{DetectableReport, IN_TURN, PredictionError, RemainingError};
 use super::super::estimate::Limit;
 use super::super::finding::Diagnosis;
 use super::super::hypothesis::spoken_name;
@@ -90,28 +89,20 @@ impl Diagnosis {
         paragraphs
     }
 
-    /// The smallest effects that the recordings would have shown, where there is none.
     fn smallest_that_show(&self) -> Option<String> {
-        let of = |smallest: &Detectable| {
-            let numbers = smallest.numbers.iter().map(|(name, value)| {
-                let (words, unit, factor) = spoken(name);
-                let value = significant(value * factor, 2);
-                format!("{words} {value} {unit}").trim_end().to_owned()
-            });
-            let numbers: Vec<String> = numbers.collect();
-            format!(
-                "{} ({})",
-                spoken_name(smallest.effect.name),
-                numbers.join(", ")
-            )
-        };
-        let all: Vec<String> = self.detectable.iter().map(of).collect();
-        (!all.is_empty()).then(|| {
-            format!(
-                "The smallest effects that these recordings would have shown, each alone, nine times in ten: {}.",
-                all.join("; ")
-            )
+        (!self.detectable.is_empty()).then(|| {
+            "No effect that is named. The smallest that these recordings would have shown, each alone, nine times in ten:".to_owned()
         })
+    }
+
+    /// The smallest effects that the recordings would have shown, a line each; none where one was found.
+    pub(super) fn smallest_table(&self) -> Option<String> {
+        let all = self.smallest_reported();
+        let wide = all.iter().map(|smallest| smallest.effect.len()).max()?;
+        let line = |smallest: &DetectableReport| {
+            format!("  {:<wide$}   {}\n", smallest.effect, smallest.words())
+        };
+        Some(all.iter().map(line).collect())
     }
 
     /// The largest remaining error beside its noise: a share of what is explained says nothing of the size of the rest.
