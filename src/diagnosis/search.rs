@@ -187,6 +187,10 @@ impl Search<'_> {
         }
         self.eliminate(&mut full, observer);
         self.add_plainer(&mut full, &all, observer);
+        let shows_when_held = |h: &Hypothesis| h.fit.rough - noise > scale.rough_spread();
+        if (full.first()).is_some_and(|best| !shows_when_held(best) && !scale.is_adequate(best)) {
+            self.add_small(&mut full, &scale, observer);
+        }
         let weighed = self.weighed(&mut full, observer);
         weighed.add_small(&mut full, &scale, observer);
         full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));

@@ -117,7 +117,7 @@ pub(super) fn detectable<'a>(answer: &Answer) -> Option<PageSection<'a>> {
     };
     (!all.is_empty()).then(|| {
         let table = PageTable::new(
-            "The smallest effects that these recordings would have shown, each alone, nine times in ten.",
+            "The smallest effects that these recordings would have shown, each alone and nine times in ten, if not always by its name.",
             &["effect", "numbers"],
             all.iter().map(row).collect(),
         );

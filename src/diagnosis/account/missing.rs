@@ -91,7 +91,7 @@ impl Diagnosis {
 
     fn smallest_that_show(&self) -> Option<String> {
         (!self.detectable.is_empty()).then(|| {
-            "No effect that is named. The smallest that these recordings would have shown, each alone, nine times in ten:".to_owned()
+            "No effect that is named. The smallest that these recordings would have shown, each alone and nine times in ten, if not always by its name:".to_owned()
         })
     }
 

@@ -15,6 +15,8 @@ use crate::plant::{CHANNELS, Chain};
 const CHANCE: f64 = 6.0;
 /// Close rivals that are fitted in full beside those that the search has fitted, at most.
 const MOST_CLOSE: usize = 6;
+/// Effects that only the finest measure shows which are fitted, of those that promise most.
+const MOST_SMALL: usize = 3;
 /// Influence of an effect on the channel that it moves most below which it is not named, in standard deviations of that channel's noise [1].
 pub(in crate::diagnosis) const BELOW_NOISE: f64 = 0.5;
 /// Iterations of a rough fit without one of the effects.
@@ -380,31 +382,30 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) {
+        let noise = rough_noise(self.evidence);
         while let Some(best) = full.first()
             && best.effects.len() < self.most_effects + self.shown.len()
-            && scale.is_adequate(best)
+            && (scale.is_adequate(best) || best.fit.rough - noise < scale.rough_spread())
         {
             let score = self.score(best);
             let least = scale.material_in_full(best.fit.cost());
             // What derivatives promise is not exact: half of what is needed is worth a look.
             let needed = least + self.settings.look_elsewhere + (self.evidence.count() as f64).ln();
             let most = best.fit.misfit - 0.5 * needed;
-            let Some(more) = self
-                .screen(best, Refit::FINEST.stages, most)
-                .into_iter()
-                .next()
-            else {
-                return;
-            };
             let raw = |h: &Hypothesis| h.fit.cost() + self.penalty(h);
             let gain = |from: &Hypothesis, to: &Hypothesis| {
                 let weighed = self.score(from) - self.score(to);
                 weighed.min(raw(from) - raw(to) - least)
             };
-            if gain(best, &more) <= 0.0 {
-                return;
-            }
-            let more = self.refit(&more, Refit::FINEST);
+            // From where it is: what the finest measure alone shows lies in the minimum that the fit is in.
+            let refit = Refit::FINEST.from(Start::Here);
+            let promising = self.screen(best, Refit::FINEST.stages, most).into_iter();
+            let refitted = promising
+                .filter(|more| gain(best, more) > 0.0)
+                .take(MOST_SMALL)
+                .map(|more| self.refit(&more, refit))
+                .max_by(|a, b| gain(best, a).total_cmp(&gain(best, b)));
+            let Some(more) = refitted else { return };
             let own = gain(best, &more);
             observer(&Step::Variation.of(&more, format!("small, gain {own:.1}")));
             if own <= 0.0 {
