@@ -10,6 +10,7 @@ use super::super::evidence::by_channel;
 use super::super::fit::{Fit, Limit, Refit, Start, fit};
 use super::super::free::{Free, Prior};
 use super::super::hypothesis::Hypothesis;
+use super::super::localise::{NOISE_ALONE, robust_rms};
 use super::super::progress::{Observer, Step};
 use super::{Search, same};
 use crate::effects::Subsystem;
@@ -52,7 +53,8 @@ impl Search<'_> {
         free
     }
 
-    /// Tolerated numbers that the outlet depends on, from its channel alone; none where that depends on more than the regulator and its sensor.
+    /// Tolerated numbers that the outlet depends on, from its channel alone; none where that depends on more than the regulator and its sensor, or
+    /// is not explained so.
     fn regulator_alone(&self, hypothesis: &Hypothesis) -> Option<Vec<Free>> {
         let fitted = &hypothesis.fit;
         let upstream = self.upstream(hypothesis)?;
@@ -63,6 +65,11 @@ impl Search<'_> {
         let plant = &fitted.prediction.plant;
         let (stages, limit) = (Refit::FINEST.stages, Limit::of(20));
         let alone = fit(&own, (plant, None), (&free, &[]), stages, limit);
+        // What is missing at the outlet itself, its numbers would hide.
+        let (_, left) = robust_rms(&alone.prediction.residuals)?;
+        if left > NOISE_ALONE {
+            return None;
+        }
         let variances = covariance(&own, &alone).diagonal();
         let tolerated = hypothesis.tolerated(&self.believed);
         let of = |(place, free): (usize, &Free)| {
