@@ -77,6 +77,7 @@ pub fn inputs_of(programme: &Programme) -> PlantInputs {
         cell: None,
         motion: None,
         initial: InitialState::AtRest,
+        place: 0,
         set_pressure: time.iter().map(|t| programme.set_pressure(*t)).collect(),
         extends: time.iter().map(|t| programme.extends(*t)).collect(),
         surface: time

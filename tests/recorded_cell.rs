@@ -162,6 +162,7 @@ fn record(
         cell: Some(std::sync::Arc::new(trajectory)),
         motion: None,
         initial: InitialState::AtRest,
+        place: 0,
     };
     let readings = simulate(plant, &inputs).readings;
     let mut random =
@@ -451,6 +452,7 @@ fn a_burr_is_met_where_it_stands_to_a_fraction_of_a_sample() {
                 cell: Some(std::sync::Arc::new(trajectory)),
                 motion: None,
                 initial: InitialState::AtRest,
+                place: 0,
             };
             simulate(&plant, &inputs).readings[1].clone()
         };

@@ -69,6 +69,7 @@ fn bench_and_prediction_agree_with_every_effect_that_both_have() {
         cell: None,
         motion: None,
         initial: InitialState::AtRest,
+        place: 0,
     };
     let plant = load_rig(&path("rig.toml")).unwrap().plant;
     let readings = simulate(&plant, &inputs).readings;

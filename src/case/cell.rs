@@ -276,6 +276,7 @@ fn recorded(
         cell: Some(Arc::new(trajectory)),
         motion: None,
         initial: InitialState::AtRest,
+        place: 0,
         time,
     };
     check(file, &inputs)?;

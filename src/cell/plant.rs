@@ -39,6 +39,7 @@ pub(super) fn of(
         sine: -contact.runout_amplitude,
         cosine: 0.0,
         frequency: contact.runout_frequency,
+        ..Periodic::NONE
     };
     for effect in &scenario.effects {
         effect.put_into(&mut plant);

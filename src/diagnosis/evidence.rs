@@ -64,7 +64,8 @@ impl Evidence {
             )
         };
         let nudgings = recordings.iter().map(nudging).collect();
-        for measured in &mut recordings {
+        for (place, measured) in recordings.iter_mut().enumerate() {
+            measured.inputs.place = place;
             for readings in &mut measured.readings {
                 readings[..measured.inputs.initial.samples()].fill(f64::NAN);
             }
@@ -134,7 +135,7 @@ impl Evidence {
                 {
                     return false;
                 }
-                plant.moves_as(&known.plant)
+                plant.moves_as(&known.plant, measured.inputs.place)
                     || (measured.free && plant.moves_freely_as(&known.plant))
             })
         };

@@ -63,6 +63,7 @@ impl Limits {
             cell: None,
             motion: None,
             initial: InitialState::AtRest,
+            place: 0,
             time,
         }
     }

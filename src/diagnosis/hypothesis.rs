@@ -1,15 +1,17 @@
 //! A set of effects with its fit.
 
 use super::fit::Fit;
+use super::free::Free;
 use crate::effects::{Effect, UNLISTED, vocabulary};
 use crate::plant::{Latent, PlantParameters};
+use std::ops::Range;
 
 /// A set of effects, fitted together with what is tolerated.
 #[derive(Debug, Clone)]
 pub struct Hypothesis {
     /// The effects.
     pub effects: Vec<&'static Effect>,
-    /// The fit: tolerated quantities first, then the effects' in order.
+    /// The fit: tolerated quantities first, then the effects' in order, then phases of what is periodic in each recording.
     pub fit: Fit,
     /// Variables on which a term without a name depends, the surest first; empty where there is none. The term is in the description, its
     /// coefficients come last among what is free.
@@ -44,14 +46,24 @@ impl Hypothesis {
         self.effects.is_empty() && self.unlisted().is_none()
     }
 
-    /// Number of the free quantities that are tolerated ones; the effects' and those of a term without a name follow.
+    /// Number of the free quantities that are tolerated ones; the effects', phases and those of a term without a name follow.
     pub fn tolerated(&self, believed: &PlantParameters) -> usize {
         let own: usize = self
             .effects
             .iter()
             .map(|effect| effect.parameters(believed).len())
             .sum();
-        self.fit.free.len() - own - self.unlisted().map_or(0, Latent::numbers)
+        let is_phase = |f: &&Free| self.effects.iter().any(|e| e.has_phase(&f.quantity));
+        let phases = self.fit.free.iter().filter(is_phase).count();
+        self.fit.free.len() - own - phases - self.unlisted().map_or(0, Latent::numbers)
+    }
+
+    /// Places of an effect's numbers among the free quantities.
+    pub fn numbers_of(&self, believed: &PlantParameters, index: usize) -> Range<usize> {
+        let count = |effect: &&'static Effect| effect.parameters(believed).len();
+        let before: usize = self.effects[..index].iter().map(count).sum();
+        let first = self.tolerated(believed) + before;
+        first..first + count(&self.effects[index])
     }
 }
 

@@ -239,12 +239,12 @@ fn on_the_piston(evidence: &Evidence, held: &Prediction, deviation: f64) -> Vec<
 /// Force reading less that of the contact at the measured stroke; the noise of the stroke goes through the contact's stiffness and damping.
 fn in_contact(evidence: &Evidence, held: &Prediction) -> Vec<f64> {
     let plant = &held.plant;
-    let contact = &plant.contact;
     let shares = evidence.shares(ROUGH_TIME, false);
     let [_, stroke_noise, force_noise, _] = evidence.noise;
     let mut all = Vec::new();
     let mut first = 0;
     for measured in &evidence.recordings {
+        let contact = plant.contact.in_recording(measured.inputs.place);
         let time = &measured.inputs.time;
         let count = time.len();
         let readings = &measured.readings;

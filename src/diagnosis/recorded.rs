@@ -130,6 +130,7 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
         cell: None,
         motion: None,
         initial: InitialState::AtRest,
+        place: 0,
     };
     check(file, &inputs)?;
     let nothing = || vec![f64::NAN; recording.sample_count()];
@@ -182,6 +183,7 @@ pub fn recorded_of(
         cell: None,
         motion: None,
         initial: InitialState::AtRest,
+        place: 0,
     };
     check(file, &inputs)?;
     if chain.takes_motion() {

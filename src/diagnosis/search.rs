@@ -350,8 +350,8 @@ impl Search<'_> {
             };
             for start in effect.starts(&self.clues(candidate, &[], &[])) {
                 let mut other = candidate.clone();
-                let own = other.fit.values.len() - start.len();
-                other.fit.values[own..].copy_from_slice(&start);
+                let own = other.numbers_of(&self.believed, other.effects.len() - 1);
+                other.fit.values[own].copy_from_slice(&start);
                 let refined = self.refit(&other, Refit::FULL);
                 let left = refined.fit.cost() - self.evidence.count() as f64;
                 observer(&Step::FullFit.of(&refined, format!("from the start, left {left:.0}")));
@@ -371,7 +371,7 @@ impl Search<'_> {
             .iter()
             .flat_map(|effect| effect.parameters(&self.believed));
         let parameters: Vec<_> = parameters.collect();
-        let own = hypothesis.fit.free.len() - parameters.len();
+        let own = hypothesis.tolerated(&self.believed);
         for (index, parameter) in parameters.iter().enumerate() {
             let present = hypothesis.fit.values[own + index];
             let mut tried: Vec<Hypothesis> = parameter

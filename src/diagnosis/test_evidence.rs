@@ -40,6 +40,7 @@ pub(super) fn evidence(recordings: usize) -> Evidence {
         cell: None,
         motion: None,
         initial: InitialState::AtRest,
+        place: 0,
         set_pressure: vec![2e5; count],
         extends: vec![true; count],
         surface: vec![0.02; count],

@@ -1,6 +1,7 @@
 //! A physical effect that a model may lack: an edit of the rig's description.
 
 use super::quantity::Coordinate;
+use crate::plant::registry::Number;
 use crate::plant::{PlantParameters, Quantity};
 
 /// Part of the chain in which an effect enters.
@@ -102,6 +103,8 @@ pub struct Effect {
     pub starts: fn(&Clues<'_>, usize) -> Vec<Vec<f64>>,
     /// Effects of the same group exclude one another.
     pub group: Option<&'static str>,
+    /// The phase, one for each recording, of what is periodic.
+    pub phase: Option<&'static Number>,
 }
 
 /// An effect of a name and a part of the chain, without numbers yet: the only one of its kind, beside which all others can stand.
@@ -115,6 +118,7 @@ pub const fn effect(name: &'static str, subsystem: Subsystem) -> Effect {
         usual: |_, _| Vec::new(),
         starts: |_, _| Vec::new(),
         group: None,
+        phase: None,
     }
 }
 
@@ -165,6 +169,12 @@ impl Effect {
             Which::Only | Which::Own { .. } => (self.name, None),
             Which::Joint { kind, joint } => (kind, Some(joint + 1)),
         }
+    }
+
+    /// Whether a quantity is its phase in one of the recordings.
+    pub fn has_phase(&self, quantity: &Quantity) -> bool {
+        self.phase
+            .is_some_and(|phase| std::ptr::eq(phase, quantity.number))
     }
 
     /// Whether it cannot stand beside another one.

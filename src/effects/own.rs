@@ -55,6 +55,7 @@ pub fn own_effect(law: &LawText, place: usize) -> &'static Effect {
         usual: |plant, place| free_of(plant, place).map(|(_, c)| c.value).collect(),
         starts,
         group: None,
+        phase: None,
     }));
     effects.push(effect);
     effect

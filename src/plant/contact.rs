@@ -25,7 +25,10 @@ pub enum ContactLaw {
     },
 }
 
-/// A periodic deviation of the surface along extension, with the same phase at the start of every recording.
+/// Recordings that may each have a phase of their own; those beyond have that of the first.
+pub const PHASES: usize = 16;
+
+/// A periodic deviation of the surface along extension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Periodic {
     /// Amplitude of its sine [m].
@@ -34,6 +37,8 @@ pub struct Periodic {
     pub cosine: f64,
     /// Frequency [Hz].
     pub frequency: f64,
+    /// Phase at the start of each of the recordings that are fitted together, ahead of that of sine and cosine [rad].
+    pub phases: [f64; PHASES],
 }
 
 impl Periodic {
@@ -42,7 +47,23 @@ impl Periodic {
         sine: 0.0,
         cosine: 0.0,
         frequency: 1.0,
+        phases: [0.0; PHASES],
     };
+
+    /// As one of the recordings has it, by its place among them.
+    #[must_use]
+    fn in_recording(&self, recording: usize) -> Self {
+        let (sin, cos) = self
+            .phases
+            .get(recording)
+            .map_or((0.0, 1.0), |phase| phase.sin_cos());
+        Self {
+            sine: self.sine * cos - self.cosine * sin,
+            cosine: self.sine * sin + self.cosine * cos,
+            phases: Self::NONE.phases,
+            ..*self
+        }
+    }
 
     /// Zero to peak [m].
     pub fn amplitude(&self) -> f64 {
@@ -84,6 +105,16 @@ impl ContactParameters {
             surface_offset: 0.0,
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
+        }
+    }
+
+    /// As one of the recordings that are fitted together has it, by its place among them.
+    #[must_use]
+    pub fn in_recording(&self, recording: usize) -> Self {
+        Self {
+            runout: self.runout.in_recording(recording),
+            waviness: self.waviness.in_recording(recording),
+            ..*self
         }
     }
 

@@ -23,6 +23,8 @@ pub struct PlantInputs {
     pub motion: Option<Arc<MeasuredMotion>>,
     /// State in which it starts.
     pub initial: InitialState,
+    /// Its place among the recordings that are fitted together, from 0: each has its own phase of what is periodic.
+    pub place: usize,
 }
 
 /// Inputs that do not fit together.
@@ -129,6 +131,7 @@ mod tests {
             cell: None,
             motion: None,
             initial: InitialState::AtRest,
+            place: 0,
         };
         for (i, t) in time.iter().enumerate().take(4).skip(1) {
             let slope = inputs.slope(&values, i);

@@ -76,8 +76,9 @@ impl PlantParameters {
         self.own.iter().filter(moves)
     }
 
-    /// Whether the rig moves as another one does, whatever its sensors say.
-    pub fn moves_as(&self, other: &Self) -> bool {
-        self.moves_freely_as(other) && self.contact == other.contact
+    /// Whether the rig moves as another one does in one of the recordings, by its place among them, whatever its sensors say.
+    pub fn moves_as(&self, other: &Self, recording: usize) -> bool {
+        let [own, its] = [self, other].map(|plant| plant.contact.in_recording(recording));
+        self.moves_freely_as(other) && own == its
     }
 }

@@ -128,7 +128,8 @@ pub fn true_trajectory(
     let count = inputs.time.len();
     let mut truth = Trajectory::default();
     let mut entered = 0.0;
-    let rate = plant.contact.rate(mass);
+    let law = plant.contact.in_recording(inputs.place);
+    let rate = law.rate(mass);
     let usual = usual_step(&inputs.time);
     let mut contact_friction = ContactFriction::default();
     for i in 0..count {
@@ -146,7 +147,7 @@ pub fn true_trajectory(
         let next = if last { i } else { i + 1 };
         let present = surface[i].is_finite() && surface[next].is_finite();
         let mut carrier = ReplayCarrier {
-            contact: &plant.contact,
+            contact: &law,
             present,
             weight: [pull(i), (pull(next) - pull(i)) / h],
             share: 1.0,

@@ -53,6 +53,7 @@ pub fn case_files(bench: &Bench, folder: &str, effects: &str, dirt: Dirt) {
             cell: None,
             motion: None,
             initial: InitialState::AtRest,
+            place: 0,
             set_pressure: values.iter().map(|v| v.0).collect(),
             extends: values.iter().map(|v| v.1).collect(),
             surface: values.iter().map(|v| v.2).collect(),

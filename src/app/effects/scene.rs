@@ -477,6 +477,7 @@ fn inputs_of(chain: Chain, name: &str) -> PlantInputs {
         motion,
         time,
         initial: InitialState::AtRest,
+        place: 0,
     }
 }
 

@@ -114,6 +114,8 @@ impl Search<'_> {
             free.retain(|f| !own.iter().any(|o| same(o, f, &self.believed)));
             free.extend(own);
         }
+        let phases = best.fit.free_from_here().into_iter();
+        free.extend(phases.filter(|f| effects.iter().any(|e| e.has_phase(&f.quantity))));
         let limit = Refit::FULL.limit;
         Some(self.fitted(effects, (&self.believed, None), &free, FULL, limit))
     }
@@ -277,17 +279,13 @@ impl Search<'_> {
     fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
         let fit = &hypothesis.fit;
         let plant = &fit.prediction.plant;
-        let counts: Vec<usize> = hypothesis
-            .effects
-            .iter()
-            .map(|e| e.parameters(&self.believed).len())
-            .collect();
-        let own = fit.free.len() - counts.iter().sum::<usize>();
-        let start = own + counts[..index].iter().sum::<usize>();
-        let kept = fit.free.iter().zip(&fit.values).enumerate();
+        let own = hypothesis.tolerated(&self.believed);
+        let numbers = hypothesis.numbers_of(&self.believed, index);
+        let phase = |f: &Free| hypothesis.effects[index].has_phase(&f.quantity);
+        let kept = fit.free_from_here().into_iter().enumerate();
         let others: Vec<Free> = kept
-            .filter(|(i, _)| *i >= own && !(start..start + counts[index]).contains(i))
-            .map(|(_, (f, value))| f.from(*value))
+            .filter(|(i, f)| *i >= own && !numbers.contains(i) && !phase(f))
+            .map(|(_, f)| f)
             .collect();
         let mut free: Vec<Free> = self
             .tolerated

@@ -93,10 +93,8 @@ impl Search<'_> {
         let fitted = &hypothesis.fit;
         let moves = |index: &usize| self.moves_outlet(fitted, *index);
         let found: Vec<usize> = (0..fitted.free.len()).filter(moves).collect();
-        let mut first = hypothesis.tolerated(&self.believed);
-        for effect in &hypothesis.effects {
-            let numbers = first..first + effect.parameters(&self.believed).len();
-            first = numbers.end;
+        for (index, effect) in hypothesis.effects.iter().enumerate() {
+            let numbers = hypothesis.numbers_of(&self.believed, index);
             let is_own = matches!(effect.subsystem, Subsystem::Regulator | Subsystem::Sensors);
             if !is_own && found.iter().any(|index| numbers.contains(index)) {
                 return None;

@@ -1,13 +1,14 @@
 //! Which effects promise to explain what a hypothesis leaves: one simulation a start, derivatives of those that promise, a short fit of the best.
 
+use super::super::bumps;
 use super::super::evidence::Prediction;
 use super::super::fit::{Limit, Stage, fit, jacobian, linearised_cost, with_values};
 use super::super::free::{Free, Prior, free_of};
 use super::super::hypothesis::Hypothesis;
-use super::super::{bumps, spectrum};
+use super::super::spectrum::{self, Line};
 use super::{Search, same};
 use crate::effects::{Clues, Coordinate, Effect, Subsystem};
-use crate::plant::registry;
+use crate::plant::{PlantParameters, registry};
 use rayon::prelude::*;
 
 /// Effects whose starts are looked at with all their derivatives, beside those that have no secant.
@@ -18,8 +19,6 @@ const GLANCED_BEHIND: f64 = 10.0;
 const STARTS_OF_EACH: usize = 2;
 /// Change of a residual that is none [1].
 const UNCHANGED: f64 = 1e-6;
-/// A quantity of what is periodic.
-const PHASE: &str = "sine_m";
 /// The way from no effect to a start: 1 there.
 const WAY: Free = Free {
     quantity: registry::WAY.quantity(),
@@ -28,29 +27,72 @@ const WAY: Free = Free {
     bounds: [-3.0, 3.0],
     prior: Prior::Flat,
 };
+/// Phase of what is periodic in a recording: any.
+const PHASE: Free = Free {
+    quantity: registry::RUNOUT_PHASE.quantity(),
+    start: 0.0,
+    coordinate: Coordinate::Linear(0.1),
+    bounds: [-20.0, 20.0],
+    prior: Prior::Flat,
+};
 /// Number of effects that get a second look.
 const LOOKED_AT: usize = 7;
 /// Cost over the least beyond which they get none [1].
 const LOOKED_BEHIND: f64 = 10.0;
 
 /// An effect and where it may start.
-type Start = (&'static Effect, Vec<f64>);
+#[derive(Debug, Clone)]
+struct Start {
+    effect: &'static Effect,
+    values: Vec<f64>,
+    /// Phases in the recordings after the first, where those differ.
+    phases: Vec<Free>,
+}
 
 /// Promise of an effect.
 #[derive(Debug, Clone)]
 struct Promise {
-    effect: &'static Effect,
     /// Where it may start.
-    start: Vec<f64>,
+    start: Start,
     /// Cost that a hypothesis with it could come to [1].
     cost: f64,
+}
+
+impl Start {
+    /// An effect from these values, its phases where the line at its frequency has one in each recording.
+    fn at(effect: &'static Effect, values: Vec<f64>, lines: &[Line]) -> Self {
+        let line = lines.iter().find(|line| line.frequency == values[0]);
+        let phases = match (effect.phase, line) {
+            (Some(phase), Some(line)) => (line.phases.iter())
+                .map(|(recording, start)| Free {
+                    quantity: phase.quantity().of(*recording),
+                    start: *start,
+                    ..PHASE
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
+        Self {
+            effect,
+            values,
+            phases,
+        }
+    }
+
+    /// Its numbers as free quantities, then its phases.
+    fn free(&self, plant: &PlantParameters) -> Vec<Free> {
+        let mut free = free_of(self.effect, plant, &self.values);
+        free.extend(&self.phases);
+        free
+    }
 }
 
 impl Search<'_> {
     /// Further gain of each effect, roughly: columns of what is free already are taken as they are. Best first; without those that by their
     /// derivatives cost more than `most`.
     pub fn screen(&self, from: &Hypothesis, stages: &[Stage], most: f64) -> Vec<Hypothesis> {
-        let periodic = spectrum::strongest(self.evidence, &from.fit.prediction);
+        let lines = spectrum::strongest(self.evidence, &from.fit.prediction);
+        let periodic: Vec<f64> = lines.iter().map(|line| line.frequency).collect();
         let bumps = bumps::strongest(self.evidence, &from.fit.prediction);
         let clues = self.clues(from, &periodic, &bumps);
         let starts: Vec<Start> = self
@@ -62,7 +104,8 @@ impl Search<'_> {
                 effect
                     .starts(&clues)
                     .into_iter()
-                    .map(move |start| (effect, start))
+                    .map(|values| Start::at(effect, values, &lines))
+                    .collect::<Vec<Start>>()
             })
             .collect();
         let stage = &stages[0];
@@ -91,7 +134,7 @@ impl Search<'_> {
         best.truncate(LOOKED_AT);
         let mut looked: Vec<Hypothesis> = best
             .par_iter()
-            .map(|promise| self.add(from, promise.effect, &promise.start, stages, self.look))
+            .map(|promise| self.add(from, &promise.start, stages, self.look))
             .collect();
         let score = |hypothesis: &Hypothesis| match stages[0].guided {
             true => self.rough_score(hypothesis),
@@ -117,10 +160,11 @@ impl Search<'_> {
     }
 
     /// Prediction of a hypothesis with one more effect at a start.
-    fn started(&self, from: &Hypothesis, (effect, start): &Start, stage: &Stage) -> Prediction {
-        let new = free_of(effect, &self.believed, start);
+    fn started(&self, from: &Hypothesis, start: &Start, stage: &Stage) -> Prediction {
+        let new = start.free(&self.believed);
         let known = &from.fit.prediction;
-        let plant = with_values(&known.plant, &new, start);
+        let values: Vec<f64> = new.iter().map(|f| f.start).collect();
+        let plant = with_values(&known.plant, &new, &values);
         self.evidence.predict(&plant, stage.guided, Some(known))
     }
 
@@ -129,12 +173,12 @@ impl Search<'_> {
     fn secant(
         &self,
         from: &Hypothesis,
-        (effect, start): &Start,
+        start: &Start,
         there: &Prediction,
         stage: &Stage,
     ) -> Option<Promise> {
-        let new = free_of(effect, &self.believed, start);
-        if effect.subsystem == Subsystem::Sensors || new.iter().any(|f| f.quantity.name == PHASE) {
+        let new = start.free(&self.believed);
+        if start.effect.subsystem == Subsystem::Sensors || start.effect.phase.is_some() {
             return None;
         }
         let here = &from.fit.prediction;
@@ -154,25 +198,21 @@ impl Search<'_> {
             let none = size.quantity.get(&here.plant);
             let way = reached[values.len() - 1];
             if none.is_finite() {
-                start[0] = size.clamp(none + way * (size.start - none));
+                start.values[0] = size.clamp(none + way * (size.start - none));
             }
         }
-        Some(Promise {
-            effect,
-            start,
-            cost,
-        })
+        Some(Promise { start, cost })
     }
 
     /// Promise of one more effect by one step from a start.
     fn glance(
         &self,
         from: &Hypothesis,
-        (effect, start): &Start,
+        start: &Start,
         there: &Prediction,
         stage: &Stage,
     ) -> Promise {
-        let new = free_of(effect, &self.believed, start);
+        let new = start.free(&self.believed);
         let (mut free, mut columns) = self.beside(from, &new);
         let own = free.len();
         free.extend(new);
@@ -180,7 +220,6 @@ impl Search<'_> {
         columns.extend(jacobian(self.evidence, there, &free, &values, own));
         let (cost, _) = linearised_cost(self.evidence, there, &free, &values, &columns, stage);
         Promise {
-            effect,
             start: start.clone(),
             cost,
         }
@@ -190,20 +229,27 @@ impl Search<'_> {
     fn add(
         &self,
         from: &Hypothesis,
-        effect: &'static Effect,
-        start: &[f64],
+        start: &Start,
         stages: &[Stage],
         iterations: usize,
     ) -> Hypothesis {
-        let new = free_of(effect, &self.believed, start);
-        let (mut free, frozen) = self.beside(from, &new);
-        free.extend(new);
+        let new = start.free(&self.believed);
+        let (kept, columns) = self.beside(from, &new);
+        let is_phase = |f: &Free| from.effects.iter().any(|e| e.has_phase(&f.quantity));
+        let (phases, kept): (Vec<_>, Vec<_>) =
+            (kept.into_iter().zip(columns)).partition(|(f, _)| is_phase(f));
+        let (mut free, frozen): (Vec<Free>, Vec<Vec<f64>>) = kept.into_iter().unzip();
+        // Phases come last, and are not frozen: a recording each, they cost little.
+        let (own, own_phases) = new.split_at(start.values.len());
+        free.extend(own);
+        free.extend(phases.into_iter().map(|(f, _)| f));
+        free.extend(own_phases);
         let mut plant = from.fit.prediction.plant.clone();
         for f in &free {
             f.quantity.set(&mut plant, f.start);
         }
         let mut effects = from.effects.clone();
-        effects.push(effect);
+        effects.push(start.effect);
         Hypothesis {
             effects,
             fit: fit(
@@ -254,7 +300,7 @@ fn worth_a_glance(starts: &[Start], secants: &[Option<Promise>]) -> Vec<usize> {
     let near = GLANCED_BEHIND * with.first().map_or(0.0, |(_, cost)| *cost);
     let mut effects: Vec<(&str, usize)> = Vec::new();
     for (index, _) in with.into_iter().filter(|(_, cost)| *cost <= near) {
-        let name = starts[index].0.name;
+        let name = starts[index].effect.name;
         match effects.iter().position(|(known, _)| *known == name) {
             Some(at) if effects[at].1 < STARTS_OF_EACH => effects[at].1 += 1,
             None if effects.len() < GLANCED_AT => effects.push((name, 1)),
@@ -270,7 +316,7 @@ fn worth_a_glance(starts: &[Start], secants: &[Option<Promise>]) -> Vec<usize> {
 fn best_of_each(promises: Vec<Promise>) -> Vec<Promise> {
     let mut best: Vec<Promise> = Vec::new();
     for promise in promises {
-        let same = |known: &&mut Promise| known.effect.name == promise.effect.name;
+        let same = |known: &&mut Promise| known.start.effect.name == promise.start.effect.name;
         match best.iter_mut().find(same) {
             Some(known) if known.cost <= promise.cost => {}
             Some(known) => *known = promise,

@@ -9,7 +9,7 @@ pub mod tool_runout;
 use super::parts::*;
 
 /// Slower than this no tool turns, faster no surface waves [Hz].
-const SLOWEST_TOOL: f64 = 11.0;
+pub const SLOWEST_TOOL: f64 = 11.0;
 /// A wave that a fit can start from [m].
 const SMALL_WAVE: f64 = 1e-5;
 

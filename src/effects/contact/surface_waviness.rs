@@ -27,5 +27,6 @@ pub const EFFECT: Effect = Effect {
     ],
     usual: |_, _| vec![2.0, 2e-4, 0.0],
     starts: |c, _| waves(c, |f| f < SLOWEST_TOOL),
+    phase: Some(&WAVINESS_PHASE),
     ..effect("surface_waviness", Subsystem::Contact)
 };

@@ -27,5 +27,6 @@ pub const EFFECT: Effect = Effect {
     ],
     usual: |_, _| vec![83.0, 5e-5, 0.0],
     starts: |c, _| waves(c, |f| f >= SLOWEST_TOOL),
+    phase: Some(&RUNOUT_PHASE),
     ..effect("tool_runout", Subsystem::Contact)
 };

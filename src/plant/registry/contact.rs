@@ -21,12 +21,16 @@ numbers! { CONTACT:
     RUNOUT_SINE = "contact.runout_sine_m", ANY, (p => p.contact.runout.sine);
     /// runout in phase with the cosine
     RUNOUT_COSINE = "contact.runout_cosine_m", ANY, (p => p.contact.runout.cosine);
+    /// phase of the runout in a recording, ahead of that of sine and cosine
+    RUNOUT_PHASE = "contact.runout_phase_rad", ANY, (p, i => p.contact.runout.phases[i]);
     /// waves of the surface a second
     WAVINESS_FREQUENCY = "contact.waviness_frequency_hz", ANY, (p => p.contact.waviness.frequency);
     /// waviness in phase with the sine
     WAVINESS_SINE = "contact.waviness_sine_m", ANY, (p => p.contact.waviness.sine);
     /// waviness in phase with the cosine
     WAVINESS_COSINE = "contact.waviness_cosine_m", ANY, (p => p.contact.waviness.cosine);
+    /// phase of the waviness in a recording, ahead of that of sine and cosine
+    WAVINESS_PHASE = "contact.waviness_phase_rad", ANY, (p, i => p.contact.waviness.phases[i]);
 }
 
 fn stiffness(plant: &PlantParameters, _: usize) -> f64 {
