@@ -8,7 +8,7 @@ use super::super::hypothesis::Hypothesis;
 use super::super::spectrum::{self, Line};
 use super::{Search, same};
 use crate::effects::{Clues, Coordinate, Effect, Subsystem};
-use crate::plant::{PlantParameters, registry};
+use crate::plant::{PlantParameters, Quantity, registry};
 use rayon::prelude::*;
 
 /// Effects whose starts are looked at with all their derivatives, beside those that have no secant.
@@ -101,9 +101,8 @@ impl Search<'_> {
             .copied()
             .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
             .flat_map(|effect| {
-                effect
-                    .starts(&clues)
-                    .into_iter()
+                (effect.starts(&clues).into_iter())
+                    .chain(self.from_within(from, effect))
                     .map(|values| Start::at(effect, values, &lines))
                     .collect::<Vec<Start>>()
             })
@@ -142,6 +141,18 @@ impl Search<'_> {
         };
         looked.sort_by(|a, b| score(a).total_cmp(&score(b)));
         looked
+    }
+
+    /// Where an effect stands that frees what is tolerated: small ones lie just beyond the tolerance.
+    fn from_within(&self, from: &Hypothesis, effect: &Effect) -> Option<Vec<f64>> {
+        let parameters = effect.parameters(&self.believed);
+        let is_tolerated =
+            |quantity: &Quantity| self.tolerated.iter().any(|f| f.quantity.is(quantity));
+        let all = parameters.iter().all(|p| is_tolerated(&p.quantity));
+        let present = parameters
+            .iter()
+            .map(|p| p.quantity.get(&from.fit.prediction.plant));
+        all.then(|| present.collect())
     }
 
     /// Free quantities that stay free beside an effect, with their columns.
