@@ -11,7 +11,7 @@
 
 use super::cross_validation::{Depth, rough_cost};
 use super::evidence::{Evidence, Prediction};
-use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start};
+use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start, fit};
 use super::free::{Free, Prior};
 use super::hypothesis::Hypothesis;
 use super::progress::{Observer, Step};
@@ -41,6 +41,8 @@ const RISES_BY: f64 = 2.0;
 const NARROW: [f64; 2] = [0.1, 0.3];
 /// Share of what its variable moves through from which a term is not narrow [1].
 const WIDE: f64 = 0.6;
+/// Rough cost over that of another explanation beyond which terms that were looked at are given up [1].
+const HOPELESS: f64 = 1.5;
 /// Share of the gain of the best term within which another variable is not told apart [1].
 const ALIKE: f64 = 0.05;
 
@@ -252,14 +254,19 @@ fn window(fit: &Fit, share: f64) -> Option<[f64; 2]> {
 }
 
 impl Search<'_> {
-    /// The latent term that explains most beside a hypothesis.
-    pub fn latent(&self, base: &Hypothesis, observer: &mut Observer<'_>) -> Option<Hypothesis> {
+    /// The latent term that explains most beside a hypothesis; none where all promise to cost far more than what another explanation costs roughly, `rival`.
+    pub fn latent(
+        &self,
+        base: &Hypothesis,
+        rival: f64,
+        observer: &mut Observer<'_>,
+    ) -> Option<Hypothesis> {
         // Of a full fit the held prediction is wanted.
         let base = &self.refit(base, curve(ROUGH, 2));
         let terms = terms(self.evidence, &base.fit.prediction);
         let mut ranked: Vec<Hypothesis> = terms
             .par_iter()
-            .map(|latent| self.with_latent(base, latent, ROUGH, 1))
+            .map(|latent| self.with_latent(base, latent, &base.fit.columns, 1))
             .collect();
         ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
         ranked.truncate(LOOKED_AT);
@@ -268,6 +275,10 @@ impl Search<'_> {
             .map(|promising| self.refit(promising, curve(ROUGH, LOOK)))
             .collect();
         ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
+        let near = |h: &&Hypothesis| self.latent_score(h) < HOPELESS * rival;
+        if !ranked.first().is_some_and(|h| near(&h)) {
+            return None;
+        }
         for h in &ranked {
             let detail = format!("{} promises {:.0}", described(h), self.latent_score(h));
             observer(&Step::Variation.of(h, detail));
@@ -337,25 +348,29 @@ impl Search<'_> {
         hypothesis.fit.rough + numbers * (self.evidence.count() as f64).ln()
     }
 
+    /// A hypothesis with a term, fitted roughly; the derivatives of what was free before are taken as they are where they are given.
     fn with_latent(
         &self,
         base: &Hypothesis,
         latent: &Latent,
-        stages: &[Stage],
+        frozen: &[Vec<f64>],
         iterations: usize,
     ) -> Hypothesis {
         let mut plant = base.fit.prediction.plant.clone();
         plant.latent = Some(latent.clone());
         let mut free = base.fit.free_from_here();
         free.extend(free_of_latent(latent));
-        let effects = base.effects.clone();
-        self.fitted(
-            effects,
-            (&plant, None),
-            &free,
-            stages,
-            Limit::of_curve(iterations),
-        )
+        Hypothesis {
+            effects: base.effects.clone(),
+            fit: fit(
+                self.evidence,
+                (&plant, None),
+                (&free, frozen),
+                ROUGH,
+                Limit::of_curve(iterations),
+            ),
+            depends_on: Vec::new(),
+        }
     }
 
     /// A term that acts in a part of its range alone, with its knots there, if that fits better.
@@ -379,7 +394,7 @@ impl Search<'_> {
                     .collect(),
                 ..latent.clone()
             };
-            let tried = self.with_latent(base, &narrow, ROUGH, ROUGH_ITERATIONS);
+            let tried = self.with_latent(base, &narrow, &[], ROUGH_ITERATIONS);
             if tried.fit.rough < best.fit.rough {
                 best = tried;
             }

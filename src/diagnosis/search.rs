@@ -344,20 +344,23 @@ impl Search<'_> {
             .collect();
         // The richest law first: it has most to lose.
         candidates.sort_by_key(|h| std::cmp::Reverse(h.fit.free.len()));
-        for candidate in candidates {
-            let Some(effect) = candidate.effects.last() else {
-                continue;
-            };
-            for start in effect.starts(&self.clues(candidate, &[], &[])) {
-                let mut other = candidate.clone();
-                let own = other.numbers_of(&self.believed, other.effects.len() - 1);
-                other.fit.values[own].copy_from_slice(&start);
-                let refined = self.refit(&other, Refit::FULL);
-                let left = refined.fit.cost() - self.evidence.count() as f64;
-                observer(&Step::FullFit.of(&refined, format!("from the start, left {left:.0}")));
-                if scale.is_adequate(&refined) {
-                    return vec![refined];
-                }
+        let starts = candidates.into_iter().flat_map(|candidate| {
+            let effect = candidate.effects.last();
+            let starts = effect.map(|effect| effect.starts(&self.clues(candidate, &[], &[])));
+            starts
+                .into_iter()
+                .flatten()
+                .map(move |start| (candidate, start))
+        });
+        for (candidate, start) in starts.take(MOST_ANEW) {
+            let mut other = candidate.clone();
+            let own = other.numbers_of(&self.believed, other.effects.len() - 1);
+            other.fit.values[own].copy_from_slice(&start);
+            let refined = self.refit(&other, Refit::FULL);
+            let left = refined.fit.cost() - self.evidence.count() as f64;
+            observer(&Step::FullFit.of(&refined, format!("from the start, left {left:.0}")));
+            if scale.is_adequate(&refined) {
+                return vec![refined];
             }
         }
         Vec::new()
@@ -396,6 +399,9 @@ impl Search<'_> {
         }
     }
 }
+
+/// Full fits from where an effect may start, at most.
+const MOST_ANEW: usize = 4;
 
 /// A full fit made before.
 struct Refined {

@@ -199,7 +199,7 @@ impl Search<'_> {
         }
         let mut found: Vec<Hypothesis> = bases
             .iter()
-            .filter_map(|base| self.latent(base, observer))
+            .filter_map(|base| self.latent(base, best.fit.rough, observer))
             .collect();
         found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         if let Some(first) = found.into_iter().next()
