@@ -102,6 +102,7 @@ impl Press {
                 },
                 damping: law.damping,
                 surface_offset: 0.0,
+                spindle_frequency: 0.0,
                 runout: Periodic::NONE,
                 waviness: Periodic::NONE,
             },

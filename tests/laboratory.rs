@@ -58,6 +58,7 @@ pub fn plant_of(rig: &LaboratoryRig) -> PlantParameters {
             },
             damping: rig.contact_damping,
             surface_offset: 0.0,
+            spindle_frequency: 0.0,
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         },
@@ -171,6 +172,7 @@ fn with_effect(rig: &LaboratoryRig, concealed: &Concealed, name: &str) -> PlantP
             sine: swing.amplitude * cosine,
             cosine: swing.amplitude * sine,
             frequency: swing.frequency,
+            ..Periodic::NONE
         };
         if name == "tool_runout" {
             plant.contact.runout = periodic;

@@ -34,6 +34,7 @@ pub(super) fn of(
     }
     let law = (contact.stiffness, contact.damping);
     let mut plant = PlantParameters::of_cell(scenario.device.parameters.clone(), law, cell);
+    plant.contact.spindle_frequency = contact.spindle_frequency;
     // A ball that turns towards the part finds its surface nearer.
     plant.contact.runout = Periodic {
         sine: -contact.runout_amplitude,

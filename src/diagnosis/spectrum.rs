@@ -1,17 +1,20 @@
 //! Periodic parts of what is left in the force while the tool touches.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::evidence::{Evidence, Prediction};
-use crate::effects::SLOWEST_TOOL;
+use crate::effects::{known_turns, tool_turns_at};
 use crate::plant::{Channel, PHASES};
 
 /// Samples below which nothing is said [1].
 const LEAST_SAMPLES: usize = 50;
 /// Distance of the frequencies looked at [Hz].
 const SPACING: f64 = 0.025;
+/// Those looked at, in that distance, beside those at which the tool is known to turn.
+const INDICES: Range<usize> = 20..4000;
 
 /// Gain in a sum of squares by phases of their own beyond which the recordings' phases differ: far beyond what noise gains by one phase a recording [1].
 const GAIN_OF_PHASES: f64 = 50.0;
@@ -29,17 +32,21 @@ pub struct Line {
     pub phases: Vec<(usize, f64)>,
 }
 
-/// The strongest periodic parts of the force while touching, the strongest first, at most two slower and two faster than a tool turns, by least squares of
-/// a sine over all recordings; with the same phase in all, but for one slower and one faster that are much stronger with phases of their own.
+/// The strongest periodic parts of the force while touching, the strongest first, at most two at which the tool may turn and two others, by least squares of
+/// a sine over all recordings; with the same phase in all, but for one of either kind that is much stronger with phases of their own.
 pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<Line> {
+    let of_tool = |frequency: f64| tool_turns_at(&prediction.plant, frequency);
     let left = Left::of(evidence, prediction, Channel::Force as usize);
-    let own: Vec<Line> = left.with_phases();
-    let peaks = left.peaks(|sums| coherent(sums));
+    let own: Vec<Line> = left.with_phases(of_tool);
+    let peaks = left.peaks(coherent);
     let lines = peaks.into_iter().map(|frequency| Line {
         frequency,
         phases: Vec::new(),
     });
-    let (low, high): (Vec<Line>, Vec<Line>) = own.into_iter().chain(lines).partition(is_slow);
+    let (low, high): (Vec<Line>, Vec<Line>) = own
+        .into_iter()
+        .chain(lines)
+        .partition(|line| !of_tool(line.frequency));
     low.into_iter()
         .take(2)
         .chain(high.into_iter().take(2))
@@ -51,15 +58,13 @@ pub fn strongest_in(evidence: &Evidence, prediction: &Prediction, channel: usize
     Left::of(evidence, prediction, channel).peaks(coherent)
 }
 
-fn is_slow(line: &Line) -> bool {
-    line.frequency < SLOWEST_TOOL
-}
-
 /// What is left in a channel, of the force while touching alone, by recording: time [s] and value, outliers clipped [standard deviations].
 struct Left {
     recordings: Vec<Vec<[f64; 2]>>,
     mean: f64,
     count: usize,
+    /// Frequencies at which the tool may turn [Hz]; zero where they are not known.
+    turns: [f64; 2],
 }
 
 /// Sum of sines and cosines over a recording: real and imaginary part.
@@ -102,6 +107,7 @@ impl Left {
             mean: values.sum::<f64>() / count as f64,
             recordings,
             count,
+            turns: known_turns(&prediction.plant).unwrap_or_default(),
         }
     }
 
@@ -123,7 +129,10 @@ impl Left {
         if self.count < LEAST_SAMPLES {
             return vec![];
         }
-        let frequencies: Vec<f64> = (20..4000).map(|i| f64::from(i) * SPACING).collect();
+        let [from, to] = self.turns.map(|end| (end / SPACING) as usize);
+        let above = from.max(INDICES.end)..to.max(INDICES.end);
+        let indices = INDICES.chain(above);
+        let frequencies: Vec<f64> = indices.map(|i| i as f64 * SPACING).collect();
         let powers: Vec<f64> = frequencies
             .par_iter()
             .map(|f| power(&self.sums(*f)))
@@ -136,11 +145,11 @@ impl Left {
         peaks.into_iter().map(|(_, frequency)| frequency).collect()
     }
 
-    /// The strongest slow line and the strongest fast one, where the recordings' phases differ.
-    fn with_phases(&self) -> Vec<Line> {
+    /// The strongest line at which the tool may turn and the strongest other one, where the recordings' phases differ.
+    fn with_phases(&self, of_tool: impl Fn(f64) -> bool) -> Vec<Line> {
         let peaks = self.peaks(of_own_phases);
-        let strongest = |slow: bool| peaks.iter().find(|f| (**f < SLOWEST_TOOL) == slow);
-        let lines = [strongest(true), strongest(false)].into_iter().flatten();
+        let strongest = |tool: bool| peaks.iter().find(|f| of_tool(**f) == tool);
+        let lines = [strongest(false), strongest(true)].into_iter().flatten();
         lines
             .filter_map(|frequency| self.line_of_phases(*frequency))
             .collect()
@@ -190,12 +199,13 @@ mod tests {
             count: recordings.iter().map(Vec::len).sum(),
             recordings,
             mean: 0.0,
+            turns: [0.0; 2],
         }
     }
 
     #[test]
     fn phases_that_differ_between_recordings_are_found() {
-        let lines = left(&[0.4, 2.4, -1.6]).with_phases();
+        let lines = left(&[0.4, 2.4, -1.6]).with_phases(|f| f >= 11.0);
         assert_eq!(lines.len(), 1, "{lines:?}");
         assert!((lines[0].frequency - 7.3).abs() < 0.03, "{lines:?}");
         for (place, expected) in [(1, 2.0), (2, -2.0)] {
@@ -209,7 +219,7 @@ mod tests {
 
     #[test]
     fn one_phase_is_no_phase_of_each() {
-        assert_eq!(left(&[0.4, 0.4, 0.4]).with_phases(), []);
+        assert_eq!(left(&[0.4, 0.4, 0.4]).with_phases(|f| f >= 11.0), []);
         let peaks = left(&[0.4, 0.4]).peaks(coherent);
         assert!((peaks[0] - 7.3).abs() < 0.03, "{peaks:?}");
     }

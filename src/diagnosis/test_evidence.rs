@@ -20,6 +20,7 @@ pub(super) fn plant() -> PlantParameters {
             law: ContactLaw::Linear { stiffness: 2e5 },
             damping: 400.0,
             surface_offset: 0.0,
+            spindle_frequency: 0.0,
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         },
@@ -34,26 +35,35 @@ pub(super) fn plant() -> PlantParameters {
 
 /// Recordings of half a second on a surface, which say little.
 pub(super) fn evidence(recordings: usize) -> Evidence {
-    let time: Vec<f64> = (0..126).map(|i| 0.004 * f64::from(i)).collect();
-    let count = time.len();
-    let inputs = PlantInputs {
-        cell: None,
-        motion: None,
-        initial: InitialState::AtRest,
-        place: 0,
-        set_pressure: vec![2e5; count],
-        extends: vec![true; count],
-        surface: vec![0.02; count],
-        time,
+    evidence_of(&plant(), vec![vec![2e5; 126]; recordings])
+}
+
+/// Recordings of a device on a surface under set pressures [Pa gauge], a value every 4 ms.
+pub(super) fn evidence_of(truth: &PlantParameters, set_pressures: Vec<Vec<f64>>) -> Evidence {
+    let measured = |(index, set_pressure): (usize, Vec<f64>)| {
+        let count = set_pressure.len();
+        let inputs = PlantInputs {
+            cell: None,
+            motion: None,
+            initial: InitialState::AtRest,
+            place: 0,
+            set_pressure,
+            extends: vec![true; count],
+            surface: vec![0.02; count],
+            time: (0..count).map(|i| 0.004 * i as f64).collect(),
+        };
+        Measured {
+            name: format!("{index}.csv"),
+            readings: simulate(truth, &inputs).readings,
+            inputs,
+            free: false,
+        }
     };
-    let readings = simulate(&plant(), &inputs).readings;
-    let measured = |index: usize| Measured {
-        name: format!("{index}.csv"),
-        inputs: inputs.clone(),
-        readings: readings.clone(),
-        free: false,
-    };
-    let recordings = (0..recordings).map(measured).collect();
+    let recordings = set_pressures
+        .into_iter()
+        .enumerate()
+        .map(measured)
+        .collect();
     Evidence::new(recordings, [400.0, 2e-5, 0.8, 0.15])
 }
 

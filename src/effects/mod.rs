@@ -16,7 +16,7 @@ mod sensors;
 
 pub use catalogue::{CATALOGUE, UNLISTED, every, vocabulary};
 pub use cell::{CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, SERVO_LAG};
-pub use contact::SLOWEST_TOOL;
+pub use contact::{known_turns, tool_turns_at};
 pub use effect::{Clues, Effect, Parameter, Subsystem, Which};
 pub use header::{Header, kinds, meaning};
 pub use links::{LINK_EFFECTS, candidates};

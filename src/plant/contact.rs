@@ -90,6 +90,8 @@ pub struct ContactParameters {
     pub damping: f64,
     /// The surface lies off where the robot says, positive along extension [m].
     pub surface_offset: f64,
+    /// Turns of the tool a second [Hz]; 0 where it is not known.
+    pub spindle_frequency: f64,
     /// The tool turns off centre.
     pub runout: Periodic,
     /// The surface is wavy.
@@ -103,6 +105,7 @@ impl ContactParameters {
             law: ContactLaw::Linear { stiffness },
             damping,
             surface_offset: 0.0,
+            spindle_frequency: 0.0,
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         }

@@ -110,6 +110,7 @@ impl LoadedCell {
         let device = scenario.device.parameters.clone();
         let law = (contact.stiffness, contact.damping);
         let mut plant = PlantParameters::of_cell(device, law, cell);
+        plant.contact.spindle_frequency = contact.spindle_frequency;
         for effect in &scenario.effects {
             effect.put_into(&mut plant);
         }

@@ -220,6 +220,8 @@ pub struct ContactScenario {
     pub damping: f64,
     /// Coulomb friction coefficient [1].
     pub friction: f64,
+    /// Turns of the tool a second [Hz]; 0 where it is not known.
+    pub spindle_frequency: f64,
     /// Runout of the tool, zero to peak [m].
     pub runout_amplitude: f64,
     /// Its turns a second [Hz].

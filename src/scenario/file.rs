@@ -228,6 +228,7 @@ pub(super) struct ContactKeys {
     pub stiffness_n_per_m: Option<f64>,
     pub damping_n_s_per_m: Option<f64>,
     pub friction_coefficient: Option<f64>,
+    pub spindle_frequency_hz: Option<f64>,
     pub runout_um: Option<f64>,
     pub runout_frequency_hz: Option<f64>,
 }

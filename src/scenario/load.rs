@@ -213,8 +213,9 @@ pub(super) fn contact(section: &Section<'_>, keys: &file::ContactKeys) -> Result
         stiffness: section.known_or_default(&registry::CONTACT_STIFFNESS, "stiffness_n_per_m", keys.stiffness_n_per_m)?,
         damping: section.known_or_default(&registry::CONTACT_DAMPING, "damping_n_s_per_m", keys.damping_n_s_per_m)?,
         friction: section.known_or_default(&registry::EDGE_FRICTION, "friction_coefficient", keys.friction_coefficient)?,
+        spindle_frequency: section.known_or_default(&registry::SPINDLE_FREQUENCY, "spindle_frequency_hz", keys.spindle_frequency_hz)?,
         runout_amplitude: section.number("runout_um", keys.runout_um.unwrap_or(0.0), 0.0..=1000.0)?,
-        runout_frequency: section.known_or_default(&registry::RUNOUT_FREQUENCY, "runout_frequency_hz", keys.runout_frequency_hz)?,
+        runout_frequency: section.known_or_default(&registry::RUNOUT_FREQUENCY, "runout_frequency_hz", keys.runout_frequency_hz.or(keys.spindle_frequency_hz.filter(|known| *known > 0.0)))?,
     })
 }
 

@@ -32,6 +32,7 @@ fn plant() -> PlantParameters {
             law: ContactLaw::Linear { stiffness: 2e5 },
             damping: 400.0,
             surface_offset: 0.0,
+            spindle_frequency: 0.0,
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         },
@@ -59,6 +60,7 @@ fn recording(contact: bool, seed: u64) -> (Vec<f64>, [Vec<f64>; 4]) {
         cell: None,
         motion: None,
         initial: crate::plant::InitialState::AtRest,
+        place: 0,
     };
     let mut readings = simulate(&plant(), &inputs).readings;
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);

@@ -112,3 +112,48 @@ impl Search<'_> {
             .any(|(_, _, slopes)| slopes.iter().any(|slope| slope.abs() > NOTHING))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::input::tolerated;
+    use super::super::super::model_error::ModelError;
+    use super::super::super::settings::Settings;
+    use super::super::super::test_evidence::{evidence_of, plant};
+    use super::*;
+    use crate::plant::registry;
+
+    /// A spring that nobody modelled bends a joint fit of the regulator; its own channel tells the truth.
+    #[test]
+    fn what_is_missing_behind_the_outlet_does_not_bend_the_regulator() {
+        let gain = registry::REGULATOR_GAIN.quantity();
+        let mut truth = plant();
+        gain.set(&mut truth, 1.01);
+        registry::RETURN_STIFFNESS
+            .quantity()
+            .set(&mut truth, 2000.0);
+        let stairs = |first: f64| (0..500).map(|i| first + 4e4 * f64::from(i / 100)).collect();
+        let evidence = evidence_of(&truth, vec![stairs(1.6e5), stairs(2.2e5)]);
+        let mut search = Search {
+            evidence: &evidence,
+            believed: plant(),
+            tolerated: vec![tolerated(gain, 1.0, 0.1)],
+            candidates: Vec::new(),
+            shown: Vec::new(),
+            look: 1,
+            most_effects: 1,
+            model_error: ModelError::NONE,
+            settings: Settings::DEFAULT,
+        };
+        let joint = search.refit(&search.baseline(), Refit::FULL);
+        let mut full = vec![joint.clone()];
+        search.settle_regulator(&mut full, &mut |_| {});
+        let error = |hypothesis: &Hypothesis| (hypothesis.fit.values[0] - 1.01).abs();
+        assert!(error(&joint) > 0.01, "{:?}", joint.fit.values);
+        assert!(error(&full[0]) < 1e-3, "{:?}", full[0].fit.values);
+        let prior = search.tolerated[0].prior;
+        assert!(
+            matches!(prior, Prior::Settled { deviation } if deviation < 1e-3),
+            "{prior:?}"
+        );
+    }
+}

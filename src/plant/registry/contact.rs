@@ -15,8 +15,10 @@ numbers! { CONTACT:
     HERTZ_STIFFNESS = "contact.hertz_stiffness_n_per_m15", ANY, (hertz, |p, _, stiffness| p.contact.law = ContactLaw::Hertz { stiffness });
     /// how far the surface stands from where the robot has it, along extension
     SURFACE_OFFSET = "contact.surface_offset_m", ANY, (p => p.contact.surface_offset);
-    /// its turns a second
-    RUNOUT_FREQUENCY = "contact.runout_frequency_hz", [0.1, 200.0], (p => p.contact.runout.frequency), 30.0;
+    /// turns of the tool a second, 0 where it is not known
+    SPINDLE_FREQUENCY = "contact.spindle_frequency_hz", [0.0, 1000.0], (p => p.contact.spindle_frequency), 0.0;
+    /// its turns a second; the spindle's where those are given
+    RUNOUT_FREQUENCY = "contact.runout_frequency_hz", [0.1, 1000.0], (p => p.contact.runout.frequency), 30.0;
     /// runout in phase with the sine
     RUNOUT_SINE = "contact.runout_sine_m", ANY, (p => p.contact.runout.sine);
     /// runout in phase with the cosine

@@ -7,7 +7,7 @@ use crate::physics::regulator::RegulatorParameters;
 use crate::plant::{CellParameters, Chain, Number, PlantParameters, registry};
 
 /// The numbers of the rig, in the order of the format; each stands under its dotted name.
-pub(super) static NUMBERS: [&Number; 20] = [
+pub(super) static NUMBERS: [&Number; 21] = [
     &registry::CYLINDER_COUNT,
     &registry::BORE,
     &registry::ROD,
@@ -28,6 +28,7 @@ pub(super) static NUMBERS: [&Number; 20] = [
     &registry::ATMOSPHERE,
     &registry::CONTACT_STIFFNESS,
     &registry::CONTACT_DAMPING,
+    &registry::SPINDLE_FREQUENCY,
 ];
 
 /// Keys of `[sensors]` with their plausible ranges: the rate, then the channels' noise in the order of `plant::CHANNELS`.
@@ -43,10 +44,10 @@ pub(super) const SENSOR_KEYS: [(&str, [f64; 2]); 5] = [
 pub(super) const DRIFT: (&str, [f64; 2]) =
     ("sensors.regulator_pressure_drift_pa_per_s", [0.0, 1e4]);
 
-/// Numbers that a rig with a part of the device must have; all of them for the whole of it.
+/// Numbers that a rig with a part of the device must have; for the whole of it all but the turns of the tool.
 pub(super) fn needs(chain: Chain, key: &str) -> bool {
     match chain {
-        Chain::Whole => true,
+        Chain::Whole => key != registry::SPINDLE_FREQUENCY.name,
         Chain::MovedPiston => ["cylinder.count", "cylinder.bore_m"].contains(&key),
         Chain::DrivenSlide => key == "cylinder.moving_mass_kg",
         Chain::ClosedChamber => false,

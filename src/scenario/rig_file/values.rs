@@ -53,7 +53,8 @@ pub(super) fn base(
         let section = Section::new(document, table);
         let number = find(&section, keys, table, key)?;
         let is_count = known.name == registry::CYLINDER_COUNT.name;
-        let value = match is_count {
+        let is_exact = is_count || known.name == registry::SPINDLE_FREQUENCY.name;
+        let value = match is_exact {
             true => exact(&section, key, number, known.range)?,
             false => checked(&section, key, number.value, known.range)?,
         };

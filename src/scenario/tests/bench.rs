@@ -44,6 +44,7 @@ fn every_kind_of_load_is_read() {
         law: ContactLaw::Linear { stiffness: 2e4 },
         damping: 200.0,
         surface_offset: 0.0,
+        spindle_frequency: 0.0,
         runout: Periodic::NONE,
         waviness: Periodic::NONE,
     };

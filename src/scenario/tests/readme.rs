@@ -319,7 +319,8 @@ fn range_is_kept(format: Format, key: &str, row: &Row) -> bool {
 
 /// Keys other than those of the device model file that give a number of the description, with it.
 #[rustfmt::skip] // A table: one number a line.
-const GIVEN: [(&str, &Number); 14] = [
+const GIVEN: [(&str, &Number); 15] = [
+    ("contact.spindle_frequency_hz", &registry::SPINDLE_FREQUENCY),
     ("contact.stiffness_n_per_m", &registry::CONTACT_STIFFNESS), ("load.stiffness_n_per_m", &registry::CONTACT_STIFFNESS),
     ("contact.damping_n_s_per_m", &registry::CONTACT_DAMPING), ("load.damping_n_s_per_m", &registry::CONTACT_DAMPING),
     ("contact.friction_coefficient", &registry::EDGE_FRICTION), ("contact.runout_frequency_hz", &registry::RUNOUT_FREQUENCY),
