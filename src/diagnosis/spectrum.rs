@@ -185,7 +185,7 @@ mod tests {
 
     fn left(phases: &[f64]) -> Left {
         let of = |phase: &f64| {
-            let times = (0..600).map(|i| 0.01 * f64::from(i));
+            let times = (0..2000).map(|i| 0.003 * f64::from(i));
             let wave = |t: f64| {
                 [
                     t,
