@@ -142,7 +142,7 @@ impl Search<'_> {
             .collect();
         close.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         let more: Vec<Hypothesis> = (close.into_iter().take(MOST_CLOSE))
-            .map(|h| self.refit(h, Refit::FULL))
+            .map(|h| self.rival(h, self.score(best)))
             .collect();
         for h in &more {
             observer(&Step::Variation.of(h, format!("close {:.1}", self.score(h))));
@@ -150,6 +150,19 @@ impl Search<'_> {
         full.extend(more);
         // The search has weighed the first one with more than its score.
         full[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
+    /// A rival fitted in full; one that is hopelessly behind the best score before the finest measure is left there.
+    fn rival(&self, rough: &Hypothesis, best: f64) -> Hypothesis {
+        let coarse = Refit {
+            stages: FULL.split_at(FULL.len() - 1).0,
+            ..Refit::FULL
+        };
+        let fitted = self.refit(rough, coarse);
+        match self.score(&fitted) < best + self.settings.given_up {
+            true => self.refit(&fitted, Refit::FINEST.from(Start::Here)),
+            false => fitted,
+        }
     }
 
     /// Rough cost that others are compared with: of the same effects as the best explanation, fitted roughly where that was done.
