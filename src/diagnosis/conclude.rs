@@ -170,7 +170,13 @@ impl Diagnosis {
         let with = self.ranked.iter().filter(has);
         let probability = with.map(|r| r.probability).sum::<f64>().min(1.0);
         let own = &self.best().fit;
-        let left = self.model_error.left(&self.evidence, own);
+        let left = match &self.remaining {
+            // What no law explains of a part counts as its noise: all of that but the sensor's own is left by the laws.
+            Some(remaining) => {
+                remaining.beyond_noise() * own.misfit / remaining.autocorrelation_samples
+            }
+            None => self.model_error.left(&self.evidence, own),
+        };
         // A law that excludes it is no explanation without what it stands for: the probability weighs that.
         let in_place = |r: &super::ranking::Ranked| {
             let mut effects = r.hypothesis.effects.iter();
@@ -178,7 +184,11 @@ impl Diagnosis {
             named.is_some_and(|own| effects.any(|e| e.excludes(own)))
         };
         let without = (self.ranked.iter()).filter(|r| !has(r) && !in_place(r));
-        let least = without.map(|r| r.hypothesis.fit.cost() - own.cost());
+        let least = without.map(|r| match self.remaining {
+            // Those far behind were not fitted to all samples; scores are of the same ones.
+            Some(_) => r.score - self.ranked[0].score,
+            None => r.hypothesis.fit.cost() - own.cost(),
+        });
         let gain = least.fold(f64::INFINITY, f64::min).max(0.0);
         match left > 0.0 && gain.is_finite() {
             true => probability * gain / (gain + left),

@@ -91,6 +91,11 @@ impl Remaining {
         }
     }
 
+    /// Share of it that is not the sensor's noise, in its square [1].
+    pub fn beyond_noise(&self) -> f64 {
+        (1.0 - (self.noise / self.size).powi(2)).max(0.0)
+    }
+
     /// Whether it turns out to be clearly more than what was left in the end.
     pub fn is_more_than(&self, other: &Self) -> bool {
         self.size > LIKE_NOISE * other.size

@@ -17,6 +17,9 @@ use crate::effects::meaning;
 use crate::plant::CHANNELS;
 use crate::quantity::{change, significant};
 
+/// Probability below which an effect that is named is said not to be trusted [1].
+const TRUSTED: f64 = 0.5;
+
 impl Diagnosis {
     pub(super) fn what_is_missing(&self) -> Vec<String> {
         let mut paragraphs = Vec::new();
@@ -48,8 +51,15 @@ impl Diagnosis {
                 })
                 .collect();
             let subsystem = effect.subsystem.name().replace('_', " ");
+            let confidence = self.confidence(effect.name);
+            let doubt = match confidence < TRUSTED {
+                true => {
+                    " Not to be trusted: it gains less than what all of them leave, and may stand in for what another law gets slightly wrong."
+                }
+                false => "",
+            };
             paragraphs.push(format!(
-                "{} ({subsystem}): {}. {}. Probability {}; the intervals are those of 95 %.",
+                "{} ({subsystem}): {}. {}. Probability {}; the intervals are those of 95 %.{doubt}",
                 spoken_name(effect.name),
                 law.map_or_else(
                     || meaning(effect.name).to_owned(),
@@ -59,7 +69,7 @@ impl Diagnosis {
                     None => capital(&listed(&numbers)),
                     Some(_) => format!("With {}", listed(&numbers)),
                 },
-                probability(self.confidence(effect.name))
+                probability(confidence)
             ));
         }
         paragraphs.extend(self.unlisted_words());
