@@ -253,6 +253,21 @@ fn window(fit: &Fit, share: f64) -> Option<[f64; 2]> {
     (to - from < WIDE * (ends[1] - ends[0])).then_some([from, to])
 }
 
+/// Names of the variables that terms depend on, each once, three at most.
+fn variables<'a>(terms: impl Iterator<Item = &'a Latent>) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for term in terms {
+        let directed = term.directed.then_some("velocity_sign");
+        for name in [term.variable.name()].into_iter().chain(directed) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    names.truncate(3);
+    names
+}
+
 impl Search<'_> {
     /// The latent term that explains most beside a hypothesis; none where all promise to cost far more than what another explanation costs roughly, `rival`.
     pub fn latent(
@@ -302,25 +317,9 @@ impl Search<'_> {
         let latent = best.unlisted()?;
         let gain = (base.fit.rough - least).max(0.0);
         let alike = |score: f64| score - least <= ALIKE * gain;
-        let mut depends_on = Vec::new();
-        for (score, hypothesis) in &fitted {
-            let Some(other) = hypothesis.unlisted() else {
-                continue;
-            };
-            if other.port == latent.port && alike(*score) {
-                depends_on.push(other.variable.name());
-                if other.directed {
-                    depends_on.push("velocity_sign");
-                }
-            }
-        }
-        let mut seen = Vec::new();
-        depends_on.retain(|name| {
-            let new = !seen.contains(name);
-            seen.push(*name);
-            new
-        });
-        depends_on.truncate(3);
+        let near = fitted.iter().filter(|(score, _)| alike(*score));
+        let near = near.filter_map(|(_, hypothesis)| hypothesis.unlisted());
+        let mut depends_on = variables(near.filter(|other| other.port == latent.port));
         let mut full: Vec<Hypothesis> = fitted
             .iter()
             .filter(|(score, _)| alike(*score))
