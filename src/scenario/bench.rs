@@ -73,6 +73,7 @@ pub struct BenchScenario {
 }
 
 /// Load that the tool meets.
+#[expect(clippy::large_enum_variant, reason = "one of a scenario")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadScenario {
     /// Nothing.

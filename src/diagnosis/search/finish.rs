@@ -19,6 +19,8 @@ const MOST_CLOSE: usize = 6;
 const MOST_SMALL: usize = 3;
 /// Influence of an effect on the channel that it moves most below which it is not named, in standard deviations of that channel's noise [1].
 pub(in crate::diagnosis) const BELOW_NOISE: f64 = 0.5;
+/// Error in time that is forgiven where that is judged [s].
+const FORGIVEN: f64 = 1e-3;
 /// Iterations of a rough fit without one of the effects.
 const LIGHTER: usize = 8;
 /// The last stages of a full fit, for what is all but there.
@@ -358,7 +360,8 @@ impl Search<'_> {
         }
     }
 
-    /// What an effect of a hypothesis does to the channel that it moves most, root mean square, in standard deviations of its noise [1].
+    /// What an effect of a hypothesis does to the channel that it moves most, root mean square, in standard deviations of its noise, with an error in time of
+    /// 1 ms forgiven: an impact that is met a little earlier is a spike, and no matter [1].
     fn influence(&self, hypothesis: &Hypothesis, index: usize) -> f64 {
         let plant = &hypothesis.fit.prediction.plant;
         let mut bare = plant.clone();
@@ -369,8 +372,10 @@ impl Search<'_> {
         }
         let with = self.evidence.predict(plant, false, None);
         let without = self.evidence.predict(&bare, false, None);
+        let shares = self.evidence.shares(FORGIVEN, false);
         let moved: Vec<f64> = (with.residuals.iter().zip(&without.residuals))
-            .map(|(with, without)| with - without)
+            .zip(shares.iter())
+            .map(|((with, without), share)| (with - without) * share)
             .collect();
         let mut sums = [[0.0; 2]; CHANNELS.len()];
         for (_, channel, moved) in by_channel(self.evidence, &moved) {

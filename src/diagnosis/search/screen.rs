@@ -102,7 +102,7 @@ impl Search<'_> {
             .filter(|effect| !from.effects.iter().any(|e| e.excludes(effect)))
             .flat_map(|effect| {
                 (effect.starts(&clues).into_iter())
-                    .chain(self.from_within(from, effect))
+                    .chain(self.start_within(from, effect))
                     .map(|values| Start::at(effect, values, &lines))
                     .collect::<Vec<Start>>()
             })
@@ -144,7 +144,7 @@ impl Search<'_> {
     }
 
     /// Where an effect stands that frees what is tolerated: small ones lie just beyond the tolerance.
-    fn from_within(&self, from: &Hypothesis, effect: &Effect) -> Option<Vec<f64>> {
+    fn start_within(&self, from: &Hypothesis, effect: &Effect) -> Option<Vec<f64>> {
         let parameters = effect.parameters(&self.believed);
         let is_tolerated =
             |quantity: &Quantity| self.tolerated.iter().any(|f| f.quantity.is(quantity));

@@ -67,6 +67,7 @@ const USUAL_FORCE: f64 = 150.0;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::device::DeviceParameters;
     use crate::plant::CellParameters;
 
     #[test]
@@ -74,7 +75,7 @@ mod tests {
         let starts = |spindle: f64| {
             let law = (1e5, 100.0);
             let mut plant =
-                PlantParameters::of_cell(Default::default(), law, CellParameters::RIGID);
+                PlantParameters::of_cell(DeviceParameters::default(), law, CellParameters::RIGID);
             plant.contact.spindle_frequency = spindle;
             let clues = Clues {
                 plant: &plant,
