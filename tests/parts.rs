@@ -342,7 +342,10 @@ fn real_seals_fitted_at_1_and_7_bar_predict_5_bar() {
         ) else {
             return;
         };
-        effect(&answer, "pressure_dependent_friction");
+        assert!(effect(&answer, "pressure_dependent_friction").confidence > 0.9);
+        // Lags, springs and biases stand in for what the law gets slightly wrong of a real seal: they stood there "above 99.9 %".
+        let mut beside = answer.effects.iter();
+        assert!(beside.all(|e| e.name == "pressure_dependent_friction" || e.confidence < 0.5));
         assert!(
             answer.details.prediction[0].after < most,
             "{:?}",
