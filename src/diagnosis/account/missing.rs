@@ -54,7 +54,7 @@ impl Diagnosis {
             let confidence = self.confidence(effect.name);
             let doubt = match confidence < TRUSTED {
                 true => {
-                    " Not to be trusted: it gains less than what all of them leave, and may stand in for what another law gets slightly wrong."
+                    " Not to be trusted: another explanation is as likely, or it gains less than what all of them leave and may stand in for what another law gets slightly wrong."
                 }
                 false => "",
             };

@@ -61,7 +61,9 @@ struct Promise {
 impl Start {
     /// An effect from these values, its phases where the line at its frequency has one in each recording.
     fn at(effect: &'static Effect, values: Vec<f64>, lines: &[Line]) -> Self {
-        let line = lines.iter().find(|line| line.frequency == values[0]);
+        let line = lines
+            .iter()
+            .find(|line| values.first() == Some(&line.frequency));
         let phases = match (effect.phase, line) {
             (Some(phase), Some(line)) => (line.phases.iter())
                 .map(|(recording, start)| Free {
@@ -148,7 +150,7 @@ impl Search<'_> {
         let parameters = effect.parameters(&self.believed);
         let is_tolerated =
             |quantity: &Quantity| self.tolerated.iter().any(|f| f.quantity.is(quantity));
-        let all = parameters.iter().all(|p| is_tolerated(&p.quantity));
+        let all = !parameters.is_empty() && parameters.iter().all(|p| is_tolerated(&p.quantity));
         let present = parameters
             .iter()
             .map(|p| p.quantity.get(&from.fit.prediction.plant));
