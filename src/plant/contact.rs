@@ -183,3 +183,37 @@ impl ContactParameters {
             .max(self.damping / mass)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_phase_of_a_recording_is_a_shift_in_time_of_that_one_alone() {
+        let mut contact = ContactParameters::linear(1e5, 100.0);
+        contact.runout = Periodic {
+            sine: 3e-5,
+            cosine: -2e-5,
+            frequency: 7.0,
+            ..Periodic::NONE
+        };
+        let plain = contact;
+        contact.runout.phases[2] = 0.8;
+        for time in [0.0, 0.013, 1.7] {
+            let ahead = time + 0.8 / (TAU * 7.0);
+            let [(found, rate), (expected, its_rate)] = [
+                contact.in_recording(2).deviation(time),
+                plain.deviation(ahead),
+            ];
+            assert!((found - expected).abs() < 1e-15 && (rate - its_rate).abs() < 1e-12);
+            assert_eq!(
+                contact.in_recording(1).deviation(time),
+                plain.deviation(time)
+            );
+            assert_eq!(
+                contact.in_recording(PHASES).deviation(time),
+                plain.deviation(time)
+            );
+        }
+    }
+}

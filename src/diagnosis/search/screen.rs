@@ -338,3 +338,54 @@ fn best_of_each(promises: Vec<Promise>) -> Vec<Promise> {
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::evidence::Evidence;
+    use super::super::super::fit::{ROUGH, Refit};
+    use super::super::super::model_error::ModelError;
+    use super::super::super::settings::Settings;
+    use super::super::super::test_evidence::{evidence_of, plant};
+    use super::*;
+    use crate::effects::every;
+
+    /// With one phase in all of them a runout that starts anew in each recording was answered "nothing missing".
+    #[test]
+    fn a_runout_that_starts_anew_in_each_recording_is_found_with_its_phases() {
+        let of = |phase: f64| {
+            let mut truth = plant();
+            let sine = registry::RUNOUT_SINE.quantity();
+            let cosine = registry::RUNOUT_COSINE.quantity();
+            let (sin, cos) = phase.sin_cos();
+            sine.set(&mut truth, 4e-5 * cos);
+            cosine.set(&mut truth, 4e-5 * sin);
+            registry::RUNOUT_FREQUENCY.quantity().set(&mut truth, 23.4);
+            evidence_of(&truth, vec![vec![2e5; 500]]).recordings
+        };
+        let recordings = [0.3, 2.4, -1.5].into_iter().flat_map(of).collect();
+        let evidence = Evidence::new(recordings, [400.0, 2e-5, 0.8, 0.15]);
+        let search = Search {
+            evidence: &evidence,
+            believed: plant(),
+            tolerated: Vec::new(),
+            candidates: every().filter(|e| e.name == "tool_runout").collect(),
+            shown: Vec::new(),
+            look: 3,
+            most_effects: 1,
+            model_error: ModelError::NONE,
+            settings: Settings::DEFAULT,
+        };
+        let screened = search.screen(&search.baseline(), ROUGH, f64::INFINITY);
+        let found = search.refit(&screened[0], Refit::FULL);
+        let [frequency, sine, cosine, second, third] = found.fit.values[..] else {
+            panic!("{:?}", found.fit.free);
+        };
+        assert!((frequency - 23.4).abs() < 0.01, "{frequency}");
+        assert!((sine.hypot(cosine) - 4e-5).abs() < 1e-6, "{sine} {cosine}");
+        assert!(
+            (second - 2.1).abs() < 0.05 && (third + 1.8).abs() < 0.05,
+            "{second} {third}"
+        );
+        assert_eq!(found.tolerated(&search.believed), 0);
+    }
+}
