@@ -2,7 +2,7 @@
 
 use crate::diagnosis::estimate::Number;
 use crate::diagnosis::finding::Diagnosis;
-use crate::effects::PresentEffect;
+use crate::effects::{PresentEffect, own_effect};
 use crate::scenario::effects::WrittenEffect;
 use crate::scenario::rig_file::{RigFile, improved_text};
 
@@ -39,7 +39,20 @@ pub(super) fn written<'a>(
                 .collect(),
         }
     });
-    kept.chain(new).collect()
+    kept.chain(new).chain(formula(diagnosis)).collect()
+}
+
+/// The formula of a term without a name, if it is one.
+fn formula(diagnosis: &Diagnosis) -> Option<WrittenEffect<'_>> {
+    let law = &diagnosis.best().formula()?.law;
+    let numbers = diagnosis.estimates.formula.iter();
+    Some(WrittenEffect {
+        effect: own_effect(law, 0),
+        law: Some(law),
+        parameters: numbers
+            .map(|n| (n.name, n.value, Some(n.interval)))
+            .collect(),
+    })
 }
 
 /// Whether it is a law whose numbers were sought. Then it stands in the file only where they were found.

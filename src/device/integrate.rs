@@ -107,6 +107,7 @@ impl Device {
         substeps: usize,
     ) -> Impulses {
         let regulator = &self.parameters.regulator;
+        let set_pressure = set_pressure + state.disturbance.set_pressure;
         state.regulator.command(regulator, set_pressure);
         let delay = self.parameters.switching_delay;
         state.spool.command(state.valve, delay);
@@ -170,7 +171,7 @@ impl Device {
         dt: f64,
     ) -> f64 {
         let volumes = self.smallest_volumes(motion, dt);
-        let air = (AIR_LIMIT / self.air_rate(volumes)).min(self.line_substep);
+        let air = (AIR_LIMIT / self.air_rate(volumes, &state.disturbance)).min(self.line_substep);
         if !C::MOVES {
             return air;
         }
@@ -337,7 +338,7 @@ impl<C: Carrier> Surroundings<'_, C> {
             self.valve,
             atmosphere + outlet,
             motion,
-            self.disturbance.mass_flows,
+            &self.disturbance,
         );
         let gas_force = device.gas_force_of(air.pressures);
         let mut rates = Flow {

@@ -1,4 +1,4 @@
-//! Leaks between the chambers and out of chamber 1, with the enthalpy that it carries.
+//! Leaks between the chambers and to the atmosphere, with the enthalpy that it carries.
 
 use super::pneumatics::Device;
 use super::state::AirState;
@@ -10,13 +10,18 @@ pub(super) struct LeakFlows {
     pub masses: [f64; 2],
     /// Enthalpy into each chamber [W].
     pub enthalpies: [f64; 2],
-    /// From the atmosphere into chamber 1 [kg/s].
-    pub external: f64,
+    /// From the atmosphere into each chamber [kg/s].
+    pub external: [f64; 2],
 }
 
 impl Device {
-    /// Flows of a leaking device at absolute chamber pressures [Pa].
-    pub(super) fn leak_flows(&self, air: &AirState, pressures: [f64; 2]) -> LeakFlows {
+    /// Flows of a leaking device at absolute chamber pressures [Pa], with further areas of leaks from each chamber to the atmosphere [m2].
+    pub(super) fn leak_flows(
+        &self,
+        air: &AirState,
+        pressures: [f64; 2],
+        further: [f64; 2],
+    ) -> LeakFlows {
         let leakage = &self.parameters.leakage;
         let gas = &self.parameters.gas;
         let discharge = self.parameters.discharge_coefficient;
@@ -29,15 +34,13 @@ impl Device {
         };
         let chambers = [0, 1].map(|i| (pressures[i], self.temperature_of(air, i)));
         let cross = flow(leakage.cross_piston, chambers[0], chambers[1]);
-        let external = flow(
-            leakage.external,
-            (gas.atmosphere, gas.temperature),
-            chambers[0],
-        );
+        let surroundings = (gas.atmosphere, gas.temperature);
+        let areas = [leakage.external + further[0], further[1]];
+        let [first, second] = [0, 1].map(|i| flow(areas[i], surroundings, chambers[i]));
         LeakFlows {
-            masses: [external.0 - cross.0, cross.0],
-            enthalpies: [external.1 - cross.1, cross.1],
-            external: external.0,
+            masses: [first.0 - cross.0, second.0 + cross.0],
+            enthalpies: [first.1 - cross.1, second.1 + cross.1],
+            external: [first.0, second.0],
         }
     }
 }

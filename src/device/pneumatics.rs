@@ -41,6 +41,8 @@ pub struct Device {
     pub(super) piston_rates: PistonRates,
     /// Rate at which a volume comes to the pressure beside it, times that volume [m3/s].
     chamber_rate_volume: f64,
+    /// The same of a leak, by its area [m/s].
+    leak_rate: f64,
     /// Longest sub-step that a line, with the reservoir before it, is taken in [s].
     pub(super) line_substep: f64,
     /// Rate at which a reservoir without a line is drawn from or filled [1/s].
@@ -72,6 +74,8 @@ impl Device {
             areas: parameters.areas(),
             piston_rates: PistonRates::new(&parameters),
             chamber_rate_volume: parameters.stiffest_exponent() * rate_volume(port + leaks),
+            leak_rate: parameters.stiffest_exponent()
+                * rate_volume(parameters.discharge_coefficient),
             reservoir_rate: match (&parameters.supply_reservoir, &parameters.hose) {
                 (Some(reservoir), None) => {
                     reservoir.rate(gas) + rate_volume(valve.supply_conductance) / reservoir.volume
@@ -306,7 +310,7 @@ impl Device {
         }
     }
 
-    /// Rates of the air at an outlet pressure of the regulator [Pa absolute], with air that comes into each chamber from elsewhere [kg/s]. Into its one caller: a tenth of a step.
+    /// Rates of the air at an outlet pressure of the regulator [Pa absolute], under outside influences. Into its one caller: a tenth of a step.
     #[inline(always)]
     #[expect(clippy::too_many_lines, reason = "one balance, inlined as one")]
     pub(super) fn air_rates<const LEDGER: bool>(
@@ -315,7 +319,7 @@ impl Device {
         valve: ValvePosition,
         outlet: f64,
         motion: PistonMotion,
-        disturbance_flows: [f64; 2],
+        disturbance: &Disturbance,
     ) -> AirRates {
         let parameters = &self.parameters;
         let gas = &parameters.gas;
@@ -343,10 +347,11 @@ impl Device {
             gas.atmosphere,
             pressures[vented],
         );
-        let leaks = if parameters.leakage.is_none() {
+        let disturbance_flows = disturbance.mass_flows;
+        let leaks = if parameters.leakage.is_none() && disturbance.leaks == [0.0; 2] {
             LeakFlows::default()
         } else {
-            self.leak_flows(air, pressures)
+            self.leak_flows(air, pressures, disturbance.leaks)
         };
         let mut rates = AirState::default();
         let mut ledger = EnergyLedger::default();
@@ -409,7 +414,15 @@ impl Device {
             rates.reservoir_mass = reservoir.compressed(stored) - from_regulator.max(0.0);
         }
         let [first, second] = disturbance_flows;
-        let all = [from_regulator, flows[vented], leaks.external, first, second];
+        let [leak_1, leak_2] = leaks.external;
+        let all = [
+            from_regulator,
+            flows[vented],
+            leak_1,
+            leak_2,
+            first,
+            second,
+        ];
         for flow in all {
             rates.entered += flow.max(0.0);
             rates.left -= flow.min(0.0);
@@ -440,7 +453,7 @@ impl Device {
     }
 
     /// Rate at which the smallest volume of a step comes to the pressure beside it [1/s].
-    pub(super) fn air_rate(&self, volumes: [f64; 2]) -> f64 {
+    pub(super) fn air_rate(&self, volumes: [f64; 2], disturbance: &Disturbance) -> f64 {
         let smallest = volumes[0].min(volumes[1]);
         let gas = &self.parameters.gas;
         let wall = match self.parameters.gas_process {
@@ -449,7 +462,8 @@ impl Device {
                 conductance / (gas.mass(gas.atmosphere, smallest) * gas.specific_heat_volume())
             }
         };
-        self.chamber_rate_volume / smallest + self.reservoir_rate + wall
+        let leaks = self.leak_rate * disturbance.leaks.iter().sum::<f64>();
+        (self.chamber_rate_volume + leaks) / smallest + self.reservoir_rate + wall
     }
 }
 

@@ -29,10 +29,14 @@ pub struct DeviceState {
 /// Outside influences on a device that its parameters do not describe, set by whoever knows them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Disturbance {
+    /// Pressure added to the set pressure [Pa].
+    pub set_pressure: f64,
     /// Pressure added to the regulator's outlet [Pa].
     pub outlet: f64,
     /// Air into chambers 1 and 2, at the gas's temperature [kg/s].
     pub mass_flows: [f64; 2],
+    /// Area of a leak from chambers 1 and 2 to the atmosphere, beside that of the parameters [m2].
+    pub leaks: [f64; 2],
 }
 
 /// Air, in amounts that are conserved.

@@ -80,7 +80,7 @@ pub struct FoundEffect {
     pub parameters: Vec<(String, Estimate)>,
     /// Variables on which it depends.
     pub depends_on: Vec<String>,
-    /// The law, of an effect that a user wrote.
+    /// The law, of an effect that is written as an expression.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<FoundLaw>,
     /// Knowledge of physics without a name.
@@ -88,7 +88,7 @@ pub struct FoundEffect {
     pub unlisted: Option<Box<UnlistedReport>>,
 }
 
-/// A law that a user wrote.
+/// A law as an expression.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FoundLaw {
     /// Port at which it acts.
@@ -125,6 +125,12 @@ impl FoundEffect {
     /// Its meaning, in a line for people.
     #[must_use]
     pub fn meaning(&self) -> String {
+        if self.name == UNLISTED {
+            return match &self.law {
+                Some(law) => format!("{} = {}", law.acts_on.replace('_', " "), law.is),
+                None => meaning(UNLISTED).to_owned(),
+            };
+        }
         let own = self.law.as_ref().map(FoundLaw::words);
         own.unwrap_or_else(|| meaning(&self.name).to_owned())
     }
@@ -186,6 +192,9 @@ pub struct Mismatch {
 pub struct Alternative {
     /// Names.
     pub effects: Vec<String>,
+    /// Formula of the term without a name among them, if it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
     /// Odds against the answer given [1].
     pub odds: f64,
 }
@@ -352,6 +361,7 @@ mod tests {
             }],
             seconds: 8.4,
             alternatives: vec![Alternative {
+                formula: None,
                 effects: vec!["stribeck_friction".to_owned()],
                 odds: 0.02,
             }],

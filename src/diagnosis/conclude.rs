@@ -16,6 +16,7 @@ use super::extent::NEAR_NOISE;
 use super::finding::{Diagnosis, ErrorSize, Unseen};
 use super::fit::robust_sum;
 use super::hypothesis::{Hypothesis, spoken_name};
+use super::unlisted::report::formula_text;
 use super::links::Link;
 use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms, root_mean_square};
 use super::recorded::COLUMNS;
@@ -82,6 +83,7 @@ impl Diagnosis {
                 .rivals()
                 .map(|ranked| Alternative {
                     effects: ranked.hypothesis.spoken_names(),
+                    formula: ranked.hypothesis.unlisted().and_then(formula_text),
                     odds: ranked.odds,
                 })
                 .collect(),
@@ -129,11 +131,13 @@ impl Diagnosis {
             name: UNLISTED.to_owned(),
             subsystem: latent.port.subsystem().to_owned(),
             confidence: self.confidence(UNLISTED),
-            parameters: Vec::new(),
+            parameters: (self.estimates.formula.iter())
+                .map(|number| (number.name.to_owned(), estimate(number)))
+                .collect(),
             depends_on: (self.best().depends_on.iter())
                 .map(|name| (*name).to_owned())
                 .collect(),
-            law: None,
+            law: latent.formula().map(|formula| FoundLaw::of(&formula.law)),
             unlisted: self.unlisted_report().map(Box::new),
         });
         effects

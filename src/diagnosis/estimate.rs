@@ -11,9 +11,10 @@ use super::covariance::covariance;
 use super::evidence::Evidence;
 use super::fit::Fit;
 use super::free::{Free, Prior};
+use super::hypothesis::Hypothesis;
 use super::ranking::Ranked;
 use crate::effects::{Coordinate, Effect};
-use crate::plant::PlantParameters;
+use crate::plant::{Latent, PlantParameters};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -76,6 +77,8 @@ pub struct Estimates {
     pub tolerated: Vec<Number>,
     /// Numbers of each effect.
     pub effects: Vec<(&'static Effect, Vec<Number>)>,
+    /// Constants of the formula of a term without a name; empty where it is none.
+    pub formula: Vec<Number>,
 }
 
 /// Standard deviation of what is not in the residuals, in a quantity's unit.
@@ -136,6 +139,12 @@ fn between_models(ranked: &[Ranked]) -> Vec<f64> {
         let (mut squares, mut sum) = (0.0, 0.0);
         for other in ranked {
             let fit = &other.hypothesis.fit;
+            // A constant of another formula is another number.
+            let other_term = last_of_term(&ranked[0].hypothesis, index)
+                && ranked[0].hypothesis.formula() != other.hypothesis.formula();
+            if other_term {
+                continue;
+            }
             let same = |f: &Free| f.quantity.is(&free.quantity);
             if let Some(place) = fit.free.iter().position(same) {
                 squares +=
@@ -146,6 +155,12 @@ fn between_models(ranked: &[Ranked]) -> Vec<f64> {
         squares / f64::max(sum, f64::MIN_POSITIVE)
     };
     best.free.iter().enumerate().map(of).collect()
+}
+
+/// Whether a free quantity is one of the term without a name, which come last.
+fn last_of_term(hypothesis: &Hypothesis, index: usize) -> bool {
+    let own = hypothesis.unlisted().map_or(0, Latent::numbers);
+    index + own >= hypothesis.fit.free.len()
 }
 
 /// Numbers and intervals of the first of the explanations.
@@ -206,7 +221,14 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
         effects.push((*effect, list));
         at += own;
     }
-    Estimates { tolerated, effects }
+    let term = hypothesis.unlisted().filter(|term| term.formula().is_some());
+    let constants = term.map_or(0, Latent::numbers);
+    let last = fit.free.len();
+    Estimates {
+        tolerated,
+        effects,
+        formula: (last - constants..last).map(|index| number(index, true)).collect(),
+    }
 }
 
 /// Zero to peak of a sine and a cosine.

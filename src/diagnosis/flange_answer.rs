@@ -173,6 +173,7 @@ impl FlangeDiagnosis {
             alternatives: (causes.into_iter())
                 .filter(|_| unsteady)
                 .map(|cause| Alternative {
+                    formula: None,
                     effects: vec![cause.to_owned()],
                     odds: 1.0,
                 })

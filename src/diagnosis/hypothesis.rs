@@ -3,7 +3,7 @@
 use super::fit::Fit;
 use super::free::Free;
 use crate::effects::{Effect, UNLISTED, vocabulary};
-use crate::plant::{Latent, PlantParameters};
+use crate::plant::{Formula, Latent, PlantParameters};
 use std::ops::Range;
 
 /// A set of effects, fitted together with what is tolerated.
@@ -22,6 +22,11 @@ impl Hypothesis {
     /// The term without a name, if there is one.
     pub fn unlisted(&self) -> Option<&Latent> {
         self.fit.prediction.plant.latent.as_ref()
+    }
+
+    /// The formula of the term without a name, if it is one.
+    pub fn formula(&self) -> Option<&Formula> {
+        self.unlisted()?.formula()
     }
 
     /// Names of the effects, sorted.

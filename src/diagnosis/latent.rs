@@ -11,10 +11,11 @@
 
 use super::cross_validation::{Depth, rough_cost};
 use super::evidence::{Evidence, Prediction};
-use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start, fit};
+use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start, fit, rough_noise};
 use super::free::{Free, Prior};
 use super::hypothesis::Hypothesis;
 use super::progress::{Observer, Step};
+use super::scale::Scale;
 use super::search::Search;
 use super::spectrum;
 use crate::effects::Coordinate;
@@ -46,6 +47,9 @@ const HOPELESS: f64 = 1.5;
 /// Share of the gain of the best term within which another variable is not told apart [1].
 const ALIKE: f64 = 0.05;
 
+/// Variables named at most.
+const MOST_VARIABLES: usize = 3;
+
 /// A row of [`TERMS`].
 type Entry = (Port, f64, &'static [(Variable, bool)]);
 
@@ -57,6 +61,7 @@ const TERMS: &[Entry] = &[
         (Variable::ChamberPressure, false), (Variable::ChamberPressure, true), (Variable::PressureDifference, false),
         (Variable::PressureDifference, true), (Variable::ContactForce, false), (Variable::ContactForce, true), (Variable::Surface, false),
     ]),
+    (Port::SetPressure, 1e4, &[(Variable::Time, false), (Variable::SetPressure, false)]),
     (Port::OutletPressure, 1e4, &[
         (Variable::Time, false), (Variable::SetPressure, false), (Variable::MassFlow, false), (Variable::ChamberPressure, false),
     ]),
@@ -68,6 +73,8 @@ const TERMS: &[Entry] = &[
         (Variable::Time, false), (Variable::Stroke, false), (Variable::ChamberPressure, false), (Variable::PressureDifference, false),
         (Variable::Velocity, false),
     ]),
+    (Port::FirstChamberLeak, 1e-6, &[(Variable::Time, false), (Variable::Stroke, false), (Variable::ChamberPressure, false)]),
+    (Port::SecondChamberLeak, 1e-6, &[(Variable::Time, false), (Variable::Stroke, false), (Variable::PressureDifference, false)]),
     (Port::Surface, 1e-4, &[
         (Variable::Time, false), (Variable::Surface, false), (Variable::Stroke, false), (Variable::ContactForce, false),
         (Variable::Velocity, false),
@@ -98,6 +105,17 @@ pub fn response(latent: &Latent, index: usize, at: f64) -> f64 {
     match latent.basis {
         Basis::Hats { .. } => unit.coefficients[index..].fill(1.0),
         Basis::Waves { .. } => unit.coefficients[index] = 1.0,
+        Basis::Formula(_) => {
+            // By a difference quotient.
+            let here = latent.coefficients[index];
+            let step = 1e-5 * here.abs().max(1e-9);
+            let moved = |value: f64| {
+                let mut moved = latent.clone();
+                moved.coefficients[index] = value;
+                moved.shape(at)
+            };
+            return (moved(here + step) - moved(here - step)) / (2.0 * step);
+        }
     }
     unit.shape(at)
 }
@@ -135,6 +153,7 @@ fn free_of_latent(latent: &Latent) -> Vec<Free> {
                 .zip(c);
             waves.map(|wave| free(wave, BELIEVED)).collect()
         }
+        Basis::Formula(_) => Vec::new(),
     };
     if let Basis::Waves { frequency } = latent.basis {
         // One turn of phase over the longest recording is a step of about a tenth of a hertz.
@@ -166,9 +185,12 @@ fn terms(evidence: &Evidence, base: &Prediction) -> Vec<Latent> {
             }
         }
         let channel = match port {
-            Port::OutletPressure | Port::PressureReading => 0,
+            Port::SetPressure | Port::OutletPressure | Port::PressureReading => 0,
             Port::StrokeReading => 1,
-            Port::FirstChamberFlow | Port::SecondChamberFlow => continue,
+            Port::FirstChamberFlow
+            | Port::SecondChamberFlow
+            | Port::FirstChamberLeak
+            | Port::SecondChamberLeak => continue,
             _ => 2,
         };
         for frequency in spectrum::strongest_in(evidence, base, channel)
@@ -264,18 +286,20 @@ fn variables<'a>(terms: impl Iterator<Item = &'a Latent>) -> Vec<&'static str> {
             }
         }
     }
-    names.truncate(3);
+    names.truncate(MOST_VARIABLES);
     names
 }
 
 impl Search<'_> {
-    /// The latent term that explains most beside a hypothesis; none where all promise to cost far more than what another explanation costs roughly, `rival`.
-    pub fn latent(
+    /// Terms without a name that explain most beside a hypothesis, best first: formulas, and beside them the curve where no formula does all that it does. None
+    /// where all promise to cost far more than what another explanation costs roughly, `rival`.
+    pub(super) fn latent(
         &self,
         base: &Hypothesis,
         rival: f64,
+        scale: &Scale,
         observer: &mut Observer<'_>,
-    ) -> Option<Hypothesis> {
+    ) -> Vec<Hypothesis> {
         // Of a full fit the held prediction is wanted.
         let base = &self.refit(base, curve(ROUGH, 2));
         let terms = terms(self.evidence, &base.fit.prediction);
@@ -292,12 +316,35 @@ impl Search<'_> {
         ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
         let near = |h: &&Hypothesis| self.latent_score(h) < HOPELESS * rival;
         if !ranked.first().is_some_and(|h| near(&h)) {
-            return None;
+            return Vec::new();
         }
         for h in &ranked {
             let detail = format!("{} promises {:.0}", described(h), self.latent_score(h));
             observer(&Step::Variation.of(h, detail));
         }
+        let noise = rough_noise(self.evidence) + scale.rough_spread();
+        let mut found = self.formulas(base, &ranked, noise, observer);
+        if !found.first().is_some_and(|best| scale.is_adequate(best)) {
+            let curves = self.curves(base, &ranked, observer);
+            found.extend(self.formulas(base, &curves, noise, observer));
+            let full = curves.iter().take(IN_FULL);
+            found.extend(full.map(|h| self.refit(h, curve(FULL, FULL_ITERATIONS))));
+        }
+        found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        if let Some(best) = found.first_mut() {
+            let depends_on = self.alike(base, best, &ranked);
+            best.depends_on = depends_on;
+        }
+        found
+    }
+
+    /// Curves fitted roughly, the best first, by what they leave of recordings that they were not fitted to as well.
+    fn curves(
+        &self,
+        base: &Hypothesis,
+        ranked: &[Hypothesis],
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
         let fitted = ranked.iter().take(FITTED).map(|promising| {
             let fitted = self.refit(promising, curve(ROUGH, ROUGH_ITERATIONS));
             self.narrowed(base, fitted)
@@ -313,36 +360,45 @@ impl Search<'_> {
             })
             .collect();
         fitted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (least, best) = fitted.first()?;
-        let latent = best.unlisted()?;
+        let Some((least, _)) = fitted.first() else {
+            return Vec::new();
+        };
         let gain = (base.fit.rough - least).max(0.0);
-        let alike = |score: f64| score - least <= ALIKE * gain;
-        let near = fitted.iter().filter(|(score, _)| alike(*score));
-        let near = near.filter_map(|(_, hypothesis)| hypothesis.unlisted());
-        let mut depends_on = variables(near.filter(|other| other.port == latent.port));
-        let mut full: Vec<Hypothesis> = fitted
-            .iter()
-            .filter(|(score, _)| alike(*score))
-            .take(IN_FULL)
-            .map(|(_, h)| self.refit(h, curve(FULL, FULL_ITERATIONS)))
-            .collect();
-        full.sort_by(|a, b| a.fit.cost().total_cmp(&b.fit.cost()));
-        let mut hypothesis = full.into_iter().next()?;
-        let first = hypothesis
-            .fit
-            .prediction
-            .plant
-            .latent
-            .as_ref()?
-            .variable
-            .name();
-        // The surest first: what the full fit prefers.
-        depends_on.sort_by_key(|name| *name != first);
-        hypothesis.depends_on = depends_on;
-        Some(hypothesis)
+        let near = least + ALIKE * gain;
+        (fitted.into_iter())
+            .filter(|(score, _)| *score <= near)
+            .map(|(_, hypothesis)| hypothesis)
+            .collect()
     }
 
-    fn latent_score(&self, hypothesis: &Hypothesis) -> f64 {
+    /// Variables on which a term depends: its own, then those of curves at its port that promise nearly as much.
+    fn alike(
+        &self,
+        base: &Hypothesis,
+        best: &Hypothesis,
+        ranked: &[Hypothesis],
+    ) -> Vec<&'static str> {
+        let Some(own) = best.unlisted() else {
+            return Vec::new();
+        };
+        let mut names = match best.depends_on.is_empty() {
+            true => variables(std::iter::once(own)),
+            false => best.depends_on.clone(),
+        };
+        let least = (ranked.iter().map(|h| self.latent_score(h))).fold(f64::INFINITY, f64::min);
+        let gain = (base.fit.rough - least).max(0.0);
+        let near = ranked.iter().filter(|h| self.latent_score(h) <= least + ALIKE * gain);
+        let near = near.filter_map(Hypothesis::unlisted);
+        for name in variables(near.filter(|other| other.port == own.port)) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names.truncate(MOST_VARIABLES);
+        names
+    }
+
+    pub(super) fn latent_score(&self, hypothesis: &Hypothesis) -> f64 {
         let numbers = hypothesis.unlisted().map_or(0, Latent::numbers) as f64;
         hypothesis.fit.rough + numbers * (self.evidence.count() as f64).ln()
     }

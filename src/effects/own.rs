@@ -76,8 +76,11 @@ pub fn sought(plant: &mut PlantParameters) -> Vec<&'static Effect> {
 fn subsystem(port: Port) -> Subsystem {
     match port {
         Port::PistonForce => Subsystem::ForceBalance,
-        Port::OutletPressure => Subsystem::Regulator,
-        Port::FirstChamberFlow | Port::SecondChamberFlow => Subsystem::Chambers,
+        Port::SetPressure | Port::OutletPressure => Subsystem::Regulator,
+        Port::FirstChamberFlow
+        | Port::SecondChamberFlow
+        | Port::FirstChamberLeak
+        | Port::SecondChamberLeak => Subsystem::Chambers,
         Port::Surface => Subsystem::Contact,
         Port::ForceReading | Port::StrokeReading | Port::PressureReading => Subsystem::Sensors,
     }

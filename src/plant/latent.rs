@@ -3,173 +3,26 @@
 //!
 //! ```text
 //! y = s(v) sum c_k phi_k(x),   phi_k hats between evenly spaced knots, or sines and cosines of a frequency and its double
+//! y = f(moment; c)             a formula, once one is found that does as well
 //! s(v) = 1, or tanh(v/v_0), v_0 = 2 mm/s, for what acts against the motion
 //! ```
 //!
 //! x variable, v speed of extension [m/s], c coefficients in the port's unit.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use super::moment::{Moment, Variable};
+use super::own_law::LawText;
+use super::port::Port;
 
 /// Coefficients at most.
 pub const MOST_COEFFICIENTS: usize = 24;
 /// Speed at which what acts against the motion is fully there [m/s].
 const SOFT: f64 = 2e-3;
 
-/// Where a latent term enters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Port {
-    /// A force on the piston along extension [N].
-    PistonForce,
-    /// A pressure added to the regulator's outlet [Pa].
-    OutletPressure,
-    /// Air into chamber 1 [kg/s].
-    FirstChamberFlow,
-    /// Air into chamber 2 [kg/s].
-    SecondChamberFlow,
-    /// A displacement of the surface along extension [m].
-    Surface,
-    /// Added to the load cell's reading [N].
-    ForceReading,
-    /// Added to the position sensor's reading [m].
-    StrokeReading,
-    /// Added to the pressure sensor's reading [Pa].
-    PressureReading,
-}
-
-impl Port {
-    /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::PistonForce,
-        Self::OutletPressure,
-        Self::FirstChamberFlow,
-        Self::SecondChamberFlow,
-        Self::Surface,
-        Self::ForceReading,
-        Self::StrokeReading,
-        Self::PressureReading,
-    ];
-
-    /// Whether it changes what a sensor says, and nothing else.
-    pub fn is_reading(self) -> bool {
-        matches!(
-            self,
-            Self::ForceReading | Self::StrokeReading | Self::PressureReading
-        )
-    }
-
-    /// Name in files and answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PistonForce => "piston_force",
-            Self::OutletPressure => "outlet_pressure",
-            Self::FirstChamberFlow => "first_chamber_flow",
-            Self::SecondChamberFlow => "second_chamber_flow",
-            Self::Surface => "surface",
-            Self::ForceReading => "force_reading",
-            Self::StrokeReading => "stroke_reading",
-            Self::PressureReading => "pressure_reading",
-        }
-    }
-
-    /// Its unit as a key ends with it.
-    pub fn suffix(self) -> &'static str {
-        match self {
-            Self::PistonForce | Self::ForceReading => "n",
-            Self::OutletPressure | Self::PressureReading => "pa",
-            Self::FirstChamberFlow | Self::SecondChamberFlow => "kg_per_s",
-            Self::Surface | Self::StrokeReading => "m",
-        }
-    }
-
-    /// Its unit.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::PistonForce | Self::ForceReading => "N",
-            Self::OutletPressure | Self::PressureReading => "Pa",
-            Self::FirstChamberFlow | Self::SecondChamberFlow => "kg/s",
-            Self::Surface | Self::StrokeReading => "m",
-        }
-    }
-
-    /// Part of the chain that it belongs to, as in an answer.
-    pub fn subsystem(self) -> &'static str {
-        match self {
-            Self::PistonForce => "force_balance",
-            Self::OutletPressure => "regulator",
-            Self::FirstChamberFlow | Self::SecondChamberFlow => "chambers",
-            Self::Surface => "contact",
-            Self::ForceReading | Self::StrokeReading | Self::PressureReading => "sensors",
-        }
-    }
-}
-
-/// On what a latent term depends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Variable {
-    /// Time since the start of the recording [s].
-    Time,
-    /// Stroke [m].
-    Stroke,
-    /// Speed of extension [m/s].
-    Velocity,
-    /// Pressure in chamber 1 [Pa absolute].
-    ChamberPressure,
-    /// Pressure in chamber 1 less that in chamber 2 [Pa].
-    PressureDifference,
-    /// Air that comes in [kg/s].
-    MassFlow,
-    /// Set pressure [Pa gauge].
-    SetPressure,
-    /// Where the surface stands [m].
-    Surface,
-    /// Contact force [N].
-    ContactForce,
-}
-
-impl Variable {
-    /// All of them.
-    pub const ALL: [Self; 9] = [
-        Self::Time,
-        Self::Stroke,
-        Self::Velocity,
-        Self::ChamberPressure,
-        Self::PressureDifference,
-        Self::MassFlow,
-        Self::SetPressure,
-        Self::Surface,
-        Self::ContactForce,
-    ];
-
-    /// Its unit as a key ends with it.
-    pub fn suffix(self) -> &'static str {
-        match self {
-            Self::Time => "s",
-            Self::Stroke | Self::Surface => "m",
-            Self::Velocity => "m_per_s",
-            Self::ChamberPressure | Self::PressureDifference | Self::SetPressure => "pa",
-            Self::MassFlow => "kg_per_s",
-            Self::ContactForce => "n",
-        }
-    }
-
-    /// Name in an answer.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Stroke => "stroke_m",
-            Self::Velocity => "velocity",
-            Self::ChamberPressure => "chamber_pressure",
-            Self::PressureDifference => "pressure_difference",
-            Self::MassFlow => "mass_flow",
-            Self::SetPressure => "set_pressure",
-            Self::Surface => "surface_m",
-            Self::ContactForce => "contact_force",
-        }
-    }
-}
-
-/// Functions whose sum a latent term is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Functions whose sum a latent term is, or a formula.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Basis {
     /// Hats between evenly spaced knots from one value to another; constant beyond.
     Hats {
@@ -181,6 +34,19 @@ pub enum Basis {
         /// Cycles over one unit of the variable.
         frequency: f64,
     },
+    /// A formula of which the coefficients are the free constants.
+    Formula(Arc<Formula>),
+}
+
+/// A formula of a latent term.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Formula {
+    /// Its text.
+    pub law: LawText,
+    /// From the least to the largest value of the term's variable in the recordings [SI].
+    pub visited: [f64; 2],
+    /// A moment of which all but that variable is taken where the term is shown over it.
+    pub typical: Moment,
 }
 
 /// A latent term.
@@ -198,62 +64,30 @@ pub struct Latent {
     pub coefficients: Vec<f64>,
 }
 
-/// The variables of one moment.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Moment {
-    /// Time since the start of the recording [s].
-    pub time: f64,
-    /// Stroke [m].
-    pub stroke: f64,
-    /// Speed of extension [m/s].
-    pub speed: f64,
-    /// Pressures in the chambers [Pa absolute].
-    pub pressures: [f64; 2],
-    /// Air that comes in [kg/s].
-    pub mass_flow: f64,
-    /// Set pressure [Pa gauge].
-    pub set_pressure: f64,
-    /// Where the surface stands [m]; NaN where there is none.
-    pub surface: f64,
-    /// Contact force [N].
-    pub contact_force: f64,
-}
-
-impl Moment {
-    /// The same a time [s] later, as far as its motion tells.
-    #[must_use]
-    pub fn ahead(&self, time: f64) -> Self {
-        Self {
-            time: self.time + time,
-            stroke: self.stroke + time * self.speed,
-            ..*self
-        }
-    }
-
-    /// One of them.
-    pub fn of(&self, variable: Variable) -> f64 {
-        match variable {
-            Variable::Time => self.time,
-            Variable::Stroke => self.stroke,
-            Variable::Velocity => self.speed,
-            Variable::ChamberPressure => self.pressures[0],
-            Variable::PressureDifference => self.pressures[0] - self.pressures[1],
-            Variable::MassFlow => self.mass_flow,
-            Variable::SetPressure => self.set_pressure,
-            Variable::Surface => self.surface,
-            Variable::ContactForce => self.contact_force,
-        }
-    }
-}
-
 impl Latent {
+    /// Its formula, if it is one.
+    pub fn formula(&self) -> Option<&Formula> {
+        match &self.basis {
+            Basis::Formula(formula) => Some(formula),
+            Basis::Hats { .. } | Basis::Waves { .. } => None,
+        }
+    }
+
     /// Count of the numbers that it has: its coefficients and, of waves, their frequency.
     pub fn numbers(&self) -> usize {
         self.coefficients.len() + usize::from(matches!(self.basis, Basis::Waves { .. }))
     }
 
+    /// Its value at a moment.
+    pub fn at(&self, moment: &Moment) -> f64 {
+        match &self.basis {
+            Basis::Formula(formula) => formula.law.value(moment, &self.coefficients),
+            _ => self.value(moment.of(self.variable), moment.speed),
+        }
+    }
+
     /// Its value at a value of its variable and a speed of extension [m/s].
-    pub fn value(&self, at: f64, speed: f64) -> f64 {
+    fn value(&self, at: f64, speed: f64) -> f64 {
         if !at.is_finite() {
             return 0.0;
         }
@@ -265,15 +99,14 @@ impl Latent {
         }
     }
 
-    /// Its value at a moment.
-    pub fn at(&self, moment: &Moment) -> f64 {
-        self.value(moment.of(self.variable), moment.speed)
-    }
-
     /// Its value without the direction of motion.
     pub fn shape(&self, at: f64) -> f64 {
         let c = &self.coefficients;
-        match self.basis {
+        match &self.basis {
+            Basis::Formula(formula) => {
+                let moment = formula.typical.with(self.variable, at);
+                formula.law.value(&moment, c)
+            }
             Basis::Hats { ends } => {
                 let last = c.len() - 1;
                 let place = (at - ends[0]) / (ends[1] - ends[0]) * last as f64;

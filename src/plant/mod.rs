@@ -20,10 +20,12 @@ mod inputs;
 mod joint_deflections;
 mod latent;
 mod measured_motion;
+mod moment;
 mod nudging;
 mod observation;
 mod own_law;
 mod parameters;
+mod port;
 pub mod registry;
 mod riding;
 mod running_sensors;
@@ -42,8 +44,9 @@ pub use chain::{Chain, LinkParameters};
 pub use contact::{ContactLaw, ContactParameters, PHASES, Periodic};
 pub use initial_state::{HeldMotion, InitialState};
 pub use inputs::{InputError, PlantInputs};
-pub use latent::{Basis, Latent, MOST_COEFFICIENTS, Moment, Port, Variable};
+pub use latent::{Basis, Formula, Latent, MOST_COEFFICIENTS};
 pub use measured_motion::MeasuredMotion;
+pub use moment::{Moment, Variable};
 pub use nudging::Nudging;
 pub use observation::Observation;
 pub use own_law::{
@@ -51,6 +54,7 @@ pub use own_law::{
     kept_name,
 };
 pub use parameters::PlantParameters;
+pub use port::Port;
 pub use registry::{Number, Quantity};
 pub use running_sensors::{RunningSensors, SensorReadings};
 pub use sensors::SensorErrors;

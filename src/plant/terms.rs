@@ -1,6 +1,7 @@
 //! Terms at the ports of a rig beside its device, contact and sensors: a term without a name, and laws of a user's own.
 
-use super::latent::{Moment, Port};
+use super::moment::Moment;
+use super::port::Port;
 use super::parameters::PlantParameters;
 use crate::device::{Disturbance, PistonMotion};
 
@@ -58,9 +59,13 @@ impl PlantParameters {
     pub fn disturbance(&self, moment: &Moment, step: f64) -> Disturbance {
         let middle = moment.ahead(0.5 * step);
         Disturbance {
+            set_pressure: self.term(Port::SetPressure, moment),
             outlet: self.term(Port::OutletPressure, &middle),
             mass_flows: [Port::FirstChamberFlow, Port::SecondChamberFlow]
                 .map(|port| self.term(port, &middle)),
+            // Nothing flows through an opening of less than no area.
+            leaks: [Port::FirstChamberLeak, Port::SecondChamberLeak]
+                .map(|port| self.term(port, &middle).max(0.0)),
         }
     }
 

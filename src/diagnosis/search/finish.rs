@@ -212,12 +212,14 @@ impl Search<'_> {
         if scale.is_half_explained(best) {
             bases.push(best.clone());
         }
-        let mut found: Vec<Hypothesis> = bases
-            .iter()
-            .filter_map(|base| self.latent(base, best.fit.rough, observer))
-            .collect();
+        let rival = best.fit.rough;
+        let mut found: Vec<Hypothesis> = Vec::new();
+        for base in &bases {
+            found.extend(self.latent(base, rival, scale, observer));
+        }
         found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        if let Some(first) = found.into_iter().next()
+        let mut found = found.into_iter();
+        if let Some(first) = found.next()
             && self.score(&first) < self.score(&full[0])
         {
             let own = |base: &&Hypothesis| base.names() == first.names();
@@ -228,7 +230,11 @@ impl Search<'_> {
                     observer(&Step::Variation.of(&without, detail));
                     full.insert(0, without);
                 }
-                None => full.insert(0, first),
+                None => {
+                    full.insert(0, first);
+                    full.extend(found);
+                    full[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+                }
             }
         }
     }

@@ -64,10 +64,15 @@ pub fn needed(
 ) -> Vec<Needed> {
     let channel = match latent.port {
         Port::PistonForce => None,
-        Port::OutletPressure | Port::PressureReading => Some(0),
+        Port::PressureReading | Port::OutletPressure => Some(0),
         Port::StrokeReading => Some(1),
         Port::ForceReading => Some(2),
-        Port::FirstChamberFlow | Port::SecondChamberFlow | Port::Surface => return Vec::new(),
+        Port::SetPressure
+        | Port::FirstChamberFlow
+        | Port::SecondChamberFlow
+        | Port::FirstChamberLeak
+        | Port::SecondChamberLeak
+        | Port::Surface => return Vec::new(),
     };
     let mut plant = hypothesis.fit.prediction.plant.clone();
     plant.latent = None;
@@ -127,7 +132,7 @@ fn samples(
             }
             let at = moment.of(latent.variable);
             let at = match latent.basis {
-                Basis::Hats { .. } => at,
+                Basis::Hats { .. } | Basis::Formula(_) => at,
                 Basis::Waves { frequency } => at.rem_euclid(1.0 / frequency),
             };
             all.push((at, value));

@@ -6,6 +6,8 @@ use super::super::finding::Diagnosis;
 use super::super::ranking::Ranked;
 use super::known::known;
 use super::shape::ShapePoint;
+use crate::plant::Latent;
+use crate::quantity::significant;
 
 /// Known explanations named at most.
 const MOST_NEAR: usize = 3;
@@ -21,6 +23,9 @@ pub struct UnlistedReport {
     pub directed: bool,
     /// `periodic`, `localised`, `odd`, `even`, `monotonic` or `broad`.
     pub form: String,
+    /// The formula with the values of its constants, if one does all that the curve does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
     /// Unit of `at` in the shape, as a key ends with it.
     pub at_unit: String,
     /// Unit of `value` and `half_width`, as a key ends with it.
@@ -88,6 +93,7 @@ impl Diagnosis {
             variable: latent.variable.name().to_owned(),
             directed: latent.directed,
             form: shape.form.name().to_owned(),
+            formula: formula_text(latent),
             at_unit: latent.variable.suffix().to_owned(),
             value_unit: latent.port.suffix().to_owned(),
             period_s: shape.period,
@@ -118,6 +124,23 @@ impl Diagnosis {
             })
             .collect()
     }
+}
+
+/// A formula with the values of its constants, in SI.
+#[must_use]
+pub fn formula_text(latent: &Latent) -> Option<String> {
+    let law = &latent.formula()?.law;
+    let values = (latent.coefficients.iter()).copied();
+    let fixed = law.constants.iter().skip(latent.coefficients.len());
+    let values = values.chain(fixed.map(|c| c.value));
+    let constants = law.constants.iter().zip(values).map(|(constant, value)| {
+        let unit = constant.unit.filter(|unit| *unit != "1");
+        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        format!("{} = {}{unit}", constant.name, significant(value, 5))
+    });
+    let constants: Vec<String> = constants.collect();
+    let port = law.port.name();
+    Some(format!("{port} = {}, {}", law.expression.text(), constants.join(", ")))
 }
 
 impl UnlistedReport {

@@ -78,10 +78,11 @@ impl Shape {
         let [from, to] = match latent.basis {
             Basis::Hats { ends } => ends,
             Basis::Waves { frequency } => [0.0, 1.0 / frequency],
+            Basis::Formula(_) => visited,
         };
         let steps = match latent.basis {
             Basis::Hats { .. } => latent.coefficients.len() - 1,
-            Basis::Waves { .. } => 24,
+            Basis::Waves { .. } | Basis::Formula(_) => 24,
         };
         let knots: Vec<ShapePoint> = even([from, to], steps).map(row).collect();
         let form = form(&latent, visited);

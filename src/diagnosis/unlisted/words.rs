@@ -18,9 +18,12 @@ pub struct DisplayQuantity {
 pub fn port(port: Port) -> DisplayQuantity {
     let (words, unit, factor) = match port {
         Port::PistonForce => ("force on the piston", "N", 1.0),
+        Port::SetPressure => ("pressure added to the set pressure", "mbar", 1e-2),
         Port::OutletPressure => ("pressure at the regulator's outlet", "mbar", 1e-2),
         Port::FirstChamberFlow => ("flow of air into chamber 1", "g/s", 1e3),
         Port::SecondChamberFlow => ("flow of air into chamber 2", "g/s", 1e3),
+        Port::FirstChamberLeak => ("area of a leak from chamber 1", "mm2", 1e6),
+        Port::SecondChamberLeak => ("area of a leak from chamber 2", "mm2", 1e6),
         Port::Surface => ("displacement of the surface", "mm", 1e3),
         Port::ForceReading => ("error of the load cell's reading", "N", 1.0),
         Port::StrokeReading => ("error of the position sensor's reading", "mm", 1e3),

@@ -16,7 +16,8 @@ pub use expression::{Expression, ExpressionError};
 pub use names::kept_name;
 pub use unit::Unit;
 
-use super::latent::{Moment, Port};
+use super::moment::Moment;
+use super::port::Port;
 
 /// A variable: its symbol, what it is, its unit, where it lies [SI], its value.
 pub struct Symbol {
@@ -78,7 +79,7 @@ pub struct Constant {
 }
 
 /// Text of a law.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LawText {
     /// Its name.
     pub name: &'static str,
@@ -102,6 +103,20 @@ pub struct OwnLaw {
 }
 
 impl LawText {
+    /// Its value at a moment, in the unit of its port, of values of its constants, the first ones at least; nothing where it is not finite.
+    pub fn value(&self, moment: &Moment, constants: &[f64]) -> f64 {
+        let mut values = [0.0; SYMBOLS.len() + MOST_CONSTANTS];
+        let (variables, others) = values.split_at_mut(SYMBOLS.len());
+        for (value, symbol) in variables.iter_mut().zip(&SYMBOLS) {
+            *value = (symbol.value)(moment);
+        }
+        for (index, (value, constant)) in others.iter_mut().zip(&self.constants).enumerate() {
+            *value = constants.get(index).copied().unwrap_or(constant.value);
+        }
+        let found = self.expression.value(&values);
+        if found.is_finite() { found } else { 0.0 }
+    }
+
     /// Checks units, and that it is finite wherever its variables may be: at the ends and the middle of each, and between.
     ///
     /// # Errors
@@ -193,14 +208,7 @@ impl OwnLaw {
         if !self.acts {
             return 0.0;
         }
-        let mut values = [0.0; SYMBOLS.len() + MOST_CONSTANTS];
-        let (variables, constants) = values.split_at_mut(SYMBOLS.len());
-        for (value, symbol) in variables.iter_mut().zip(&SYMBOLS) {
-            *value = (symbol.value)(moment);
-        }
-        constants.copy_from_slice(&self.values);
-        let found = self.text.expression.value(&values);
-        if found.is_finite() { found } else { 0.0 }
+        self.text.value(moment, &self.values)
     }
 
     /// Whether it needs to know where the surface stands.

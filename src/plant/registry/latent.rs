@@ -38,8 +38,8 @@ fn set_rise(plant: &mut PlantParameters, index: usize, value: f64) {
 }
 
 fn frequency(plant: &PlantParameters, _: usize) -> f64 {
-    match plant.latent.as_ref().map(|l| l.basis) {
-        Some(Basis::Waves { frequency }) => frequency,
+    match plant.latent.as_ref().map(|l| &l.basis) {
+        Some(Basis::Waves { frequency }) => *frequency,
         _ => 0.0,
     }
 }

@@ -7,7 +7,7 @@ use toml_edit::{DocumentMut, value};
 use super::super::check::plain;
 use super::keys::LISTED;
 use super::own::{ACTS_ON, IS};
-use crate::effects::{Effect, meaning};
+use crate::effects::{Effect, UNLISTED, meaning};
 use crate::plant::LawText;
 
 /// An effect with all its numbers, reported or not, as [`Effect::parameters`] lists them.
@@ -50,6 +50,7 @@ pub(in super::super) fn append(text: &mut String, written: &WrittenEffect<'_>) {
     }
     let said = written
         .law
+        .filter(|law| law.name != UNLISTED)
         .map_or_else(|| meaning(written.effect.name), |_| "a law of your own");
     // Writing into a text cannot fail.
     let _ = writeln!(text, "\n# Found: {said}.\n[[effect]]\nname = \"{name}\"");

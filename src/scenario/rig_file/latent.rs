@@ -227,6 +227,8 @@ pub(super) fn text(latent: &Latent) -> String {
     let c = &latent.coefficients;
     // Writing into a text cannot fail.
     let _ = match latent.basis {
+        // Its law stands among the effects.
+        Basis::Formula(_) => return String::new(),
         Basis::Hats { ends } => write!(
             text,
             "{} = {}\n{} = {}\n{} = {}\n",

@@ -1,0 +1,195 @@
+//! Forms of a law over one variable, as engineers write them down.
+//!
+//! In a text X stands for the variable. `height` and `gain` enter in proportion; the others are sought on a grid before a fit starts.
+
+use crate::plant::{Port, Variable};
+
+/// What a constant of a form is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// In the port's unit, in proportion.
+    Height,
+    /// In the port's unit by the variable's, in proportion.
+    Gain,
+    /// In the port's unit by the variable's squared, in proportion.
+    Curvature,
+    /// A value of the variable.
+    Place,
+    /// A width of the variable, more than nothing.
+    Width,
+    /// A size of the variable up to which something holds, more than nothing.
+    Limit,
+    /// A period of the variable.
+    Period,
+    /// An angle [rad].
+    Phase,
+    /// A power [1].
+    Exponent,
+    /// A frequency of what is periodic over time, as the hats' place is taken by waves [Hz].
+    Frequency,
+}
+
+impl Role {
+    /// Whether the form is in proportion to it.
+    pub fn is_linear(self) -> bool {
+        matches!(self, Self::Height | Self::Gain | Self::Curvature)
+    }
+}
+
+/// Where a form makes sense.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sense {
+    /// Of any variable.
+    Any,
+    /// Of a variable that has either sign.
+    Signed,
+    /// Of a variable in the port's own unit.
+    SameUnit,
+    /// Over time, from the start.
+    Time,
+}
+
+/// A form.
+#[derive(Debug)]
+pub(super) struct Form {
+    /// In words.
+    pub words: &'static str,
+    /// Its text.
+    pub text: &'static str,
+    /// Its constants.
+    pub constants: &'static [(&'static str, Role)],
+    /// Where it makes sense.
+    pub sense: Sense,
+}
+
+const HEIGHT: (&str, Role) = ("height", Role::Height);
+const GAIN: (&str, Role) = ("gain", Role::Gain);
+const CURVATURE: (&str, Role) = ("curvature", Role::Curvature);
+const THRESHOLD: (&str, Role) = ("threshold", Role::Place);
+const WIDTH: (&str, Role) = ("width", Role::Width);
+const LIMIT: (&str, Role) = ("limit", Role::Limit);
+const PERIOD: (&str, Role) = ("period", Role::Period);
+const PHASE: (&str, Role) = ("phase", Role::Phase);
+const FROM: (&str, Role) = ("from", Role::Place);
+const TO: (&str, Role) = ("to", Role::Place);
+
+/// A periodic form over time, found by its frequency.
+pub(super) const WAVE: Form = Form {
+    words: "a wave",
+    text: "height * sin(2 * pi * frequency * t + phase)",
+    constants: &[HEIGHT, ("frequency", Role::Frequency), PHASE],
+    sense: Sense::Time,
+};
+
+#[rustfmt::skip] // A table: one form a line.
+pub(super) const FORMS: &[Form] = &[
+    form("in proportion", "gain * X", &[GAIN], Sense::Any),
+    form("a straight line", "height + gain * X", &[HEIGHT, GAIN], Sense::Any),
+    form("with the square", "curvature * X^2", &[CURVATURE], Sense::Any),
+    form("with the square and the sign", "curvature * X * abs(X)", &[CURVATURE], Sense::Signed),
+    form("a parabola", "gain * X + curvature * X^2", &[GAIN, CURVATURE], Sense::Any),
+    form("a power", "height * sign(X) * abs(X / reference)^exponent", &[HEIGHT, ("exponent", Role::Exponent)], Sense::Any),
+    form("for positive values alone", "gain * max(X, 0)", &[GAIN], Sense::Signed),
+    form("for negative values alone", "gain * min(X, 0)", &[GAIN], Sense::Signed),
+    form("the square of positive values alone", "curvature * max(X, 0)^2", &[CURVATURE], Sense::Signed),
+    form("the square of negative values alone", "curvature * min(X, 0)^2", &[CURVATURE], Sense::Signed),
+    form("beyond a threshold", "gain * max(X - threshold, 0)", &[GAIN, THRESHOLD], Sense::Any),
+    form("below a threshold", "gain * max(threshold - X, 0)", &[GAIN, THRESHOLD], Sense::Any),
+    form("beyond a threshold of either sign", "gain * (X - min(max(X, -limit), limit))", &[GAIN, LIMIT], Sense::Signed),
+    form("a step up", "height * (X > threshold)", &[HEIGHT, THRESHOLD], Sense::Any),
+    form("a step down", "height * (X < threshold)", &[HEIGHT, THRESHOLD], Sense::Any),
+    form("a ramp up", "height * min(max((X - threshold) / width, 0), 1)", &[HEIGHT, THRESHOLD, WIDTH], Sense::Any),
+    form("a ramp down", "height * min(max((threshold - X) / width, 0), 1)", &[HEIGHT, THRESHOLD, WIDTH], Sense::Any),
+    form("a window", "height * (X > from) * (X < to)", &[HEIGHT, FROM, TO], Sense::Any),
+    form("a window with soft edges", "height * (tanh((X - from) / edge) - tanh((X - to) / edge)) / 2", &[HEIGHT, FROM, TO, ("edge", Role::Width)], Sense::Any),
+    form("a bump", "height * exp(-((X - centre) / width)^2)", &[HEIGHT, ("centre", Role::Place), WIDTH], Sense::Any),
+    form("periodic", "height * sin(2 * pi * X / period)", &[HEIGHT, PERIOD], Sense::Any),
+    form("periodic with a phase", "height * sin(2 * pi * X / period + phase)", &[HEIGHT, PERIOD, PHASE], Sense::Any),
+    form("saturating", "height * tanh(X / width)", &[HEIGHT, WIDTH], Sense::Any),
+    form("in proportion up to a limit", "gain * min(max(X, -limit), limit)", &[GAIN, LIMIT], Sense::Any),
+    form("all of it up to a limit", "-min(max(X, -limit), limit)", &[LIMIT], Sense::SameUnit),
+    form("an approach", "height * (1 - exp(-X / width))", &[HEIGHT, WIDTH], Sense::Time),
+    form("a decay", "height * exp(-X / width)", &[HEIGHT, WIDTH], Sense::Any),
+];
+
+const fn form(
+    words: &'static str,
+    text: &'static str,
+    constants: &'static [(&'static str, Role)],
+    sense: Sense,
+) -> Form {
+    Form {
+        words,
+        text,
+        constants,
+        sense,
+    }
+}
+
+impl Form {
+    /// Whether it makes sense at a port over a variable that lies between these values.
+    pub fn makes_sense(&self, port: Port, variable: Variable, [low, high]: [f64; 2]) -> bool {
+        match self.sense {
+            Sense::Any => true,
+            Sense::Signed => low < -0.1 * high && high > -0.1 * low,
+            Sense::SameUnit => symbol(variable).unit == port.unit(),
+            Sense::Time => variable == Variable::Time,
+        }
+    }
+
+    /// How much richer than the plainest it is: constants that it has.
+    pub fn count(&self) -> usize {
+        self.constants.len()
+    }
+}
+
+/// A variable in an expression: its text and its unit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct InExpression {
+    pub text: &'static str,
+    pub unit: &'static str,
+}
+
+/// A variable as an expression has it.
+pub(super) fn symbol(variable: Variable) -> InExpression {
+    let (text, unit) = match variable {
+        Variable::Time => ("t", "s"),
+        Variable::Stroke => ("x", "m"),
+        Variable::Velocity => ("v", "m/s"),
+        Variable::ChamberPressure => ("p1", "Pa"),
+        Variable::PressureDifference => ("(p1 - p2)", "Pa"),
+        Variable::MassFlow => ("q", "kg/s"),
+        Variable::SetPressure => ("p_set", "Pa"),
+        Variable::Surface => ("x_s", "m"),
+        Variable::ContactForce => ("f", "N"),
+    };
+    InExpression { text, unit }
+}
+
+/// One unit over another, as a text that is read again.
+pub(super) fn per(unit: &str, by: &str) -> String {
+    // Behind a stroke everything divides: what divides in `by` multiplies in front.
+    let (above, below) = by.split_once('/').unwrap_or((by, ""));
+    match below {
+        "" => format!("{unit}/{above}"),
+        _ => match unit.split_once('/') {
+            Some((front, back)) => format!("{front} {below}/{back} {above}"),
+            None => format!("{unit} {below}/{above}"),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plant::Unit;
+
+    #[test]
+    fn a_unit_over_another_is_read_again() {
+        let read = |text: &str| Unit::read(text).unwrap();
+        assert_eq!(read(&per("N", "m/s")), read("N s/m"));
+        assert_eq!(read(&per("kg/s", "m/s")), read("kg/m"));
+        assert_eq!(read(&per("m^2", "s")), read("m^2/s"));
+        assert_eq!(read(&per(&per("N", "m/s"), "m/s")), read("N s^2/m^2"));
+    }
+}

@@ -1,0 +1,282 @@
+//! Physics without a name as a formula: port x form x variables. Curves fitted at the ports point at it; each candidate is then fitted inside the simulator
+//! as any effect is.
+//!
+//! ```text
+//! promised = rough cost of the curve + D(form) + n ln N
+//! ```
+//!
+//! D what the form costs more than the curve by the quadratic model of its fit ([`matching`]), n constants, N samples.
+
+mod candidate;
+mod grammar;
+mod matching;
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use self::candidate::{Candidate, modulated};
+use self::grammar::{FORMS, WAVE};
+use self::matching::CurveModel;
+use super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, fit};
+use super::free::Free;
+use super::hypothesis::Hypothesis;
+use super::progress::{Observer, Step};
+use super::search::Search;
+use crate::plant::{Basis, Formula, Latent, Moment, Variable};
+
+/// Formulas that are fitted roughly, of those that promise most, and of one curve at most.
+const FITTED: usize = 10;
+const OF_ONE_CURVE: usize = 4;
+/// Iterations of that.
+const ROUGH_ITERATIONS: usize = 8;
+/// Iterations of a first look at a product with another variable.
+const LOOK: usize = 3;
+/// Formulas that products are tried of.
+const MULTIPLIED: usize = 2;
+/// Formulas that are fitted in full.
+const IN_FULL: usize = 3;
+/// Rough cost over that of the best beyond which a formula is not fitted in full [1].
+const FAR: f64 = 1.15;
+/// Iterations of the full fit.
+const FULL_ITERATIONS: usize = 30;
+
+fn going_on(stages: &[Stage], iterations: usize) -> Refit<'_> {
+    Refit {
+        start: Start::Here,
+        stages,
+        limit: Limit::of(iterations),
+    }
+}
+
+impl Search<'_> {
+    /// Formulas that do what curves point at, fitted in full, the best first; `base` is what the curves stand beside, `noise` the rough cost below which nothing
+    /// is left to be explained.
+    pub(super) fn formulas(
+        &self,
+        base: &Hypothesis,
+        curves: &[Hypothesis],
+        noise: f64,
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
+        let mut promising: Vec<(f64, &Hypothesis, Candidate)> = Vec::new();
+        for curve in curves {
+            let mut own = self.matches(curve);
+            own.sort_by(|a, b| a.0.total_cmp(&b.0));
+            own.truncate(OF_ONE_CURVE);
+            promising.extend(own.into_iter().map(|(score, c)| (score, curve, c)));
+        }
+        promising.sort_by(|a, b| a.0.total_cmp(&b.0));
+        promising.truncate(FITTED);
+        let mut fitted: Vec<Hypothesis> = promising
+            .par_iter()
+            .map(|(_, curve, candidate)| {
+                let here = &curve.fit.prediction.plant;
+                let beside: Vec<Free> =
+                    (base.fit.free.iter().map(|f| f.from_where(here))).collect();
+                self.with_formula(base, &beside, candidate, ROUGH_ITERATIONS)
+            })
+            .collect();
+        for ((promised, ..), hypothesis) in promising.iter().zip(&fitted) {
+            let detail = format!(
+                "{} promised {promised:.0}, {:.0}",
+                text(hypothesis),
+                self.latent_score(hypothesis)
+            );
+            observer(&Step::Variation.of(hypothesis, detail));
+        }
+        self.sort(&mut fitted);
+        if fitted.first().is_some_and(|best| best.fit.rough > noise) {
+            self.add_products(base, &mut fitted, observer);
+        }
+        let Some(best) = fitted.first() else {
+            return fitted;
+        };
+        let near = FAR * self.latent_score(best);
+        let mut full: Vec<Hypothesis> = fitted
+            .iter()
+            .take(IN_FULL)
+            .filter(|h| self.latent_score(h) < near)
+            .map(|h| self.refit(h, going_on(FULL, FULL_ITERATIONS)))
+            .collect();
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        for h in &full {
+            let detail = format!("{} in full {:.1}", text(h), self.score(h));
+            observer(&Step::Variation.of(h, detail));
+        }
+        full
+    }
+
+    fn sort(&self, hypotheses: &mut [Hypothesis]) {
+        hypotheses.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
+    }
+
+    /// Formulas over the variable of a curve, with what each promises.
+    fn matches(&self, curve: &Hypothesis) -> Vec<(f64, Candidate)> {
+        let Some(latent) = curve.unlisted() else {
+            return Vec::new();
+        };
+        let samples = (self.evidence.count() as f64).ln();
+        let promised = |candidate: &Candidate, cost: f64| {
+            curve.fit.rough + cost + candidate.count() as f64 * samples
+        };
+        let typical = self.typical(curve, latent);
+        match latent.basis {
+            Basis::Waves { frequency } => {
+                let [sine, cosine] = [latent.coefficients[0], latent.coefficients[1]];
+                let constants = [sine.hypot(cosine), frequency, cosine.atan2(sine)];
+                let candidate = Candidate::new(&WAVE, latent, typical, &constants);
+                vec![(promised(&candidate, 0.0), candidate)]
+            }
+            Basis::Hats { ends } => {
+                let Some(model) = CurveModel::of(&curve.fit, latent) else {
+                    return Vec::new();
+                };
+                let makes_sense = |form: &&grammar::Form| {
+                    form.makes_sense(latent.port, latent.variable, ends)
+                };
+                FORMS
+                    .par_iter()
+                    .filter(makes_sense)
+                    .filter_map(|form| {
+                        let text = Candidate::new(form, latent, typical, &[]);
+                        let moment = |at: f64| typical.with(latent.variable, at);
+                        let best = model.best(form, text.law(), moment)?;
+                        let candidate = Candidate::new(form, latent, typical, &best.constants);
+                        Some((promised(&candidate, best.cost), candidate))
+                    })
+                    .collect()
+            }
+            Basis::Formula(_) => Vec::new(),
+        }
+    }
+
+    /// The median of each variable over the recordings; of what acts with the motion, at a speed that is clear.
+    fn typical(&self, hypothesis: &Hypothesis, latent: &Latent) -> Moment {
+        let trajectories = &hypothesis.fit.prediction.trajectories;
+        let mut typical = Moment::default();
+        for variable in Variable::ALL {
+            let mut values: Vec<f64> = Vec::new();
+            for (measured, trajectory) in self.evidence.recordings.iter().zip(trajectories) {
+                let count = measured.inputs.time.len();
+                let of = |i| trajectory.truth.moment(&measured.inputs, i).of(variable);
+                values.extend((0..count).map(of).filter(|value: &f64| value.is_finite()));
+            }
+            if !values.is_empty() {
+                let middle = values.len() / 2;
+                let median = *values.select_nth_unstable_by(middle, f64::total_cmp).1;
+                if variable != Variable::PressureDifference {
+                    typical = typical.with(variable, median);
+                }
+            }
+        }
+        typical.pressures[1] = typical.pressures[1].max(1e5);
+        typical.speed = if latent.directed { CLEAR } else { 0.0 };
+        typical
+    }
+
+    /// Largest size of a variable in the recordings.
+    fn largest(&self, hypothesis: &Hypothesis, variable: Variable) -> f64 {
+        let trajectories = &hypothesis.fit.prediction.trajectories;
+        let mut largest = 0.0f64;
+        for (measured, trajectory) in self.evidence.recordings.iter().zip(trajectories) {
+            for i in 0..measured.inputs.time.len() {
+                let value = trajectory.truth.moment(&measured.inputs, i).of(variable);
+                if value.is_finite() {
+                    largest = largest.max(value.abs());
+                }
+            }
+        }
+        largest
+    }
+
+    /// A hypothesis with a formula beside it, fitted roughly.
+    fn with_formula(
+        &self,
+        base: &Hypothesis,
+        beside: &[Free],
+        candidate: &Candidate,
+        iterations: usize,
+    ) -> Hypothesis {
+        let mut plant = base.fit.prediction.plant.clone();
+        plant.latent = Some(candidate.latent.clone());
+        let mut free = beside.to_vec();
+        free.extend(candidate.free.iter().copied());
+        let fit = fit(
+            self.evidence,
+            (&plant, None),
+            (&free, &[]),
+            ROUGH,
+            Limit::of(iterations),
+        );
+        Hypothesis {
+            effects: base.effects.clone(),
+            fit,
+            depends_on: candidate.depends_on.clone(),
+        }
+    }
+
+    /// Adds products of the leading formulas with another variable, where these do better.
+    fn add_products(
+        &self,
+        base: &Hypothesis,
+        fitted: &mut Vec<Hypothesis>,
+        observer: &mut Observer<'_>,
+    ) {
+        let mut products: Vec<(Hypothesis, Candidate)> = Vec::new();
+        for leading in fitted.iter().take(MULTIPLIED) {
+            let Some(candidate) = Candidate::of(leading) else {
+                continue;
+            };
+            let largest = |variable| self.largest(leading, variable);
+            products.extend(
+                modulated(&candidate, largest)
+                    .into_iter()
+                    .map(|product| (leading.clone(), product)),
+            );
+        }
+        let mut looked: Vec<Hypothesis> = products
+            .par_iter()
+            .map(|(leading, product)| {
+                let here = &leading.fit.prediction.plant;
+                let beside: Vec<Free> =
+                    (base.fit.free.iter().map(|f| f.from_where(here))).collect();
+                self.with_formula(base, &beside, product, LOOK)
+            })
+            .collect();
+        self.sort(&mut looked);
+        looked.truncate(IN_FULL);
+        let gone_on: Vec<Hypothesis> = looked
+            .par_iter()
+            .map(|h| self.refit(h, going_on(ROUGH, ROUGH_ITERATIONS)))
+            .collect();
+        for h in &gone_on {
+            let detail = format!("{} {:.0}", text(h), self.latent_score(h));
+            observer(&Step::Variation.of(h, detail));
+        }
+        fitted.extend(gone_on);
+        self.sort(fitted);
+    }
+}
+
+/// Speed at which the direction of motion is clear [m/s].
+const CLEAR: f64 = 0.1;
+
+/// A hypothesis' formula as its text with port.
+pub(super) fn text(hypothesis: &Hypothesis) -> String {
+    hypothesis
+        .unlisted()
+        .and_then(formula)
+        .map_or_else(String::new, |formula| {
+            let law = &formula.law;
+            format!("{} = {}", law.port.name(), law.expression.text())
+        })
+}
+
+/// The formula of a term, if it is one.
+pub(super) fn formula(latent: &Latent) -> Option<&Arc<Formula>> {
+    match &latent.basis {
+        Basis::Formula(formula) => Some(formula),
+        Basis::Hats { .. } | Basis::Waves { .. } => None,
+    }
+}

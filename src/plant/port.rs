@@ -1,0 +1,111 @@
+//! Where a term beside the rig's device, contact and sensors may enter.
+
+/// A port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Port {
+    /// A force on the piston along extension [N].
+    PistonForce,
+    /// A pressure added to the set pressure, before the regulator follows it [Pa].
+    SetPressure,
+    /// A pressure added to the regulator's outlet [Pa].
+    OutletPressure,
+    /// Air into chamber 1 [kg/s].
+    FirstChamberFlow,
+    /// Air into chamber 2 [kg/s].
+    SecondChamberFlow,
+    /// Area of a leak from chamber 1 to the atmosphere, with the valve's discharge coefficient [m2].
+    FirstChamberLeak,
+    /// The same from chamber 2 [m2].
+    SecondChamberLeak,
+    /// A displacement of the surface along extension [m].
+    Surface,
+    /// Added to the load cell's reading [N].
+    ForceReading,
+    /// Added to the position sensor's reading [m].
+    StrokeReading,
+    /// Added to the pressure sensor's reading [Pa].
+    PressureReading,
+}
+
+impl Port {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::PistonForce,
+        Self::SetPressure,
+        Self::OutletPressure,
+        Self::FirstChamberFlow,
+        Self::SecondChamberFlow,
+        Self::FirstChamberLeak,
+        Self::SecondChamberLeak,
+        Self::Surface,
+        Self::ForceReading,
+        Self::StrokeReading,
+        Self::PressureReading,
+    ];
+
+    /// Whether it changes what a sensor says, and nothing else.
+    pub fn is_reading(self) -> bool {
+        matches!(
+            self,
+            Self::ForceReading | Self::StrokeReading | Self::PressureReading
+        )
+    }
+
+    /// Whether it is the area of an opening, which is never less than nothing.
+    pub fn is_area(self) -> bool {
+        matches!(self, Self::FirstChamberLeak | Self::SecondChamberLeak)
+    }
+
+    /// Name in files and answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PistonForce => "piston_force",
+            Self::SetPressure => "set_pressure",
+            Self::OutletPressure => "outlet_pressure",
+            Self::FirstChamberFlow => "first_chamber_flow",
+            Self::SecondChamberFlow => "second_chamber_flow",
+            Self::FirstChamberLeak => "first_chamber_leak",
+            Self::SecondChamberLeak => "second_chamber_leak",
+            Self::Surface => "surface",
+            Self::ForceReading => "force_reading",
+            Self::StrokeReading => "stroke_reading",
+            Self::PressureReading => "pressure_reading",
+        }
+    }
+
+    /// Its unit as a key ends with it.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::PistonForce | Self::ForceReading => "n",
+            Self::SetPressure | Self::OutletPressure | Self::PressureReading => "pa",
+            Self::FirstChamberLeak | Self::SecondChamberLeak => "m2",
+            Self::FirstChamberFlow | Self::SecondChamberFlow => "kg_per_s",
+            Self::Surface | Self::StrokeReading => "m",
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::PistonForce | Self::ForceReading => "N",
+            Self::SetPressure | Self::OutletPressure | Self::PressureReading => "Pa",
+            Self::FirstChamberLeak | Self::SecondChamberLeak => "m^2",
+            Self::FirstChamberFlow | Self::SecondChamberFlow => "kg/s",
+            Self::Surface | Self::StrokeReading => "m",
+        }
+    }
+
+    /// Part of the chain that it belongs to, as in an answer.
+    pub fn subsystem(self) -> &'static str {
+        match self {
+            Self::PistonForce => "force_balance",
+            Self::SetPressure | Self::OutletPressure => "regulator",
+            Self::FirstChamberFlow
+            | Self::SecondChamberFlow
+            | Self::FirstChamberLeak
+            | Self::SecondChamberLeak => "chambers",
+            Self::Surface => "contact",
+            Self::ForceReading | Self::StrokeReading | Self::PressureReading => "sensors",
+        }
+    }
+}
