@@ -22,16 +22,21 @@ use crate::effects::Coordinate;
 use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, Port, Quantity, Variable, registry};
 use rayon::prelude::*;
 
-/// Terms that get a second look after their first step: where the piston meets a stop a term over the stroke needs more than one.
-const LOOKED_AT: usize = 12;
+/// Coefficients of a curve in its first step.
+const COARSE: usize = 13;
+/// Cost beyond noise over that of the best after the first step beyond which a term gets no second look [1]: where the piston meets a stop a term over the
+/// stroke needs more than one step.
+const FAR: f64 = 12.0;
+/// Terms that get a second look.
+const LOOKED_AT: usize = 8;
 /// Iterations of that look.
-const LOOK: usize = 4;
+const LOOK: usize = 3;
 /// Terms that are fitted roughly.
-const FITTED: usize = 5;
+const FITTED: usize = 4;
 /// Iterations of a rough fit.
 const ROUGH_ITERATIONS: usize = 8;
 /// Terms that are fitted in full.
-const IN_FULL: usize = 3;
+const IN_FULL: usize = 2;
 /// Iterations of the full fit.
 const FULL_ITERATIONS: usize = 25;
 /// Standard deviation that is believed of a term's level or of a wave, in the port's scale [1].
@@ -44,6 +49,8 @@ const NARROW: [f64; 2] = [0.1, 0.3];
 const WIDE: f64 = 0.6;
 /// Rough cost over that of another explanation beyond which terms that were looked at are given up [1].
 const HOPELESS: f64 = 1.5;
+/// The same where a formula is asked for [1].
+const PROMISING: f64 = 0.5;
 /// Share of the gain of the best term within which another variable is not told apart [1].
 const ALIKE: f64 = 0.05;
 
@@ -180,7 +187,7 @@ fn terms(evidence: &Evidence, base: &Prediction) -> Vec<Latent> {
                     variable: *variable,
                     directed: *directed,
                     basis: Basis::Hats { ends },
-                    coefficients: vec![0.0; MOST_COEFFICIENTS],
+                    coefficients: vec![0.0; COARSE],
                 });
             }
         }
@@ -234,6 +241,19 @@ fn range(evidence: &Evidence, base: &Prediction, variable: Variable) -> Option<[
         ),
     };
     (high > low).then_some([low, high])
+}
+
+/// A curve with as many knots as there may be; nothing of what is none.
+fn refined(latent: &Latent) -> Option<Latent> {
+    let Basis::Hats { ends } = latent.basis else {
+        return None;
+    };
+    let step = (ends[1] - ends[0]) / (MOST_COEFFICIENTS - 1) as f64;
+    let at = |k: usize| latent.shape(ends[0] + step * k as f64);
+    Some(Latent {
+        coefficients: (0..MOST_COEFFICIENTS).map(at).collect(),
+        ..latent.clone()
+    })
 }
 
 /// A term in words for the log.
@@ -291,8 +311,25 @@ fn variables<'a>(terms: impl Iterator<Item = &'a Latent>) -> Vec<&'static str> {
 }
 
 impl Search<'_> {
-    /// Terms without a name that explain most beside a hypothesis, best first: formulas, and beside them the curve where no formula does all that it does. None
-    /// where all promise to cost far more than what another explanation costs roughly, `rival`.
+    /// Formulas beside a hypothesis that leave noise alone, best first; none where the curves that point at them promise too little beside what another
+    /// explanation costs roughly, `rival`.
+    pub(super) fn adequate_formulas(
+        &self,
+        base: &Hypothesis,
+        rival: f64,
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
+        let base = &self.held(base);
+        let promising = self.promising(base, PROMISING * rival, observer);
+        let mut found = self.formulas(base, &promising, self.left_alone(scale), observer);
+        found.retain(|h| scale.is_adequate(h));
+        self.name_variables(base, &mut found, &promising);
+        found
+    }
+
+    /// The last resort: curves beside a hypothesis, with formulas that do what they do, best first. None where all promise to cost far more than what another
+    /// explanation costs roughly, `rival`.
     pub(super) fn latent(
         &self,
         base: &Hypothesis,
@@ -300,42 +337,73 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
-        // Of a full fit the held prediction is wanted.
-        let base = &self.refit(base, curve(ROUGH, 2));
+        let base = &self.held(base);
+        let promising = self.promising(base, HOPELESS * rival, observer);
+        let curves = self.curves(base, &promising, observer);
+        let mut found = self.formulas(base, &curves, self.left_alone(scale), observer);
+        let full = curves.iter().take(IN_FULL);
+        found.extend(full.map(|h| self.refit(h, curve(FULL, FULL_ITERATIONS))));
+        found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        self.name_variables(base, &mut found, &promising);
+        found
+    }
+
+    /// A hypothesis with the piston held: of a full fit that prediction is wanted.
+    fn held(&self, base: &Hypothesis) -> Hypothesis {
+        self.refit(base, curve(ROUGH, 2))
+    }
+
+    /// Rough cost below which nothing is left to be explained.
+    fn left_alone(&self, scale: &Scale) -> f64 {
+        rough_noise(self.evidence) + scale.rough_spread()
+    }
+
+    /// Curves that promise to cost less than a limit, the best first: all coarsely, those near the best finely.
+    fn promising(
+        &self,
+        base: &Hypothesis,
+        limit: f64,
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
+        let noise = rough_noise(self.evidence);
         let terms = terms(self.evidence, &base.fit.prediction);
         let mut ranked: Vec<Hypothesis> = terms
             .par_iter()
             .map(|latent| self.with_latent(base, latent, &base.fit.columns, 1))
             .collect();
-        ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
+        self.sort_by_cost(&mut ranked);
+        let left = |h: &Hypothesis| (self.latent_score(h) - noise).max(0.0);
+        let near = ranked.first().map_or(0.0, |best| FAR * left(best));
+        ranked.retain(|h| left(h) <= near);
         ranked.truncate(LOOKED_AT);
         ranked = ranked
             .par_iter()
-            .map(|promising| self.refit(promising, curve(ROUGH, LOOK)))
+            .map(|coarse| {
+                let fine = coarse.unlisted().and_then(refined);
+                match fine {
+                    Some(fine) => self.with_latent(base, &fine, &[], LOOK),
+                    None => self.refit(coarse, curve(ROUGH, LOOK)),
+                }
+            })
             .collect();
-        ranked.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
-        let near = |h: &&Hypothesis| self.latent_score(h) < HOPELESS * rival;
-        if !ranked.first().is_some_and(|h| near(&h)) {
-            return Vec::new();
-        }
+        self.sort_by_cost(&mut ranked);
         for h in &ranked {
             let detail = format!("{} promises {:.0}", described(h), self.latent_score(h));
             observer(&Step::Variation.of(h, detail));
         }
-        let noise = rough_noise(self.evidence) + scale.rough_spread();
-        let mut found = self.formulas(base, &ranked, noise, observer);
-        if !found.first().is_some_and(|best| scale.is_adequate(best)) {
-            let curves = self.curves(base, &ranked, observer);
-            found.extend(self.formulas(base, &curves, noise, observer));
-            let full = curves.iter().take(IN_FULL);
-            found.extend(full.map(|h| self.refit(h, curve(FULL, FULL_ITERATIONS))));
-        }
-        found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        ranked.retain(|h| self.latent_score(h) < limit);
+        ranked
+    }
+
+    pub(super) fn sort_by_cost(&self, hypotheses: &mut [Hypothesis]) {
+        hypotheses.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
+    }
+
+    /// Names the variables on which the best of some terms depends.
+    fn name_variables(&self, base: &Hypothesis, found: &mut [Hypothesis], ranked: &[Hypothesis]) {
         if let Some(best) = found.first_mut() {
-            let depends_on = self.alike(base, best, &ranked);
-            best.depends_on = depends_on;
+            best.depends_on = self.alike(base, best, ranked);
         }
-        found
     }
 
     /// Curves fitted roughly, the best first, by what they leave of recordings that they were not fitted to as well.

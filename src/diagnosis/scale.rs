@@ -62,13 +62,18 @@ impl Scale {
     pub fn is_explained(&self, hypothesis: &Hypothesis) -> bool {
         let fit = &hypothesis.fit;
         let full = (fit.cost() - self.count) / (self.full - self.count);
-        let rough = (fit.rough - self.noise) / (self.rough - self.noise);
+        let rough = self.left_roughly(hypothesis);
         self.is_adequate(hypothesis) || full.min(rough) < UNEXPLAINED
+    }
+
+    /// Share of the mismatch that a rough fit leaves [1].
+    pub fn left_roughly(&self, hypothesis: &Hypothesis) -> f64 {
+        (hypothesis.fit.rough - self.noise) / (self.rough - self.noise)
     }
 
     /// Whether it explains at least half.
     pub fn is_half_explained(&self, hypothesis: &Hypothesis) -> bool {
-        (hypothesis.fit.rough - self.noise) < 0.5 * (self.rough - self.noise)
+        self.left_roughly(hypothesis) < 0.5
     }
 
     /// Whether one more effect, or a richer law, could gain nothing that would be worth a mention.

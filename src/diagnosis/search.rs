@@ -145,6 +145,7 @@ impl Search<'_> {
         let mut full: Vec<Hypothesis> = Vec::new();
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
         let mut done = Vec::new();
+        let mut asked_for_formulas = false;
         while levels.len() <= self.most_effects && full.is_empty() {
             let parents = &levels[levels.len() - 1];
             let before = parents[0].fit.rough - noise;
@@ -164,6 +165,14 @@ impl Search<'_> {
             let Some(best) = children.first() else { break };
             if self.rough_score(best) >= self.rough_score(&parents[0]) {
                 break;
+            }
+            if levels.len() == 1 {
+                full = self.early_formulas(&children, &unexplained, &scale, &mut done, observer);
+                asked_for_formulas = true;
+                if !full.is_empty() {
+                    levels.push(children);
+                    break;
+                }
             }
             let after = best.fit.rough - noise;
             let stuck = levels.len() > 1 && after > self.settings.stagnation * before;
@@ -195,9 +204,11 @@ impl Search<'_> {
         weighed.add_small(&mut full, &scale, observer);
         full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
         weighed.prefer_plain(&mut full, &scale);
-        weighed.add_unlisted(&mut full, &unexplained, &scale, observer);
+        let unexplained = (&unexplained, asked_for_formulas);
+        weighed.add_unlisted(&mut full, unexplained, &all, &scale, observer);
         weighed.drop_below_noise(&mut full, observer);
         weighed.add_close(&mut full, &all, &scale, observer);
+        let unexplained = unexplained.0;
         let before = unexplained.fit.rough - noise;
         let reference = full
             .first()
@@ -404,7 +415,7 @@ impl Search<'_> {
 const MOST_ANEW: usize = 4;
 
 /// A full fit made before.
-struct Refined {
+pub(in crate::diagnosis) struct Refined {
     /// Cost of the rough fit that it began with [1].
     rough: f64,
     full: Hypothesis,

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::super::free::{Free, Prior};
 use super::super::hypothesis::Hypothesis;
 use super::super::latent::scale;
-use super::formula;
 use super::grammar::{Form, Role, per, symbol};
 use crate::effects::{Coordinate, UNLISTED};
 use crate::plant::registry::LATENT_COEFFICIENT;
@@ -116,10 +115,8 @@ impl Candidate {
 
     /// The law.
     pub fn law(&self) -> &LawText {
-        match &self.latent.basis {
-            Basis::Formula(formula) => &formula.law,
-            Basis::Hats { .. } | Basis::Waves { .. } => unreachable!("a candidate is a formula"),
-        }
+        let formula = self.latent.formula();
+        &formula.expect("a candidate's term is made with a formula").law
     }
 
     /// Free constants.
@@ -135,7 +132,7 @@ impl Candidate {
         fixed: Option<(&'static str, f64, &'static str)>,
         depends_on: &'static str,
     ) -> Option<Self> {
-        let formula = formula(&self.latent)?;
+        let formula = self.latent.formula()?;
         let law = &formula.law;
         let count = self.latent.coefficients.len();
         let text = format!("{} * {factor}", bracketed(law.expression.text()));

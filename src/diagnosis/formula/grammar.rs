@@ -52,8 +52,6 @@ pub(super) enum Sense {
 /// A form.
 #[derive(Debug)]
 pub(super) struct Form {
-    /// In words.
-    pub words: &'static str,
     /// Its text.
     pub text: &'static str,
     /// Its constants.
@@ -75,7 +73,6 @@ const TO: (&str, Role) = ("to", Role::Place);
 
 /// A periodic form over time, found by its frequency.
 pub(super) const WAVE: Form = Form {
-    words: "a wave",
     text: "height * sin(2 * pi * frequency * t + phase)",
     constants: &[HEIGHT, ("frequency", Role::Frequency), PHASE],
     sense: Sense::Time,
@@ -83,43 +80,41 @@ pub(super) const WAVE: Form = Form {
 
 #[rustfmt::skip] // A table: one form a line.
 pub(super) const FORMS: &[Form] = &[
-    form("in proportion", "gain * X", &[GAIN], Sense::Any),
-    form("a straight line", "height + gain * X", &[HEIGHT, GAIN], Sense::Any),
-    form("with the square", "curvature * X^2", &[CURVATURE], Sense::Any),
-    form("with the square and the sign", "curvature * X * abs(X)", &[CURVATURE], Sense::Signed),
-    form("a parabola", "gain * X + curvature * X^2", &[GAIN, CURVATURE], Sense::Any),
-    form("a power", "height * sign(X) * abs(X / reference)^exponent", &[HEIGHT, ("exponent", Role::Exponent)], Sense::Any),
-    form("for positive values alone", "gain * max(X, 0)", &[GAIN], Sense::Signed),
-    form("for negative values alone", "gain * min(X, 0)", &[GAIN], Sense::Signed),
-    form("the square of positive values alone", "curvature * max(X, 0)^2", &[CURVATURE], Sense::Signed),
-    form("the square of negative values alone", "curvature * min(X, 0)^2", &[CURVATURE], Sense::Signed),
-    form("beyond a threshold", "gain * max(X - threshold, 0)", &[GAIN, THRESHOLD], Sense::Any),
-    form("below a threshold", "gain * max(threshold - X, 0)", &[GAIN, THRESHOLD], Sense::Any),
-    form("beyond a threshold of either sign", "gain * (X - min(max(X, -limit), limit))", &[GAIN, LIMIT], Sense::Signed),
-    form("a step up", "height * (X > threshold)", &[HEIGHT, THRESHOLD], Sense::Any),
-    form("a step down", "height * (X < threshold)", &[HEIGHT, THRESHOLD], Sense::Any),
-    form("a ramp up", "height * min(max((X - threshold) / width, 0), 1)", &[HEIGHT, THRESHOLD, WIDTH], Sense::Any),
-    form("a ramp down", "height * min(max((threshold - X) / width, 0), 1)", &[HEIGHT, THRESHOLD, WIDTH], Sense::Any),
-    form("a window", "height * (X > from) * (X < to)", &[HEIGHT, FROM, TO], Sense::Any),
-    form("a window with soft edges", "height * (tanh((X - from) / edge) - tanh((X - to) / edge)) / 2", &[HEIGHT, FROM, TO, ("edge", Role::Width)], Sense::Any),
-    form("a bump", "height * exp(-((X - centre) / width)^2)", &[HEIGHT, ("centre", Role::Place), WIDTH], Sense::Any),
-    form("periodic", "height * sin(2 * pi * X / period)", &[HEIGHT, PERIOD], Sense::Any),
-    form("periodic with a phase", "height * sin(2 * pi * X / period + phase)", &[HEIGHT, PERIOD, PHASE], Sense::Any),
-    form("saturating", "height * tanh(X / width)", &[HEIGHT, WIDTH], Sense::Any),
-    form("in proportion up to a limit", "gain * min(max(X, -limit), limit)", &[GAIN, LIMIT], Sense::Any),
-    form("all of it up to a limit", "-min(max(X, -limit), limit)", &[LIMIT], Sense::SameUnit),
-    form("an approach", "height * (1 - exp(-X / width))", &[HEIGHT, WIDTH], Sense::Time),
-    form("a decay", "height * exp(-X / width)", &[HEIGHT, WIDTH], Sense::Any),
+    form("gain * X", &[GAIN], Sense::Any),
+    form("height + gain * X", &[HEIGHT, GAIN], Sense::Any),
+    form("curvature * X^2", &[CURVATURE], Sense::Any),
+    form("curvature * X * abs(X)", &[CURVATURE], Sense::Signed),
+    form("gain * X + curvature * X^2", &[GAIN, CURVATURE], Sense::Any),
+    form("height * sign(X) * abs(X / reference)^exponent", &[HEIGHT, ("exponent", Role::Exponent)], Sense::Any),
+    form("gain * max(X, 0)", &[GAIN], Sense::Signed),
+    form("gain * min(X, 0)", &[GAIN], Sense::Signed),
+    form("curvature * max(X, 0)^2", &[CURVATURE], Sense::Signed),
+    form("curvature * min(X, 0)^2", &[CURVATURE], Sense::Signed),
+    form("gain * max(X - threshold, 0)", &[GAIN, THRESHOLD], Sense::Any),
+    form("gain * max(threshold - X, 0)", &[GAIN, THRESHOLD], Sense::Any),
+    form("gain * (X - min(max(X, -limit), limit))", &[GAIN, LIMIT], Sense::Signed),
+    form("height * (X > threshold)", &[HEIGHT, THRESHOLD], Sense::Any),
+    form("height * (X < threshold)", &[HEIGHT, THRESHOLD], Sense::Any),
+    form("height * min(max((X - threshold) / width, 0), 1)", &[HEIGHT, THRESHOLD, WIDTH], Sense::Any),
+    form("height * min(max((threshold - X) / width, 0), 1)", &[HEIGHT, THRESHOLD, WIDTH], Sense::Any),
+    form("height * (X > from) * (X < to)", &[HEIGHT, FROM, TO], Sense::Any),
+    form("height * (tanh((X - from) / edge) - tanh((X - to) / edge)) / 2", &[HEIGHT, FROM, TO, ("edge", Role::Width)], Sense::Any),
+    form("height * exp(-((X - centre) / width)^2)", &[HEIGHT, ("centre", Role::Place), WIDTH], Sense::Any),
+    form("height * sin(2 * pi * X / period)", &[HEIGHT, PERIOD], Sense::Any),
+    form("height * sin(2 * pi * X / period + phase)", &[HEIGHT, PERIOD, PHASE], Sense::Any),
+    form("height * tanh(X / width)", &[HEIGHT, WIDTH], Sense::Any),
+    form("gain * min(max(X, -limit), limit)", &[GAIN, LIMIT], Sense::Any),
+    form("-min(max(X, -limit), limit)", &[LIMIT], Sense::SameUnit),
+    form("height * (1 - exp(-X / width))", &[HEIGHT, WIDTH], Sense::Time),
+    form("height * exp(-X / width)", &[HEIGHT, WIDTH], Sense::Any),
 ];
 
 const fn form(
-    words: &'static str,
     text: &'static str,
     constants: &'static [(&'static str, Role)],
     sense: Sense,
 ) -> Form {
     Form {
-        words,
         text,
         constants,
         sense,
@@ -135,11 +130,6 @@ impl Form {
             Sense::SameUnit => symbol(variable).unit == port.unit(),
             Sense::Time => variable == Variable::Time,
         }
-    }
-
-    /// How much richer than the plainest it is: constants that it has.
-    pub fn count(&self) -> usize {
-        self.constants.len()
     }
 }
 

@@ -11,8 +11,6 @@ mod candidate;
 mod grammar;
 mod matching;
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 
 use self::candidate::{Candidate, modulated};
@@ -23,7 +21,7 @@ use super::free::Free;
 use super::hypothesis::Hypothesis;
 use super::progress::{Observer, Step};
 use super::search::Search;
-use crate::plant::{Basis, Formula, Latent, Moment, Variable};
+use crate::plant::{Basis, Latent, Moment, Variable};
 
 /// Formulas that are fitted roughly, of those that promise most, and of one curve at most.
 const FITTED: usize = 10;
@@ -85,7 +83,7 @@ impl Search<'_> {
             );
             observer(&Step::Variation.of(hypothesis, detail));
         }
-        self.sort(&mut fitted);
+        self.sort_by_cost(&mut fitted);
         if fitted.first().is_some_and(|best| best.fit.rough > noise) {
             self.add_products(base, &mut fitted, observer);
         }
@@ -105,10 +103,6 @@ impl Search<'_> {
             observer(&Step::Variation.of(h, detail));
         }
         full
-    }
-
-    fn sort(&self, hypotheses: &mut [Hypothesis]) {
-        hypotheses.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
     }
 
     /// Formulas over the variable of a curve, with what each promises.
@@ -244,7 +238,7 @@ impl Search<'_> {
                 self.with_formula(base, &beside, product, LOOK)
             })
             .collect();
-        self.sort(&mut looked);
+        self.sort_by_cost(&mut looked);
         looked.truncate(IN_FULL);
         let gone_on: Vec<Hypothesis> = looked
             .par_iter()
@@ -255,7 +249,7 @@ impl Search<'_> {
             observer(&Step::Variation.of(h, detail));
         }
         fitted.extend(gone_on);
-        self.sort(fitted);
+        self.sort_by_cost(fitted);
     }
 }
 
@@ -263,20 +257,9 @@ impl Search<'_> {
 const CLEAR: f64 = 0.1;
 
 /// A hypothesis' formula as its text with port.
-pub(super) fn text(hypothesis: &Hypothesis) -> String {
-    hypothesis
-        .unlisted()
-        .and_then(formula)
-        .map_or_else(String::new, |formula| {
-            let law = &formula.law;
-            format!("{} = {}", law.port.name(), law.expression.text())
-        })
-}
-
-/// The formula of a term, if it is one.
-pub(super) fn formula(latent: &Latent) -> Option<&Arc<Formula>> {
-    match &latent.basis {
-        Basis::Formula(formula) => Some(formula),
-        Basis::Hats { .. } | Basis::Waves { .. } => None,
-    }
+fn text(hypothesis: &Hypothesis) -> String {
+    hypothesis.formula().map_or_else(String::new, |formula| {
+        let law = &formula.law;
+        format!("{} = {}", law.port.name(), law.expression.text())
+    })
 }

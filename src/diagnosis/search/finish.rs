@@ -7,9 +7,9 @@ use super::super::free::{Free, free_of};
 use super::super::hypothesis::{Hypothesis, covers, stands_for};
 use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
-use super::{Search, same};
+use super::{Refined, Search, same};
 use crate::effects::Effect;
-use crate::plant::{CHANNELS, Chain};
+use crate::plant::{CHANNELS, Chain, Latent};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -25,6 +25,11 @@ const FORGIVEN: f64 = 1e-3;
 const LIGHTER: usize = 8;
 /// The last stages of a full fit, for what is all but there.
 const LAST: &[Stage] = FULL.split_at(FULL.len() - 2).1;
+
+/// Share of the mismatch that the best effect must leave for a formula to be asked for at once [1].
+const ONE_LEAVES: f64 = 0.25;
+/// Sets of effects beside which a formula is tried, at most.
+const MOST_BASES: usize = 4;
 
 /// A fit again from where a richer hypothesis stands.
 fn again(richer: &Hypothesis) -> Refit<'_> {
@@ -196,47 +201,108 @@ impl Search<'_> {
         }
     }
 
-    /// Where no known effect explains the mismatch, puts a term without a name first if it explains more.
+    /// Where one effect leaves much of the mismatch, formulas that leave noise alone, with those of the effects that do so too; none where there is no such
+    /// formula. More effects are then not asked for: two laws of the list are no more likely than one that it does not hold.
+    pub(super) fn early_formulas(
+        &self,
+        children: &[Hypothesis],
+        unexplained: &Hypothesis,
+        scale: &Scale,
+        done: &mut Vec<Refined>,
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
+        let leaves_much = |best: &Hypothesis| scale.left_roughly(best) > ONE_LEAVES;
+        let Some(best) = children.first().filter(|best| leaves_much(best)) else {
+            return Vec::new();
+        };
+        if self.believed.chain != Chain::Whole {
+            return Vec::new();
+        }
+        let formulas = self.adequate_formulas(unexplained, best.fit.rough, scale, observer);
+        if formulas.is_empty() {
+            return formulas;
+        }
+        let mut full = self.in_full(children, scale, done, observer);
+        full.retain(|h| scale.is_adequate(h));
+        full.extend(formulas);
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        full
+    }
+
+    /// Where no known effects explain the mismatch to the noise, puts a term without a name first if it does so, beside fewer of them or none; where they do
+    /// not explain it at all, if it explains more.
     pub(super) fn add_unlisted(
         &self,
         full: &mut Vec<Hypothesis>,
-        baseline: &Hypothesis,
+        (unexplained, asked): (&Hypothesis, bool),
+        rough: &[Hypothesis],
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) {
         let Some(best) = full.first() else { return };
-        if scale.is_explained(best) {
+        if scale.is_adequate(best)
+            || best.unlisted().is_some()
+            || self.believed.chain != Chain::Whole
+        {
             return;
         }
-        let mut bases = vec![baseline.clone()];
-        if scale.is_half_explained(best) {
-            bases.push(best.clone());
-        }
         let rival = best.fit.rough;
-        let mut found: Vec<Hypothesis> = Vec::new();
-        for base in &bases {
-            found.extend(self.latent(base, rival, scale, observer));
+        let within = |h: &&Hypothesis| {
+            let mut own = h.effects.iter();
+            own.all(|effect| best.effects.iter().any(|e| e.name == effect.name))
+        };
+        let mut bases: Vec<&Hypothesis> = (rough.iter().filter(within))
+            .filter(|h| h.effects.len() < best.effects.len())
+            .filter(|h| !(asked && h.effects.is_empty()))
+            .take(MOST_BASES)
+            .collect();
+        if !scale.is_explained(best) {
+            bases.push(best);
         }
-        found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        let mut found = Vec::new();
+        for base in bases {
+            found = self.adequate_formulas(base, rival, scale, observer);
+            if !found.is_empty() {
+                break;
+            }
+        }
+        if found.is_empty() && !scale.is_explained(best) {
+            found = self.latent(unexplained, rival, scale, observer);
+            if scale.is_half_explained(best) {
+                found.extend(self.latent(best, rival, scale, observer));
+            }
+            found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        }
         let mut found = found.into_iter();
         if let Some(first) = found.next()
             && self.score(&first) < self.score(&full[0])
         {
-            let own = |base: &&Hypothesis| base.names() == first.names();
-            let without = (bases.iter().find(own)).map(|base| self.refit(base, again(&first)));
-            match without.filter(|h| scale.is_adequate(h) || self.score(h) <= self.score(&first)) {
-                Some(without) => {
+            let without = self.without_term(&first);
+            match scale.is_adequate(&without) || self.score(&without) <= self.score(&first) {
+                true => {
                     let detail = format!("without a term {:.1}", self.score(&without));
                     observer(&Step::Variation.of(&without, detail));
                     full.insert(0, without);
                 }
-                None => {
+                false => {
                     full.insert(0, first);
                     full.extend(found);
                     full[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
                 }
             }
         }
+    }
+
+    /// A hypothesis without its term, fitted again from where it is.
+    fn without_term(&self, hypothesis: &Hypothesis) -> Hypothesis {
+        let own = hypothesis.unlisted().map_or(0, Latent::numbers);
+        let mut free = hypothesis.fit.free_from_here();
+        free.truncate(free.len() - own);
+        let mut plant = hypothesis.fit.prediction.plant.clone();
+        plant.latent = None;
+        let effects = hypothesis.effects.clone();
+        let free = self.settled(free);
+        self.fitted(effects, (&plant, None), &free, LAST, Refit::FULL.limit)
     }
 
     /// Takes effects out of the best hypothesis as long as it scores better without, the last one too: a rough fit of the believed model may have come to
