@@ -49,7 +49,7 @@ const NARROW: [f64; 2] = [0.1, 0.3];
 const WIDE: f64 = 0.6;
 /// Rough cost over that of another explanation beyond which terms that were looked at are given up [1].
 const HOPELESS: f64 = 1.5;
-/// The same where a formula is asked for [1].
+/// Share of what another explanation leaves that a curve may leave for a formula to be asked for [1].
 const PROMISING: f64 = 0.5;
 /// Share of the gain of the best term within which another variable is not told apart [1].
 const ALIKE: f64 = 0.05;
@@ -321,8 +321,10 @@ impl Search<'_> {
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let base = &self.held(base);
-        let promising = self.promising(base, PROMISING * rival, observer);
-        let mut found = self.formulas(base, &promising, self.left_alone(scale), observer);
+        let noise = self.left_alone(scale);
+        let limit = noise + PROMISING * (rival - noise).max(0.0);
+        let promising = self.promising(base, limit, observer);
+        let mut found = self.formulas(base, &promising, noise, observer);
         found.retain(|h| scale.is_adequate(h));
         self.name_variables(base, &mut found, &promising);
         found
@@ -391,7 +393,7 @@ impl Search<'_> {
             let detail = format!("{} promises {:.0}", described(h), self.latent_score(h));
             observer(&Step::Variation.of(h, detail));
         }
-        ranked.retain(|h| self.latent_score(h) < limit);
+        ranked.retain(|h| h.fit.rough < limit);
         ranked
     }
 

@@ -145,7 +145,7 @@ impl Search<'_> {
         let mut full: Vec<Hypothesis> = Vec::new();
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
         let mut done = Vec::new();
-        let mut asked_for_formulas = false;
+        let mut asked = false;
         while levels.len() <= self.most_effects && full.is_empty() {
             let parents = &levels[levels.len() - 1];
             let before = parents[0].fit.rough - noise;
@@ -167,8 +167,11 @@ impl Search<'_> {
                 break;
             }
             if levels.len() == 1 {
-                full = self.early_formulas(&children, &unexplained, &scale, &mut done, observer);
-                asked_for_formulas = true;
+                asked = self.asks_early(&children, &scale);
+                if asked {
+                    full =
+                        self.early_formulas(&children, &unexplained, &scale, &mut done, observer);
+                }
                 if !full.is_empty() {
                     levels.push(children);
                     break;
@@ -204,7 +207,7 @@ impl Search<'_> {
         weighed.add_small(&mut full, &scale, observer);
         full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
         weighed.prefer_plain(&mut full, &scale);
-        let unexplained = (&unexplained, asked_for_formulas);
+        let unexplained = (&unexplained, asked);
         weighed.add_unlisted(&mut full, unexplained, &all, &scale, observer);
         weighed.drop_below_noise(&mut full, observer);
         weighed.add_close(&mut full, &all, &scale, observer);

@@ -28,6 +28,8 @@ const LIMITS: [f64; 12] = [
 const EXPONENTS: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 1.4, 1.7, 2.5, 3.5];
 /// Periods, as shares of the range: from a twelfth to four times, evenly by their logarithm.
 const PERIODS: usize = 40;
+/// Rounds of the way down from the grid.
+const ROUNDS: usize = 24;
 /// Phases of a turn.
 const PHASES: usize = 12;
 
@@ -119,11 +121,47 @@ impl CurveModel {
                 best = Some(Match { constants, cost });
             }
             let Some(place) = (0..grids.len()).find(|i| index[*i] + 1 < grids[*i].len()) else {
-                return best;
+                break;
             };
             index[place] += 1;
             index[..place].fill(0);
         }
+        best.map(|best| self.refined(form, law, &moments, best))
+    }
+
+    /// Goes down from a place on the grid, one constant after the other, in steps that shrink.
+    fn refined(&self, form: &Form, law: &LawText, moments: &[Moment], mut best: Match) -> Match {
+        let [low, high] = self.ends();
+        let sought = form.constants.iter().enumerate();
+        let sought: Vec<(usize, Role)> = sought
+            .map(|(i, (_, role))| (i, *role))
+            .filter(|(_, role)| !role.is_linear())
+            .collect();
+        let mut step = 0.5;
+        for _ in 0..ROUNDS {
+            let before = best.cost;
+            for (place, role) in &sought {
+                for sign in [-1.0, 1.0] {
+                    let mut constants = best.constants.clone();
+                    let value = &mut constants[*place];
+                    match role {
+                        Role::Place => *value += sign * step * (high - low) / PLACES as f64,
+                        Role::Phase | Role::Exponent => *value += sign * step * 0.5,
+                        _ => *value *= (sign * step * 0.8).exp(),
+                    }
+                    if is_ordered(form, &constants)
+                        && let Some(cost) = self.fit_linear(form, law, moments, &mut constants)
+                        && cost < best.cost
+                    {
+                        best = Match { constants, cost };
+                    }
+                }
+            }
+            if best.cost > 0.99 * before {
+                step *= 0.5;
+            }
+        }
+        best
     }
 
     /// Values of a constant that are tried; of one that the form is in proportion to, one.

@@ -201,7 +201,13 @@ impl Search<'_> {
         }
     }
 
-    /// Where one effect leaves much of the mismatch, formulas that leave noise alone, with those of the effects that do so too; none where there is no such
+    /// Whether one effect leaves so much of the mismatch that formulas are asked for at once.
+    pub(super) fn asks_early(&self, children: &[Hypothesis], scale: &Scale) -> bool {
+        let leaves_much = |best: &Hypothesis| scale.left_roughly(best) > ONE_LEAVES;
+        self.believed.chain == Chain::Whole && children.first().is_some_and(leaves_much)
+    }
+
+    /// Formulas that leave noise alone, with those of the effects that do so too; none where there is no such
     /// formula. More effects are then not asked for: two laws of the list are no more likely than one that it does not hold.
     pub(super) fn early_formulas(
         &self,
@@ -211,14 +217,8 @@ impl Search<'_> {
         done: &mut Vec<Refined>,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
-        let leaves_much = |best: &Hypothesis| scale.left_roughly(best) > ONE_LEAVES;
-        let Some(best) = children.first().filter(|best| leaves_much(best)) else {
-            return Vec::new();
-        };
-        if self.believed.chain != Chain::Whole {
-            return Vec::new();
-        }
-        let formulas = self.adequate_formulas(unexplained, best.fit.rough, scale, observer);
+        let rival = children[0].fit.rough;
+        let formulas = self.adequate_formulas(unexplained, rival, scale, observer);
         if formulas.is_empty() {
             return formulas;
         }
