@@ -415,14 +415,7 @@ impl Device {
         }
         let [first, second] = disturbance_flows;
         let [leak_1, leak_2] = leaks.external;
-        let all = [
-            from_regulator,
-            flows[vented],
-            leak_1,
-            leak_2,
-            first,
-            second,
-        ];
+        let all = [from_regulator, flows[vented], leak_1, leak_2, first, second];
         for flow in all {
             rates.entered += flow.max(0.0);
             rates.left -= flow.min(0.0);

@@ -81,6 +81,46 @@ fn a_leak_to_the_atmosphere_empties_chamber_1_exponentially_while_choked() {
     assert!((device.pressures(&state, 0.025)[0] - 101_325.0).abs() < 1.0);
 }
 
+/// A leak that is set from outside is one of the parameters' area, of either chamber, and what is added to the set pressure is set.
+#[test]
+fn what_is_set_from_outside_acts_as_a_leak_and_as_a_set_pressure() {
+    let leaky = Device::new(DeviceParameters {
+        leakage: Leakage {
+            external: 3e-7,
+            ..Leakage::NONE
+        },
+        ..closed()
+    });
+    let tight = Device::new(closed());
+    let mut expected = leaky.at_rest(0.025, 5e5);
+    let mut first = tight.at_rest(0.025, 5e5);
+    first.disturbance.leaks = [3e-7, 0.0];
+    let mut second = tight.at_rest(0.025, 0.0);
+    second.air.masses[1] *= 4.0;
+    second.disturbance.leaks = [0.0, 3e-7];
+    let before = tight.pressures(&second, 0.025)[1];
+    let rate = choked_rate(3e-7, tight.chambers[1].volume(0.025));
+    for step in 1..=100 {
+        leaky.advance(&mut expected, 0.0, STILL, 1e-3, 1);
+        for state in [&mut first, &mut second] {
+            tight.advance(state, 0.0, STILL, 1e-3, 1);
+        }
+        let [a, b] = [&expected, &first].map(|state| state.air.masses[0]);
+        assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+        let decayed = before * (-rate * 1e-3 * f64::from(step)).exp();
+        let now = tight.pressures(&second, 0.025)[1];
+        assert!((now / decayed - 1.0).abs() < 1e-9, "{now} {decayed}");
+    }
+    let open = Device::new(DeviceParameters::default());
+    let [mut plain, mut moved] = [0, 1].map(|_| open.at_rest(0.025, 0.0));
+    moved.disturbance.set_pressure = 1e5;
+    for _ in 0..200 {
+        open.advance(&mut plain, 3e5, STILL, 1e-3, 1);
+        open.advance(&mut moved, 2e5, STILL, 1e-3, 1);
+    }
+    assert_eq!(plain.air, moved.air);
+}
+
 #[test]
 fn a_leak_past_the_piston_moves_air_and_its_heat_and_loses_none() {
     for gas_process in [

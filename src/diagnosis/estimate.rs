@@ -221,13 +221,17 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
         effects.push((*effect, list));
         at += own;
     }
-    let term = hypothesis.unlisted().filter(|term| term.formula().is_some());
+    let term = hypothesis
+        .unlisted()
+        .filter(|term| term.formula().is_some());
     let constants = term.map_or(0, Latent::numbers);
     let last = fit.free.len();
     Estimates {
         tolerated,
         effects,
-        formula: (last - constants..last).map(|index| number(index, true)).collect(),
+        formula: (last - constants..last)
+            .map(|index| number(index, true))
+            .collect(),
     }
 }
 

@@ -457,7 +457,9 @@ impl Search<'_> {
         };
         let least = (ranked.iter().map(|h| self.latent_score(h))).fold(f64::INFINITY, f64::min);
         let gain = (base.fit.rough - least).max(0.0);
-        let near = ranked.iter().filter(|h| self.latent_score(h) <= least + ALIKE * gain);
+        let near = ranked
+            .iter()
+            .filter(|h| self.latent_score(h) <= least + ALIKE * gain);
         let near = near.filter_map(Hypothesis::unlisted);
         for name in variables(near.filter(|other| other.port == own.port)) {
             if !names.contains(&name) {

@@ -1,8 +1,8 @@
 //! Terms at the ports of a rig beside its device, contact and sensors: a term without a name, and laws of a user's own.
 
 use super::moment::Moment;
-use super::port::Port;
 use super::parameters::PlantParameters;
+use super::port::Port;
 use crate::device::{Disturbance, PistonMotion};
 
 /// Further forces on the piston over a step.

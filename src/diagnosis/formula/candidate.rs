@@ -116,7 +116,9 @@ impl Candidate {
     /// The law.
     pub fn law(&self) -> &LawText {
         let formula = self.latent.formula();
-        &formula.expect("a candidate's term is made with a formula").law
+        &formula
+            .expect("a candidate's term is made with a formula")
+            .law
     }
 
     /// Free constants.

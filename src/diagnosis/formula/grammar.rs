@@ -45,6 +45,8 @@ pub(super) enum Sense {
     Signed,
     /// Of a variable in the port's own unit.
     SameUnit,
+    /// Of a variable that is never much below nothing.
+    Positive,
     /// Over time, from the start.
     Time,
 }
@@ -106,7 +108,7 @@ pub(super) const FORMS: &[Form] = &[
     form("gain * min(max(X, -limit), limit)", &[GAIN, LIMIT], Sense::Any),
     form("-min(max(X, -limit), limit)", &[LIMIT], Sense::SameUnit),
     form("height * (1 - exp(-X / width))", &[HEIGHT, WIDTH], Sense::Time),
-    form("height * exp(-X / width)", &[HEIGHT, WIDTH], Sense::Any),
+    form("height * exp(-X / width)", &[HEIGHT, WIDTH], Sense::Positive),
 ];
 
 const fn form(
@@ -127,6 +129,7 @@ impl Form {
         match self.sense {
             Sense::Any => true,
             Sense::Signed => low < -0.1 * high && high > -0.1 * low,
+            Sense::Positive => low > -0.01 * high,
             Sense::SameUnit => symbol(variable).unit == port.unit(),
             Sense::Time => variable == Variable::Time,
         }
@@ -171,8 +174,46 @@ pub(super) fn per(unit: &str, by: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::candidate::{Candidate, modulated};
     use super::*;
-    use crate::plant::Unit;
+    use crate::plant::{Basis, Latent, Moment, SYMBOLS, Unit};
+
+    /// A formula is written into a file and read again there: its units must go together, times any other variable too.
+    #[test]
+    fn every_form_is_in_the_unit_of_its_port() {
+        for port in Port::ALL {
+            for variable in Variable::ALL {
+                for directed in [false, true] {
+                    let curve = Latent {
+                        port,
+                        variable,
+                        directed,
+                        basis: Basis::Hats { ends: [-1.0, 2.0] },
+                        coefficients: vec![0.0; 24],
+                    };
+                    for form in FORMS.iter().chain([&WAVE]) {
+                        if form.sense == Sense::SameUnit && symbol(variable).unit != port.unit() {
+                            continue;
+                        }
+                        let plain = Candidate::new(form, &curve, Moment::default(), &[]);
+                        let products = modulated(&plain, |_| 2.0);
+                        for candidate in [plain].iter().chain(&products) {
+                            let law = candidate.law();
+                            let units: Vec<Option<Unit>> = (SYMBOLS.iter().map(|s| s.unit))
+                                .chain(law.constants.iter().map(|c| c.unit.unwrap()))
+                                .map(|unit| Some(Unit::read(unit).unwrap()))
+                                .collect();
+                            let expected = Unit::read(port.unit()).unwrap();
+                            let checked = law.expression.check_units(&units, expected);
+                            let text = law.expression.text();
+                            assert_eq!(checked, Ok(()), "{port:?} {variable:?} {text}");
+                            assert_eq!(candidate.latent.coefficients.len(), candidate.count());
+                        }
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn a_unit_over_another_is_read_again() {

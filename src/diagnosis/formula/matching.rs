@@ -242,5 +242,104 @@ fn is_ordered(form: &Form, constants: &[f64]) -> bool {
         .filter(|((_, role), _)| *role == Role::Place)
         .map(|(_, value)| *value);
     let first = places.next();
-    places.next().is_none_or(|second| first.is_some_and(|first| first < second))
+    places
+        .next()
+        .is_none_or(|second| first.is_some_and(|first| first < second))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::candidate::Candidate;
+    use super::super::grammar::FORMS;
+    use super::*;
+    use crate::plant::{Port, Variable};
+
+    /// A curve of 24 knots over the stroke that follows a law, each knot known to 0.01 of its unit but for what all have in common.
+    fn model(law: impl Fn(f64) -> f64) -> (CurveModel, Latent) {
+        let ends = [0.0, 0.05];
+        let knots: Vec<f64> = (0..24).map(|k| 0.05 * f64::from(k) / 23.0).collect();
+        let coefficients: Vec<f64> = knots.iter().map(|at| law(*at)).collect();
+        let latent = Latent {
+            port: Port::PistonForce,
+            variable: Variable::Stroke,
+            directed: false,
+            basis: Basis::Hats { ends },
+            coefficients: coefficients.clone(),
+        };
+        let model = CurveModel {
+            knots,
+            values: DVector::from_vec(coefficients),
+            information: DMatrix::identity(24, 24) * 1e4,
+        };
+        (model, latent)
+    }
+
+    /// Text, cost and constants of the form that costs least, with 10 for each constant.
+    fn best(law: impl Fn(f64) -> f64) -> (&'static str, Match) {
+        let (model, latent) = model(law);
+        let mut all: Vec<(&str, Match)> = FORMS
+            .iter()
+            .filter(|form| form.makes_sense(latent.port, latent.variable, [0.0, 0.05]))
+            .filter_map(|form| {
+                let text = Candidate::new(form, &latent, Moment::default(), &[]);
+                let moment = |at: f64| Moment::default().with(Variable::Stroke, at);
+                Some((form.text, model.best(form, text.law(), moment)?))
+            })
+            .collect();
+        let cost = |(_, found): &(&str, Match)| found.cost + 10.0 * found.constants.len() as f64;
+        all.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+        all.remove(0)
+    }
+
+    #[test]
+    fn a_curve_points_at_the_form_that_it_was_made_with() {
+        let (text, found) = best(|x| 40.0 * x);
+        assert_eq!(text, "gain * X");
+        assert!((found.constants[0] - 40.0).abs() < 1e-6);
+        let (text, found) = best(|x| -6.0 * (std::f64::consts::PI * x / 0.05).sin());
+        assert_eq!(text, "height * sin(2 * pi * X / period)");
+        assert!(
+            (found.constants[0] + 6.0).abs() < 0.01,
+            "{:?}",
+            found.constants
+        );
+        assert!(
+            (found.constants[1] - 0.1).abs() < 2e-4,
+            "{:?}",
+            found.constants
+        );
+        let (text, found) = best(|x| 300.0 * (x - 0.0217).max(0.0));
+        assert_eq!(text, "gain * max(X - threshold, 0)");
+        assert!(
+            (found.constants[1] - 0.0217).abs() < 5e-5,
+            "{:?}",
+            found.constants
+        );
+        let (text, found) = best(|x| 9.0 * (-((x - 0.02) / 0.006f64).powi(2)).exp());
+        assert_eq!(text, "height * exp(-((X - centre) / width)^2)");
+        assert!(
+            (found.constants[1] - 0.02).abs() < 5e-5,
+            "{:?}",
+            found.constants
+        );
+    }
+
+    /// What all knots have in common costs nothing where another number that is free takes it.
+    #[test]
+    fn what_else_is_free_takes_its_part() {
+        let (mut model, latent) = model(|x| 3.0 + 40.0 * x);
+        let ones = DVector::from_element(24, 1.0);
+        let free_level = &model.information * &ones;
+        model.information -= &free_level * free_level.transpose() / ones.dot(&free_level);
+        let form = &FORMS[0];
+        let text = Candidate::new(form, &latent, Moment::default(), &[]);
+        let moment = |at: f64| Moment::default().with(Variable::Stroke, at);
+        let found = model.best(form, text.law(), moment).unwrap();
+        assert!(
+            (found.constants[0] - 40.0).abs() < 1e-3,
+            "{:?}",
+            found.constants
+        );
+        assert!(found.cost < 1e-6, "{}", found.cost);
+    }
 }

@@ -126,9 +126,8 @@ impl Search<'_> {
                 let Some(model) = CurveModel::of(&curve.fit, latent) else {
                     return Vec::new();
                 };
-                let makes_sense = |form: &&grammar::Form| {
-                    form.makes_sense(latent.port, latent.variable, ends)
-                };
+                let makes_sense =
+                    |form: &&grammar::Form| form.makes_sense(latent.port, latent.variable, ends);
                 FORMS
                     .par_iter()
                     .filter(makes_sense)

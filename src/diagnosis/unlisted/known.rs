@@ -113,7 +113,13 @@ mod tests {
             Odd,
             "grows faster than the speed",
         );
-        says(AtSetPressure | OutletPressure, Time, false, Periodic, "compressor");
+        says(
+            AtSetPressure | OutletPressure,
+            Time,
+            false,
+            Periodic,
+            "compressor",
+        );
         says(ForceReading, ContactForce, false, Form::Broad, "not linear");
     }
 

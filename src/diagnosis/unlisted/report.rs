@@ -140,7 +140,11 @@ pub fn formula_text(latent: &Latent) -> Option<String> {
     });
     let constants: Vec<String> = constants.collect();
     let port = law.port.name();
-    Some(format!("{port} = {}, {}", law.expression.text(), constants.join(", ")))
+    Some(format!(
+        "{port} = {}, {}",
+        law.expression.text(),
+        constants.join(", ")
+    ))
 }
 
 impl UnlistedReport {
