@@ -166,16 +166,13 @@ impl Search<'_> {
             if self.rough_score(best) >= self.rough_score(&parents[0]) {
                 break;
             }
-            if levels.len() == 1 {
-                asked = self.asks_early(&children, &scale);
-                if asked {
-                    full =
-                        self.early_formulas(&children, &unexplained, &scale, &mut done, observer);
-                }
-                if !full.is_empty() {
-                    levels.push(children);
-                    break;
-                }
+            if levels.len() == 1 && self.asks_early(&children, &scale) {
+                asked = true;
+                full = self.early_formulas(&children, &unexplained, &scale, &mut done, observer);
+            }
+            if !full.is_empty() {
+                levels.push(children);
+                break;
             }
             let after = best.fit.rough - noise;
             let stuck = levels.len() > 1 && after > self.settings.stagnation * before;
@@ -211,19 +208,28 @@ impl Search<'_> {
         weighed.add_unlisted(&mut full, unexplained, &all, &scale, observer);
         weighed.drop_below_noise(&mut full, observer);
         weighed.add_close(&mut full, &all, &scale, observer);
-        let unexplained = unexplained.0;
+        let roughly = self.tried_roughly(&full, &all, (unexplained.0, noise));
+        (full, roughly, weighed.model_error)
+    }
+
+    /// What was fitted roughly, beside the best explanation and the rough cost of the believed model and of noise.
+    fn tried_roughly(
+        &self,
+        full: &[Hypothesis],
+        all: &[Hypothesis],
+        (unexplained, noise): (&Hypothesis, f64),
+    ) -> Vec<RoughFit> {
         let before = unexplained.fit.rough - noise;
         let reference = full
             .first()
-            .map_or(0.0, |best| self.rough_reference(best, &all));
+            .map_or(0.0, |best| self.rough_reference(best, all));
         let roughly = all.iter().map(|hypothesis| RoughFit {
             effects: hypothesis.effects.iter().map(|e| e.name).collect(),
             behind: self.rough_score(hypothesis) - reference,
             explained_share: (before > 0.0)
                 .then(|| ((unexplained.fit.rough - hypothesis.fit.rough) / before).clamp(0.0, 1.0)),
         });
-        let roughly = roughly.collect();
-        (full, roughly, weighed.model_error)
+        roughly.collect()
     }
 
     /// The search with scores weighed by what the best explanation leaves beyond noise: where that is much, effects that follow it are taken out again. Of

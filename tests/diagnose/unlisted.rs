@@ -84,15 +84,58 @@ fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
     assert_eq!(predicted.code, 0, "{}", predicted.err);
     let text = |file: &str| std::fs::read_to_string(bench.path(file)).unwrap();
     assert!(text("again.csv") == text("out/prediction.csv"));
-    assert!(text("out/improved.toml").contains("\n[latent]\nport = \"piston_force\"\n"));
+    let improved = text("out/improved.toml");
+    let curve = improved.contains("\n[latent]\nport = \"piston_force\"\n");
+    let formula = improved.contains("name = \"unlisted\"\nacts_on = \"piston_force\"\n");
+    assert!(curve != formula, "{improved}");
 
-    // It is no rig file to diagnose from.
-    let rig = text("out/improved.toml");
+    // What holds a curve is no rig file to diagnose from.
+    let rig = format!("{}{SNAG}", text("case/rig.toml"));
     bench.write("case/rig.toml", rig);
     let refused = diagnose(&bench, &["case", "--out", "other"]);
     let line = refused.only_line("error: ");
     assert_eq!(refused.code, 2);
     assert!(line.contains("rig.toml holds [latent]"), "{line}");
+}
+
+/// A damper that acts on the way out alone.
+const ONE_WAY: &str = "
+[[effect]]
+name = \"one_way\"
+acts_on = \"piston_force\"
+is = \"-c * max(v, 0)\"
+c = 260
+";
+
+#[test]
+fn a_planted_law_is_answered_as_a_formula_that_runs() {
+    let (bench, answer) = unlisted(ONE_WAY);
+    let found = &answer["effects"][0];
+    assert_eq!(found["subsystem"], "force_balance");
+    assert_eq!(found["depends_on"][0], "velocity");
+    assert_eq!(found["law"]["is"], "gain * max(v, 0)");
+    assert_eq!(found["law"]["units"]["gain"], "N s/m");
+    let gain = &found["parameters"]["gain"];
+    let [value, low, high] = ["value", "low", "high"].map(|key| gain[key].as_f64().unwrap());
+    assert!(low <= -260.0 && -260.0 <= high, "{gain}");
+    assert!((value + 260.0).abs() < 3.0, "{gain}");
+
+    let text = |file: &str| std::fs::read_to_string(bench.path(file)).unwrap();
+    let improved = text("out/improved.toml");
+    assert!(
+        improved.contains("is = \"gain * max(v, 0)\"\n"),
+        "{improved}"
+    );
+    let arguments = [
+        "predict",
+        "out/improved.toml",
+        "case/predict.csv",
+        "--out",
+        "again.csv",
+    ];
+    let predicted = bench.idc(&arguments, &[]);
+    assert_eq!(predicted.code, 0, "{}", predicted.err);
+    assert!(text("again.csv") == text("out/prediction.csv"));
 }
 
 /// An outlet that gives way in proportion to the air that is drawn.
