@@ -325,7 +325,7 @@ impl Search<'_> {
         let limit = noise + PROMISING * (rival - noise).max(0.0);
         let promising = self.promising(base, limit, observer);
         let mut found = self.formulas(base, &promising, noise, observer);
-        found.retain(|h| scale.is_adequate(h));
+        found.retain(|h| scale.is_adequate(h) && self.term_shows(h));
         self.name_variables(base, &mut found, &promising);
         found
     }

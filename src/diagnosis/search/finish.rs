@@ -9,7 +9,7 @@ use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
 use super::{Refined, Search, same};
 use crate::effects::Effect;
-use crate::plant::{CHANNELS, Chain, Latent};
+use crate::plant::{CHANNELS, Chain, Latent, PlantParameters};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -203,7 +203,9 @@ impl Search<'_> {
 
     /// Whether one effect leaves so much of the mismatch that formulas are asked for at once.
     pub(super) fn asks_early(&self, children: &[Hypothesis], scale: &Scale) -> bool {
-        let leaves_much = |best: &Hypothesis| scale.left_roughly(best) > ONE_LEAVES;
+        let noise = rough_noise(self.evidence) + scale.rough_spread();
+        let leaves_much =
+            |best: &Hypothesis| best.fit.rough > noise && scale.left_roughly(best) > ONE_LEAVES;
         self.believed.chain == Chain::Whole && children.first().is_some_and(leaves_much)
     }
 
@@ -432,8 +434,7 @@ impl Search<'_> {
         }
     }
 
-    /// What an effect of a hypothesis does to the channel that it moves most, root mean square, in standard deviations of its noise, with an error in time of
-    /// 1 ms forgiven: an impact that is met a little earlier is a spike, and no matter [1].
+    /// What an effect of a hypothesis does to the channel that it moves most ([`Self::moved_by`]).
     fn influence(&self, hypothesis: &Hypothesis, index: usize) -> f64 {
         let plant = &hypothesis.fit.prediction.plant;
         let mut bare = plant.clone();
@@ -442,8 +443,22 @@ impl Search<'_> {
                 .quantity
                 .set(&mut bare, parameter.quantity.get(&self.believed));
         }
+        self.moved_by(plant, &bare)
+    }
+
+    /// Whether a term moves a channel by a share of its noise that somebody would miss.
+    pub(in crate::diagnosis) fn term_shows(&self, hypothesis: &Hypothesis) -> bool {
+        let plant = &hypothesis.fit.prediction.plant;
+        let mut bare = plant.clone();
+        bare.latent = None;
+        self.moved_by(plant, &bare) >= BELOW_NOISE
+    }
+
+    /// What tells a description from a bare one in the channel that it moves most, root mean square, in standard deviations of its noise, with an error in time
+    /// of 1 ms forgiven: an impact that is met a little earlier is a spike, and no matter [1].
+    fn moved_by(&self, plant: &PlantParameters, bare: &PlantParameters) -> f64 {
         let with = self.evidence.predict(plant, false, None);
-        let without = self.evidence.predict(&bare, false, None);
+        let without = self.evidence.predict(bare, false, None);
         let shares = self.evidence.shares(FORGIVEN, false);
         let moved: Vec<f64> = (with.residuals.iter().zip(&without.residuals))
             .zip(shares.iter())
