@@ -312,7 +312,7 @@ pub(super) fn modulated(
         "force_reference",
     ]) {
         let size = largest(variable);
-        if variable == own || !(size > 0.0) {
+        if variable == own || size <= 0.0 {
             continue;
         }
         let in_text = symbol(variable);

@@ -210,7 +210,9 @@ impl CurveModel {
         let columns: Vec<DVector<f64>> = (linear.iter())
             .map(|own| {
                 let mut unit = constants.to_vec();
-                linear.iter().for_each(|i| unit[*i] = 0.0);
+                for place in &linear {
+                    unit[*place] = 0.0;
+                }
                 unit[*own] = 1.0;
                 curve(&unit)
             })
