@@ -5,7 +5,7 @@
 //! promised = rough cost of the curve + D(form) + n ln N
 //! ```
 //!
-//! D what the form costs more than the curve by the quadratic model of its fit ([`matching`]), n constants, N samples.
+//! D what the form costs more than the curve by the quadratic model of its fit (`src/diagnosis/formula/matching.rs`), n constants, N samples.
 
 mod candidate;
 mod grammar;
