@@ -295,19 +295,10 @@ fn window(fit: &Fit, share: f64) -> Option<[f64; 2]> {
     (to - from < WIDE * (ends[1] - ends[0])).then_some([from, to])
 }
 
-/// Names of the variables that terms depend on, each once, three at most.
-fn variables<'a>(terms: impl Iterator<Item = &'a Latent>) -> Vec<&'static str> {
-    let mut names = Vec::new();
-    for term in terms {
-        let directed = term.directed.then_some("velocity_sign");
-        for name in [term.variable.name()].into_iter().chain(directed) {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-    }
-    names.truncate(MOST_VARIABLES);
-    names
+/// Names of the variables that a term depends on.
+fn variables(term: &Latent) -> impl Iterator<Item = &'static str> {
+    let directed = term.directed.then_some("velocity_sign");
+    [term.variable.name()].into_iter().chain(directed)
 }
 
 impl Search<'_> {
@@ -401,10 +392,10 @@ impl Search<'_> {
         hypotheses.sort_by(|a, b| self.latent_score(a).total_cmp(&self.latent_score(b)));
     }
 
-    /// Names the variables on which the best of some terms depends.
+    /// Names the variables on which terms depend: evidence from what was left out may put another first.
     fn name_variables(&self, base: &Hypothesis, found: &mut [Hypothesis], ranked: &[Hypothesis]) {
-        if let Some(best) = found.first_mut() {
-            best.depends_on = self.alike(base, best, ranked);
+        for one in found {
+            one.depends_on = self.alike(base, one, ranked);
         }
     }
 
@@ -451,17 +442,16 @@ impl Search<'_> {
         let Some(own) = best.unlisted() else {
             return Vec::new();
         };
-        let mut names = match best.depends_on.is_empty() {
-            true => variables(std::iter::once(own)),
-            false => best.depends_on.clone(),
-        };
         let least = (ranked.iter().map(|h| self.latent_score(h))).fold(f64::INFINITY, f64::min);
         let gain = (base.fit.rough - least).max(0.0);
         let near = ranked
             .iter()
             .filter(|h| self.latent_score(h) <= least + ALIKE * gain);
         let near = near.filter_map(Hypothesis::unlisted);
-        for name in variables(near.filter(|other| other.port == own.port)) {
+        let near = near.filter(|other| other.port == own.port);
+        let known = best.depends_on.iter().copied();
+        let mut names = Vec::new();
+        for name in known.chain(variables(own)).chain(near.flat_map(variables)) {
             if !names.contains(&name) {
                 names.push(name);
             }

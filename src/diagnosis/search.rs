@@ -424,7 +424,7 @@ impl Search<'_> {
 const MOST_ANEW: usize = 4;
 
 /// A full fit made before.
-pub(in crate::diagnosis) struct Refined {
+struct Refined {
     /// Cost of the rough fit that it began with [1].
     rough: f64,
     full: Hypothesis,

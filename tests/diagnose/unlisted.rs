@@ -28,6 +28,21 @@ fn unlisted(term: &str) -> (Bench, Value) {
     (bench, answer)
 }
 
+/// The improved rig file predicts what the diagnosis predicted.
+fn predicts_the_same(bench: &Bench) {
+    let arguments = [
+        "predict",
+        "out/improved.toml",
+        "case/predict.csv",
+        "--out",
+        "again.csv",
+    ];
+    let predicted = bench.idc(&arguments, &[]);
+    assert_eq!(predicted.code, 0, "{}", predicted.err);
+    let text = |file: &str| std::fs::read_to_string(bench.path(file)).unwrap();
+    assert!(text("again.csv") == text("out/prediction.csv"));
+}
+
 #[test]
 fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
     let (bench, answer) = unlisted(SNAG);
@@ -73,17 +88,8 @@ fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
     assert!(picture.contains("needed by the recordings") && picture.contains("<polygon"));
 
     // The improved rig file holds the term, and predicts what was predicted.
-    let arguments = [
-        "predict",
-        "out/improved.toml",
-        "case/predict.csv",
-        "--out",
-        "again.csv",
-    ];
-    let predicted = bench.idc(&arguments, &[]);
-    assert_eq!(predicted.code, 0, "{}", predicted.err);
+    predicts_the_same(&bench);
     let text = |file: &str| std::fs::read_to_string(bench.path(file)).unwrap();
-    assert!(text("again.csv") == text("out/prediction.csv"));
     let improved = text("out/improved.toml");
     let curve = improved.contains("\n[latent]\nport = \"piston_force\"\n");
     let formula = improved.contains("name = \"unlisted\"\nacts_on = \"piston_force\"\n");
@@ -129,16 +135,11 @@ fn a_planted_law_is_answered_as_a_formula_that_runs() {
     let text = |file: &str| std::fs::read_to_string(bench.path(file)).unwrap();
     let improved = text("out/improved.toml");
     assert!(improved.contains(&format!("is = \"{is}\"\n")), "{improved}");
-    let arguments = [
-        "predict",
-        "out/improved.toml",
-        "case/predict.csv",
-        "--out",
-        "again.csv",
-    ];
-    let predicted = bench.idc(&arguments, &[]);
-    assert_eq!(predicted.code, 0, "{}", predicted.err);
-    assert!(text("again.csv") == text("out/prediction.csv"));
+    predicts_the_same(&bench);
+    let account = text("out/account.txt");
+    let words = account.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = format!("As a formula, in SI: piston_force = {is}, with gain = -2");
+    assert!(words.contains(&said), "no {said:?} in\n{account}");
 }
 
 /// An outlet that gives way in proportion to the air that is drawn.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::super::estimate::Number;
 use super::super::finding::Diagnosis;
 use super::super::unlisted::known::known;
 use super::super::unlisted::report::NearEffects;
@@ -24,14 +25,48 @@ impl Diagnosis {
         let latent = &shape.latent;
         let known = known(latent, shape.form);
         let confidence = probability(self.confidence(crate::effects::UNLISTED));
-        vec![
-            format!("{}. Probability {confidence}.", self.where_and_what(shape)),
+        let first = format!("{}. Probability {confidence}.", self.where_and_what(shape));
+        let mut paragraphs = vec![first];
+        paragraphs.extend(self.as_formula());
+        paragraphs.push(
             format!(
                 "{} Known physics of that kind: {}. The shape stands below with its 95 % interval, and drawn in unlisted.svg.",
                 near(&self.nearest_known(), self.explained_share()),
                 known.resembles,
             ),
-        ]
+        );
+        paragraphs
+    }
+
+    /// The formula of a term with its numbers and the expressions that do nearly as well; none where it is a curve.
+    fn as_formula(&self) -> Option<String> {
+        let law = &self.best().formula()?.law;
+        let number = |number: &Number| {
+            let constant = law.constants.iter().find(|c| c.name == number.name);
+            let unit = constant.and_then(|c| c.unit).filter(|unit| *unit != "1");
+            let value = with_interval(number.value, number.interval, unit.unwrap_or_default());
+            format!("{} = {}", number.name, value.trim_end())
+        };
+        let numbers: Vec<String> = self.estimates.formula.iter().map(number).collect();
+        let others = self.rivals().filter_map(|rival| {
+            let other = &rival.hypothesis.formula()?.law;
+            let (port, is) = (other.port.name(), other.expression.text());
+            Some(format!(
+                "{port} = {is} (odds {})",
+                significant(rival.odds, 2)
+            ))
+        });
+        let others: Vec<String> = others.collect();
+        let rest = match others.is_empty() {
+            true => String::new(),
+            false => format!(" Not told apart from it: {}.", listed(&others)),
+        };
+        Some(format!(
+            "As a formula, in SI: {} = {}, with {}; the intervals are those of 95 %.{rest}",
+            law.port.name(),
+            law.expression.text(),
+            listed(&numbers)
+        ))
     }
 
     /// Where a term enters, on what it depends, and how large it is.

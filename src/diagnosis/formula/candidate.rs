@@ -44,18 +44,19 @@ impl Candidate {
         if curve.directed {
             text = format!("{} * tanh(v / {CREEP_NAME})", bracketed(&text));
         }
-        let unit = |role: Role| -> Option<String> {
+        let unit = |role: Role| -> String {
             let port = curve.port.unit();
-            Some(match role {
+            match role {
                 Role::Height => port.to_owned(),
                 Role::Gain if port == variable.unit => "1".to_owned(),
-                Role::Gain => per(port, variable.unit),
-                Role::Curvature => per(&per(port, variable.unit), variable.unit),
+                Role::Gain => per(port, variable.unit, 1),
+                Role::Curvature if port == variable.unit => per("1", variable.unit, 1),
+                Role::Curvature => per(port, variable.unit, 2),
                 Role::Place | Role::Width | Role::Limit | Role::Period => variable.unit.to_owned(),
                 Role::Phase => "rad".to_owned(),
                 Role::Exponent => "1".to_owned(),
                 Role::Frequency => "Hz".to_owned(),
-            })
+            }
         };
         let at = |index: usize| constants.get(index).copied().unwrap_or(1.0);
         let free = form
@@ -72,7 +73,7 @@ impl Candidate {
             .map(|(index, (name, role))| Constant {
                 name: kept_name(name),
                 value: at(index),
-                unit: unit(*role).map(|unit| kept_name(&unit)),
+                unit: Some(kept_name(&unit(*role))),
                 range: None,
             });
         let fixed = |name: &'static str, value: f64, unit: &'static str| Constant {
@@ -284,13 +285,14 @@ fn free_constant(
 }
 
 /// Variables that a formula may be multiplied with: all but where the surface stands, which a part takes over, and the flow.
-const OTHERS: [Variable; 6] = [
-    Variable::Time,
-    Variable::Stroke,
-    Variable::ChamberPressure,
-    Variable::PressureDifference,
-    Variable::SetPressure,
-    Variable::ContactForce,
+/// Each with the name of the fixed constant that it is taken relative to.
+const OTHERS: [(Variable, &str); 6] = [
+    (Variable::Time, "time_reference"),
+    (Variable::Stroke, "stroke_reference"),
+    (Variable::ChamberPressure, "pressure_reference"),
+    (Variable::PressureDifference, "difference_reference"),
+    (Variable::SetPressure, "set_reference"),
+    (Variable::ContactForce, "force_reference"),
 ];
 
 /// Products of a formula with another variable: in proportion, in part, and where there is a pressure, a contact, a direction of motion.
@@ -303,14 +305,7 @@ pub(super) fn modulated(
         return all;
     }
     let own = candidate.latent.variable;
-    for (variable, name) in OTHERS.into_iter().zip([
-        "time_reference",
-        "stroke_reference",
-        "pressure_reference",
-        "difference_reference",
-        "set_reference",
-        "force_reference",
-    ]) {
+    for (variable, name) in OTHERS {
         let size = largest(variable);
         if variable == own || size <= 0.0 {
             continue;

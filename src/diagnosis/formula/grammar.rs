@@ -2,7 +2,7 @@
 //!
 //! In a text X stands for the variable. `height` and `gain` enter in proportion; the others are sought on a grid before a fit starts.
 
-use crate::plant::{Port, Variable};
+use crate::plant::{Port, SYMBOLS, Variable};
 
 /// What a constant of a form is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,38 +145,45 @@ pub(super) struct InExpression {
 
 /// A variable as an expression has it.
 pub(super) fn symbol(variable: Variable) -> InExpression {
-    let (text, unit) = match variable {
-        Variable::Time => ("t", "s"),
-        Variable::Stroke => ("x", "m"),
-        Variable::Velocity => ("v", "m/s"),
-        Variable::ChamberPressure => ("p1", "Pa"),
-        Variable::PressureDifference => ("(p1 - p2)", "Pa"),
-        Variable::MassFlow => ("q", "kg/s"),
-        Variable::SetPressure => ("p_set", "Pa"),
-        Variable::Surface => ("x_s", "m"),
-        Variable::ContactForce => ("f", "N"),
+    let (text, of) = match variable {
+        Variable::Time => ("t", "t"),
+        Variable::Stroke => ("x", "x"),
+        Variable::Velocity => ("v", "v"),
+        Variable::ChamberPressure => ("p1", "p1"),
+        Variable::PressureDifference => ("(p1 - p2)", "p1"),
+        Variable::MassFlow => ("q", "q"),
+        Variable::SetPressure => ("p_set", "p_set"),
+        Variable::Surface => ("x_s", "x_s"),
+        Variable::ContactForce => ("f", "f"),
     };
+    let known = SYMBOLS.iter().find(|symbol| symbol.name == of);
+    let unit = known.map_or("1", |symbol| symbol.unit);
     InExpression { text, unit }
 }
 
-/// One unit over another, as a text that is read again.
-pub(super) fn per(unit: &str, by: &str) -> String {
+/// One unit over a power of another, 1 or 2, as a text that is read again.
+pub(super) fn per(unit: &str, by: &str, power: usize) -> String {
+    let raised = |unit: &str| match power {
+        1 => unit.to_owned(),
+        _ => format!("{unit}^{power}"),
+    };
+    let (front, back) = unit.split_once('/').unwrap_or((unit, ""));
     // Behind a stroke everything divides: what divides in `by` multiplies in front.
     let (above, below) = by.split_once('/').unwrap_or((by, ""));
-    match below {
-        "" => format!("{unit}/{above}"),
-        _ => match unit.split_once('/') {
-            Some((front, back)) => format!("{front} {below}/{back} {above}"),
-            None => format!("{unit} {below}/{above}"),
-        },
-    }
+    let joined = |a: &str, b: &str| format!("{a} {b}").trim().to_owned();
+    let below = if below.is_empty() {
+        String::new()
+    } else {
+        raised(below)
+    };
+    format!("{}/{}", joined(front, &below), joined(back, &raised(above)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::candidate::{Candidate, modulated};
     use super::*;
-    use crate::plant::{Basis, Latent, Moment, SYMBOLS, Unit};
+    use crate::plant::{Basis, Latent, Moment, Unit};
 
     /// A formula is written into a file and read again there: its units must go together, times any other variable too.
     #[test]
@@ -218,9 +225,10 @@ mod tests {
     #[test]
     fn a_unit_over_another_is_read_again() {
         let read = |text: &str| Unit::read(text).unwrap();
-        assert_eq!(read(&per("N", "m/s")), read("N s/m"));
-        assert_eq!(read(&per("kg/s", "m/s")), read("kg/m"));
-        assert_eq!(read(&per("m^2", "s")), read("m^2/s"));
-        assert_eq!(read(&per(&per("N", "m/s"), "m/s")), read("N s^2/m^2"));
+        assert_eq!(per("N", "m/s", 1), "N s/m");
+        assert_eq!(read(&per("kg/s", "m/s", 1)), read("kg/m"));
+        assert_eq!(per("m^2", "s", 1), "m^2/s");
+        assert_eq!(per("N", "m/s", 2), "N s^2/m^2");
+        assert_eq!(per("1", "m", 1), "1/m");
     }
 }
