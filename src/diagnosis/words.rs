@@ -72,6 +72,29 @@ pub fn spoken(name: &str) -> (String, &'static str, f64) {
 /// A value with its interval, to two digits of the interval's half-width, in its unit: `13.2 N (12.8 to 13.6)`.
 #[must_use]
 pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
+    interval([value, low, high], unit, significant)
+}
+
+/// The same of a number in SI, which may be far from 1: `1.216e-6 m^2 (1.201e-6 to 1.231e-6)`.
+#[must_use]
+pub fn with_interval_in_si(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
+    interval([value, low, high], unit, in_si)
+}
+
+/// A number in SI, rounded to so many significant digits: with a power of ten where it is far from 1.
+#[must_use]
+pub fn in_si(value: f64, digits: usize) -> String {
+    match value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
+        true => significant(value, digits),
+        false => format!("{value:.*e}", digits.saturating_sub(1)),
+    }
+}
+
+fn interval(
+    [value, low, high]: [f64; 3],
+    unit: &str,
+    written: impl Fn(f64, usize) -> String,
+) -> String {
     let half = 0.5 * (high - low);
     let digits = |number: f64| {
         let orders = number.abs().log10().floor() - half.log10().floor();
@@ -80,7 +103,7 @@ pub fn with_interval(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
         } else {
             3.0
         };
-        significant(number, digits.clamp(2.0, 5.0) as usize)
+        written(number, digits.clamp(2.0, 5.0) as usize)
     };
     let (value, low, high) = (digits(value), digits(low), digits(high));
     if unit.is_empty() {
@@ -205,6 +228,15 @@ fn changed(text: &str, change: fn(char) -> String) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_in_si_keeps_its_digits_however_small() {
+        let leak = with_interval_in_si(1.2157e-6, [1.201e-6, 1.231e-6], "m^2");
+        assert_eq!(leak, "1.216e-6 m^2 (1.201e-6 to 1.231e-6)");
+        let drag = with_interval_in_si(-266.19, [-268.8, -263.5], "N s/m");
+        assert_eq!(drag, "-266.2 N s/m (-268.8 to -263.5)");
+        assert_eq!(in_si(0.0, 3), "0");
+    }
 
     #[test]
     fn names_lose_their_unit_and_values_get_one_that_people_use() {

@@ -8,7 +8,7 @@ use super::super::unlisted::known::known;
 use super::super::unlisted::report::NearEffects;
 use super::super::unlisted::words::{port, variable};
 use super::super::unlisted::{Form, Shape};
-use super::super::words::{listed, percent, with_interval};
+use super::super::words::{listed, percent, with_interval, with_interval_in_si};
 use super::missing::probability;
 use crate::plant::Variable;
 use crate::quantity::significant;
@@ -44,8 +44,9 @@ impl Diagnosis {
         let number = |number: &Number| {
             let constant = law.constants.iter().find(|c| c.name == number.name);
             let unit = constant.and_then(|c| c.unit).filter(|unit| *unit != "1");
-            let value = with_interval(number.value, number.interval, unit.unwrap_or_default());
-            format!("{} = {}", number.name, value.trim_end())
+            let unit = unit.unwrap_or_default();
+            let value = with_interval_in_si(number.value, number.interval, unit);
+            format!("{} = {value}", number.name)
         };
         let numbers: Vec<String> = self.estimates.formula.iter().map(number).collect();
         let others = self.rivals().filter_map(|rival| {

@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::super::finding::Diagnosis;
 use super::super::ranking::Ranked;
+use super::super::words::in_si;
 use super::known::known;
 use super::shape::ShapePoint;
 use crate::plant::Latent;
-use crate::quantity::significant;
 
 /// Known explanations named at most.
 const MOST_NEAR: usize = 3;
@@ -136,7 +136,7 @@ pub fn formula_text(latent: &Latent) -> Option<String> {
     let constants = law.constants.iter().zip(values).map(|(constant, value)| {
         let unit = constant.unit.filter(|unit| *unit != "1");
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-        format!("{} = {}{unit}", constant.name, significant(value, 5))
+        format!("{} = {}{unit}", constant.name, in_si(value, 5))
     });
     let constants: Vec<String> = constants.collect();
     let port = law.port.name();
