@@ -314,7 +314,10 @@ impl Search<'_> {
         let base = &self.held(base);
         let noise = self.left_alone(scale);
         let limit = noise + PROMISING * (rival - noise).max(0.0);
-        let promising = self.promising(base, limit, observer);
+        let mut promising = self.promising(base, limit, observer);
+        if promising.first().is_some_and(|best| best.fit.rough > noise) {
+            self.converge(&mut promising, observer);
+        }
         let mut found = self.formulas(base, &promising, noise, observer);
         found.retain(|h| scale.is_adequate(h) && self.term_shows(h));
         self.name_variables(base, &mut found, &promising);
@@ -366,6 +369,14 @@ impl Search<'_> {
             .collect();
         self.sort_by_cost(&mut ranked);
         let left = |h: &Hypothesis| (self.latent_score(h) - noise).max(0.0);
+        if let Some(best) = ranked.first() {
+            let detail = format!(
+                "{} coarsely {:.0}, limit {limit:.0}",
+                described(best),
+                self.latent_score(best)
+            );
+            observer(&Step::Variation.of(best, detail));
+        }
         let near = ranked.first().map_or(0.0, |best| FAR * left(best));
         ranked.retain(|h| left(h) <= near);
         ranked.truncate(LOOKED_AT);
@@ -386,6 +397,20 @@ impl Search<'_> {
         }
         ranked.retain(|h| h.fit.rough < limit);
         ranked
+    }
+
+    /// Goes on with the leading curves: what acts at one place of the stroke takes more steps than what acts all along it.
+    fn converge(&self, promising: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
+        promising.truncate(FITTED);
+        *promising = promising
+            .par_iter()
+            .map(|h| self.refit(h, curve(ROUGH, ROUGH_ITERATIONS)))
+            .collect();
+        self.sort_by_cost(promising);
+        for h in promising {
+            let detail = format!("{} goes on to {:.0}", described(h), self.latent_score(h));
+            observer(&Step::Variation.of(h, detail));
+        }
     }
 
     pub(super) fn sort_by_cost(&self, hypotheses: &mut [Hypothesis]) {

@@ -141,13 +141,45 @@ impl Search<'_> {
         observer(&Step::Baseline.of(&baseline, detail));
         let unexplained = baseline.clone();
         let scale = Scale::of(self.evidence, &baseline, noise);
-        let mut levels = vec![vec![baseline]];
-        let mut full: Vec<Hypothesis> = Vec::new();
+        let mut climb = self.climb(baseline, &scale, observer);
+        let mut all: Vec<Hypothesis> = climb.levels.into_iter().flatten().collect();
+        all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
+        let mut full = climb.full;
+        if full.is_empty() {
+            full = self.in_full(&all, &scale, &mut climb.done, observer);
+        }
+        self.eliminate(&mut full, observer);
+        self.add_plainer(&mut full, &all, observer);
+        let shows_when_held = |h: &Hypothesis| h.fit.rough - noise > scale.rough_spread();
+        if (full.first()).is_some_and(|best| !shows_when_held(best) && !scale.is_adequate(best)) {
+            self.add_small(&mut full, &scale, observer);
+        }
+        let weighed = self.weighed(&mut full, observer);
+        weighed.add_small(&mut full, &scale, observer);
+        full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
+        weighed.prefer_plain(&mut full, &scale);
+        let fewer = (&unexplained, &all[..], &mut climb.asked);
+        weighed.add_unlisted(&mut full, fewer, &scale, observer);
+        weighed.drop_below_noise(&mut full, observer);
+        weighed.add_close(&mut full, &all, &scale, observer);
+        let roughly = self.tried_roughly(&full, &all, (&unexplained, noise));
+        (full, roughly, weighed.model_error)
+    }
+
+    /// Forward, one effect after the other, until an explanation is adequate, or one more explains no more. Where effects do not leave noise alone, a formula
+    /// is asked for beside fewer of them before a further one is: two laws of the list are no more likely than one that it does not hold, and a full fit of
+    /// laws that are not there costs most of all.
+    fn climb(&self, baseline: Hypothesis, scale: &Scale, observer: &mut Observer<'_>) -> Climb {
+        let noise = rough_noise(self.evidence);
+        let mut climb = Climb {
+            levels: vec![vec![baseline]],
+            full: Vec::new(),
+            done: Vec::new(),
+            asked: Vec::new(),
+        };
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
-        let mut done = Vec::new();
-        let mut asked = false;
-        while levels.len() <= self.most_effects && full.is_empty() {
-            let parents = &levels[levels.len() - 1];
+        while climb.levels.len() <= self.most_effects && climb.full.is_empty() {
+            let parents = &climb.levels[climb.levels.len() - 1];
             let before = parents[0].fit.rough - noise;
             // Beside one that leaves noise alone, no other need be carried on.
             let carried = if before < scale.rough_spread() {
@@ -166,50 +198,28 @@ impl Search<'_> {
             if self.rough_score(best) >= self.rough_score(&parents[0]) {
                 break;
             }
-            if levels.len() == 1 && self.asks_early(&children, &scale) {
-                asked = true;
-                full = self.early_formulas(&children, &unexplained, &scale, &mut done, observer);
-            }
-            if !full.is_empty() {
-                levels.push(children);
-                break;
-            }
             let after = best.fit.rough - noise;
-            let stuck = levels.len() > 1 && after > self.settings.stagnation * before;
-            if after < scale.rough_spread() {
-                full = self.in_full(&children, &scale, &mut done, observer);
-                full.retain(|h| scale.is_adequate(h));
-            } else if stuck {
-                // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
-                full = self.in_full(parents, &scale, &mut done, observer);
-                if !full.iter().any(|h| scale.is_adequate(h)) {
-                    full = self.anew(parents, &scale, observer);
-                }
-                full.retain(|h| scale.is_adequate(h));
+            let stuck = climb.levels.len() > 1 && after > self.settings.stagnation * before;
+            let leaves_noise = after < scale.rough_spread();
+            if leaves_noise {
+                climb.full = self.in_full(&children, scale, &mut climb.done, observer);
+                climb.full.retain(|h| scale.is_adequate(h));
             }
-            levels.push(children);
+            if climb.full.is_empty() && (climb.levels.len() > 1 || self.asks_early(best, scale)) {
+                self.formulas_beside_fewer(&mut climb, &children, scale, observer);
+            }
+            if climb.full.is_empty() && stuck && !leaves_noise {
+                // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
+                let parents = &climb.levels[climb.levels.len() - 1];
+                climb.full = self.in_full(parents, scale, &mut climb.done, observer);
+                if !climb.full.iter().any(|h| scale.is_adequate(h)) {
+                    climb.full = self.anew(parents, scale, observer);
+                }
+                climb.full.retain(|h| scale.is_adequate(h));
+            }
+            climb.levels.push(children);
         }
-        let mut all: Vec<Hypothesis> = levels.into_iter().flatten().collect();
-        all.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
-        if full.is_empty() {
-            full = self.in_full(&all, &scale, &mut done, observer);
-        }
-        self.eliminate(&mut full, observer);
-        self.add_plainer(&mut full, &all, observer);
-        let shows_when_held = |h: &Hypothesis| h.fit.rough - noise > scale.rough_spread();
-        if (full.first()).is_some_and(|best| !shows_when_held(best) && !scale.is_adequate(best)) {
-            self.add_small(&mut full, &scale, observer);
-        }
-        let weighed = self.weighed(&mut full, observer);
-        weighed.add_small(&mut full, &scale, observer);
-        full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
-        weighed.prefer_plain(&mut full, &scale);
-        let unexplained = (&unexplained, asked);
-        weighed.add_unlisted(&mut full, unexplained, &all, &scale, observer);
-        weighed.drop_below_noise(&mut full, observer);
-        weighed.add_close(&mut full, &all, &scale, observer);
-        let roughly = self.tried_roughly(&full, &all, (unexplained.0, noise));
-        (full, roughly, weighed.model_error)
+        climb
     }
 
     /// What was fitted roughly, beside the best explanation and the rough cost of the believed model and of noise.
@@ -422,6 +432,18 @@ impl Search<'_> {
 
 /// Full fits from where an effect may start, at most.
 const MOST_ANEW: usize = 4;
+
+/// What going forward has come to.
+struct Climb {
+    /// Explanations that were fitted roughly, by their number of effects, the best of each number first.
+    levels: Vec<Vec<Hypothesis>>,
+    /// Those that are adequate, fitted in full, best first.
+    full: Vec<Hypothesis>,
+    /// Full fits that were made.
+    done: Vec<Refined>,
+    /// Names of the effects beside which formulas were asked for.
+    asked: Vec<Vec<&'static str>>,
+}
 
 /// A full fit made before.
 struct Refined {

@@ -90,7 +90,8 @@ impl Search<'_> {
         let Some(best) = fitted.first() else {
             return fitted;
         };
-        let near = FAR * self.latent_score(best);
+        // One that jumps may score below noise where the piston is held, and fail in full.
+        let near = FAR * self.latent_score(best).max(noise);
         let mut full: Vec<Hypothesis> = fitted
             .iter()
             .take(IN_FULL)

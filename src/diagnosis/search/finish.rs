@@ -7,7 +7,7 @@ use super::super::free::{Free, free_of};
 use super::super::hypothesis::{Hypothesis, covers, stands_for};
 use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
-use super::{Refined, Search, same};
+use super::{Climb, Search, same};
 use crate::effects::Effect;
 use crate::plant::{CHANNELS, Chain, Latent, PlantParameters};
 
@@ -28,8 +28,8 @@ const LAST: &[Stage] = FULL.split_at(FULL.len() - 2).1;
 
 /// Share of the mismatch that the best effect must leave for a formula to be asked for at once [1].
 const ONE_LEAVES: f64 = 0.25;
-/// Sets of effects beside which a formula is tried, at most.
-const MOST_BASES: usize = 4;
+/// Sets of effects beside which a formula is asked for at a time, at most.
+const MOST_BASES: usize = 3;
 
 /// A fit again from where a richer hypothesis stands.
 fn again(richer: &Hypothesis) -> Refit<'_> {
@@ -50,8 +50,10 @@ impl Search<'_> {
         observer: &mut Observer<'_>,
     ) {
         let Some(best) = full.first() else { return };
+        let has_term = best.unlisted().is_some();
         let plainer = |h: &&Hypothesis| {
-            h.fit.free.len() < best.fit.free.len()
+            !has_term
+                && h.fit.free.len() < best.fit.free.len()
                 && stands_for(h, best)
                 && !full.iter().any(|known| known.names() == h.names())
         };
@@ -73,8 +75,10 @@ impl Search<'_> {
                 let Some(other) = self.exchanged(best, index, plain) else {
                     continue;
                 };
-                let names = other.names();
-                if !(full.iter().chain(&more)).any(|known| known.names() == names) {
+                let known = |known: &Hypothesis| {
+                    known.names() == other.names() && known.unlisted().is_some() == has_term
+                };
+                if !(full.iter().chain(&more)).any(known) {
                     more.push(other);
                 }
             }
@@ -121,10 +125,19 @@ impl Search<'_> {
             free.retain(|f| !own.iter().any(|o| same(o, f, &self.believed)));
             free.extend(own);
         }
-        let phases = best.fit.free_from_here().into_iter();
+        let here = best.fit.free_from_here();
+        let phases = here.iter().copied();
         free.extend(phases.filter(|f| effects.iter().any(|e| e.has_phase(&f.quantity))));
+        let mut believed = self.believed.clone();
+        if let Some(term) = best.unlisted() {
+            believed.latent = Some(term.clone());
+            free.extend_from_slice(&here[here.len() - term.numbers()..]);
+        }
         let limit = Refit::FULL.limit;
-        Some(self.fitted(effects, (&self.believed, None), &free, FULL, limit))
+        Some(Hypothesis {
+            depends_on: best.depends_on.clone(),
+            ..self.fitted(effects, (&believed, None), &free, FULL, limit)
+        })
     }
 
     /// Fits in full the explanations that a rough fit cannot rule out beside the best one: nothing is said of a close rival by a rough fit. Where the best
@@ -202,33 +215,67 @@ impl Search<'_> {
     }
 
     /// Whether one effect leaves so much of the mismatch that formulas are asked for at once.
-    pub(super) fn asks_early(&self, children: &[Hypothesis], scale: &Scale) -> bool {
+    pub(super) fn asks_early(&self, best: &Hypothesis, scale: &Scale) -> bool {
         let noise = rough_noise(self.evidence) + scale.rough_spread();
-        let leaves_much =
-            |best: &Hypothesis| best.fit.rough > noise && scale.left_roughly(best) > ONE_LEAVES;
-        self.believed.chain == Chain::Whole && children.first().is_some_and(leaves_much)
+        best.fit.rough > noise && scale.left_roughly(best) > ONE_LEAVES
     }
 
-    /// Formulas that leave noise alone, with those of the effects that do so too; none where there is no such
-    /// formula. More effects are then not asked for: two laws of the list are no more likely than one that it does not hold.
-    pub(super) fn early_formulas(
+    /// Puts formulas that leave noise alone in a climb, beside fewer of the leading child's effects, with those of the children that do so too.
+    pub(super) fn formulas_beside_fewer(
         &self,
+        climb: &mut Climb,
         children: &[Hypothesis],
-        unexplained: &Hypothesis,
         scale: &Scale,
-        done: &mut Vec<Refined>,
         observer: &mut Observer<'_>,
-    ) -> Vec<Hypothesis> {
-        let rival = children[0].fit.rough;
-        let formulas = self.adequate_formulas(unexplained, rival, scale, observer);
-        if formulas.is_empty() {
-            return formulas;
-        }
-        let mut full = self.in_full(children, scale, done, observer);
+    ) {
+        let fewer: Vec<Hypothesis> = climb.levels.iter().flatten().cloned().collect();
+        let fewer = (&fewer[..], &mut climb.asked);
+        let formulas = self.beside_fewer(&children[0], fewer, scale, observer);
+        let Some(first) = formulas.first() else {
+            return;
+        };
+        // A full fit has never gained as much as a hopeless one would have to.
+        let most = self.rough_score(first) + self.settings.given_up;
+        let near = children.iter().filter(|h| self.rough_score(h) < most);
+        let near: Vec<Hypothesis> = near.cloned().collect();
+        let mut full = self.in_full(&near, scale, &mut climb.done, observer);
         full.retain(|h| scale.is_adequate(h));
         full.extend(formulas);
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        full
+        climb.full = full;
+    }
+
+    /// Formulas that leave noise alone beside fewer of an explanation's effects, none of them first; of the first of these sets that has such. What was asked
+    /// for before is not asked for again.
+    fn beside_fewer(
+        &self,
+        best: &Hypothesis,
+        (rough, asked): (&[Hypothesis], &mut Vec<Vec<&'static str>>),
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
+        if self.believed.chain != Chain::Whole {
+            return Vec::new();
+        }
+        let within = |h: &&Hypothesis| {
+            let mut own = h.effects.iter();
+            h.effects.len() < best.effects.len()
+                && own.all(|effect| best.effects.iter().any(|e| e.name == effect.name))
+        };
+        let mut bases: Vec<&Hypothesis> = rough.iter().filter(within).collect();
+        bases.sort_by(|a, b| {
+            let fewer = a.effects.len().cmp(&b.effects.len());
+            fewer.then(self.rough_score(a).total_cmp(&self.rough_score(b)))
+        });
+        bases.retain(|h| !asked.contains(&h.names()));
+        for base in bases.into_iter().take(MOST_BASES) {
+            asked.push(base.names());
+            let found = self.adequate_formulas(base, best.fit.rough, scale, observer);
+            if !found.is_empty() {
+                return found;
+            }
+        }
+        Vec::new()
     }
 
     /// Where no known effects explain the mismatch to the noise, puts a term without a name first if it does so, beside fewer of them or none; where they do
@@ -236,8 +283,7 @@ impl Search<'_> {
     pub(super) fn add_unlisted(
         &self,
         full: &mut Vec<Hypothesis>,
-        (unexplained, asked): (&Hypothesis, bool),
-        rough: &[Hypothesis],
+        (unexplained, rough, asked): (&Hypothesis, &[Hypothesis], &mut Vec<Vec<&'static str>>),
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) {
@@ -249,24 +295,9 @@ impl Search<'_> {
             return;
         }
         let rival = best.fit.rough;
-        let within = |h: &&Hypothesis| {
-            let mut own = h.effects.iter();
-            own.all(|effect| best.effects.iter().any(|e| e.name == effect.name))
-        };
-        let mut bases: Vec<&Hypothesis> = (rough.iter().filter(within))
-            .filter(|h| h.effects.len() < best.effects.len())
-            .filter(|h| !(asked && h.effects.is_empty()))
-            .take(MOST_BASES)
-            .collect();
-        if !scale.is_explained(best) {
-            bases.push(best);
-        }
-        let mut found = Vec::new();
-        for base in bases {
-            found = self.adequate_formulas(base, rival, scale, observer);
-            if !found.is_empty() {
-                break;
-            }
+        let mut found = self.beside_fewer(best, (rough, asked), scale, observer);
+        if found.is_empty() && !scale.is_explained(best) {
+            found = self.adequate_formulas(best, rival, scale, observer);
         }
         if found.is_empty() && !scale.is_explained(best) {
             found = self.latent(unexplained, rival, scale, observer);
