@@ -63,7 +63,7 @@ pub fn needed(
     peak_to_peak: f64,
 ) -> Vec<Needed> {
     let channel = match latent.port {
-        Port::PistonForce | Port::Friction => None,
+        Port::PistonForce => None,
         Port::PressureReading | Port::OutletPressure => Some(0),
         Port::StrokeReading => Some(1),
         Port::ForceReading => Some(2),
@@ -124,13 +124,11 @@ fn samples(
                 None => lacking(measured, &trajectory.truth, &without.plant, i),
                 Some(channel) => measured.readings[channel][i] - trajectory.readings[channel][i],
             };
-            if latent.turns_with_motion() {
+            if latent.directed {
                 if moment.speed.abs() < MOVING {
                     continue;
                 }
-                // Friction is told as it resists.
-                let against = latent.port == Port::Friction;
-                value *= moment.speed.signum() * if against { -1.0 } else { 1.0 };
+                value *= moment.speed.signum();
             }
             let at = moment.of(latent.variable);
             let at = match latent.basis {
