@@ -86,7 +86,7 @@ impl Cell {
             scenario.workpiece.world_from_part,
             0.5 * part.edge.length,
         );
-        let device = Device::new(plant.device.clone());
+        let device = Device::new(plant.with_friction_of_terms(plant.device.clone()));
         let tool_path = ToolPath::along(
             part.edge.clone(),
             scenario.workpiece.world_from_part,

@@ -268,7 +268,7 @@ impl<C: Carrier> Surroundings<'_, C> {
         let device = self.device;
         if C::MOVES && device.parameters.seal_friction.is_dry() {
             let ends = [&*flow, &next].map(|flow| (&flow.air, flow.motion.stroke));
-            let seals = device.seals_over(ends);
+            let seals = device.seals_over(ends, self.disturbance.friction);
             let moved = next.motion.stroke - flow.motion.stroke;
             let speed = 0.5 * (flow.motion.speed + next.motion.speed);
             self.deflection = seals.deflection_after(self.deflection, moved, speed);
@@ -356,7 +356,8 @@ impl<C: Carrier> Surroundings<'_, C> {
         if C::MOVES {
             let seals = parameters
                 .seal_friction
-                .under(air.pressures[0] - air.pressures[1]);
+                .under(air.pressures[0] - air.pressures[1])
+                .with(self.disturbance.friction);
             let moved = motion.stroke - substep_stroke;
             let deflection = seals.deflection_after(self.deflection, moved, motion.speed);
             let seal = seals.force(deflection, motion.speed);

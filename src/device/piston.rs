@@ -46,17 +46,21 @@ impl Device {
         -self.cushion_damping(end, motion.stroke) * motion.speed
     }
 
-    /// The seals as the chamber pressures press them: a mean over states of the air with their strokes [m].
-    pub(super) fn seals_over<const N: usize>(&self, states: [(&AirState, f64); N]) -> SealFriction {
+    /// The seals as the chamber pressures press them: a mean over states of the air with their strokes [m]; with a further dry friction [N].
+    pub(super) fn seals_over<const N: usize>(
+        &self,
+        states: [(&AirState, f64); N],
+        further: f64,
+    ) -> SealFriction {
         let seals = &self.parameters.seal_friction;
         if seals.pressure_coefficient == 0.0 {
-            return *seals;
+            return seals.with(further);
         }
         let difference = states.map(|(air, stroke)| {
             let volumes = [0, 1].map(|i| self.chambers[i].volume(stroke));
             let pressures = self.pressures_of(air, volumes);
             (pressures[0] - pressures[1]) / N as f64
         });
-        seals.under(difference.iter().sum())
+        seals.under(difference.iter().sum()).with(further)
     }
 }

@@ -189,7 +189,10 @@ impl Device {
         let impulse = self
             .integrate::<_, true>(state, &mut moved, set_pressure, &Predicted, dt, substeps)
             .gas;
-        let seals = self.seals_over([(&state.air, motion.stroke + motion.speed * dt)]);
+        let seals = self.seals_over(
+            [(&state.air, motion.stroke + motion.speed * dt)],
+            state.disturbance.friction,
+        );
         let deflection =
             seals.deflection_after(state.seal_deflection, motion.speed * dt, motion.speed);
         let stop_damping = match self.stop_at(motion) {
@@ -248,7 +251,7 @@ impl Device {
 
     /// Bends the bristles by the motion since they were last looked at.
     fn drag_seals(&self, state: &mut DeviceState, motion: PistonMotion) {
-        let seals = self.seals_over([(&state.air, motion.stroke)]);
+        let seals = self.seals_over([(&state.air, motion.stroke)], state.disturbance.friction);
         state.seal_deflection = seals.deflection_after(
             state.seal_deflection,
             motion.stroke - state.seal_stroke,

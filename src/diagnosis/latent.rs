@@ -64,9 +64,12 @@ type Entry = (Port, f64, &'static [(Variable, bool)]);
 #[rustfmt::skip]
 const TERMS: &[Entry] = &[
     (Port::PistonForce, 10.0, &[
-        (Variable::Time, false), (Variable::Time, true), (Variable::Stroke, false), (Variable::Stroke, true), (Variable::Velocity, false),
-        (Variable::ChamberPressure, false), (Variable::ChamberPressure, true), (Variable::PressureDifference, false),
-        (Variable::PressureDifference, true), (Variable::ContactForce, false), (Variable::ContactForce, true), (Variable::Surface, false),
+        (Variable::Time, false), (Variable::Stroke, false), (Variable::Velocity, false), (Variable::ChamberPressure, false),
+        (Variable::PressureDifference, false), (Variable::ContactForce, false), (Variable::Surface, false),
+    ]),
+    (Port::Friction, 10.0, &[
+        (Variable::Time, false), (Variable::Stroke, false), (Variable::ChamberPressure, false), (Variable::PressureDifference, false),
+        (Variable::ContactForce, false),
     ]),
     (Port::SetPressure, 1e4, &[(Variable::Time, false), (Variable::SetPressure, false)]),
     (Port::OutletPressure, 1e4, &[
@@ -102,6 +105,14 @@ pub fn scale(port: Port) -> f64 {
         .iter()
         .find(|(known, _, _)| *known == port)
         .map_or(1.0, |(_, scale, _)| *scale)
+}
+
+/// Where a curve starts: of what is never less than nothing a little more, that it may be seen to shrink as well as to grow.
+fn start(port: Port) -> f64 {
+    match port {
+        Port::Friction => 0.1 * scale(port),
+        _ => 0.0,
+    }
 }
 
 /// Contribution of a unit of the free quantity of an index to a term at a value of its variable.
@@ -187,7 +198,7 @@ fn terms(evidence: &Evidence, base: &Prediction) -> Vec<Latent> {
                     variable: *variable,
                     directed: *directed,
                     basis: Basis::Hats { ends },
-                    coefficients: vec![0.0; COARSE],
+                    coefficients: vec![start(*port); COARSE],
                 });
             }
         }
@@ -297,7 +308,7 @@ fn window(fit: &Fit, share: f64) -> Option<[f64; 2]> {
 
 /// Names of the variables that a term depends on.
 fn variables(term: &Latent) -> impl Iterator<Item = &'static str> {
-    let directed = term.directed.then_some("velocity_sign");
+    let directed = term.turns_with_motion().then_some("velocity_sign");
     [term.variable.name()].into_iter().chain(directed)
 }
 

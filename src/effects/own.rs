@@ -75,7 +75,7 @@ pub fn sought(plant: &mut PlantParameters) -> Vec<&'static Effect> {
 
 fn subsystem(port: Port) -> Subsystem {
     match port {
-        Port::PistonForce => Subsystem::ForceBalance,
+        Port::PistonForce | Port::Friction => Subsystem::ForceBalance,
         Port::SetPressure | Port::OutletPressure => Subsystem::Regulator,
         Port::FirstChamberFlow
         | Port::SecondChamberFlow

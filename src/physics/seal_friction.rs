@@ -41,6 +41,11 @@ pub struct SealFriction {
 /// Pressure difference at which the presliding displacement holds, if friction depends on it [Pa].
 const REFERENCE_DIFFERENCE: f64 = 1e5;
 
+/// Dry friction that nobody would notice [N].
+const LEAST: f64 = 1e-6;
+/// Stiffness of bristles where none is known: of 10 N over the presliding displacement of [`SealFriction::NONE`] [N/m].
+pub const USUAL_STIFFNESS: f64 = 2e5;
+
 impl SealFriction {
     /// No friction.
     pub const NONE: Self = Self {
@@ -70,6 +75,36 @@ impl SealFriction {
             static_force: self.static_force + growth,
             presliding_displacement: coulomb / self.stiffness(),
             pressure_coefficient: 0.0,
+            ..*self
+        }
+    }
+
+    /// The same seals with a further dry friction [N], as they are while it lasts; friction is never less than nothing.
+    #[must_use]
+    pub fn with(&self, further: f64) -> Self {
+        if further == 0.0 {
+            return *self;
+        }
+        let coulomb = (self.coulomb + further).max(LEAST);
+        Self {
+            coulomb,
+            static_force: (self.static_force + further).max(coulomb),
+            presliding_displacement: coulomb / self.stiffness(),
+            pressure_coefficient: 0.0,
+            ..*self
+        }
+    }
+
+    /// Seals that a further friction may press: dry, with bristles of a stiffness [N/m], or as usual, where they have none.
+    #[must_use]
+    pub fn pressed(&self, stiffness: Option<f64>) -> Self {
+        if self.is_dry() {
+            return *self;
+        }
+        Self {
+            coulomb: LEAST,
+            static_force: LEAST,
+            presliding_displacement: LEAST / stiffness.unwrap_or(USUAL_STIFFNESS),
             ..*self
         }
     }

@@ -78,6 +78,16 @@ impl Latent {
         self.coefficients.len() + usize::from(matches!(self.basis, Basis::Waves { .. }))
     }
 
+    /// Stiffness of the bristles that its friction bends [N/m], of a formula that says it.
+    pub fn bristle_stiffness(&self) -> Option<f64> {
+        self.formula()?.law.bristle_stiffness(&self.coefficients)
+    }
+
+    /// Whether it turns with the direction of motion.
+    pub fn turns_with_motion(&self) -> bool {
+        self.directed || self.port == Port::Friction
+    }
+
     /// Its value at a moment.
     pub fn at(&self, moment: &Moment) -> f64 {
         match &self.basis {

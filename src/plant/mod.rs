@@ -50,8 +50,8 @@ pub use moment::{Moment, Variable};
 pub use nudging::Nudging;
 pub use observation::Observation;
 pub use own_law::{
-    Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, OwnLaw, SYMBOLS, Symbol, Unit,
-    kept_name,
+    BRISTLE_STIFFNESS, Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, OwnLaw,
+    SYMBOLS, Symbol, USUAL_BRISTLE_STIFFNESS, Unit, kept_name,
 };
 pub use parameters::PlantParameters;
 pub use port::Port;

@@ -5,6 +5,8 @@
 pub enum Port {
     /// A force on the piston along extension [N].
     PistonForce,
+    /// Dry friction of the piston beside that of its seals, against the motion [N].
+    Friction,
     /// A pressure added to the set pressure, before the regulator follows it [Pa].
     SetPressure,
     /// A pressure added to the regulator's outlet [Pa].
@@ -29,8 +31,9 @@ pub enum Port {
 
 impl Port {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::PistonForce,
+        Self::Friction,
         Self::SetPressure,
         Self::OutletPressure,
         Self::FirstChamberFlow,
@@ -51,15 +54,19 @@ impl Port {
         )
     }
 
-    /// Whether it is the area of an opening, which is never less than nothing.
-    pub fn is_area(self) -> bool {
-        matches!(self, Self::FirstChamberLeak | Self::SecondChamberLeak)
+    /// Whether what acts there is never less than nothing: the area of an opening, friction.
+    pub fn is_positive(self) -> bool {
+        matches!(
+            self,
+            Self::FirstChamberLeak | Self::SecondChamberLeak | Self::Friction
+        )
     }
 
     /// Name in files and answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::PistonForce => "piston_force",
+            Self::Friction => "friction",
             Self::SetPressure => "set_pressure",
             Self::OutletPressure => "outlet_pressure",
             Self::FirstChamberFlow => "first_chamber_flow",
@@ -76,7 +83,7 @@ impl Port {
     /// Its unit as a key ends with it.
     pub fn suffix(self) -> &'static str {
         match self {
-            Self::PistonForce | Self::ForceReading => "n",
+            Self::PistonForce | Self::Friction | Self::ForceReading => "n",
             Self::SetPressure | Self::OutletPressure | Self::PressureReading => "pa",
             Self::FirstChamberLeak | Self::SecondChamberLeak => "m2",
             Self::FirstChamberFlow | Self::SecondChamberFlow => "kg_per_s",
@@ -87,7 +94,7 @@ impl Port {
     /// Its unit.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::PistonForce | Self::ForceReading => "N",
+            Self::PistonForce | Self::Friction | Self::ForceReading => "N",
             Self::SetPressure | Self::OutletPressure | Self::PressureReading => "Pa",
             Self::FirstChamberLeak | Self::SecondChamberLeak => "m^2",
             Self::FirstChamberFlow | Self::SecondChamberFlow => "kg/s",
@@ -98,7 +105,7 @@ impl Port {
     /// Part of the chain that it belongs to, as in an answer.
     pub fn subsystem(self) -> &'static str {
         match self {
-            Self::PistonForce => "force_balance",
+            Self::PistonForce | Self::Friction => "force_balance",
             Self::SetPressure | Self::OutletPressure => "regulator",
             Self::FirstChamberFlow
             | Self::SecondChamberFlow

@@ -92,7 +92,7 @@ pub fn true_trajectory(
     if let Some(truth) = chain::true_trajectory(plant, inputs) {
         return truth;
     }
-    let device = Device::new(plant.device.clone());
+    let device = Device::new(plant.with_friction_of_terms(plant.device.clone()));
     let mass = plant.device.moving_mass;
     let kinematics = inputs
         .cell

@@ -1,9 +1,11 @@
 //! Terms at the ports of a rig beside its device, contact and sensors: a term without a name, and laws of a user's own.
 
+use super::latent::Latent;
 use super::moment::Moment;
+use super::own_law::OwnLaw;
 use super::parameters::PlantParameters;
 use super::port::Port;
-use crate::device::{Disturbance, PistonMotion};
+use crate::device::{DeviceParameters, Disturbance, PistonMotion};
 
 /// Further forces on the piston over a step.
 #[derive(Debug, Clone, Copy, Default)]
@@ -66,7 +68,19 @@ impl PlantParameters {
             // Nothing flows through an opening of less than no area.
             leaks: [Port::FirstChamberLeak, Port::SecondChamberLeak]
                 .map(|port| self.term(port, &middle).max(0.0)),
+            friction: self.term(Port::Friction, &middle),
         }
+    }
+
+    /// A device's parameters with seals that the terms' friction may press.
+    pub fn with_friction_of_terms(&self, mut device: DeviceParameters) -> DeviceParameters {
+        if self.acts_at(Port::Friction) {
+            let latent = self.latent.iter().find_map(Latent::bristle_stiffness);
+            let mut own = self.own.iter().filter(|law| law.acts);
+            let stiffness = latent.or_else(|| own.find_map(OwnLaw::bristle_stiffness));
+            device.seal_friction = device.seal_friction.pressed(stiffness);
+        }
+        device
     }
 
     /// Its additions to the readings of pressure, stroke and force at a moment.

@@ -66,7 +66,7 @@ impl Rig {
         let plant = scenario.plant();
         let scenario = scenario.as_it_is(&plant);
         Ok(Self {
-            device: Device::new(scenario.device.parameters.clone()),
+            device: Device::new(plant.with_friction_of_terms(scenario.device.parameters.clone())),
             scenario,
             controller,
             plant,

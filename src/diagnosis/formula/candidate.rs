@@ -9,8 +9,8 @@ use super::grammar::{Form, Role, per, symbol};
 use crate::effects::{Coordinate, UNLISTED};
 use crate::plant::registry::LATENT_COEFFICIENT;
 use crate::plant::{
-    Basis, Constant, Expression, Formula, Latent, LawText, Moment, Port, SYMBOLS, Variable,
-    kept_name,
+    BRISTLE_STIFFNESS, Basis, Constant, Expression, Formula, Latent, LawText, Moment, Port,
+    SYMBOLS, USUAL_BRISTLE_STIFFNESS, Variable, kept_name,
 };
 
 /// Size of a constant that a formula is in proportion to, over its start, at most [1].
@@ -33,8 +33,13 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// A form in the place of a curve; constants that are not given are 1.
-    pub fn new(form: &Form, curve: &Latent, typical: Moment, constants: &[f64]) -> Self {
+    /// A form in the place of a curve; constants that are not given are 1. Of friction where there is none beside it, the stiffness of its bristles is free too.
+    pub fn new(
+        form: &Form,
+        (curve, with_bristles): (&Latent, bool),
+        typical: Moment,
+        constants: &[f64],
+    ) -> Self {
         let variable = symbol(curve.variable);
         let visited = match curve.basis {
             Basis::Hats { ends } => ends,
@@ -66,6 +71,16 @@ impl Candidate {
             .map(|(index, (name, role))| {
                 free_constant(index, kept_name(name), *role, at(index), curve, visited)
             });
+        let bristles = with_bristles.then(|| Free {
+            quantity: LATENT_COEFFICIENT
+                .named(BRISTLE_STIFFNESS)
+                .of(form.constants.len()),
+            start: USUAL_BRISTLE_STIFFNESS,
+            coordinate: Coordinate::Logarithmic,
+            bounds: [1e3, 1e8],
+            prior: Prior::Flat,
+        });
+        let free = free.chain(bristles);
         let own = form
             .constants
             .iter()
@@ -86,9 +101,13 @@ impl Candidate {
         let uses = |name: &str| text.contains(name);
         let reference = uses(REFERENCE).then(|| fixed(REFERENCE, largest, variable.unit));
         let creep = uses(CREEP_NAME).then(|| fixed(CREEP_NAME, CREEP, "m/s"));
-        let constants: Vec<Constant> = own.chain(reference).chain(creep).collect();
-        let values = (0..form.constants.len()).map(at).collect();
-        let directed = curve.directed.then_some("velocity_sign");
+        let bristles =
+            with_bristles.then(|| fixed(BRISTLE_STIFFNESS, USUAL_BRISTLE_STIFFNESS, "N/m"));
+        let stiffness = bristles.as_ref().map(|constant| constant.value);
+        let constants = own.chain(bristles).chain(reference).chain(creep);
+        let constants: Vec<Constant> = constants.collect();
+        let values = (0..form.constants.len()).map(at).chain(stiffness).collect();
+        let directed = curve.turns_with_motion().then_some("velocity_sign");
         Self {
             free: free.collect(),
             depends_on: std::iter::once(curve.variable.name())
@@ -252,7 +271,7 @@ fn free_constant(
             };
             let size = start.abs().max(1e-3 * scale(curve.port) / by);
             // An opening of less than nothing is none.
-            let least = if curve.port.is_area() && role == Role::Height {
+            let least = if curve.port.is_positive() && role == Role::Height {
                 0.0
             } else {
                 -MOST * size
@@ -328,7 +347,7 @@ pub(super) fn modulated(
             all.extend(candidate.times(gate, None, None, name));
         }
     }
-    if own != Variable::Velocity && !candidate.latent.directed {
+    if own != Variable::Velocity && !candidate.latent.turns_with_motion() {
         let creep = Some((CREEP_NAME, CREEP, "m/s"));
         let turned = format!("tanh(v / {CREEP_NAME})");
         all.extend(candidate.times(&turned, None, creep, "velocity_sign"));

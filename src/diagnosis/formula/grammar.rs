@@ -202,7 +202,12 @@ mod tests {
                         if form.sense == Sense::SameUnit && symbol(variable).unit != port.unit() {
                             continue;
                         }
-                        let plain = Candidate::new(form, &curve, Moment::default(), &[]);
+                        let plain = Candidate::new(
+                            form,
+                            (&curve, port == Port::Friction),
+                            Moment::default(),
+                            &[],
+                        );
                         let products = modulated(&plain, |_| 2.0);
                         for candidate in [plain].iter().chain(&products) {
                             let law = candidate.law();

@@ -283,7 +283,7 @@ mod tests {
             .iter()
             .filter(|form| form.makes_sense(latent.port, latent.variable, [0.0, 0.05]))
             .filter_map(|form| {
-                let text = Candidate::new(form, &latent, Moment::default(), &[]);
+                let text = Candidate::new(form, (&latent, false), Moment::default(), &[]);
                 let moment = |at: f64| Moment::default().with(Variable::Stroke, at);
                 Some((form.text, model.best(form, text.law(), moment)?))
             })
@@ -334,7 +334,7 @@ mod tests {
         let free_level = &model.information * &ones;
         model.information -= &free_level * free_level.transpose() / ones.dot(&free_level);
         let form = &FORMS[0];
-        let text = Candidate::new(form, &latent, Moment::default(), &[]);
+        let text = Candidate::new(form, (&latent, false), Moment::default(), &[]);
         let moment = |at: f64| Moment::default().with(Variable::Stroke, at);
         let found = model.best(form, text.law(), moment).unwrap();
         assert!(

@@ -16,12 +16,13 @@ use rayon::prelude::*;
 use self::candidate::{Candidate, modulated};
 use self::grammar::{FORMS, WAVE};
 use self::matching::CurveModel;
-use super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, fit};
+use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start, fit};
 use super::free::Free;
 use super::hypothesis::Hypothesis;
 use super::progress::{Observer, Step};
 use super::search::Search;
-use crate::plant::{Basis, Latent, Moment, Variable};
+use crate::effects::Coordinate;
+use crate::plant::{Basis, Latent, Moment, Port, Variable};
 
 /// Formulas that are fitted roughly, of those that promise most, and of one curve at most.
 const FITTED: usize = 10;
@@ -36,6 +37,8 @@ const MULTIPLIED: usize = 2;
 const IN_FULL: usize = 3;
 /// Rough cost over that of the best beyond which a formula is not fitted in full [1].
 const FAR: f64 = 1.15;
+/// Factor by which a width is tried wider [1].
+const WIDER: f64 = 8.0;
 /// Iterations of the full fit.
 const FULL_ITERATIONS: usize = 30;
 
@@ -84,6 +87,10 @@ impl Search<'_> {
             observer(&Step::Variation.of(hypothesis, detail));
         }
         self.sort_by_cost(&mut fitted);
+        for leading in fitted.iter_mut().take(IN_FULL) {
+            self.widen(leading, (ROUGH, ROUGH_ITERATIONS), |fit| fit.rough);
+        }
+        self.sort_by_cost(&mut fitted);
         if fitted.first().is_some_and(|best| best.fit.rough > noise) {
             self.add_products(base, &mut fitted, observer);
         }
@@ -99,6 +106,9 @@ impl Search<'_> {
             .map(|h| self.refit(h, going_on(FULL, FULL_ITERATIONS)))
             .collect();
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        if let Some(best) = full.first_mut() {
+            self.widen(best, (FULL, FULL_ITERATIONS), Fit::cost);
+        }
         for h in &full {
             let detail = format!("{} in full {:.1}", text(h), self.score(h));
             observer(&Step::Variation.of(h, detail));
@@ -116,11 +126,13 @@ impl Search<'_> {
             curve.fit.rough + cost + candidate.count() as f64 * samples
         };
         let typical = self.typical(curve, latent);
+        let seals = &curve.fit.prediction.plant.device.seal_friction;
+        let bristles = latent.port == Port::Friction && !seals.is_dry();
         match latent.basis {
             Basis::Waves { frequency } => {
                 let [sine, cosine] = [latent.coefficients[0], latent.coefficients[1]];
                 let constants = [sine.hypot(cosine), frequency, cosine.atan2(sine)];
-                let candidate = Candidate::new(&WAVE, latent, typical, &constants);
+                let candidate = Candidate::new(&WAVE, (latent, bristles), typical, &constants);
                 vec![(promised(&candidate, 0.0), candidate)]
             }
             Basis::Hats { ends } => {
@@ -133,10 +145,11 @@ impl Search<'_> {
                     .par_iter()
                     .filter(makes_sense)
                     .filter_map(|form| {
-                        let text = Candidate::new(form, latent, typical, &[]);
+                        let text = Candidate::new(form, (latent, bristles), typical, &[]);
                         let moment = |at: f64| typical.with(latent.variable, at);
                         let best = model.best(form, text.law(), moment)?;
-                        let candidate = Candidate::new(form, latent, typical, &best.constants);
+                        let candidate =
+                            Candidate::new(form, (latent, bristles), typical, &best.constants);
                         Some((promised(&candidate, best.cost), candidate))
                     })
                     .collect()
@@ -207,6 +220,32 @@ impl Search<'_> {
             effects: base.effects.clone(),
             fit,
             depends_on: candidate.depends_on.clone(),
+        }
+    }
+
+    /// Fits a formula again with each of its widths, limits and periods wider, and takes what fits better: a ramp that became a step does not find back.
+    fn widen(
+        &self,
+        hypothesis: &mut Hypothesis,
+        (stages, iterations): (&[Stage], usize),
+        cost: impl Fn(&Fit) -> f64,
+    ) {
+        let fitted = &hypothesis.fit;
+        let own = fitted.free.len() - hypothesis.unlisted().map_or(0, Latent::numbers);
+        let tried = (own..fitted.free.len())
+            .filter(|i| fitted.free[*i].coordinate == Coordinate::Logarithmic)
+            .map(|i| {
+                let mut free = fitted.free_from_here();
+                free[i].start = (WIDER * free[i].start).min(free[i].bounds[1]);
+                let from = (&fitted.prediction.plant, None);
+                let limit = Limit::of(iterations);
+                fit(self.evidence, from, (&free, &[]), stages, limit)
+            })
+            .min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        if let Some(wider) = tried
+            && cost(&wider) < cost(fitted)
+        {
+            hypothesis.fit = wider;
         }
     }
 

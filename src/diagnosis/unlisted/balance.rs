@@ -63,7 +63,7 @@ pub fn needed(
     peak_to_peak: f64,
 ) -> Vec<Needed> {
     let channel = match latent.port {
-        Port::PistonForce => None,
+        Port::PistonForce | Port::Friction => None,
         Port::PressureReading | Port::OutletPressure => Some(0),
         Port::StrokeReading => Some(1),
         Port::ForceReading => Some(2),
@@ -124,11 +124,13 @@ fn samples(
                 None => lacking(measured, &trajectory.truth, &without.plant, i),
                 Some(channel) => measured.readings[channel][i] - trajectory.readings[channel][i],
             };
-            if latent.directed {
+            if latent.turns_with_motion() {
                 if moment.speed.abs() < MOVING {
                     continue;
                 }
-                value *= moment.speed.signum();
+                // Friction is told as it resists.
+                let against = latent.port == Port::Friction;
+                value *= moment.speed.signum() * if against { -1.0 } else { 1.0 };
             }
             let at = moment.of(latent.variable);
             let at = match latent.basis {

@@ -4,9 +4,9 @@
 use super::form::Form::{self, Even, Localised, Monotonic, Odd, Periodic};
 use crate::plant::Latent;
 use crate::plant::Port::{
-    FirstChamberFlow, FirstChamberLeak, ForceReading, OutletPressure, PistonForce, PressureReading,
-    SecondChamberFlow, SecondChamberLeak, SetPressure as AtSetPressure, StrokeReading,
-    Surface as AtSurface,
+    FirstChamberFlow, FirstChamberLeak, ForceReading, Friction, OutletPressure, PistonForce,
+    PressureReading, SecondChamberFlow, SecondChamberLeak, SetPressure as AtSetPressure,
+    StrokeReading, Surface as AtSurface,
 };
 use crate::plant::Variable::{
     ChamberPressure, ContactForce, MassFlow, PressureDifference, SetPressure, Stroke, Surface,
@@ -32,22 +32,23 @@ pub fn known(latent: &Latent, form: Form) -> Known {
 #[rustfmt::skip] // A table: one shape a line.
 fn words(latent: &Latent, form: Form) -> (&'static str, &'static str) {
     match (latent.port, latent.variable, latent.directed, form) {
-        (PistonForce, Stroke, true, Localised) => ("a tight spot: a sticking guide, a burr or dent on the rod, a kinked seal", "move the rod by hand through that part of the stroke, without pressure"),
+        (Friction, Stroke, _, Localised) => ("a tight spot: a sticking guide, a burr or dent on the rod, a kinked seal", "move the rod by hand through that part of the stroke, without pressure"),
         (PistonForce, Stroke, _, Localised) => ("a sticking spot that gives way, a burr on the rod, a magnetic detent, a snap latch or a cable guide that catches", "move the rod by hand through that part of the stroke, without pressure, and look what touches there"),
-        (PistonForce, Stroke, true, _) => ("friction that changes along the stroke: a bent rod, a tapered bore, misaligned guides", "measure the breakaway force at several strokes, both ways"),
+        (Friction, Stroke, _, _) => ("friction that changes along the stroke: a bent rod, a tapered bore, misaligned guides", "measure the breakaway force at several strokes, both ways"),
         (PistonForce, Stroke, _, _) => ("a spring that is not linear, a cable or hose that goes taut, a counterweight's linkage", "pull the slide with a spring balance from stroke to stroke, without pressure"),
         (PistonForce, Velocity, _, Odd) => ("drag that grows faster than the speed: a damper, air pushed through a narrow way, grease", "disconnect dampers and covers one by one and stroke freely"),
         (PistonForce, Velocity, _, Even) => ("a force that does not care about the direction of motion: a stream, an unbalanced spindle's thrust", "stroke freely with spindle and suction off"),
         (PistonForce, Velocity, _, _) => ("a damper or a seal whose drag depends on the direction of motion", "disconnect dampers one by one and stroke freely at several pressures"),
-        (PistonForce, Time, true, _) => ("friction that changes while it runs: grease that warms up, a seal that dries", "record a long run and a second one right after it"),
+        (Friction, Time, _, _) => ("friction that changes while it runs: grease that warms up, a seal that dries", "record a long run and a second one right after it"),
         (PistonForce, Time, _, Periodic) => ("an unbalanced spindle, a vibrating neighbour, a cutter's teeth", "record with the spindle off, and at another speed"),
         (PistonForce, Time, _, _) => ("something outside that pulls at certain times: a hose or cable moved by the robot, another machine", "record the same program with the robot standing still"),
-        (PistonForce, ChamberPressure | PressureDifference, true, _) => ("seals whose friction does not grow in proportion to the pressure", "measure the breakaway force at several pressures"),
+        (Friction, ChamberPressure | PressureDifference, _, _) => ("seals whose friction does not grow in proportion to the pressure", "measure the breakaway force at several pressures"),
         (PistonForce, ChamberPressure | PressureDifference, _, _) => ("a piston area that is another one than believed, a chamber that does not vent to the atmosphere, a pressure that does not reach the piston", "check bore and rod, and measure both chambers' pressures"),
-        (PistonForce, ContactForce, true, _) => ("guides that rub under side load: the contact force acts at an angle or off the axis", "press with the tool on the axis and off it"),
+        (Friction, ContactForce, _, _) => ("guides that rub under side load: the contact force acts at an angle or off the axis", "press with the tool on the axis and off it"),
         (PistonForce, ContactForce, _, _) => ("a second way for the force: a stop, a bellows or a bracket that takes a part of it", "press on the load cell at several forces with covers off"),
         (PistonForce, Surface, _, _) => ("something that comes with the robot's place along the axis: a cable, a hose, a misaligned fixture", "record the same program further along the axis"),
         (PistonForce, _, _, _) => ("a force that comes with the air or with the set value: a line that stiffens, a valve that pushes", "hold the piston and step the set pressure"),
+        (Friction, _, _, _) => ("friction that changes from place to place or from time to time: seals, guides, grease", "measure the breakaway force under several conditions"),
         (AtSetPressure | OutletPressure, Time, _, Periodic) => ("a supply compressor that switches in and out, a regulator's dither, another consumer that cycles", "log the supply pressure, and record with other consumers and the dither off"),
         (AtSetPressure, Time, _, _) => ("a set value that shifts while it runs: a converter that drifts, a controller that adds to it", "log what the controller sends, beside the regulator's own display"),
         (OutletPressure, Time, _, _) => ("a supply pressure that changes, another consumer on the same line, a regulator that drifts as it warms up", "log the supply pressure during a recording"),
@@ -108,7 +109,7 @@ mod tests {
             assert!(known.resembles.contains(word), "{known:?}");
         };
         says(PistonForce, Stroke, false, Localised, "magnetic detent");
-        says(PistonForce, Stroke, true, Localised, "tight spot");
+        says(Friction, Stroke, false, Localised, "tight spot");
         says(
             PistonForce,
             Velocity,

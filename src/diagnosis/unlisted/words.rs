@@ -18,6 +18,7 @@ pub struct DisplayQuantity {
 pub fn port(port: Port) -> DisplayQuantity {
     let (words, unit, factor) = match port {
         Port::PistonForce => ("force on the piston", "N", 1.0),
+        Port::Friction => ("friction of the piston", "N", 1.0),
         Port::SetPressure => ("pressure added to the set pressure", "mbar", 1e-2),
         Port::OutletPressure => ("pressure at the regulator's outlet", "mbar", 1e-2),
         Port::FirstChamberFlow => ("flow of air into chamber 1", "g/s", 1e3),

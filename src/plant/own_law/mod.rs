@@ -62,6 +62,11 @@ const fn symbol(
     }
 }
 
+/// Key of the stiffness of the bristles that a law of friction bends, where the seals have none of their own.
+pub const BRISTLE_STIFFNESS: &str = "bristle_stiffness";
+/// That stiffness where nothing says it [N/m].
+pub const USUAL_BRISTLE_STIFFNESS: f64 = crate::physics::seal_friction::USUAL_STIFFNESS;
+
 /// Constants at most of one law.
 pub const MOST_CONSTANTS: usize = 8;
 
@@ -103,6 +108,23 @@ pub struct OwnLaw {
 }
 
 impl LawText {
+    /// Stiffness of the bristles that friction bends before the piston slides [N/m], of values of its constants, the first ones at least.
+    pub fn bristle_stiffness(&self, constants: &[f64]) -> Option<f64> {
+        let mut all = self.constants.iter();
+        let place = all.position(|constant| self.is_bristle_stiffness(constant))?;
+        Some(
+            constants
+                .get(place)
+                .copied()
+                .unwrap_or(self.constants[place].value),
+        )
+    }
+
+    /// Whether a constant is that stiffness, which stands in no expression.
+    pub fn is_bristle_stiffness(&self, constant: &Constant) -> bool {
+        self.port == Port::Friction && constant.name == BRISTLE_STIFFNESS
+    }
+
     /// Its value at a moment, in the unit of its port, of values of its constants, the first ones at least; nothing where it is not finite.
     pub fn value(&self, moment: &Moment, constants: &[f64]) -> f64 {
         let mut values = [0.0; SYMBOLS.len() + MOST_CONSTANTS];
@@ -190,6 +212,11 @@ fn radical_inverse(mut index: usize, base: usize) -> f64 {
 }
 
 impl OwnLaw {
+    /// Stiffness of the bristles that its friction bends [N/m], where it says it.
+    pub fn bristle_stiffness(&self) -> Option<f64> {
+        self.text.bristle_stiffness(&self.values)
+    }
+
     /// The law as it is written, at work.
     pub fn new(text: &Arc<LawText>) -> Self {
         let mut values = [0.0; MOST_CONSTANTS];

@@ -67,7 +67,7 @@ pub(super) fn law(
         constants,
     };
     for (place, constant) in law.constants.iter().enumerate() {
-        if !law.expression.uses(SYMBOLS.len() + place) {
+        if !law.is_bristle_stiffness(constant) && !law.expression.uses(SYMBOLS.len() + place) {
             let reason = format!("the expression has no `{}`", constant.name);
             return Err(section.misplaced(constant.name, reason));
         }
