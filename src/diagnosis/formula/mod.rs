@@ -25,8 +25,10 @@ use crate::effects::Coordinate;
 use crate::plant::{Basis, Latent, Moment, Port, Variable};
 
 /// Formulas that are fitted roughly, of those that promise most, and of one curve at most.
-const FITTED: usize = 10;
+const FITTED: usize = 12;
 const OF_ONE_CURVE: usize = 4;
+/// Polynomials among those of one curve, at least.
+const POLYNOMIALS: usize = 2;
 /// Iterations of that.
 const ROUGH_ITERATIONS: usize = 8;
 /// Iterations of a first look at a product with another variable.
@@ -41,6 +43,15 @@ const FAR: f64 = 1.15;
 const WIDER: f64 = 8.0;
 /// Iterations of the full fit.
 const FULL_ITERATIONS: usize = 30;
+
+/// A formula that a curve points at.
+struct Promising {
+    /// Cost that it promises [1].
+    promised: f64,
+    /// Whether it is in proportion to all of its constants.
+    is_polynomial: bool,
+    candidate: Candidate,
+}
 
 fn going_on(stages: &[Stage], iterations: usize) -> Refit<'_> {
     Refit {
@@ -63,9 +74,17 @@ impl Search<'_> {
         let mut promising: Vec<(f64, &Hypothesis, Candidate)> = Vec::new();
         for curve in curves {
             let mut own = self.matches(curve);
-            own.sort_by(|a, b| a.0.total_cmp(&b.0));
-            own.truncate(OF_ONE_CURVE);
-            promising.extend(own.into_iter().map(|(score, c)| (score, curve, c)));
+            own.sort_by(|a, b| a.promised.total_cmp(&b.promised));
+            // Polynomials beside them: a form with thresholds may bend to what a curve is wrong by.
+            let mut polynomials = 0;
+            let mut place = 0;
+            own.retain(|one| {
+                place += 1;
+                polynomials += usize::from(one.is_polynomial);
+                place <= OF_ONE_CURVE || (one.is_polynomial && polynomials <= POLYNOMIALS)
+            });
+            let own = own.into_iter();
+            promising.extend(own.map(|one| (one.promised, curve, one.candidate)));
         }
         promising.sort_by(|a, b| a.0.total_cmp(&b.0));
         promising.truncate(FITTED);
@@ -117,7 +136,7 @@ impl Search<'_> {
     }
 
     /// Formulas over the variable of a curve, with what each promises.
-    fn matches(&self, curve: &Hypothesis) -> Vec<(f64, Candidate)> {
+    fn matches(&self, curve: &Hypothesis) -> Vec<Promising> {
         let Some(latent) = curve.unlisted() else {
             return Vec::new();
         };
@@ -133,7 +152,11 @@ impl Search<'_> {
                 let [sine, cosine] = [latent.coefficients[0], latent.coefficients[1]];
                 let constants = [sine.hypot(cosine), frequency, cosine.atan2(sine)];
                 let candidate = Candidate::new(&WAVE, (latent, bristles), typical, &constants);
-                vec![(promised(&candidate, 0.0), candidate)]
+                vec![Promising {
+                    promised: promised(&candidate, 0.0),
+                    is_polynomial: false,
+                    candidate,
+                }]
             }
             Basis::Hats { ends } => {
                 let Some(model) = CurveModel::of(&curve.fit, latent) else {
@@ -150,7 +173,11 @@ impl Search<'_> {
                         let best = model.best(form, text.law(), moment)?;
                         let candidate =
                             Candidate::new(form, (latent, bristles), typical, &best.constants);
-                        Some((promised(&candidate, best.cost), candidate))
+                        Some(Promising {
+                            promised: promised(&candidate, best.cost),
+                            is_polynomial: form.constants.iter().all(|(_, r)| r.is_linear()),
+                            candidate,
+                        })
                     })
                     .collect()
             }
