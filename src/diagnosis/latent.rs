@@ -332,6 +332,7 @@ impl Search<'_> {
         let mut found = self.formulas(base, &promising, noise, observer);
         found.retain(|h| scale.is_adequate(h) && self.term_shows(h));
         self.name_variables(base, &mut found, &promising);
+        self.put_named_first(&mut found, scale, observer);
         found
     }
 
@@ -361,7 +362,7 @@ impl Search<'_> {
     }
 
     /// Rough cost below which nothing is left to be explained.
-    fn left_alone(&self, scale: &Scale) -> f64 {
+    pub(super) fn left_alone(&self, scale: &Scale) -> f64 {
         rough_noise(self.evidence) + scale.rough_spread()
     }
 

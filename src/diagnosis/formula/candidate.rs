@@ -49,20 +49,6 @@ impl Candidate {
         if curve.directed {
             text = format!("{} * tanh(v / {CREEP_NAME})", bracketed(&text));
         }
-        let unit = |role: Role| -> String {
-            let port = curve.port.unit();
-            match role {
-                Role::Height => port.to_owned(),
-                Role::Gain if port == variable.unit => "1".to_owned(),
-                Role::Gain => per(port, variable.unit, 1),
-                Role::Curvature if port == variable.unit => per("1", variable.unit, 1),
-                Role::Curvature => per(port, variable.unit, 2),
-                Role::Place | Role::Width | Role::Limit | Role::Period => variable.unit.to_owned(),
-                Role::Phase => "rad".to_owned(),
-                Role::Exponent => "1".to_owned(),
-                Role::Frequency => "Hz".to_owned(),
-            }
-        };
         let at = |index: usize| constants.get(index).copied().unwrap_or(1.0);
         let free = form
             .constants
@@ -88,7 +74,7 @@ impl Candidate {
             .map(|(index, (name, role))| Constant {
                 name: kept_name(name),
                 value: at(index),
-                unit: Some(kept_name(&unit(*role))),
+                unit: Some(kept_name(&unit_of(*role, curve.port.unit(), variable.unit))),
                 range: None,
             });
         let fixed = |name: &'static str, value: f64, unit: &'static str| Constant {
@@ -249,6 +235,21 @@ fn bracketed(text: &str) -> String {
         format!("({text})")
     } else {
         text.to_owned()
+    }
+}
+
+/// Unit of a constant in a formula at a port over a variable.
+fn unit_of(role: Role, port: &str, variable: &str) -> String {
+    match role {
+        Role::Height => port.to_owned(),
+        Role::Gain if port == variable => "1".to_owned(),
+        Role::Gain => per(port, variable, 1),
+        Role::Curvature if port == variable => per("1", variable, 1),
+        Role::Curvature => per(port, variable, 2),
+        Role::Place | Role::Width | Role::Limit | Role::Period => variable.to_owned(),
+        Role::Phase => "rad".to_owned(),
+        Role::Exponent => "1".to_owned(),
+        Role::Frequency => "Hz".to_owned(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::cross_validation::{Depth, left_out};
 use super::super::evidence::by_channel;
-use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, rough_noise};
+use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, jacobian, rough_noise};
 use super::super::free::{Free, free_of};
 use super::super::hypothesis::{Hypothesis, covers, stands_for};
 use super::super::progress::{Observer, Step};
@@ -310,19 +310,52 @@ impl Search<'_> {
         if let Some(first) = found.next()
             && self.score(&first) < self.score(&full[0])
         {
-            let without = self.without_term(&first);
-            match scale.is_adequate(&without) || self.score(&without) <= self.score(&first) {
-                true => {
+            let spared =
+                |h: &Hypothesis| scale.is_adequate(h) || self.score(h) <= self.score(&first);
+            let without = (first.unlisted().is_some()).then(|| self.without_term(&first));
+            match without.filter(spared) {
+                Some(without) => {
                     let detail = format!("without a term {:.1}", self.score(&without));
                     observer(&Step::Variation.of(&without, detail));
                     full.insert(0, without);
                 }
-                false => {
+                None => {
                     full.insert(0, first);
                     full.extend(found);
                     full[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
                 }
             }
+        }
+    }
+
+    /// Puts a known effect in the place of the best formula where it leaves noise alone too: a rough fit of the believed model may have been bent so far
+    /// that no known effect promised anything beside it, and where the formula has put what is tolerated one does. A law of the list is the likelier one.
+    pub(in crate::diagnosis) fn put_named_first(
+        &self,
+        found: &mut Vec<Hypothesis>,
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) {
+        let Some(formula) = found.first() else { return };
+        let own = formula.unlisted().map_or(0, Latent::numbers);
+        let mut free = formula.fit.free_from_here();
+        free.truncate(free.len() - own);
+        let mut plant = formula.fit.prediction.plant.clone();
+        plant.latent = None;
+        let effects = formula.effects.clone();
+        let mut from = self.fitted(effects, (&plant, None), &free, ROUGH, Limit::of(0));
+        let at = &from.fit;
+        from.fit.columns = jacobian(self.evidence, &at.prediction, &free, &at.values, 0);
+        let most = self.settings.far_behind * self.left_alone(scale);
+        let mut named = self.screen(&from, ROUGH, most);
+        named.retain(|h| self.rough_score(h) < most);
+        let mut named = self.in_full(&named, scale, &mut Vec::new(), observer);
+        named.retain(|h| scale.is_adequate(h));
+        let allowed = self.score(&found[0]) + self.settings.look_elsewhere;
+        if let Some(first) = named.into_iter().next()
+            && self.score(&first) < allowed
+        {
+            found.insert(0, first);
         }
     }
 

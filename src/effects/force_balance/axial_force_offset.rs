@@ -22,6 +22,6 @@ pub const EFFECT: Effect = Effect {
     text: include_str!("axial_force_offset.rs"),
     parameters: |_, _| vec![reported(AXIAL_LOAD.named("force_n"), Linear(2.0), [-500.0, 500.0])],
     usual: |_, _| vec![12.0],
-    starts: |_, _| vec![vec![0.0]],
+    starts: |_, _| each(&[0.0, 12.0]),
     ..effect("axial_force_offset", Subsystem::ForceBalance)
 };

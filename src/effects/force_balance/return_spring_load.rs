@@ -23,6 +23,6 @@ pub const EFFECT: Effect = Effect {
     text: include_str!("return_spring_load.rs"),
     parameters: |_, _| vec![reported(RETURN_STIFFNESS.named("stiffness_n_per_m"), Linear(100.0), [-5e4, 5e4])],
     usual: |_, _| vec![400.0],
-    starts: |_, _| vec![vec![0.0]],
+    starts: |_, _| each(&[0.0, 400.0]),
     ..effect("return_spring_load", Subsystem::ForceBalance)
 };

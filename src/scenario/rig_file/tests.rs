@@ -520,7 +520,7 @@ fn a_term_that_is_not_right_is_refused_by_its_key() {
         (
             "\"piston_force\"",
             "\"piston\"",
-            "`latent.port` is \"piston\", expected one of \"piston_force\", \"set_pressure\", \"outlet_pressure\"",
+            "`latent.port` is \"piston\", expected one of \"piston_force\", \"friction\", \"set_pressure\", \"outlet_pressure\"",
         ),
         (
             "\"stroke_m\"",

@@ -114,7 +114,7 @@ fn what_cannot_be_is_refused_with_its_place() {
         (
             own("piston_force", "piston"),
             2,
-            "expected one of piston_force, set_pressure, outlet_pressure",
+            "expected one of piston_force, friction, set_pressure, outlet_pressure",
         ),
         (
             own("max(v", "mox(v"),
