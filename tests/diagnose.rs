@@ -1,6 +1,7 @@
 //! `idc diagnose`: planted physics is found, nothing is found in nothing, dirt does no harm, and what is wrong with a case is one line.
 
 pub mod planted;
+mod tried;
 mod unlisted;
 
 use std::path::Path;

@@ -23,7 +23,9 @@ use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress::StagedLine;
 use crate::diagnosis::progress::Progress;
+use crate::plant::LawText;
 use crate::replay::LoadedCell;
+use crate::scenario::effects::law_of_line;
 use stages::Stages;
 
 #[derive(Debug, Args)]
@@ -48,6 +50,10 @@ pub(super) struct DiagnoseArguments {
     /// Cases at a time with --all [default: 1, on all processors]; the processors are shared among them, and results do not depend on it.
     #[arg(long, requires = "all", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
+    /// A law of your own, tried beside the tool's: where it acts, an expression in SI, and what is to be found, as in
+    /// "piston_force: -c * max(v, 0); c = 100..1000"; variables and ports stand in scenarios/README.md
+    #[arg(long = "try", value_name = "LAW", value_parser = law_of_line, allow_hyphen_values = true, conflicts_with = "all")]
+    tried: Option<LawText>,
     /// Print nothing but errors.
     #[arg(long, help_heading = "Output")]
     quiet: bool,
@@ -89,7 +95,8 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
     let silent = arguments.quiet || arguments.json || arguments.verbose;
     let _interruptible = Interruptible::of_one("diagnosis", &out);
     let line = StagedLine::new(&stages::first(), silent);
-    let prepared = one::Prepared::new(&arguments.case, cell, &out, standing)?;
+    let tried = arguments.tried.clone();
+    let prepared = one::Prepared::new(&arguments.case, (cell, tried), &out, standing)?;
     let mut stages = Stages::default();
     line.tell(Stages::begun(), None);
     let finished = prepared.run(&mut |progress: &Progress<'_>| {
@@ -119,6 +126,6 @@ pub(super) fn answer_case(
     case: &std::path::Path,
     out: &std::path::Path,
 ) -> Result<crate::diagnosis::answer::Answer, AppError> {
-    let prepared = one::Prepared::new(case, None, out, Standing::Replace)?;
+    let prepared = one::Prepared::new(case, (None, None), out, Standing::Replace)?;
     Ok(prepared.run(&mut |_| ())?.answer)
 }

@@ -186,6 +186,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
                 .into_iter()
                 .chain(frictions.iter().filter_map(|f| f.shown(&believed)))
                 .collect(),
+            tried: None,
         },
         axes: axes.into_iter().next(),
         servo,

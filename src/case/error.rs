@@ -21,6 +21,28 @@ pub enum CaseError {
     /// A recording of a rig.
     #[error(transparent)]
     Recorded(#[from] RecordedError),
+    /// A law that a user tries, without a value somewhere in the recordings.
+    #[error(
+        "--try: at `{part}`, character {place} of the expression: it is not finite in {recording} at {time_s:.4} s, as the believed model runs it; expected a value there for all its constants' ranges"
+    )]
+    TriedNotFinite {
+        /// The part.
+        part: String,
+        /// Its first character, from 1.
+        place: usize,
+        /// The recording.
+        recording: String,
+        /// When.
+        time_s: f64,
+    },
+    /// A law that a user tries on a contact flange, which is seen from outside.
+    #[error(
+        "--try: {folder} is of a contact flange, of which nothing is simulated; expected a case with a device or a part of one"
+    )]
+    TriedOnFlange {
+        /// The case's folder.
+        folder: String,
+    },
     /// A case of a cell without a recording to diagnose from.
     #[error(
         "{folder}: no recording in it has a measured column, expected at least one to diagnose from"

@@ -9,6 +9,7 @@ mod recordings;
 mod rig;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 pub use cell::is_cell_case;
@@ -26,7 +27,8 @@ use crate::diagnosis::input::{DiagnosisInput, prepare};
 use crate::diagnosis::progress::Observer;
 use crate::diagnosis::servo::Axes;
 use crate::diagnosis::settings::Settings;
-use crate::plant::{Chain, Channel, PlantParameters, simulate};
+use crate::effects::own_effect;
+use crate::plant::{Chain, Channel, LawText, OwnLaw, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
 use crate::replay::LoadedCell;
@@ -108,6 +110,30 @@ impl Case {
         prepare(&read.input)?;
         let cell = Box::new(cell.clone());
         Ok(Self::new(folder, Kind::Cell { cell, read }))
+    }
+
+    /// Puts a law of a user's among what may be missing. However the search ends, the answer says how it fares.
+    ///
+    /// # Errors
+    /// A law that is not finite somewhere in the recordings, a contact flange.
+    pub fn try_law(&mut self, law: LawText) -> Result<(), CaseError> {
+        let input = match &mut self.kind {
+            Kind::Rig { input, .. } => input,
+            Kind::Cell { read, .. } => &mut read.input,
+            Kind::Flange { .. } => {
+                return Err(CaseError::TriedOnFlange {
+                    folder: self.folder.display().to_string(),
+                });
+            }
+        };
+        check_in_recordings(&law, input)?;
+        let mut own = OwnLaw::new(&Arc::new(law));
+        own.acts = false;
+        let effect = own_effect(&own.text, input.believed.own.len());
+        input.believed.own.push(own);
+        input.candidates.push(effect);
+        input.tried = Some(effect);
+        Ok(())
     }
 
     fn new(folder: &Path, kind: Kind) -> Self {
@@ -214,6 +240,28 @@ pub fn diagnose(
     diagnosed.answer.details.case.clone_from(&case.name);
     diagnosed.answer.details.provenance = provenance;
     Ok(diagnosed)
+}
+
+/// Checks that a law is finite at every sample of the recordings, as the believed model runs them.
+fn check_in_recordings(law: &LawText, input: &DiagnosisInput) -> Result<(), CaseError> {
+    for recording in input.recordings.iter().chain(&input.unseen) {
+        let inputs = &recording.recorded.inputs;
+        let trajectory = simulate(&input.believed, inputs);
+        for (sample, time) in inputs.time.iter().enumerate() {
+            law.check_at(&trajectory.truth.moment(inputs, sample))
+                .map_err(|error| {
+                    let text = law.expression.text();
+                    let before = text.get(..error.span.start).unwrap_or_default();
+                    CaseError::TriedNotFinite {
+                        part: text.get(error.span.clone()).unwrap_or(text).to_owned(),
+                        place: before.chars().count() + 1,
+                        recording: recording.name.clone(),
+                        time_s: *time,
+                    }
+                })?;
+        }
+    }
+    Ok(())
 }
 
 fn of_plant(

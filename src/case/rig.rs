@@ -97,6 +97,7 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
         unseen: rig.predict.as_ref().map(read).transpose()?,
         candidates: candidates(rig.plant.chain).into_iter().chain(own).collect(),
         shown: Vec::new(),
+        tried: None,
     })
 }
 

@@ -32,6 +32,7 @@ impl Diagnosis {
             section.table = self.shape_table().or_else(|| self.smallest_table());
         }
         account.add(SectionKind::Remaining, self.what_is_left());
+        account.add(SectionKind::Tried, self.how_the_law_fares());
         account.add(SectionKind::RuledOut, vec![self.what_was_ruled_out()]);
         account.add(SectionKind::Ambiguous, self.not_told_apart());
         account.add(SectionKind::NextExperiment, vec![self.what_next()]);

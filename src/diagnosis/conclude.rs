@@ -4,10 +4,9 @@ use super::answer::{
     Alternative, Answer, Estimate, Extent, FoundEffect, FoundLaw, Mismatch, SCHEMA, Verdict,
 };
 use super::details::{
-    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Departure, Details,
-    DetectableParameter, DetectableReport, IN_TURN, LinkReport, NextExperiment, PredictionError,
-    RegimeReport, RemainingError, RemainingReport, RuledOutReport, ToleratedNumber,
-    remaining_errors,
+    ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Details, DetectableParameter,
+    DetectableReport, IN_TURN, LinkReport, NextExperiment, PredictionError, RegimeReport,
+    RemainingError, RemainingReport, RuledOutReport, ToleratedNumber, remaining_errors,
 };
 use super::detectable::DetectableNumber;
 use super::estimate::Number;
@@ -297,13 +296,8 @@ impl Diagnosis {
                 })
                 .collect(),
             links: self.link_reports(),
-            departure: self.largest.map(|largest| Departure {
-                recording: self.evidence.recordings[largest.recording].name.clone(),
-                channel: COLUMNS[largest.channel as usize].to_owned(),
-                left_out: largest.left_out,
-                p90_sigmas: largest.p90,
-                link: Link::of(largest.channel).name().to_owned(),
-            }),
+            departure: self.largest.map(|largest| self.departure(largest)),
+            tried: self.tried_report(),
             explained_share: self.explained_share(),
             remaining: self.remaining_report(),
             considered: (self.considered().into_iter())

@@ -1,5 +1,7 @@
 //! Content of diagnosis.json beyond what is scored. Sigmas are standard deviations of the sensor's noise.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::account::Account;
@@ -40,6 +42,9 @@ pub struct Details {
     /// Largest departure of the best explanation from the recordings, those left out in turn among them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub departure: Option<Departure>,
+    /// What became of a law that a user tried.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tried: Option<TriedReport>,
     /// Share of the mismatch that is explained [1]; none where there is none.
     pub explained_share: Option<f64>,
     /// Remainder that no law explains, where it is more than noise and everything was judged against it.
@@ -78,6 +83,25 @@ pub struct Departure {
     pub p90_sigmas: f64,
     /// Link of the chain that the channel shows: `regulator`, `piston`, `contact` or `sensors`.
     pub link: String,
+}
+
+/// What became of a law that a user tried.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TriedReport {
+    /// Port and expression, in SI.
+    pub formula: String,
+    /// Its constants as fitted [SI].
+    pub parameters: BTreeMap<String, Estimate>,
+    /// Effects of the explanation that has it: itself, and what stands beside it.
+    pub effects: Vec<String>,
+    /// Whether that is the answer.
+    pub is_answer: bool,
+    /// Its odds against the answer given, as a power of ten [1].
+    pub log10_odds: f64,
+    /// Share of the mismatch that it explains [1]; none where there is none.
+    pub explained_share: Option<f64>,
+    /// Its largest departure from the recordings.
+    pub departure: Option<Departure>,
 }
 
 /// Noise of a channel.

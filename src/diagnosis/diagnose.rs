@@ -22,6 +22,7 @@ use super::remaining::Remaining;
 use super::ruled_out::ruled_out;
 use super::search::{RoughFit, Search};
 use super::settings::Settings;
+use super::tried::Tried;
 use super::unlisted::Shape;
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
 
@@ -73,6 +74,8 @@ pub fn diagnose(
             true => detectable(&search, best),
             false => Vec::new(),
         },
+        tried: (case.tried)
+            .and_then(|effect| Tried::of(effect, &case.believed, (&ranked, &evidence))),
         roughly,
         model_error,
         remaining,
@@ -113,11 +116,14 @@ fn found(
         .filter(|(remaining, _)| !remaining.is_noise());
     let Some((mut remaining, mut seed)) = remaining else {
         let search = search_of(case, &evidence, settings);
-        let (found, roughly, model_error) = search.run_with_rough(observer);
+        let (mut found, roughly, model_error) = search.run_with_rough(observer);
         let weighed = Search {
             model_error,
             ..search.clone()
         };
+        if let Some(effect) = case.tried {
+            weighed.add_tried(&mut found, effect, observer);
+        }
         return Found {
             ranked: rank(&weighed, found),
             roughly,

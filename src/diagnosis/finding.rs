@@ -18,6 +18,7 @@ use super::remaining::Remaining;
 use super::ruled_out::RuledOut;
 use super::search::RoughFit;
 use super::settings::Settings;
+use super::tried::Tried;
 use super::unlisted::Shape;
 use crate::plant::{Channel, PlantParameters};
 
@@ -87,6 +88,8 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
     /// Explanations, best first.
     pub ranked: Vec<Ranked>,
+    /// Law that a user tried.
+    pub tried: Option<Tried>,
     /// Effects that were looked at.
     pub looked_at: usize,
     /// Explanations that were fitted roughly on the way, the best first.

@@ -40,6 +40,8 @@ pub struct DiagnosisInput {
     pub candidates: Vec<&'static Effect>,
     /// Effects that a link of its own has shown.
     pub shown: Vec<EstablishedEffect>,
+    /// Law among the candidates that a user tries: whatever the search comes to, it is fitted in full.
+    pub tried: Option<&'static Effect>,
 }
 
 /// A number that is believed to lie within a relative tolerance of a value, any part of it being as likely: the normal distribution of that spread.

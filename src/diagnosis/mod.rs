@@ -44,5 +44,6 @@ pub mod settings;
 pub mod spectrum;
 #[cfg(test)]
 mod test_evidence;
+mod tried;
 pub mod unlisted;
 pub mod words;

@@ -18,6 +18,7 @@
 mod keys;
 mod own;
 mod schema;
+mod tried;
 mod value;
 mod written;
 
@@ -33,6 +34,7 @@ use keys::{JOINT, KeyTable, LISTED, NAME};
 pub(super) use keys::EffectKeys;
 
 pub(super) use schema::schema;
+pub use tried::{LineError, law_of_line};
 pub use written::{WrittenEffect, as_written};
 pub(super) use written::{append, remove_effects};
 

@@ -29,7 +29,7 @@ fn unlisted(term: &str) -> (Bench, Value) {
 }
 
 /// The improved rig file predicts what the diagnosis predicted.
-fn predicts_the_same(bench: &Bench) {
+pub(super) fn predicts_the_same(bench: &Bench) {
     let arguments = [
         "predict",
         "out/improved.toml",
@@ -105,7 +105,7 @@ fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
 }
 
 /// A damper that acts on the way out alone.
-const ONE_WAY: &str = "
+pub(super) const ONE_WAY: &str = "
 [[effect]]
 name = \"one_way\"
 acts_on = \"piston_force\"

@@ -102,7 +102,7 @@ fn one(
     {
         return Ok(Done { answer, kept: true });
     }
-    let finished = Prepared::new(case, cell, out, standing)?.run(&mut |_| ())?;
+    let finished = Prepared::new(case, (cell, None), out, standing)?.run(&mut |_| ())?;
     Ok(Done {
         answer: finished.answer,
         kept: false,

@@ -14,6 +14,7 @@ use crate::diagnosis::answer::Answer;
 use crate::diagnosis::details::DETAILS_SCHEMA;
 use crate::diagnosis::progress::Observer;
 use crate::diagnosis::settings::Settings;
+use crate::plant::LawText;
 use crate::recording::scene::Scene;
 use crate::replay::LoadedCell;
 
@@ -36,17 +37,20 @@ pub(super) fn complete(folder: &Path) -> Option<Answer> {
 }
 
 impl Prepared {
-    /// Reads rig and recordings, then makes the folder: bad input leaves nothing behind.
+    /// Reads rig and recordings and takes a law to be tried, then makes the folder: bad input leaves nothing behind.
     pub(super) fn new(
         folder: &Path,
-        cell: Option<&LoadedCell>,
+        (cell, tried): (Option<&LoadedCell>, Option<LawText>),
         out: &Path,
         standing: Standing,
     ) -> Result<Self, AppError> {
-        let case = match cell {
+        let mut case = match cell {
             Some(cell) => Case::of_cell(folder, cell)?,
             None => Case::from_folder(folder)?,
         };
+        if let Some(law) = tried {
+            case.try_law(law)?;
+        }
         if standing == Standing::Refuse && out.join(DIAGNOSIS).exists() {
             return Err(AppError::Diagnosed {
                 folder: out.display().to_string(),

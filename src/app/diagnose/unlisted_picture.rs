@@ -1,10 +1,12 @@
-//! unlisted.svg: a term without a name against its variable, with its 95 % band, and what the recordings say is needed there.
+//! unlisted.svg: a term without a name against its variable, with its 95 % band, what the recordings say is needed there, and the form that comes next.
 
 use super::super::error::AppError;
 use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::unlisted::words::{self, DisplayQuantity};
 use crate::diagnosis::unlisted::{Shape, ShapePoint};
+use crate::diagnosis::words::odds;
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+use crate::plant::Latent;
 
 /// Half widths beyond so many times what the term moves through are not drawn: nothing was recorded there [1].
 const UNKNOWN: f64 = 1.0;
@@ -14,7 +16,37 @@ pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError>
     let Some(shape) = &diagnosis.shape else {
         return Ok(None);
     };
-    Ok(Some(svg(&figure(shape))?))
+    let mut figure = figure(shape);
+    figure.panels[0].series.extend(next_form(diagnosis, shape));
+    Ok(Some(svg(&figure)?))
+}
+
+/// The form that comes next, where it is a formula at the same port over the same variable.
+fn next_form(diagnosis: &Diagnosis, shape: &Shape) -> Option<Series<'static>> {
+    let rival = diagnosis.ranked[1..].iter().find(|ranked| {
+        let same = |latent: &Latent| {
+            (latent.port, latent.variable) == (shape.latent.port, shape.latent.variable)
+        };
+        ranked.hypothesis.formula().is_some() && ranked.hypothesis.unlisted().is_some_and(same)
+    })?;
+    if shape.period.is_some() {
+        return None;
+    }
+    let latent = rival.hypothesis.unlisted()?;
+    let text = rival.hypothesis.formula()?.law.expression.text();
+    let (port, variable) = (words::port(latent.port), words::variable(latent.variable));
+    let places = || shape.curve.iter().map(|row| row.at);
+    Some(Series::new(
+        format!("next form, odds {}: {text}", odds(rival.odds.log10())),
+        places()
+            .map(|at| at * variable.factor)
+            .collect::<Vec<f64>>(),
+        places()
+            .map(|at| latent.shape(at) * port.factor)
+            .collect::<Vec<f64>>(),
+        Role::Command,
+        Stroke::Dashed,
+    ))
 }
 
 fn figure(shape: &Shape) -> Figure<'static> {

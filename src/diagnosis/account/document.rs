@@ -25,6 +25,8 @@ pub enum SectionKind {
     Missing,
     /// Errors that remain.
     Remaining,
+    /// A law that a user tried.
+    Tried,
     /// Explanations that were ruled out.
     RuledOut,
     /// Explanations that the recordings do not tell apart.
@@ -68,6 +70,7 @@ impl SectionKind {
             Self::Link => "Which link",
             Self::Missing => "What is missing",
             Self::Remaining => "What is left",
+            Self::Tried => "The law tried",
             Self::RuledOut => "What was ruled out",
             Self::Ambiguous => "What the recordings do not tell apart",
             Self::NextExperiment => "What to record next",

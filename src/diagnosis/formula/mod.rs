@@ -39,6 +39,8 @@ const MULTIPLIED: usize = 2;
 const IN_FULL: usize = 3;
 /// Rough cost over that of the best beyond which a formula is not fitted in full [1].
 const FAR: f64 = 1.15;
+/// Cost over that of noise alone from which a full fit stands in a minimum that no width leads out of [1].
+const HOPELESS: f64 = 2.0;
 /// Factor by which a width is tried wider [1].
 const WIDER: f64 = 8.0;
 /// Iterations of the full fit.
@@ -125,7 +127,10 @@ impl Search<'_> {
             .map(|h| self.refit(h, going_on(FULL, FULL_ITERATIONS)))
             .collect();
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        if let Some(best) = full.first_mut() {
+        let hopeless = HOPELESS * self.evidence.count() as f64;
+        if let Some(best) = full.first_mut()
+            && best.fit.cost() < hopeless
+        {
             self.widen(best, (FULL, FULL_ITERATIONS), Fit::cost);
         }
         for h in &full {

@@ -337,15 +337,7 @@ impl Search<'_> {
         observer: &mut Observer<'_>,
     ) {
         let Some(formula) = found.first() else { return };
-        let own = formula.unlisted().map_or(0, Latent::numbers);
-        let mut free = formula.fit.free_from_here();
-        free.truncate(free.len() - own);
-        let mut plant = formula.fit.prediction.plant.clone();
-        plant.latent = None;
-        let effects = formula.effects.clone();
-        let mut from = self.fitted(effects, (&plant, None), &free, ROUGH, Limit::of(0));
-        let at = &from.fit;
-        from.fit.columns = jacobian(self.evidence, &at.prediction, &free, &at.values, 0);
+        let from = self.where_its_term_was(formula);
         let most = self.settings.far_behind * self.left_alone(scale);
         let mut named = self.screen(&from, ROUGH, most);
         named.retain(|h| self.rough_score(h) < most);
@@ -357,6 +349,20 @@ impl Search<'_> {
         {
             found.insert(0, first);
         }
+    }
+
+    /// The known effects of a hypothesis with a term, where they are beside it, with the piston held and without the term.
+    pub(in crate::diagnosis) fn where_its_term_was(&self, formula: &Hypothesis) -> Hypothesis {
+        let own = formula.unlisted().map_or(0, Latent::numbers);
+        let mut free = formula.fit.free_from_here();
+        free.truncate(free.len() - own);
+        let mut plant = formula.fit.prediction.plant.clone();
+        plant.latent = None;
+        let effects = formula.effects.clone();
+        let mut from = self.fitted(effects, (&plant, None), &free, ROUGH, Limit::of(0));
+        let at = &from.fit;
+        from.fit.columns = jacobian(self.evidence, &at.prediction, &free, &at.values, 0);
+        from
     }
 
     /// A hypothesis without its term, fitted again from where it is.

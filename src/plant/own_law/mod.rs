@@ -127,6 +127,16 @@ impl LawText {
 
     /// Its value at a moment, in the unit of its port, of values of its constants, the first ones at least; nothing where it is not finite.
     pub fn value(&self, moment: &Moment, constants: &[f64]) -> f64 {
+        let found = self.expression.value(&self.named_values(moment, constants));
+        if found.is_finite() { found } else { 0.0 }
+    }
+
+    /// Values of all names of the expression: the variables, then the constants.
+    fn named_values(
+        &self,
+        moment: &Moment,
+        constants: &[f64],
+    ) -> [f64; SYMBOLS.len() + MOST_CONSTANTS] {
         let mut values = [0.0; SYMBOLS.len() + MOST_CONSTANTS];
         let (variables, others) = values.split_at_mut(SYMBOLS.len());
         for (value, symbol) in variables.iter_mut().zip(&SYMBOLS) {
@@ -135,15 +145,35 @@ impl LawText {
         for (index, (value, constant)) in others.iter_mut().zip(&self.constants).enumerate() {
             *value = constants.get(index).copied().unwrap_or(constant.value);
         }
-        let found = self.expression.value(&values);
-        if found.is_finite() { found } else { 0.0 }
+        values
     }
 
-    /// Checks units, and that it is finite wherever its variables may be: at the ends and the middle of each, and between.
+    /// Checks that it is finite at a moment, whatever its constants are within their ranges: as they are written, and each alone at its ends.
     ///
     /// # Errors
     /// The part that is not.
-    pub fn check(&self) -> Result<(), ExpressionError> {
+    pub fn check_at(&self, moment: &Moment) -> Result<(), ExpressionError> {
+        let written: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
+        let finite = |constants: &[f64]| {
+            let values = self.named_values(moment, constants);
+            self.expression.check_finite(&values)
+        };
+        finite(&written)?;
+        for (place, constant) in self.constants.iter().enumerate() {
+            for end in constant.range.into_iter().flatten() {
+                let mut constants = written.clone();
+                constants[place] = end;
+                finite(&constants)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks units.
+    ///
+    /// # Errors
+    /// The part whose unit is not that which stands beside it.
+    pub fn check_units(&self) -> Result<(), ExpressionError> {
         let known = SYMBOLS.iter().map(|symbol| Unit::read(symbol.unit).ok());
         let units: Vec<Option<Unit>> = known
             .chain(
@@ -153,7 +183,15 @@ impl LawText {
             )
             .collect();
         let expected = Unit::read(self.port.unit()).unwrap_or(Unit::ONE);
-        self.expression.check_units(&units, expected)?;
+        self.expression.check_units(&units, expected)
+    }
+
+    /// Checks units, and that it is finite wherever its variables may be: at the ends and the middle of each, and between.
+    ///
+    /// # Errors
+    /// The part that is not.
+    pub fn check(&self) -> Result<(), ExpressionError> {
+        self.check_units()?;
         let ranges: Vec<[f64; 2]> = (SYMBOLS.iter().map(|symbol| symbol.range))
             .chain(
                 self.constants

@@ -104,7 +104,7 @@ fn port(section: &Section<'_>, table: &KeyTable) -> Result<Port, ScenarioError> 
     found.ok_or_else(|| section.refuse(ACTS_ON, format!("{name:?}"), expected))
 }
 
-fn is_name(text: &str) -> bool {
+pub(super) fn is_name(text: &str) -> bool {
     let mut letters = text.chars();
     let first = letters
         .next()
