@@ -166,6 +166,19 @@ fn in_a_running_cell_a_law_does_what_the_effect_does_that_says_the_same() {
             effect("stroke_sensor_gain_error", "gain = 1.02"),
             1e-6,
         ),
+        (
+            law("supply_orifice", "-1.5e-6")
+                + &law("exhaust_orifice", "-1.2e-6").replace("mine", "its"),
+            effect("supply_restriction", "orifice_area_m2 = 1e-6")
+                + &effect("exhaust_restriction", "orifice_area_m2 = 0.8e-6"),
+            1e-6,
+        ),
+        (
+            law("contact_stiffness", "-1e5"),
+            effect("contact_stiffness_error", "stiffness_n_per_m = 5e4"),
+            // Rapier's own constraint, which carries the friction, keeps the stiffness of the file.
+            1e-3,
+        ),
     ] {
         let [own, listed] = [&by_law, &by_name].map(|effect| run(&bench, "scenario.toml", effect));
         let apart = difference(&own, &listed);

@@ -104,7 +104,10 @@ impl<C: Carrier> Surroundings<'_, C> {
                 feed = self.device.feed(
                     hose,
                     &flow.air,
-                    self.valve,
+                    (
+                        self.valve,
+                        self.device.supply_conductance(&self.disturbance),
+                    ),
                     outlet,
                     flow.motion,
                     (held, share),
@@ -157,12 +160,12 @@ impl Feed {
 }
 
 impl Device {
-    /// Solution of `feed = held + share * rates(feed)` at an outlet pressure of the regulator [Pa gauge].
+    /// Solution of `feed = held + share * rates(feed)` at an outlet pressure of the regulator [Pa gauge] through a valve's supply orifice.
     fn feed(
         &self,
         hose: &Hose,
         air: &AirState,
-        valve: ValvePosition,
+        (valve, supply_conductance): (ValvePosition, f64),
         outlet: f64,
         motion: PistonMotion,
         (held, share): (Feed, f64),
@@ -177,8 +180,7 @@ impl Device {
         let backward = (gas.temperature / self.temperature_of(air, fed)).sqrt();
         let on = |pressure: f64| {
             let FlowSlope { flow, slope } =
-                self.flow
-                    .flow_slope(self.valve.supply_conductance, pressure, after);
+                self.flow.flow_slope(supply_conductance, pressure, after);
             let factor = if pressure < after { backward } else { 1.0 };
             FlowSlope {
                 flow: factor * flow,

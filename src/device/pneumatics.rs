@@ -41,7 +41,7 @@ pub struct Device {
     pub(super) piston_rates: PistonRates,
     /// Rate at which a volume comes to the pressure beside it, times that volume [m3/s].
     chamber_rate_volume: f64,
-    /// The same of a leak, by its area [m/s].
+    /// The same of a further opening, by its area [m/s].
     leak_rate: f64,
     /// Longest sub-step that a line, with the reservoir before it, is taken in [s].
     pub(super) line_substep: f64,
@@ -342,14 +342,10 @@ impl Device {
             Some(hose) => gas.pressure(air.hose_mass, hose.last_volume()),
         };
         let mut flows = [0.0; 2];
-        flows[supplied] =
-            self.flow
-                .mass_flow(self.valve.supply_conductance, before, pressures[supplied]);
-        flows[vented] = self.flow.mass_flow(
-            self.valve.exhaust_conductance,
-            gas.atmosphere,
-            pressures[vented],
-        );
+        let supply = self.supply_conductance(disturbance);
+        let exhaust = self.exhaust_conductance(disturbance);
+        flows[supplied] = (self.flow).mass_flow(supply, before, pressures[supplied]);
+        flows[vented] = (self.flow).mass_flow(exhaust, gas.atmosphere, pressures[vented]);
         let disturbance_flows = disturbance.mass_flows;
         let leaks = if parameters.leakage.is_none() && disturbance.leaks == [0.0; 2] {
             LeakFlows::default()
@@ -430,6 +426,18 @@ impl Device {
         }
     }
 
+    /// Conductance of the supply orifice with what is added to it [m2]: nothing flows through one of less than no area.
+    pub(super) fn supply_conductance(&self, disturbance: &Disturbance) -> f64 {
+        let added = self.parameters.discharge_coefficient * disturbance.orifices[0];
+        (self.valve.supply_conductance + added).max(0.0)
+    }
+
+    /// The same of the exhaust orifice [m2].
+    fn exhaust_conductance(&self, disturbance: &Disturbance) -> f64 {
+        let added = self.parameters.discharge_coefficient * disturbance.orifices[1];
+        (self.valve.exhaust_conductance + added).max(0.0)
+    }
+
     /// The smaller volume of each chamber at both ends of a step [m3], if the piston keeps its speed.
     pub(super) fn smallest_volumes(&self, motion: PistonMotion, dt: f64) -> [f64; 2] {
         let end = motion.stroke + motion.speed * dt;
@@ -458,8 +466,9 @@ impl Device {
                 conductance / (gas.mass(gas.atmosphere, smallest) * gas.specific_heat_volume())
             }
         };
-        let leaks = self.leak_rate * disturbance.leaks.iter().sum::<f64>();
-        (self.chamber_rate_volume + leaks) / smallest + self.reservoir_rate + wall
+        let [supply, exhaust] = disturbance.orifices;
+        let added = disturbance.leaks.iter().sum::<f64>() + supply.max(exhaust).max(0.0);
+        (self.chamber_rate_volume + self.leak_rate * added) / smallest + self.reservoir_rate + wall
     }
 }
 

@@ -37,6 +37,8 @@ pub struct Disturbance {
     pub mass_flows: [f64; 2],
     /// Area of a leak from chambers 1 and 2 to the atmosphere, beside that of the parameters [m2].
     pub leaks: [f64; 2],
+    /// Area added to the valve's supply and exhaust orifices [m2].
+    pub orifices: [f64; 2],
     /// Dry friction beside that of the parameters [N], which must be dry ([`crate::physics::seal_friction::SealFriction::pressed`]).
     pub friction: f64,
 }

@@ -85,6 +85,11 @@ const TERMS: &[Entry] = &[
     ]),
     (Port::FirstChamberLeak, 1e-6, &[(Variable::Time, false), (Variable::Stroke, false), (Variable::ChamberPressure, false)]),
     (Port::SecondChamberLeak, 1e-6, &[(Variable::Time, false), (Variable::Stroke, false), (Variable::PressureDifference, false)]),
+    (Port::SupplyOrifice, 1e-6, &[(Variable::Time, false), (Variable::Stroke, false), (Variable::ChamberPressure, false)]),
+    (Port::ExhaustOrifice, 1e-6, &[(Variable::Time, false), (Variable::Stroke, false), (Variable::PressureDifference, false)]),
+    (Port::ContactStiffness, 5e4, &[
+        (Variable::Time, false), (Variable::ContactForce, false), (Variable::Surface, false),
+    ]),
     (Port::Surface, 1e-4, &[
         (Variable::Time, false), (Variable::Surface, false), (Variable::Stroke, false), (Variable::ContactForce, false),
         (Variable::Velocity, false),
@@ -208,7 +213,9 @@ fn terms(evidence: &Evidence, base: &Prediction) -> Vec<Latent> {
             Port::FirstChamberFlow
             | Port::SecondChamberFlow
             | Port::FirstChamberLeak
-            | Port::SecondChamberLeak => continue,
+            | Port::SecondChamberLeak
+            | Port::SupplyOrifice
+            | Port::ExhaustOrifice => continue,
             _ => 2,
         };
         for frequency in spectrum::strongest_in(evidence, base, channel)

@@ -80,8 +80,10 @@ fn subsystem(port: Port) -> Subsystem {
         Port::FirstChamberFlow
         | Port::SecondChamberFlow
         | Port::FirstChamberLeak
-        | Port::SecondChamberLeak => Subsystem::Chambers,
-        Port::Surface => Subsystem::Contact,
+        | Port::SecondChamberLeak
+        | Port::SupplyOrifice
+        | Port::ExhaustOrifice => Subsystem::Chambers,
+        Port::Surface | Port::ContactStiffness => Subsystem::Contact,
         Port::ForceReading | Port::StrokeReading | Port::PressureReading => Subsystem::Sensors,
     }
 }

@@ -4,7 +4,7 @@
 //! M dv/dt = F_device + M g_a - c F_contact,   c the share of the contact's direction that lies along the stroke
 //! ```
 
-use super::contact::ContactParameters;
+use super::contact::StepContact;
 use super::contact_friction::AxialFriction;
 use super::joint_deflections::DeflectedContact;
 use super::terms::ForceTerms;
@@ -16,7 +16,7 @@ const HELD_SWING: f64 = 0.6;
 /// Weight and contact over one step, in which the robot's surface follows a cubic.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ReplayCarrier<'a> {
-    pub contact: &'a ContactParameters,
+    pub contact: StepContact<'a>,
     /// Whether there is a workpiece.
     pub present: bool,
     /// Weight along extension and its rate [N], [N/s].
@@ -100,6 +100,14 @@ impl ReplayCarrier<'_> {
     /// Weight along extension [N].
     pub fn weight_at(&self, time: f64) -> f64 {
         self.weight[0] + time * self.weight[1]
+    }
+
+    /// Adds to the stiffness of the contact [N/m] for a moving mass [kg].
+    pub fn stiffen(&mut self, added: f64, mass: f64) {
+        self.contact.added_stiffness = added;
+        if self.present && added != 0.0 {
+            self.rate = self.contact.rate(mass);
+        }
     }
 
     /// The further forces [N].

@@ -41,7 +41,7 @@ pub use arm_trajectory::{
 };
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS, Relief};
 pub use chain::{Chain, LinkParameters};
-pub use contact::{ContactLaw, ContactParameters, PHASES, Periodic};
+pub use contact::{ContactLaw, ContactParameters, PHASES, Periodic, StepContact};
 pub use initial_state::{HeldMotion, InitialState};
 pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Formula, Latent, MOST_COEFFICIENTS};

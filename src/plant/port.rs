@@ -19,8 +19,14 @@ pub enum Port {
     FirstChamberLeak,
     /// The same from chamber 2 [m2].
     SecondChamberLeak,
+    /// Area added to the valve's supply orifice [m2].
+    SupplyOrifice,
+    /// Area added to its exhaust orifice [m2].
+    ExhaustOrifice,
     /// A displacement of the surface along extension [m].
     Surface,
+    /// Added to the stiffness of the contact [N/m].
+    ContactStiffness,
     /// Added to the load cell's reading [N].
     ForceReading,
     /// Added to the position sensor's reading [m].
@@ -31,7 +37,7 @@ pub enum Port {
 
 impl Port {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::PistonForce,
         Self::Friction,
         Self::SetPressure,
@@ -40,7 +46,10 @@ impl Port {
         Self::SecondChamberFlow,
         Self::FirstChamberLeak,
         Self::SecondChamberLeak,
+        Self::SupplyOrifice,
+        Self::ExhaustOrifice,
         Self::Surface,
+        Self::ContactStiffness,
         Self::ForceReading,
         Self::StrokeReading,
         Self::PressureReading,
@@ -73,7 +82,10 @@ impl Port {
             Self::SecondChamberFlow => "second_chamber_flow",
             Self::FirstChamberLeak => "first_chamber_leak",
             Self::SecondChamberLeak => "second_chamber_leak",
+            Self::SupplyOrifice => "supply_orifice",
+            Self::ExhaustOrifice => "exhaust_orifice",
             Self::Surface => "surface",
+            Self::ContactStiffness => "contact_stiffness",
             Self::ForceReading => "force_reading",
             Self::StrokeReading => "stroke_reading",
             Self::PressureReading => "pressure_reading",
@@ -85,7 +97,11 @@ impl Port {
         match self {
             Self::PistonForce | Self::Friction | Self::ForceReading => "n",
             Self::SetPressure | Self::OutletPressure | Self::PressureReading => "pa",
-            Self::FirstChamberLeak | Self::SecondChamberLeak => "m2",
+            Self::FirstChamberLeak
+            | Self::SecondChamberLeak
+            | Self::SupplyOrifice
+            | Self::ExhaustOrifice => "m2",
+            Self::ContactStiffness => "n_per_m",
             Self::FirstChamberFlow | Self::SecondChamberFlow => "kg_per_s",
             Self::Surface | Self::StrokeReading => "m",
         }
@@ -96,7 +112,11 @@ impl Port {
         match self {
             Self::PistonForce | Self::Friction | Self::ForceReading => "N",
             Self::SetPressure | Self::OutletPressure | Self::PressureReading => "Pa",
-            Self::FirstChamberLeak | Self::SecondChamberLeak => "m^2",
+            Self::FirstChamberLeak
+            | Self::SecondChamberLeak
+            | Self::SupplyOrifice
+            | Self::ExhaustOrifice => "m^2",
+            Self::ContactStiffness => "N/m",
             Self::FirstChamberFlow | Self::SecondChamberFlow => "kg/s",
             Self::Surface | Self::StrokeReading => "m",
         }
@@ -110,8 +130,10 @@ impl Port {
             Self::FirstChamberFlow
             | Self::SecondChamberFlow
             | Self::FirstChamberLeak
-            | Self::SecondChamberLeak => "chambers",
-            Self::Surface => "contact",
+            | Self::SecondChamberLeak
+            | Self::SupplyOrifice
+            | Self::ExhaustOrifice => "chambers",
+            Self::Surface | Self::ContactStiffness => "contact",
             Self::ForceReading | Self::StrokeReading | Self::PressureReading => "sensors",
         }
     }

@@ -3,6 +3,7 @@
 use super::arm_trajectory::ContactKinematics;
 use super::carrier::{Hold, ReplayCarrier, hermite};
 use super::chain;
+use super::contact::StepContact;
 use super::contact_friction::{AxialFriction, ContactFriction};
 use super::initial_state::{HeldMotion, InitialState};
 use super::inputs::PlantInputs;
@@ -148,7 +149,7 @@ pub fn true_trajectory(
         let next = if last { i } else { i + 1 };
         let present = surface[i].is_finite() && surface[next].is_finite();
         let mut carrier = ReplayCarrier {
-            contact: &law,
+            contact: StepContact::plain(&law),
             present,
             weight: [pull(i), (pull(next) - pull(i)) / h],
             share: 1.0,
@@ -221,6 +222,7 @@ pub fn true_trajectory(
                 contact_force: carrier.contact_force(0.0, motion),
             };
             carrier.surface[0] += plant.term(Port::Surface, &moment.ahead(0.5 * h));
+            carrier.stiffen(plant.term(Port::ContactStiffness, &moment), mass);
             state.disturbance = plant.disturbance(&moment, h);
             carrier.terms = ForceTerms::over(plant, &moment);
         }

@@ -68,6 +68,8 @@ impl PlantParameters {
             // Nothing flows through an opening of less than no area.
             leaks: [Port::FirstChamberLeak, Port::SecondChamberLeak]
                 .map(|port| self.term(port, &middle).max(0.0)),
+            orifices: [Port::SupplyOrifice, Port::ExhaustOrifice]
+                .map(|port| self.term(port, &middle)),
             friction: self.term(Port::Friction, &middle),
         }
     }

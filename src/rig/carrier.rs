@@ -8,7 +8,7 @@
 //! Source paper, eq. (1), whose sign of g is that of a device that extends upwards.
 
 use crate::device::{Carrier, PistonMotion};
-use crate::plant::{ContactParameters, ForceTerms, Moment, PlantParameters, Port};
+use crate::plant::{ForceTerms, Moment, PlantParameters, Port, StepContact};
 use crate::scenario::bench::{BenchScenario, LoadScenario};
 
 /// Load and other forces over one step, during which the surface's and the hand's trajectories are taken as parabolas.
@@ -16,7 +16,7 @@ use crate::scenario::bench::{BenchScenario, LoadScenario};
 pub struct BenchCarrier<'a> {
     mass: f64,
     weight: f64,
-    contact: Option<ContactParameters>,
+    contact: Option<StepContact<'a>>,
     /// Start of the step [s].
     start: f64,
     /// The surface: position [m], speed [m/s], acceleration [m/s2] at the start of the step.
@@ -47,9 +47,9 @@ fn parabola(trajectory: [f64; 3], time: f64) -> f64 {
 
 impl<'a> BenchCarrier<'a> {
     /// Loads on the piston from `time` [s] on.
-    pub fn at(scenario: &BenchScenario, time: f64) -> Self {
+    pub fn at(scenario: &'a BenchScenario, time: f64) -> Self {
         let mass = scenario.device.parameters.moving_mass;
-        let (contact, surface) = match scenario.load {
+        let (contact, surface) = match &scenario.load {
             LoadScenario::Free => (None, [f64::INFINITY, 0.0, 0.0]),
             LoadScenario::Contact {
                 position,
@@ -59,6 +59,7 @@ impl<'a> BenchCarrier<'a> {
                 let moved = motion.map_or([0.0; 3], |m| {
                     swing(m.peak_to_peak, m.frequency, m.start, time)
                 });
+                let contact = StepContact::plain(contact);
                 (Some(contact), [position - moved[0], -moved[1], -moved[2]])
             }
         };
@@ -80,6 +81,9 @@ impl<'a> BenchCarrier<'a> {
     #[must_use]
     pub fn with_terms(mut self, plant: &'a PlantParameters, moment: Moment, step: f64) -> Self {
         self.surface[0] += plant.term(Port::Surface, &moment.ahead(0.5 * step));
+        if let Some(contact) = &mut self.contact {
+            contact.added_stiffness = plant.term(Port::ContactStiffness, &moment);
+        }
         self.terms = ForceTerms::over(plant, &moment);
         self
     }
@@ -102,7 +106,7 @@ impl<'a> BenchCarrier<'a> {
 
     fn penetration(
         &self,
-        contact: &ContactParameters,
+        contact: &StepContact<'_>,
         time: f64,
         motion: PistonMotion,
     ) -> (f64, f64) {

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::contact::Touch;
 use crate::device::{Carrier, Device, DeviceState, PistonMotion};
-use crate::plant::{ContactParameters, ForceTerms};
+use crate::plant::{ForceTerms, StepContact};
 
 /// Share of its motion below which a slide says nothing of the force at a touch beside it [1].
 const LEAST_SHARE: f64 = 1e-6;
@@ -21,7 +21,7 @@ const LEAST_SHARE: f64 = 1e-6;
 #[derive(Debug, Clone, Copy)]
 pub struct SlideCarrier<'a> {
     /// Law between tool and part.
-    pub contact: &'a ContactParameters,
+    pub contact: StepContact<'a>,
     /// Where the ball touches at the start of the step.
     pub touches: &'a [Touch],
     /// Time then [s].

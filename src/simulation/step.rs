@@ -23,7 +23,7 @@ use crate::control::servo::{AxisCommand, Servo, ServoParameters};
 use crate::control::transmission::Motor;
 use crate::device::{DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
-use crate::plant::{ForceTerms, Moment, Port, RunningSensors, SensorReadings};
+use crate::plant::{ForceTerms, Moment, Port, RunningSensors, SensorReadings, StepContact};
 use crate::recording::schema::JointSignal;
 use crate::sensing::noise::{Noise, Stream};
 use crate::sensing::{Readings, SensorChain, Truth};
@@ -273,7 +273,7 @@ impl<'a> Simulation<'a> {
     /// Loads on the slide from now on, at a time [s].
     fn carrier(&self, time: f64) -> SlideCarrier<'_> {
         let mass = self.cell.device.parameters().moving_mass;
-        let contact = &self.cell.plant.contact;
+        let contact = StepContact::plain(&self.cell.plant.contact);
         SlideCarrier {
             contact,
             touches: &self.touches,
@@ -292,6 +292,8 @@ impl<'a> Simulation<'a> {
         if plant.has_terms() {
             let moment = self.moment(&carrier);
             carrier.beyond = plant.term(Port::Surface, &moment.ahead(0.5 * step));
+            carrier.contact.added_stiffness = plant.term(Port::ContactStiffness, &moment);
+            carrier.rate = (carrier.contact).rate(self.cell.device.parameters().moving_mass);
             carrier.terms = ForceTerms::over(plant, &moment);
         }
         carrier

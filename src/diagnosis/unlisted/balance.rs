@@ -72,7 +72,10 @@ pub fn needed(
         | Port::SecondChamberFlow
         | Port::FirstChamberLeak
         | Port::SecondChamberLeak
-        | Port::Surface => return Vec::new(),
+        | Port::SupplyOrifice
+        | Port::ExhaustOrifice
+        | Port::Surface
+        | Port::ContactStiffness => return Vec::new(),
     };
     let mut plant = hypothesis.fit.prediction.plant.clone();
     plant.latent = None;

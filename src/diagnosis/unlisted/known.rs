@@ -4,9 +4,9 @@
 use super::form::Form::{self, Even, Localised, Monotonic, Odd, Periodic};
 use crate::plant::Latent;
 use crate::plant::Port::{
-    FirstChamberFlow, FirstChamberLeak, ForceReading, Friction, OutletPressure, PistonForce,
-    PressureReading, SecondChamberFlow, SecondChamberLeak, SetPressure as AtSetPressure,
-    StrokeReading, Surface as AtSurface,
+    ContactStiffness, ExhaustOrifice, FirstChamberFlow, FirstChamberLeak, ForceReading, Friction,
+    OutletPressure, PistonForce, PressureReading, SecondChamberFlow, SecondChamberLeak,
+    SetPressure as AtSetPressure, StrokeReading, SupplyOrifice, Surface as AtSurface,
 };
 use crate::plant::Variable::{
     ChamberPressure, ContactForce, MassFlow, PressureDifference, SetPressure, Stroke, Surface,
@@ -62,6 +62,13 @@ fn words(latent: &Latent, form: Form) -> (&'static str, &'static str) {
         (FirstChamberFlow | SecondChamberFlow | FirstChamberLeak | SecondChamberLeak, Velocity, _, _) => ("a seal that leaks while it moves, a quick exhaust valve that opens", "compare slow and fast strokes at the same pressure"),
         (FirstChamberLeak | SecondChamberLeak, _, _, _) => ("an opening to the atmosphere that changes: a seal that wears while it runs, a fitting that works loose", "hold the piston under pressure and time how it falls, before and after a run"),
         (FirstChamberFlow | SecondChamberFlow, _, _, _) => ("a valve that does not close, a line shared with another consumer", "record with the other consumers shut off"),
+        (SupplyOrifice, Time, _, _) => ("a supply that narrows or opens while it runs: a filter that clogs, ice, a flow control that creeps", "time how fast the device extends at the start and at the end of a run"),
+        (SupplyOrifice, _, _, _) => ("a way to the chamber that is not equally wide: a hose that kinks with the stroke, a valve that opens with the pressure", "time how fast the device extends from several strokes at several pressures"),
+        (ExhaustOrifice, Time, _, _) => ("an exhaust that narrows or opens while it runs: a silencer that clogs or ices up", "record with the silencer off"),
+        (ExhaustOrifice, _, _, _) => ("an exhaust that is not equally wide: a port that the piston covers, a quick exhaust valve that opens", "time how fast the device retracts from several strokes, with the silencer off"),
+        (ContactStiffness, Time, _, _) => ("a contact that softens or stiffens while it runs: a tool that wears, a fixture that works loose", "tap the part with the tool before and after a run"),
+        (ContactStiffness, ContactForce, _, _) => ("a contact that is not linear: a fixture that gives way at a load, play that closes", "press at several forces and measure with a dial gauge what moves"),
+        (ContactStiffness, _, _, _) => ("a part or a fixture that is stiffer at one place than at another", "press at several places along the edge and measure with a dial gauge what moves"),
         (AtSurface, Time, _, Periodic) => ("a workpiece or a robot that vibrates, a tool that is not round", "record on a rigid block, and with the spindle off"),
         (AtSurface, Time, _, _) => ("a workpiece that shifts or warms up, a robot that settles", "measure the surface with a dial gauge before and after"),
         (AtSurface, Surface, _, _) => ("a robot whose way along the axis is not what it says: gear error, another scale, backlash", "measure the robot's way against a dial gauge"),
