@@ -8,7 +8,7 @@ use idc_cell::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
 use idc_cell::control::law::JointLaw;
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::seal_friction::SealFriction;
-use idc_cell::plant::{ContactLaw, ContactParameters, ForceTerms, Periodic, Relief};
+use idc_cell::plant::{ContactLaw, ContactParameters, ForceTerms, Periodic, Relief, StepContact};
 use idc_cell::simulation::contact::{ContactReading, Touch};
 use idc_cell::simulation::slide::{self, SlideCarrier};
 use idc_cell::simulation::world::{ToolBall, World, WorldDescription};
@@ -126,7 +126,7 @@ impl Press {
         let carrier = SlideCarrier {
             beyond: 0.0,
             terms: ForceTerms::default(),
-            contact: &self.contact,
+            contact: StepContact::plain(&self.contact),
             touches: &self.touches,
             start: self.time,
             stroke,
@@ -160,7 +160,7 @@ impl Press {
         let carrier = SlideCarrier {
             beyond: 0.0,
             terms: ForceTerms::default(),
-            contact: &self.contact,
+            contact: StepContact::plain(&self.contact),
             touches: &self.touches,
             start: self.time,
             stroke: motion.stroke,

@@ -23,10 +23,12 @@ use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, Port, Quantity, Variable, r
 use rayon::prelude::*;
 
 /// Coefficients of a curve in its first step.
-const COARSE: usize = 13;
+const COARSE: usize = 9;
 /// Cost beyond noise over that of the best after the first step beyond which a term gets no second look [1]: where the piston meets a stop a term over the
 /// stroke needs more than one step.
 const FAR: f64 = 12.0;
+/// The same beyond which a term gets none where those nearer come to leave noise alone [1].
+const NEAR: f64 = 3.0;
 /// Terms that get a second look.
 const LOOKED_AT: usize = 8;
 /// Iterations of that look.
@@ -332,11 +334,11 @@ impl Search<'_> {
         let base = &self.held(base);
         let noise = self.left_alone(scale);
         let limit = noise + PROMISING * (rival - noise).max(0.0);
-        let mut promising = self.promising(base, limit, observer);
+        let mut promising = self.promising(base, limit, scale, observer);
         if promising.first().is_some_and(|best| best.fit.rough > noise) {
             self.converge(&mut promising, observer);
         }
-        let mut found = self.formulas(base, &promising, noise, observer);
+        let mut found = self.formulas(base, &promising, scale, observer);
         found.retain(|h| scale.is_adequate(h) && self.term_shows(h));
         self.name_variables(base, &mut found, &promising);
         self.put_named_first(&mut found, scale, observer);
@@ -353,9 +355,9 @@ impl Search<'_> {
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let base = &self.held(base);
-        let promising = self.promising(base, HOPELESS * rival, observer);
+        let promising = self.promising(base, HOPELESS * rival, scale, observer);
         let curves = self.curves(base, &promising, observer);
-        let mut found = self.formulas(base, &curves, self.left_alone(scale), observer);
+        let mut found = self.formulas(base, &curves, scale, observer);
         let full = curves.iter().take(IN_FULL);
         found.extend(full.map(|h| self.refit(h, curve(FULL, FULL_ITERATIONS))));
         found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
@@ -378,6 +380,7 @@ impl Search<'_> {
         &self,
         base: &Hypothesis,
         limit: f64,
+        scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let noise = rough_noise(self.evidence);
@@ -396,19 +399,15 @@ impl Search<'_> {
             );
             observer(&Step::Variation.of(best, detail));
         }
-        let near = ranked.first().map_or(0.0, |best| FAR * left(best));
-        ranked.retain(|h| left(h) <= near);
+        let best = ranked.first().map_or(0.0, left);
+        ranked.retain(|h| left(h) <= FAR * best);
         ranked.truncate(LOOKED_AT);
-        ranked = ranked
-            .par_iter()
-            .map(|coarse| {
-                let fine = coarse.unlisted().and_then(refined);
-                match fine {
-                    Some(fine) => self.with_latent(base, &fine, &[], LOOK),
-                    None => self.refit(coarse, curve(ROUGH, LOOK)),
-                }
-            })
-            .collect();
+        let nearer = ranked.partition_point(|h| left(h) <= NEAR * best);
+        let farther = ranked.split_off(nearer);
+        ranked = self.looked_at(base, &ranked);
+        if ranked.iter().all(|h| h.fit.rough > self.left_alone(scale)) {
+            ranked.extend(self.looked_at(base, &farther));
+        }
         self.sort_by_cost(&mut ranked);
         for h in &ranked {
             let detail = format!("{} promises {:.0}", described(h), self.latent_score(h));
@@ -416,6 +415,15 @@ impl Search<'_> {
         }
         ranked.retain(|h| h.fit.rough < limit);
         ranked
+    }
+
+    /// A second look at coarse curves, with as many knots as there may be.
+    fn looked_at(&self, base: &Hypothesis, coarse: &[Hypothesis]) -> Vec<Hypothesis> {
+        let look = |coarse: &Hypothesis| match coarse.unlisted().and_then(refined) {
+            Some(fine) => self.with_latent(base, &fine, &[], LOOK),
+            None => self.refit(coarse, curve(ROUGH, LOOK)),
+        };
+        coarse.par_iter().map(look).collect()
     }
 
     /// Goes on with the leading curves: what acts at one place of the stroke takes more steps than what acts all along it.

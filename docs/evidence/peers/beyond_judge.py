@@ -3,7 +3,8 @@
 The rule for a law of a peer, where something acts in the balance of forces:
     form right      no variable but the truth's carries more than SHARE of the law's variance, each of the truth's carries at least half of what
                     it carries in the true force, and the law's squared correlation with that force is at least ALIKE; all this over the samples
-                    that the law was fitted to
+                    that the law was fitted to. "With others beside it": the same, but for other variables that carry more; on these samples they
+                    cancel, or the correlation would not be there
     numbers right   the truth's form, fitted to the law by least squares beside a constant, has each of its numbers within NUMBER of the true one
 An answer of ours is judged as score.py does: effects, links and variables right; its numbers are compared one by one, by OURS.
 """
@@ -24,8 +25,7 @@ def ramp(x, at, width):
     return np.clip((x - at) / width + 0.5, 0.0, 1.0)
 
 
-# Truths that are forces on the piston: variables, numbers as (name, unit, its text in the formula or key of the parameters), law(z, numbers).
-# Judging alone reads them.
+# Truths that are forces on the piston: variables, numbers as (unit, its text in the formula or key of the parameters), law(z, numbers).
 IN_BALANCE = {
     "friction_grows_outwards": (
         {"stroke_m", "velocity"}, {"f": ("N", r"f = ([\d.]+)")}, lambda z, n, c=1.5: -(c + n["f"] * z["x"]) * z["dir"],
@@ -83,7 +83,7 @@ def judged_law(law, lacks, true):
 OURS = {
     "friction_grows_outwards": {r"f = ([\d.]+)": ("gain", 0.05)},
     "snag": {r"f = ([\d.]+)": ("height", -1), r"([\d.]+) m <": ("from", 1), r"stroke < ([\d.]+)": ("to", 1)},
-    "drag_of_extension": {r"c = ([\d.]+)": ("gain", 1)},
+    "drag_of_extension": {r"c = ([\d.]+)": ("gain", -1)},
     "stroke_bends": {r"a = ([\d.e-]+)": ("height", 1)},
     "outlet_jumps": {r"a = ([\d.]+)": ("height", 1), r"t0 = ([\d.]+)": ("threshold", 1)},
     "part_warms": {r"r = ([\d.e-]+)": ("gain", 1)},
@@ -128,14 +128,21 @@ def worst(row):
     return f"{row['worst_p90']:.3g} ({channel.split('_')[0]})"
 
 
-def peer_cell(row, in_balance, true_numbers):
-    law = row["law_n"] if len(row["law_n"]) <= 130 else row["law_n"][:127] + "..."
+def peer_cell(row, true, true_numbers):
+    law = re.sub(r"\*1(?= |$)", "", row["law_n"]).replace("+ -", "- ")
+    law = law if len(law) <= 130 else law[:127] + "..."
     factors = "".join(f"; {name} orifice times {factor:.3g}" if name != "dead" else f"; dead volume times {factor:.3g}" for name, factor in row["factors"].items())
-    if not in_balance:
+    if true is None:
         return f"`{law}`{factors}: not in the balance"
-    verdict = "form **right**" if row["form_right"] else f"form not right (rests on {', '.join(row['rests_on']) or 'nothing'}; alike {row['alike']:.2f})"
+    others = [variable for variable in row["rests_on"] if variable not in IN_BALANCE[true][0]]
+    if row["form_right"]:
+        verdict = "form **right**"
+    elif row["alike"] >= ALIKE and not row["lacks"]:
+        verdict = f"form **right, with others beside it** ({', '.join(others)})"
+    else:
+        verdict = f"form not right (alike {row['alike']:.2f}; rests on {', '.join(row['rests_on']) or 'nothing'})"
     numbers = ", ".join(f"{name} {value:.4g} for {true_numbers[name]:.4g}" for name, value in row["numbers"].items())
-    return f"`{law}`{factors}: {verdict}" + (f"; numbers {'right' if row['numbers_right'] else 'not right'}: {numbers}" if row["form_right"] else "")
+    return f"`{law}`{factors}: {verdict}" + (f"; numbers {'right' if row['numbers_right'] else 'not right'}: {numbers}" if row["alike"] >= ALIKE else "")
 
 
 def our_cell(row):
@@ -155,6 +162,6 @@ def table(concealed, results):
         said = "; ".join(e.get("formula") or e["truth"] + ": " + ", ".join(f"{k} = {v:.4g}" for k, v in e["parameters"].items()) for e in effects)
         cells = [f"{case}: {said}", worst(row["without"]) + (f", *{worst(row['with_true_term'])}*" if in_balance else "")]
         for peer in ("pysindy", "gplearn"):
-            cells += [peer_cell(row[peer], in_balance, row.get("true_numbers")), worst(row[peer]), f"{seconds[case][peer]['cpu_s']:.0f}"]
+            cells += [peer_cell(row[peer], row.get("acts_in_balance"), row.get("true_numbers")), worst(row[peer]), f"{seconds[case][peer]['cpu_s']:.0f}"]
         cells += [our_cell(row["ours"]), worst(row["ours"]), f"{seconds[case]['ours']['wall_s']:.0f}"] if "ours" in row else ["", "", ""]
         yield "| " + " | ".join(cells) + " |"

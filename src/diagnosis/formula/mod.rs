@@ -20,6 +20,7 @@ use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start, fit};
 use super::free::Free;
 use super::hypothesis::Hypothesis;
 use super::progress::{Observer, Step};
+use super::scale::Scale;
 use super::search::Search;
 use crate::effects::Coordinate;
 use crate::plant::{Basis, Latent, Moment, Port, Variable};
@@ -27,6 +28,8 @@ use crate::plant::{Basis, Latent, Moment, Port, Variable};
 /// Formulas that are fitted roughly, of those that promise most, and of one curve at most.
 const FITTED: usize = 12;
 const OF_ONE_CURVE: usize = 4;
+/// Cost over the least that is promised from which a formula is not fitted [1]: promises are wrong by half where a law is bent.
+const UNPROMISING: f64 = 3.0;
 /// Polynomials among those of one curve, at least.
 const POLYNOMIALS: usize = 2;
 /// Iterations of that.
@@ -64,15 +67,15 @@ fn going_on(stages: &[Stage], iterations: usize) -> Refit<'_> {
 }
 
 impl Search<'_> {
-    /// Formulas that do what curves point at, fitted in full, the best first; `base` is what the curves stand beside, `noise` the rough cost below which nothing
-    /// is left to be explained.
+    /// Formulas that do what curves point at, fitted in full, the best first; `base` is what the curves stand beside.
     pub(super) fn formulas(
         &self,
         base: &Hypothesis,
         curves: &[Hypothesis],
-        noise: f64,
+        scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
+        let noise = self.left_alone(scale);
         let mut promising: Vec<(f64, &Hypothesis, Candidate)> = Vec::new();
         for curve in curves {
             let mut own = self.matches(curve);
@@ -90,6 +93,8 @@ impl Search<'_> {
         }
         promising.sort_by(|a, b| a.0.total_cmp(&b.0));
         promising.truncate(FITTED);
+        let least = promising.first().map_or(0.0, |(promised, ..)| *promised);
+        promising.retain(|(promised, ..)| *promised <= UNPROMISING * least);
         let mut fitted: Vec<Hypothesis> = promising
             .par_iter()
             .map(|(_, curve, candidate)| {
@@ -108,7 +113,8 @@ impl Search<'_> {
             observer(&Step::Variation.of(hypothesis, detail));
         }
         self.sort_by_cost(&mut fitted);
-        for leading in fitted.iter_mut().take(IN_FULL) {
+        let unexplained = |h: &&mut Hypothesis| h.fit.rough > noise;
+        for leading in fitted.iter_mut().take(IN_FULL).filter(unexplained) {
             self.widen(leading, (ROUGH, ROUGH_ITERATIONS), |fit| fit.rough);
         }
         self.sort_by_cost(&mut fitted);
@@ -120,16 +126,17 @@ impl Search<'_> {
         };
         // One that jumps may score below noise where the piston is held, and fail in full.
         let near = FAR * self.latent_score(best).max(noise);
-        let mut full: Vec<Hypothesis> = fitted
-            .iter()
-            .take(IN_FULL)
-            .filter(|h| self.latent_score(h) < near)
-            .map(|h| self.refit(h, going_on(FULL, FULL_ITERATIONS)))
-            .collect();
+        let mut full: Vec<Hypothesis> = Vec::new();
+        for h in fitted.iter().take(IN_FULL) {
+            if self.latent_score(h) < near {
+                full.push(self.formula_in_full(h, &full));
+            }
+        }
         full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         let hopeless = HOPELESS * self.evidence.count() as f64;
         if let Some(best) = full.first_mut()
             && best.fit.cost() < hopeless
+            && !scale.is_adequate(best)
         {
             self.widen(best, (FULL, FULL_ITERATIONS), Fit::cost);
         }
@@ -138,6 +145,17 @@ impl Search<'_> {
             observer(&Step::Variation.of(h, detail));
         }
         full
+    }
+
+    /// A formula fitted in full; one that is hopelessly behind others before the finest measure is left there.
+    fn formula_in_full(&self, rough: &Hypothesis, others: &[Hypothesis]) -> Hypothesis {
+        let (coarse, finest) = FULL.split_at(FULL.len() - 1);
+        let fitted = self.refit(rough, going_on(coarse, FULL_ITERATIONS));
+        let best = (others.iter().map(|h| self.score(h))).fold(f64::INFINITY, f64::min);
+        match self.score(&fitted) < best + self.settings.given_up {
+            true => self.refit(&fitted, going_on(finest, FULL_ITERATIONS)),
+            false => fitted,
+        }
     }
 
     /// Formulas over the variable of a curve, with what each promises.

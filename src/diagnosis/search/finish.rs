@@ -341,6 +341,12 @@ impl Search<'_> {
         let most = self.settings.far_behind * self.left_alone(scale);
         let mut named = self.screen(&from, ROUGH, most);
         named.retain(|h| self.rough_score(h) < most);
+        named.truncate(self.settings.fitted_in_full);
+        for h in &mut named {
+            *h = self.refit(h, Refit::ROUGH.from(Start::Here));
+        }
+        // One that leaves more than noise where the piston is held does so in full.
+        named.retain(|h| h.fit.rough < self.left_alone(scale));
         let mut named = self.in_full(&named, scale, &mut Vec::new(), observer);
         named.retain(|h| scale.is_adequate(h));
         let allowed = self.score(&found[0]) + self.settings.look_elsewhere;
