@@ -322,7 +322,7 @@ fn variables(term: &Latent) -> impl Iterator<Item = &'static str> {
 }
 
 impl Search<'_> {
-    /// Formulas beside a hypothesis that leave noise alone, best first; none where the curves that point at them promise too little beside what another
+    /// Formulas beside a hypothesis that leave noise alone, best first; curves where these do and no formula does; none where the curves that point at them promise too little beside what another
     /// explanation costs roughly, `rival`.
     pub(super) fn adequate_formulas(
         &self,
@@ -340,6 +340,11 @@ impl Search<'_> {
         }
         let mut found = self.formulas(base, &promising, scale, observer);
         found.retain(|h| scale.is_adequate(h) && self.term_shows(h));
+        if found.is_empty() {
+            promising.retain(|h| h.fit.rough < noise);
+            found = self.curves_in_full(base, &promising, observer);
+            found.retain(|h| scale.is_adequate(h));
+        }
         self.name_variables(base, &mut found, &promising);
         self.put_named_first(&mut found, scale, observer);
         found
@@ -358,11 +363,30 @@ impl Search<'_> {
         let promising = self.promising(base, HOPELESS * rival, scale, observer);
         let curves = self.curves(base, &promising, observer);
         let mut found = self.formulas(base, &curves, scale, observer);
-        let full = curves.iter().take(IN_FULL);
-        found.extend(full.map(|h| self.refit(h, curve(FULL, FULL_ITERATIONS))));
+        found.extend(self.in_full_of_curves(&curves));
         found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.name_variables(base, &mut found, &promising);
         found
+    }
+
+    /// Curves that are told apart by what they leave of recordings that were left out, fitted in full, best first.
+    fn curves_in_full(
+        &self,
+        base: &Hypothesis,
+        promising: &[Hypothesis],
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
+        let curves = self.curves(base, promising, observer);
+        let mut full = self.in_full_of_curves(&curves);
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        full
+    }
+
+    fn in_full_of_curves(&self, curves: &[Hypothesis]) -> Vec<Hypothesis> {
+        let leading = curves.par_iter().take(IN_FULL);
+        leading
+            .map(|h| self.refit(h, curve(FULL, FULL_ITERATIONS)))
+            .collect()
     }
 
     /// A hypothesis with the piston held: of a full fit that prediction is wanted.

@@ -207,6 +207,8 @@ impl Search<'_> {
             }
             if climb.full.is_empty() && (climb.levels.len() > 1 || self.asks_early(best, scale)) {
                 self.formulas_beside_fewer(&mut climb, &children, scale, observer);
+            } else if climb.full.first().is_some_and(|best| self.found(best) > 1) {
+                self.add_one_law(&mut climb, scale, observer);
             }
             if climb.full.is_empty() && stuck && !leaves_noise {
                 // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
@@ -220,6 +222,11 @@ impl Search<'_> {
             climb.levels.push(children);
         }
         climb
+    }
+
+    /// Effects of a hypothesis beside those that a link of its own has shown.
+    fn found(&self, hypothesis: &Hypothesis) -> usize {
+        hypothesis.effects.len() - self.shown.len()
     }
 
     /// What was fitted roughly, beside the best explanation and the rough cost of the believed model and of noise.

@@ -245,6 +245,29 @@ impl Search<'_> {
         climb.full = full;
     }
 
+    /// Adds formulas that leave noise alone by themselves where two named effects do: two of the list may stand in for one law that it does not hold. As
+    /// many are looked at, a formula must score better by what two effects cost for that.
+    pub(super) fn add_one_law(
+        &self,
+        climb: &mut Climb,
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) {
+        let (none, single) = (
+            &climb.levels[0][0],
+            climb.levels.get(1).map(|level| &level[0]),
+        );
+        let Some(single) = single.filter(|_| !climb.asked.contains(&none.names())) else {
+            return;
+        };
+        climb.asked.push(none.names());
+        let mut found = self.adequate_formulas(none, single.fit.rough, scale, observer);
+        let allowed = self.score(&climb.full[0]) - 2.0 * self.settings.look_elsewhere;
+        found.retain(|h| h.formula().is_some() && self.score(h) < allowed);
+        climb.full.extend(found);
+        (climb.full).sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
     /// Formulas that leave noise alone beside fewer of an explanation's effects, none of them first; of the first of these sets that has such. What was asked
     /// for before is not asked for again.
     fn beside_fewer(
