@@ -50,6 +50,82 @@ at_s = 0
 set_pressure_bar_gauge = 2
 "#;
 
+/// Laws as a diagnosis writes them, one for each kind of port.
+const LAWS: [(&str, &str); 10] = [
+    ("piston_force", "-250 * max(v, 0)"),
+    ("friction", "3 + 400 * x"),
+    ("set_pressure", "-min(p_set, 11000)"),
+    ("outlet_pressure", "1750 * sin(22 * t)"),
+    (
+        "first_chamber_leak",
+        "1.2e-6 * min(max((0.0112 - x) / 0.002, 0), 1)",
+    ),
+    ("supply_orifice", "-4e-7 * t"),
+    ("exhaust_orifice", "-3e-5 * x"),
+    ("surface", "2e-4 * t"),
+    ("contact_stiffness", "-2e4 * t"),
+    ("force_reading", "-min(max(f, -10), 10)"),
+];
+
+/// What a diagnosis ends with is a law in a file: a bench that runs it and a prediction from it are one computation.
+#[test]
+fn bench_and_prediction_of_a_law_are_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let bench = BENCH.to_owned() + "[simulation]\ndevice_substeps = 1\n";
+    std::fs::write(path("bench.toml"), bench).unwrap();
+    let readings = |law: &str| {
+        std::fs::write(path("rig.toml"), RIG.to_owned() + law).unwrap();
+        let rig = Rig::new(load_bench(&path("bench.toml")).unwrap()).unwrap();
+        let (recording, _) = rig.run(&mut |_| ()).unwrap();
+        let plant = load_rig(&path("rig.toml")).unwrap().plant;
+        let predicted = simulate(&plant, &inputs(recording.time().to_vec())).readings;
+        (recording, predicted, plant.device.gas.atmosphere)
+    };
+    let (_, bare, _) = readings("");
+    for (port, is) in LAWS {
+        let stiffness = match port {
+            "friction" => "bristle_stiffness = 1e5\n",
+            _ => "",
+        };
+        let law = format!(
+            "\n[[effect]]\nname = \"unlisted\"\nacts_on = \"{port}\"\nis = \"{is}\"\n{stiffness}"
+        );
+        let (recording, predicted, atmosphere) = readings(&law);
+        let mut moved = 0.0f64;
+        for (channel, quantity, offset) in [
+            (0, schema::MEASURED_REGULATOR_PRESSURE, atmosphere),
+            (1, schema::MEASURED_STROKE, 0.0),
+            (2, schema::MEASURED_FORCE, 0.0),
+        ] {
+            let size = predicted[channel]
+                .iter()
+                .fold(0.0f64, |m, v| m.max(v.abs()));
+            let ran = recording.values(quantity).unwrap();
+            for ((ran, predicted), bare) in ran.iter().zip(&predicted[channel]).zip(&bare[channel])
+            {
+                let apart = (ran - offset - predicted).abs() / size;
+                assert!(apart < 1e-6, "{port}, {quantity}: {apart}");
+                moved = moved.max((predicted - bare).abs() / size);
+            }
+        }
+        assert!(moved > 1e-4, "{port}: {moved}");
+    }
+}
+
+fn inputs(time: Vec<f64>) -> PlantInputs {
+    PlantInputs {
+        set_pressure: vec![2e5; time.len()],
+        extends: vec![true; time.len()],
+        surface: vec![0.02; time.len()],
+        time,
+        cell: None,
+        motion: None,
+        initial: InitialState::AtRest,
+        place: 0,
+    }
+}
+
 #[test]
 fn bench_and_prediction_agree_with_every_effect_that_both_have() {
     let folder = tempfile::tempdir().unwrap();
@@ -60,17 +136,7 @@ fn bench_and_prediction_agree_with_every_effect_that_both_have() {
     let (recording, stop) = rig.run(&mut |_| ()).unwrap();
     assert_eq!(stop, None);
 
-    let time = recording.time().to_vec();
-    let inputs = PlantInputs {
-        set_pressure: vec![2e5; time.len()],
-        extends: vec![true; time.len()],
-        surface: vec![0.02; time.len()],
-        time,
-        cell: None,
-        motion: None,
-        initial: InitialState::AtRest,
-        place: 0,
-    };
+    let inputs = inputs(recording.time().to_vec());
     let plant = load_rig(&path("rig.toml")).unwrap().plant;
     let readings = simulate(&plant, &inputs).readings;
     let atmosphere = plant.device.gas.atmosphere;

@@ -209,6 +209,8 @@ pub fn true_trajectory(
                 (kinematics.slides[i], motion.stroke),
             );
         }
+        // Of what moves with a term a sample is told as it is then, and a step as it is in its middle.
+        let (mut added_outlet, mut risen) = (0.0, 0.0);
         if plant.has_terms() {
             let pressures = device.pressures(&state, motion.stroke);
             let moment = Moment {
@@ -221,7 +223,10 @@ pub fn true_trajectory(
                 surface: inputs.surface[i],
                 contact_force: carrier.contact_force(0.0, motion),
             };
-            carrier.surface[0] += plant.term(Port::Surface, &moment.ahead(0.5 * h));
+            added_outlet = plant.term(Port::OutletPressure, &moment);
+            let displaced = plant.term(Port::Surface, &moment);
+            carrier.surface[0] += displaced;
+            risen = plant.term(Port::Surface, &moment.ahead(0.5 * h)) - displaced;
             carrier.stiffen(plant.term(Port::ContactStiffness, &moment), mass);
             state.disturbance = plant.disturbance(&moment, h);
             carrier.terms = ForceTerms::over(plant, &moment);
@@ -230,7 +235,8 @@ pub fn true_trajectory(
             joint_deflections.face(i, normal);
             carrier.deflected = joint_deflections.now(i, motion.stroke, carrier.share);
         }
-        truth.note(&device, &state, motion, &carrier);
+        truth.note(&device, &state, motion, &carrier, added_outlet);
+        carrier.surface[0] += risen;
         truth.mass_flow.push((state.air.entered - entered) / usual);
         entered = state.air.entered;
         if last {
@@ -382,6 +388,7 @@ impl Trajectory {
         state: &DeviceState,
         motion: PistonMotion,
         carrier: &ReplayCarrier<'_>,
+        added_outlet: f64,
     ) {
         let mass = device.parameters().moving_mass;
         let pressures = device.pressures(state, motion.stroke);
@@ -392,8 +399,7 @@ impl Trajectory {
             - carrier.axial_share() * contact_force
             - carrier.friction.at(motion.stroke);
         let force = device.piston_force(state, motion) + outside;
-        self.outlet
-            .push(state.regulator.outlet + state.disturbance.outlet);
+        self.outlet.push(state.regulator.outlet + added_outlet);
         self.stroke.push(motion.stroke);
         self.speed.push(motion.speed);
         self.acceleration.push(force / mass);

@@ -10,7 +10,7 @@ use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{Moment, PlantParameters, RunningSensors, SensorReadings};
+use crate::plant::{Moment, PlantParameters, Port, RunningSensors, SensorReadings};
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
 use crate::scenario::{ScenarioError, load_bench};
@@ -313,6 +313,10 @@ impl<'a> RigSimulation<'a> {
         let mass = scenario.device.parameters.moving_mass;
         let force = device.piston_force(&self.device, self.motion);
         let contact_force = carrier.contact_force(0.0, self.motion);
+        let added_outlet = match self.rig.plant.acts_at(Port::OutletPressure) {
+            true => (self.rig.plant).term(Port::OutletPressure, &self.moment(&carrier)),
+            false => 0.0,
+        };
         let outside = mass * scenario.gravity_along_extension - carrier.hand_force()
             + carrier.term_force(0.0, self.motion);
         RigTruth {
@@ -320,7 +324,7 @@ impl<'a> RigSimulation<'a> {
             motion: self.motion,
             acceleration: (force + outside - contact_force) / mass,
             contact_force,
-            regulator_pressure: self.device.regulator.outlet + self.device.disturbance.outlet,
+            regulator_pressure: self.device.regulator.outlet + added_outlet,
         }
     }
 

@@ -299,6 +299,15 @@ impl<'a> Simulation<'a> {
         carrier
     }
 
+    /// Pressure that the description's terms add to the regulator's outlet now [Pa].
+    fn added_outlet(&self, carrier: &SlideCarrier<'_>) -> f64 {
+        let plant = &self.cell.plant;
+        match plant.acts_at(Port::OutletPressure) {
+            true => plant.term(Port::OutletPressure, &self.moment(carrier)),
+            false => 0.0,
+        }
+    }
+
     /// The variables of now. Where the surface stands no one knows but where the tool touches it.
     fn moment(&self, carrier: &SlideCarrier<'_>) -> Moment {
         let motion = self.motion();
@@ -524,6 +533,7 @@ impl<'a> Simulation<'a> {
         let stroke = motion.stroke;
         let carrier = self.with_terms(self.carrier(time), 0.0);
         let further = carrier.terms.force(time, motion);
+        let added_outlet = self.added_outlet(&carrier);
         let (normal_force, normal, load) = self.pressing(&carrier, motion);
         let friction = self.world.contact().friction;
         let force_on_part = -(normal + friction);
@@ -538,7 +548,7 @@ impl<'a> Simulation<'a> {
         let there = SensorReadings {
             force: force_on_part.dot(reference.axis),
             stroke,
-            regulator_pressure: self.device.regulator.outlet + self.device.disturbance.outlet,
+            regulator_pressure: self.device.regulator.outlet + added_outlet,
         };
         self.read_sensors(time, &there, acceleration);
         let off = self.world.tool_centre() - reference.centre;
