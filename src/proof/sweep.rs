@@ -205,6 +205,7 @@ fn attempt(
         name: name.clone(),
         seed: task.seed,
         effects,
+        law: None,
         duration: plan.duration,
         conditions: plan.conditions.of(task.seed, plan.duration),
     };
