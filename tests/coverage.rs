@@ -42,6 +42,7 @@ fn device(seed: u64) -> Device {
         name: String::new(),
         seed,
         effects: EFFECTS.to_vec(),
+        law: None,
         duration: 3.0,
         conditions: Conditions::default(),
     };

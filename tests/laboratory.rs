@@ -247,6 +247,7 @@ fn effects_mean_the_same_in_the_laboratory_and_in_the_simulator() {
                 name: String::new(),
                 seed,
                 effects: vec![(effect.name, 0.5)],
+                law: None,
                 duration: 4.0,
                 conditions: Conditions::default(),
             };

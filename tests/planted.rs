@@ -12,6 +12,7 @@ fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer,
         name: name.to_owned(),
         seed,
         effects: effects.to_vec(),
+        law: None,
         duration: 5.0,
         conditions: Conditions::default(),
     }
@@ -85,6 +86,7 @@ fn a_device_without_an_accelerometer_is_diagnosed_by_its_other_sensors() {
         name: "no_accelerometer".to_owned(),
         seed: 31,
         effects: vec![("coulomb_viscous_friction", 1.0)],
+        law: None,
         duration: 5.0,
         conditions: Conditions::default(),
     }

@@ -139,7 +139,9 @@ Examples:
   idc sweep --out runs/few --effects hose_volume --sizes 1 --seeds 1 --empty 1 \\
       --resume --quiet
   # Everything. (takes hours)
-  idc sweep --out runs/sweep --page docs/CONFUSION.md --force";
+  idc sweep --out runs/sweep --page docs/CONFUSION.md --force
+  # Sixty devices with a law each that no list holds. (takes hours)
+  idc sweep --laws 60 --out runs/laws";
 
 /// `idc laboratory`.
 pub(super) const LABORATORY: &str = "\
@@ -147,4 +149,6 @@ Exit codes: 0 done, 2 bad input.
 
 Examples:
   # The ten cases of assets/proof, made anew.
-  idc laboratory --out runs/laboratory";
+  idc laboratory --out runs/laboratory
+  # Two devices with a law each that no list holds, to look at with `idc diagnose`.
+  idc laboratory --laws 2 --out runs/laws-cases";

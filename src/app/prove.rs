@@ -12,7 +12,10 @@ use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
 use crate::laboratory::{Recipe, shipped, write_case};
-use crate::proof::{CaseConditions, Claims, Diagnose, SweepPlan, folders, page, prove, sweep};
+use crate::proof::{
+    CaseConditions, Claims, Course, Diagnose, LawPlan, ProofError, SweepPlan, folders, laws,
+    laws_page, page, prove, sweep,
+};
 use crate::quantity::counted;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 
@@ -52,6 +55,9 @@ pub(super) struct SweepArguments {
     /// Effects by name, divided by commas [default: all of the vocabulary].
     #[arg(long, value_delimiter = ',')]
     effects: Vec<String>,
+    /// Instead of effects, this many devices with a law each that no list holds, drawn at random; a table in laws.md.
+    #[arg(long, conflicts_with_all = ["effects", "seeds", "sizes", "empty"], value_parser = clap::value_parser!(u64).range(1..=1000))]
+    laws: Option<u64>,
     /// Devices for each size of each effect.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(0..=1000))]
     seeds: u64,
@@ -76,7 +82,7 @@ pub(super) struct SweepArguments {
     /// Go on where it was stopped.
     #[arg(long)]
     resume: bool,
-    /// File for the tables [default: CONFUSION.md in the output folder].
+    /// File for the tables [default: CONFUSION.md in the output folder, laws.md with --laws].
     #[arg(long, help_heading = "Output")]
     page: Option<PathBuf>,
     /// Put new results in place of old ones.
@@ -106,6 +112,15 @@ pub(super) struct LaboratoryArguments {
     /// Folder for `cases` and `sealed`.
     #[arg(long, help_heading = "Output")]
     out: PathBuf,
+    /// Instead, the cases of `idc sweep --laws` of this many: devices with a law each that no list holds.
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    laws: Option<u64>,
+    /// Which devices are drawn: another number, others.
+    #[arg(long, requires = "laws", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..1_000_000))]
+    draw: u64,
+    /// Length of each recording [s].
+    #[arg(long, requires = "laws", default_value_t = 4.0, value_parser = duration)]
+    duration_s: f64,
     /// Put new results in place of old ones.
     #[arg(long, help_heading = "Output")]
     force: bool,
@@ -188,7 +203,12 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
         resume: arguments.resume,
         replace: arguments.force,
     };
-    let usual = || arguments.out.join("CONFUSION.md");
+    let table = if arguments.laws.is_some() {
+        "laws.md"
+    } else {
+        "CONFUSION.md"
+    };
+    let usual = || arguments.out.join(table);
     let file = arguments.page.clone().unwrap_or_else(usual);
     // The tables of a sweep that goes on take the place of its own earlier ones.
     let option = if arguments.page.is_some() {
@@ -223,20 +243,55 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
             bar.println(format!("{done} of {total}: {line}"));
         }
     };
-    let outcomes = sweep(&plan, &arguments.out, &*diagnose(), &tell);
-    bar.finish_and_clear();
-    let outcomes = outcomes?;
-    write_text(&file, &page(&outcomes))?;
+    let (count, text, json) = match arguments.laws {
+        None => {
+            let outcomes = sweep(&plan, &arguments.out, &*diagnose(), &tell);
+            bar.finish_and_clear();
+            let outcomes = outcomes?;
+            let json = serde_json::to_string_pretty(&outcomes)?;
+            (outcomes.len(), page(&outcomes), json)
+        }
+        Some(count) => {
+            let outcomes = laws(
+                &law_plan(count, arguments),
+                &Course {
+                    out: &arguments.out,
+                    jobs: plan.jobs,
+                    resume: plan.resume,
+                    replace: plan.replace,
+                },
+                &*diagnose(),
+                &tell,
+            );
+            bar.finish_and_clear();
+            let outcomes = outcomes?;
+            let json = serde_json::to_string_pretty(&outcomes)?;
+            (outcomes.len(), laws_page(&outcomes), json)
+        }
+    };
+    write_text(&file, &text)?;
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&outcomes)? + "\n"))?;
+        say(&(json + "\n"))?;
     } else if !arguments.quiet {
+        if arguments.laws.is_some() {
+            say(&text)?;
+        }
         say(&format!(
             "{}, tables in {}\n",
-            counted(outcomes.len(), "outcome"),
+            counted(count, "outcome"),
             file.display()
         ))?;
     }
     Ok(ExitCode::Done)
+}
+
+fn law_plan(count: u64, arguments: &SweepArguments) -> LawPlan {
+    LawPlan {
+        count,
+        draw: arguments.draw,
+        duration: arguments.duration_s,
+        conditions: arguments.conditions,
+    }
 }
 
 /// Writes the project's own cases.
@@ -251,7 +306,17 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
             name: stands.file_name().unwrap_or_default().display().to_string(),
         });
     }
-    let names = make_cases(out, &[], arguments.quiet || arguments.json)?;
+    let quiet = arguments.quiet || arguments.json;
+    let what = match arguments.laws {
+        None => Which::Shipped(&[]),
+        Some(count) => Which::Laws(LawPlan {
+            count,
+            draw: arguments.draw,
+            duration: arguments.duration_s,
+            conditions: CaseConditions::Laboratory,
+        }),
+    };
+    let names = make_cases(out, &what, quiet)?;
     if arguments.json {
         let document = serde_json::json!({ "cases": names, "folder": cases.display().to_string(), "sealed": sealed.display().to_string() });
         say(&format!("{document:#}\n"))?;
@@ -266,8 +331,16 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
     Ok(ExitCode::Done)
 }
 
-/// Makes the project's cases, all or those named, into `cases` and `sealed` of a folder: all of them appear, or none. Returns their names.
-fn make_cases(out: &Path, only: &[String], quiet: bool) -> Result<Vec<String>, AppError> {
+/// Cases that are made.
+enum Which<'a> {
+    /// The project's own, all or those named.
+    Shipped(&'a [String]),
+    /// Devices with a law each.
+    Laws(LawPlan),
+}
+
+/// Makes cases into `cases` and `sealed` of a folder: all of them appear, or none. Returns their names.
+fn make_cases(out: &Path, which: &Which<'_>, quiet: bool) -> Result<Vec<String>, AppError> {
     let _interruptible = Interruptible::of_one("laboratory", out);
     let cannot = |error: std::io::Error| AppError::OutputFolder {
         folder: out.display().to_string(),
@@ -276,15 +349,14 @@ fn make_cases(out: &Path, only: &[String], quiet: bool) -> Result<Vec<String>, A
     make_folder(out).map_err(cannot)?;
     let unfinished = UnfinishedFolder::within(out)?;
     let [cases, sealed] = ["cases", "sealed"].map(|name| unfinished.path().join(name));
-    let wanted = |recipe: &Recipe| only.is_empty() || only.contains(&recipe.name);
-    let recipes: Vec<Recipe> = shipped().into_iter().filter(wanted).collect();
     let bar = progress::bar("making", quiet);
-    for (index, recipe) in recipes.iter().enumerate() {
-        let case = recipe.make().map_err(crate::proof::ProofError::from)?;
-        write_case(&case, &cases.join(&recipe.name), Some(&sealed))?;
-        progress::tell(&bar, index + 1, recipes.len());
-    }
+    let tell = |done: usize, total: usize| progress::tell(&bar, done, total);
+    let made = match which {
+        Which::Shipped(only) => make_shipped(&cases, &sealed, only, &tell),
+        Which::Laws(plan) => plan.write(&cases, &sealed, &tell),
+    };
     bar.finish_and_clear();
+    let made = made?;
     let mut files = Vec::new();
     note_files(unfinished.path(), Path::new(""), &mut files).map_err(cannot)?;
     for file in &files {
@@ -292,6 +364,23 @@ fn make_cases(out: &Path, only: &[String], quiet: bool) -> Result<Vec<String>, A
     }
     let names: Vec<&str> = files.iter().map(String::as_str).collect();
     unfinished.finish(&names)?;
+    Ok(made)
+}
+
+/// Makes the project's own cases, all or those named.
+fn make_shipped(
+    cases: &Path,
+    sealed: &Path,
+    only: &[String],
+    tell: &dyn Fn(usize, usize),
+) -> Result<Vec<String>, ProofError> {
+    let wanted = |recipe: &Recipe| only.is_empty() || only.contains(&recipe.name);
+    let recipes: Vec<Recipe> = shipped().into_iter().filter(wanted).collect();
+    for (index, recipe) in recipes.iter().enumerate() {
+        let case = recipe.make()?;
+        write_case(&case, &cases.join(&recipe.name), Some(sealed))?;
+        tell(index + 1, recipes.len());
+    }
     Ok(recipes.into_iter().map(|recipe| recipe.name).collect())
 }
 
@@ -343,7 +432,7 @@ fn prepare_proof(arguments: &ProveArguments) -> Result<PathBuf, AppError> {
             made.display()
         );
     }
-    make_cases(&made, &arguments.only, arguments.json)?;
+    make_cases(&made, &Which::Shipped(&arguments.only), arguments.json)?;
     Ok(made.join("cases"))
 }
 

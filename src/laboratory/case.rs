@@ -7,6 +7,7 @@ use super::concealed::Concealed;
 use super::conditions::{Conditions, IMPERFECTIONS};
 use super::draw::{Believed, TOLERANCES, stream, toleranced};
 use super::effects::{LabEffect, Scene, effect};
+use super::law::Law;
 use super::programme::Programme;
 use super::rig::LaboratoryRig;
 use super::sealed::{Known, SealedCase, SealedEffect, SealedInterval};
@@ -24,6 +25,8 @@ pub struct Recipe {
     pub seed: u64,
     /// Effects by name, each with its share of the largest that is plausible [1].
     pub effects: Vec<(&'static str, f64)>,
+    /// A law that no list holds, beside them.
+    pub law: Option<Law>,
     /// Length of each recording [s].
     pub duration: f64,
     /// Conditions under which it is recorded.
@@ -167,6 +170,7 @@ impl Recipe {
     ) -> Result<impl FnMut(f64) -> Result<f64, LaboratoryError>, LaboratoryError> {
         let mut recipe = Self {
             effects: vec![(effect, 1.0)],
+            law: None,
             ..self.clone()
         };
         let setting = recipe.setting()?;
@@ -176,6 +180,36 @@ impl Recipe {
             recipe.effects[0].1 = share;
             Ok(eye.visibility(&recipe.setting()?.run(seen)?))
         })
+    }
+
+    /// The device with the listed effects but without the law, as its owner sees it in the recordings to diagnose from.
+    pub(super) fn eye_beside(&self) -> Result<Eye, LaboratoryError> {
+        let law = None;
+        let setting = Self {
+            law,
+            ..self.clone()
+        }
+        .setting()?;
+        let Believed { rig, tolerances } = &setting.believed;
+        let seen = &setting.programmes[..setting.programmes.len() - 1];
+        Eye::new(
+            &setting.pair.real,
+            &setting.concealed,
+            rig,
+            tolerances,
+            seen,
+        )
+    }
+
+    /// True trajectories of the recordings to diagnose from.
+    pub(super) fn real_trajectories(&self) -> Result<Vec<LaboratoryTrajectory>, LaboratoryError> {
+        let setting = self.setting()?;
+        setting.run(setting.programmes.len() - 1)
+    }
+
+    /// The device as believed.
+    pub(super) fn rig(&self) -> LaboratoryRig {
+        Believed::draw(self.seed).rig
     }
 
     fn setting(&self) -> Result<Setting, LaboratoryError> {
@@ -205,6 +239,8 @@ impl Recipe {
             });
             effects.push(sealed_effect(effect, numbers));
         }
+        concealed.law.clone_from(&self.law);
+        effects.extend(self.law.as_ref().map(sealed_law));
         self.conditions.on_device(&mut concealed, &drawn, self.seed);
         Ok(Setting {
             conditions: self.conditions,
@@ -241,7 +277,8 @@ impl Recipe {
     fn eye(setting: &Setting) -> Result<Eye, LaboratoryError> {
         let Believed { rig, tolerances } = &setting.believed;
         let seen = &setting.programmes[..setting.programmes.len() - 1];
-        Eye::new(&setting.pair.bare, rig, tolerances, seen)
+        let nothing = Concealed::default();
+        Eye::new(&setting.pair.bare, &nothing, rig, tolerances, seen)
     }
 
     /// Where the effects show in the recordings to diagnose from, and how strongly in all.
@@ -250,7 +287,7 @@ impl Recipe {
         setting: &Setting,
         real: &[LaboratoryTrajectory],
     ) -> Result<(Vec<SealedInterval>, f64), LaboratoryError> {
-        if self.effects.is_empty() {
+        if self.effects.is_empty() && self.law.is_none() {
             return Ok((Vec::new(), 0.0));
         }
         let eye = Self::eye(setting)?;
@@ -322,5 +359,17 @@ fn sealed_effect(effect: &LabEffect, numbers: Vec<(&'static str, f64)>) -> Seale
         truth: effect.name.to_owned(),
         subsystem: effect.subsystem.to_owned(),
         parameters,
+        formula: None,
+    }
+}
+
+fn sealed_law(law: &Law) -> SealedEffect {
+    let names = law.depends_on().into_iter().map(str::to_owned).collect();
+    SealedEffect {
+        name: "unlisted".to_owned(),
+        truth: "law".to_owned(),
+        subsystem: law.place.subsystem().to_owned(),
+        parameters: [("depends_on".to_owned(), Known::Names(names))].into(),
+        formula: Some(law.formula()),
     }
 }

@@ -1,5 +1,7 @@
 //! Effects at work in a device that its owner's model leaves out.
 
+use super::law::Law;
+
 /// Seal and guide friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seals {
@@ -109,6 +111,8 @@ pub struct Concealed {
     pub detent: Option<[f64; 2]>,
     /// Unlisted: drop of the outlet with the flow drawn [Pa s/kg].
     pub outlet_droop: f64,
+    /// Unlisted: a law of any kind.
+    pub law: Option<Law>,
 }
 
 impl Default for Concealed {
@@ -149,6 +153,7 @@ impl Default for Concealed {
             one_way_damping: 0.0,
             detent: None,
             outlet_droop: 0.0,
+            law: None,
         }
     }
 }

@@ -191,6 +191,7 @@ mod tests {
             name: String::new(),
             seed: 3,
             effects: effects.to_vec(),
+            law: None,
             duration: 3.0,
             conditions,
         };

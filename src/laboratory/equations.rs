@@ -7,6 +7,7 @@
 //! orifice      m' = A C p_u / sqrt(R T_u) f(u),  f = y / (y^2 + e^2)^(1/4),  y = 2k/(k-1) (u^(2/k) - u^((k+1)/k)),  u held at the critical ratio
 //! chamber      E' = cp (T_in m'_in - T m'_out) - p V' + G (T_w - T),  p V = m R T;   C_w T_w' = -G (T_w - T) - G_a (T_w - T_a)
 //! piston       M x'' = p1 A1 - p2 A2 - pa (A1 - A2) + M g + F_0 - k_s x - F_seal - F_cushion + stops - contact
+//! law          what `law` says, where it acts
 //! seal         F = s0 z + s1 z' + b x',   z' = x' - a(z, x') s0 |x'| z / g(x')    (LuGre, Canudas de Wit et al. 1995; a: elastoplastic, Dupont et al. 2002)
 //! ```
 //!
@@ -15,6 +16,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::concealed::{Concealed, Seals};
+use super::law::{Driver, Law, Place};
 use super::programme::Surface;
 use super::rig::LaboratoryRig;
 
@@ -33,6 +35,8 @@ pub(super) mod at {
     pub const PILOT_RATE: usize = 1;
     /// Outlet behind its droop, gauge [1e5 Pa].
     pub const DROOPED: usize = 2;
+    /// Memory of a law: it is concealed without a droop [1].
+    pub const MEMORY: usize = DROOPED;
     /// Air in chambers 1 and 2, as the pressure that it would have in the swept volume at the surroundings' temperature [1e5 Pa].
     pub const AIR: usize = 3;
     /// Temperatures of chambers 1 and 2 over the surroundings' [1].
@@ -63,12 +67,29 @@ const WALL_CAPACITY: f64 = 135.0;
 const WALL_TO_AIR: f64 = 1.0;
 /// Time in which the droop of an outlet builds up [s].
 const DROOP_TIME: f64 = 1e-3;
+/// Memory that is none [s]: it breaks the loop of a law at the outlet of what flows from there.
+pub(super) const AT_ONCE: f64 = DROOP_TIME;
+/// Speed over which the direction of motion turns where a law says so [m/s].
+const TURNS: f64 = 1e-3;
+/// Least share of an orifice or a stiffness that a law leaves [1].
+const LEAST: f64 = 0.05;
 /// Pressure of a full reservoir [Pa absolute].
 const FULL: f64 = 7e5;
 /// Speed over which a dry force that has no bristles turns its sign [m/s].
 const DRY_SPEED: f64 = 1e-3;
 /// Fastest exchange between cells of a line that is resolved [1/s].
 const FASTEST_CELL: f64 = 6e4;
+
+/// Seals that a law presses, where they have no friction beside.
+const LIGHT: Seals = Seals {
+    coulomb: 1e-3,
+    breakaway: 1e-3,
+    stribeck_velocity: 0.01,
+    viscous: 0.0,
+    presliding: 2e-5,
+    per_pressure: 0.0,
+    elastic_share: 0.4,
+};
 
 /// Commands between two of their changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,6 +98,8 @@ pub(super) struct Command {
     pub extends: bool,
     /// Pressure that the regulator goes to [Pa gauge].
     pub target: f64,
+    /// Set pressure, late as the regulator is [Pa gauge].
+    pub set: f64,
 }
 
 /// Readings of a state.
@@ -96,6 +119,10 @@ pub(super) struct Reading {
     pub pressures: [f64; 2],
     /// Air in device and line [kg].
     pub air: f64,
+    /// Values of a law's variables, in the order of [`Driver::ALL`].
+    pub drivers: [f64; Driver::ALL.len()],
+    /// What a law makes act.
+    pub law: f64,
 }
 
 /// The equations of a device on a programme.
@@ -132,6 +159,7 @@ impl<'a> Equations<'a> {
             command: Command {
                 extends: true,
                 target: 0.0,
+                set: 0.0,
             },
             areas,
             cells: cells(rig, concealed),
@@ -144,7 +172,8 @@ impl<'a> Equations<'a> {
     pub fn start(&self) -> State {
         let rig = self.rig;
         let mut state = [0.0; STATES];
-        let pressed = (rig.weight() + self.concealed.axial_force).min(0.0);
+        let pull = self.pull_at_rest();
+        let pressed = (rig.weight() + self.concealed.axial_force + pull).min(0.0);
         state[at::PLACE] = pressed / rig.stop[0] / rig.stroke;
         let volumes = self.volumes(state[at::PLACE] * rig.stroke);
         for side in 0..2 {
@@ -155,7 +184,81 @@ impl<'a> Equations<'a> {
         for cell in 0..CELLS {
             state[at::LINE + cell] = rig.gas.atmosphere / UNIT;
         }
+        if let Some(law) = self.concealed.law.as_ref().filter(|law| law.memory > 0.0) {
+            state[at::MEMORY] = law.scaled(self.driver(law.driver, 0.0, &state));
+        }
         state
+    }
+
+    /// Force of a law on the piston before anything moves [N].
+    fn pull_at_rest(&self) -> f64 {
+        let mut rest = [0.0; STATES];
+        for side in 0..2 {
+            let volume = self.volumes(0.0)[side];
+            rest[at::AIR + side] = self.rig.gas.atmosphere * volume / self.swept / UNIT;
+            rest[at::WARMTH + side] = 1.0;
+        }
+        self.law(Place::PistonForce, 0.0, &rest)
+    }
+
+    /// Value of a variable, but for the flow, of which a law has a memory alone.
+    fn driver(&self, driver: Driver, time: f64, state: &State) -> f64 {
+        let pressures = || self.pressures(state);
+        match driver {
+            Driver::Time => time,
+            Driver::Stroke => state[at::PLACE] * self.rig.stroke,
+            Driver::Velocity => state[at::SPEED],
+            Driver::Direction => (state[at::SPEED] / TURNS).tanh(),
+            Driver::ChamberPressure => pressures()[0],
+            Driver::PressureDifference => pressures()[0] - pressures()[1],
+            Driver::SetPressure => self.command.set,
+            Driver::ContactForce => self.contact(time, state),
+            Driver::Surface => self.surface.map_or(f64::NAN, |surface| surface.at(time)[0]),
+            Driver::MassFlow => 0.0,
+        }
+    }
+
+    /// u of a law, or its memory of it.
+    fn input_of_law(&self, time: f64, state: &State) -> f64 {
+        match &self.concealed.law {
+            Some(law) if law.memory > 0.0 => state[at::MEMORY],
+            Some(law) => law.scaled(self.driver(law.driver, time, state)),
+            None => 0.0,
+        }
+    }
+
+    /// What a law makes act at a place; nothing where there is no surface to depend on.
+    fn law(&self, place: Place, time: f64, state: &State) -> f64 {
+        let Some(law) = self.concealed.law.as_ref().filter(|law| law.place == place) else {
+            return 0.0;
+        };
+        let factor = law
+            .factor
+            .map_or(1.0, |(driver, _)| self.driver(driver, time, state));
+        let value = law.at(self.input_of_law(time, state), factor);
+        if value.is_nan() { 0.0 } else { value }
+    }
+
+    /// Rate at which a law moves the surface without a contact force [m/s], and by how much more for each newton of it [m/(s N)].
+    fn surface_rate(&self, time: f64, state: &State) -> [f64; 2] {
+        /// Step of a difference quotient of u.
+        const STEP: f64 = 1e-6;
+        let law = self.concealed.law.as_ref();
+        let Some(law) = law.filter(|law| law.place == Place::Surface) else {
+            return [0.0; 2];
+        };
+        let u = self.input_of_law(time, state);
+        let slope = (law.at(u + STEP, 1.0) - law.at(u - STEP, 1.0)) / (2.0 * STEP);
+        match law.driver {
+            Driver::ContactForce => {
+                [law.scaled(0.0) - u, 1.0 / law.scale[1]].map(|rate| slope * rate / law.memory)
+            }
+            Driver::Surface => {
+                let rate = self.surface.map_or(0.0, |surface| surface.at(time)[1]);
+                [slope * rate / law.scale[1], 0.0]
+            }
+            _ => [slope / law.scale[1], 0.0],
+        }
     }
 
     fn volumes(&self, stroke: f64) -> [f64; 2] {
@@ -199,7 +302,13 @@ impl<'a> Equations<'a> {
         if let Some([amplitude, frequency]) = self.concealed.ripple {
             outlet += amplitude * (TAU * frequency * time).sin();
         }
-        outlet
+        let law = self.law(Place::Outlet, time, state);
+        // An outlet does not suck.
+        if law == 0.0 {
+            outlet
+        } else {
+            (outlet + law).max(0.0)
+        }
     }
 
     fn outlet(&self, time: f64, state: &State) -> f64 {
@@ -251,6 +360,11 @@ impl<'a> Equations<'a> {
 
     /// Rates of the state.
     pub fn rates(&self, time: f64, state: &State) -> State {
+        self.rates_and_flow(time, state).0
+    }
+
+    /// Rates of the state, and the air drawn from the regulator [kg/s].
+    fn rates_and_flow(&self, time: f64, state: &State) -> (State, f64) {
         let (rig, concealed, gas) = (self.rig, self.concealed, &self.rig.gas);
         let mut rates = [0.0; STATES];
         let pressures = self.pressures(state);
@@ -260,12 +374,20 @@ impl<'a> Equations<'a> {
         let outside = (gas.atmosphere, 1.0);
 
         // Each flow with where it comes from and where it goes to; chambers take part in the heat balance.
-        let onward = |before: f64| self.flow(rig.supply_orifice, (before, 1.0), chamber(fed));
+        let [supply_area, exhaust_area] = [
+            (rig.supply_orifice, Place::Supply),
+            (rig.exhaust_orifice, Place::Exhaust),
+        ]
+        .map(|(area, place)| area * (1.0 + self.law(place, time, state)).max(LEAST));
+        let onward = |before: f64| self.flow(supply_area, (before, 1.0), chamber(fed));
         let line = self.line(time, state, onward);
         let supply = onward(line.at_valve);
-        let exhaust = self.flow(rig.exhaust_orifice, chamber(emptied), outside);
+        let exhaust = self.flow(exhaust_area, chamber(emptied), outside);
         let cross = self.flow(concealed.cross_leak, chamber(0), chamber(1));
-        let leak = self.flow(concealed.external_leak, chamber(0), outside);
+        let worn = concealed.external_leak + self.law(Place::FirstLeak, time, state);
+        let leak = self.flow(worn, chamber(0), outside);
+        let second = self.law(Place::SecondLeak, time, state);
+        let second_leak = self.flow(second, chamber(1), outside);
         // Into each chamber: mass, and mass times the temperature that it brings.
         let mut into = [[0.0; 2]; 2];
         let mut move_air = |to: Option<usize>, from: Option<usize>, flow: f64| {
@@ -282,6 +404,7 @@ impl<'a> Equations<'a> {
         move_air(None, Some(emptied), exhaust);
         move_air(Some(1), Some(0), cross);
         move_air(None, Some(0), leak);
+        move_air(None, Some(1), second_leak);
 
         let speed = state[at::SPEED];
         let rt = gas.constant * gas.temperature;
@@ -313,10 +436,17 @@ impl<'a> Equations<'a> {
             rates[at::RESERVOIR] =
                 (compressor * loading - line.drawn.max(0.0)) * rt / volume / UNIT;
         }
-        self.regulate(state, &mut rates);
+        self.regulate(time, state, &mut rates);
         if concealed.outlet_droop > 0.0 {
             let goal = self.undrooped(time, state) - concealed.outlet_droop * line.drawn;
             rates[at::DROOPED] = (goal / UNIT - state[at::DROOPED]) / DROOP_TIME;
+        }
+        if let Some(law) = concealed.law.as_ref().filter(|law| law.memory > 0.0) {
+            let value = match law.driver {
+                Driver::MassFlow => line.drawn,
+                driver => self.driver(driver, time, state),
+            };
+            rates[at::MEMORY] = (law.scaled(value) - state[at::MEMORY]) / law.memory;
         }
 
         let (force, contact, seal_rate) = self.piston(time, state, pressures);
@@ -327,22 +457,22 @@ impl<'a> Equations<'a> {
             let signal = contact + concealed.crosstalk * rates[at::SPEED];
             rates[at::FORCE] = (signal / 100.0 - state[at::FORCE]) / concealed.force_lag;
         }
-        rates
+        (rates, line.drawn)
     }
 
-    fn regulate(&self, state: &State, rates: &mut State) {
+    fn regulate(&self, time: f64, state: &State, rates: &mut State) {
+        let target = self.command.target + self.law(Place::SetPressure, time, state);
         let limit = self.concealed.rate_limit;
         let limited = |rate: f64| limit.map_or(rate, |[up, down]| rate.clamp(-down, up));
         let pilot = state[at::PILOT] * UNIT;
         match self.concealed.second_order {
             None => {
-                let rate = (self.command.target - pilot) / self.rig.time_constant;
+                let rate = (target - pilot) / self.rig.time_constant;
                 rates[at::PILOT] = limited(rate) / UNIT;
             }
             Some([frequency, damping]) => {
                 let rate = state[at::PILOT_RATE] * 1e6;
-                let pull =
-                    frequency * (frequency * (self.command.target - pilot) - 2.0 * damping * rate);
+                let pull = frequency * (frequency * (target - pilot) - 2.0 * damping * rate);
                 rates[at::PILOT] = limited(rate) / UNIT;
                 rates[at::PILOT_RATE] = pull / 1e6;
             }
@@ -386,10 +516,11 @@ impl<'a> Equations<'a> {
         if let Some([strength, pitch]) = concealed.detent {
             force -= strength * (TAU * stroke / pitch).sin();
         }
+        force += self.law(Place::PistonForce, time, state);
         let mut seal_rate = 0.0;
-        if let Some(seals) = &concealed.seals {
+        if let Some(seals) = self.seals(time, state) {
             let (friction, rate) = seal(
-                seals,
+                &seals,
                 rig.mass,
                 state[at::SEAL],
                 speed,
@@ -398,18 +529,36 @@ impl<'a> Equations<'a> {
             force -= friction;
             seal_rate = rate;
         }
-        let contact = self.contact(time, stroke, speed);
+        let contact = self.contact(time, state);
         (force - contact, contact, seal_rate)
     }
 
+    /// The seals, with what a law presses them by beside.
+    fn seals(&self, time: f64, state: &State) -> Option<Seals> {
+        let is_elsewhere = |law: &Law| law.place != Place::Friction;
+        if self.concealed.law.as_ref().is_none_or(is_elsewhere) {
+            return self.concealed.seals;
+        }
+        let seals = self.concealed.seals.unwrap_or(LIGHT);
+        let level = self.law(Place::Friction, time, state);
+        Some(Seals {
+            coulomb: seals.coulomb + level,
+            breakaway: seals.breakaway + level,
+            ..seals
+        })
+    }
+
     /// Force of the tool on the workpiece [N].
-    fn contact(&self, time: f64, stroke: f64, speed: f64) -> f64 {
+    fn contact(&self, time: f64, state: &State) -> f64 {
         let Some(surface) = self.surface else {
             return 0.0;
         };
+        let (stroke, speed) = (state[at::PLACE] * self.rig.stroke, state[at::SPEED]);
         let concealed = self.concealed;
         let [mut place, mut rate] = surface.at(time);
-        place += concealed.surface_offset;
+        place += concealed.surface_offset + self.law(Place::Surface, time, state);
+        let [moves, gives] = self.surface_rate(time, state);
+        rate += moves;
         for swing in &concealed.swings {
             let angular = TAU * swing.frequency;
             let (sine, cosine) = (angular * time + swing.phase).sin_cos();
@@ -420,11 +569,15 @@ impl<'a> Equations<'a> {
         if depth <= 0.0 {
             return 0.0;
         }
+        let softer = (1.0 + self.law(Place::Stiffness, time, state)).max(LEAST);
+        let stiffness = softer * self.rig.contact_stiffness;
         let elastic = match concealed.hertz {
-            None => self.rig.contact_stiffness * depth,
-            Some(stiffness) => stiffness * depth * depth.sqrt(),
+            None => stiffness * depth,
+            Some(hertz) => softer * hertz * depth * depth.sqrt(),
         };
-        (elastic + self.rig.contact_damping * (speed - rate)).max(0.0)
+        let damping = self.rig.contact_damping;
+        // What gives way at once takes from the damping.
+        (elastic + damping * (speed - rate)).max(0.0) / (1.0 + damping * gives)
     }
 
     /// Readings of a state.
@@ -446,14 +599,20 @@ impl<'a> Equations<'a> {
                 air += self.share_of_line(cell) * volume / rt * UNIT * state[at::LINE + cell];
             }
         }
+        let mut drivers = Driver::ALL.map(|driver| self.driver(driver, time, state));
+        drivers[Driver::ALL.len() - 1] = self.rates_and_flow(time, state).1;
+        let place = self.concealed.law.as_ref().map(|law| law.place);
+        let added = |place: Place| self.law(place, time, state);
         Reading {
-            outlet,
-            stroke,
+            outlet: outlet + added(Place::PressureReading),
+            stroke: stroke + added(Place::StrokeReading),
             acceleration,
             contact,
-            force: signal,
+            force: signal + added(Place::ForceReading),
             pressures,
             air,
+            drivers,
+            law: place.map_or(0.0, added),
         }
     }
 }

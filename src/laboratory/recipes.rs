@@ -43,6 +43,7 @@ fn lost_share(effect: &'static str, seed: u64, duration: f64) -> Result<f64, Lab
         name: effect.to_owned(),
         seed,
         effects: Vec::new(),
+        law: None,
         duration,
         conditions: Conditions::default(),
     };
@@ -76,6 +77,7 @@ pub fn shipped() -> Vec<Recipe> {
         name: name.to_owned(),
         seed,
         effects: effects.to_vec(),
+        law: None,
         duration: 4.0,
         conditions: Conditions::default(),
     };

@@ -39,6 +39,9 @@ pub struct SealedEffect {
     pub subsystem: String,
     /// Its numbers by name; of an unlisted one `depends_on`.
     pub parameters: BTreeMap<String, Known>,
+    /// Of a law: the law in a line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
 }
 
 /// A number, or names.

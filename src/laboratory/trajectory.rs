@@ -28,6 +28,10 @@ pub struct LaboratoryTrajectory {
     pub pressures: [Vec<f64>; 2],
     /// Air in the chambers and the line [kg].
     pub air: Vec<f64>,
+    /// Values of what a law may depend on, in the order of [`super::Driver::ALL`].
+    pub drivers: Vec<[f64; 10]>,
+    /// What a law makes act.
+    pub law: Vec<f64>,
 }
 
 /// A device that cannot be run.
@@ -42,6 +46,12 @@ pub enum LaboratoryError {
         time: f64,
         /// Its text.
         what: String,
+    },
+    /// No law that was drawn will do.
+    #[error("seed {seed}: none of the laws drawn for this device will do")]
+    NoLaw {
+        /// Seed of the device.
+        seed: u64,
     },
 }
 
@@ -79,9 +89,11 @@ fn commands(
 ) -> Vec<(f64, Command)> {
     let mut acted_on = 0.0f64;
     let mut targets = vec![(0.0, 0.0)];
+    let mut sets = vec![(0.0, 0.0)];
     for (time, pressure) in &programme.set_pressures {
         acted_on = acted_on.clamp(pressure - concealed.play, pressure + concealed.play);
         targets.push((time + concealed.dead_time, rig.gain * acted_on));
+        sets.push((time + concealed.dead_time, *pressure));
     }
     let mut valve = vec![(0.0, true)];
     for (time, extends) in &programme.valve {
@@ -119,6 +131,7 @@ fn commands(
                 Command {
                     extends,
                     target: last(&targets, time),
+                    set: last(&sets, time),
                 },
             )
         })
@@ -272,6 +285,8 @@ fn trajectory(
         contact: of(&|r| r.contact),
         pressures: [of(&|r| r.pressures[0]), of(&|r| r.pressures[1])],
         air: of(&|r| r.air),
+        drivers: readings.iter().map(|r| r.drivers).collect(),
+        law: of(&|r| r.law),
     }
 }
 

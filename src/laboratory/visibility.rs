@@ -36,16 +36,16 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    /// Of a device whose tolerances are relative to what is believed of it.
+    /// Of a device, with what is concealed in it beside, whose tolerances are relative to what is believed of it.
     pub fn new(
         bare: &LaboratoryRig,
+        beside: &Concealed,
         believed: &LaboratoryRig,
         tolerances: &[f64; TOLERATED],
         programmes: &[Programme],
     ) -> Result<Self, LaboratoryError> {
         let all = |rig: &LaboratoryRig| -> Result<Vec<LaboratoryTrajectory>, LaboratoryError> {
-            let nothing = Concealed::default();
-            programmes.iter().map(|p| run(rig, &nothing, p)).collect()
+            programmes.iter().map(|p| run(rig, beside, p)).collect()
         };
         let trajectories = all(bare)?;
         let mut weights = Vec::new();

@@ -156,6 +156,7 @@ mod tests {
             name: "one".to_owned(),
             seed: 1,
             effects: Vec::new(),
+            law: None,
             duration: 2.0,
             conditions: Conditions::default(),
         };

@@ -264,6 +264,7 @@ mod tests {
                 truth: "force_sensor_gain_error".to_owned(),
                 subsystem: "sensors".to_owned(),
                 parameters: [("gain".to_owned(), Known::Number(0.9))].into(),
+                formula: None,
             }],
             noise: CHANNELS
                 .iter()

@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use super::case_conditions::CaseConditions;
 use super::error::ProofError;
 use super::outcome::{Made, Outcome};
@@ -16,7 +19,7 @@ const SEEDS_PER_EFFECT: u64 = 1000;
 /// Seed of the first device with nothing missing.
 const EMPTY_SEED: u64 = 1_000_000;
 /// Seeds of a draw of devices.
-const SEEDS_PER_DRAW: u64 = 10_000_000;
+pub(super) const SEEDS_PER_DRAW: u64 = 10_000_000;
 /// Folder of the outcomes.
 const OUTCOMES: &str = "outcomes";
 
@@ -127,23 +130,66 @@ pub fn sweep(
     say: &(dyn Fn(usize, usize, &str) + Sync),
 ) -> Result<Vec<Outcome>, ProofError> {
     let tasks = plan.tasks()?;
-    let folder = out.join(OUTCOMES);
-    if !plan.resume && !plan.replace && folder.exists() {
+    let names: Vec<String> = tasks.iter().map(Task::name).collect();
+    let made: Vec<Made> = tasks.iter().map(|task| plan.made(task)).collect();
+    let course = Course {
+        out,
+        jobs: plan.jobs,
+        resume: plan.resume,
+        replace: plan.replace,
+    };
+    carry_out(
+        &course,
+        &names,
+        (&|outcome: &Outcome| outcome.made.clone(), &made),
+        &|index| attempt(plan, &tasks[index], out, diagnose),
+        &|outcome| format!("answered {}", outcome.answered()),
+        say,
+    )
+}
+
+/// How cases are gone through.
+#[derive(Debug, Clone, Copy)]
+pub struct Course<'a> {
+    /// Folder in which the outcomes are kept.
+    pub out: &'a Path,
+    /// Cases at a time.
+    pub jobs: usize,
+    /// Go on with what is there.
+    pub resume: bool,
+    /// Put new outcomes in place of what is there.
+    pub replace: bool,
+}
+
+/// The making of an outcome, and those that are asked for.
+type Makings<'a, O> = (&'a (dyn Fn(&O) -> Made + Sync), &'a [Made]);
+
+/// Attempts each case whose outcome does not stand in the folder yet, and keeps it there.
+pub(super) fn carry_out<O: Serialize + DeserializeOwned + Send>(
+    course: &Course<'_>,
+    names: &[String],
+    made: Makings<'_, O>,
+    attempt: &(dyn Fn(usize) -> Result<O, ProofError> + Sync),
+    words: &(dyn Fn(&O) -> String + Sync),
+    say: &(dyn Fn(usize, usize, &str) + Sync),
+) -> Result<Vec<O>, ProofError> {
+    let folder = course.out.join(OUTCOMES);
+    if !course.resume && !course.replace && folder.exists() {
         return Err(ProofError::Standing { folder });
     }
     std::fs::create_dir_all(&folder).map_err(|cause| ProofError::read(&folder, cause))?;
     let done = AtomicUsize::new(0);
-    let finished = queue::all(tasks.len(), plan.jobs, |index| {
-        let task = &tasks[index];
-        let path = folder.join(format!("{}.json", task.name()));
-        let stands = match plan.replace {
+    let finished = queue::all(names.len(), course.jobs, |index| {
+        let name = &names[index];
+        let path = folder.join(format!("{name}.json"));
+        let stands = match course.replace {
             true => None,
-            false => standing(&path, &plan.made(task))?,
+            false => standing(&path, made.0, &made.1[index])?,
         };
         let outcome = match stands {
             Some(outcome) => outcome,
             None => {
-                let outcome = attempt(plan, task, out, diagnose)?;
+                let outcome = attempt(index)?;
                 let text = serde_json::to_string_pretty(&outcome)
                     .map_err(|cause| ProofError::read(&path, cause))?;
                 write_text(&path, &(text + "\n"))?;
@@ -151,18 +197,17 @@ pub fn sweep(
             }
         };
         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-        let answered = format!("{}: answered {}", task.name(), outcome.answered());
-        say(count, tasks.len(), &answered);
-        Ok::<Outcome, ProofError>(outcome)
+        say(count, names.len(), &format!("{name}: {}", words(&outcome)));
+        Ok::<O, ProofError>(outcome)
     });
     let mut outcomes = Vec::new();
-    for (task, outcome) in tasks.iter().zip(finished) {
+    for (name, outcome) in names.iter().zip(finished) {
         // A fault of the program in one case is not written: it is tried again by --resume.
         match outcome {
             Some(outcome) => outcomes.push(outcome?),
             None => {
-                let fault = format!("{}: a fault of the program, see above", task.name());
-                say(tasks.len(), tasks.len(), &fault);
+                let fault = format!("{name}: a fault of the program, see above");
+                say(names.len(), names.len(), &fault);
             }
         }
     }
@@ -170,19 +215,24 @@ pub fn sweep(
 }
 
 /// The outcome that stands in a file already, if it is of this case.
-fn standing(path: &Path, made: &Made) -> Result<Option<Outcome>, ProofError> {
+fn standing<O: DeserializeOwned>(
+    path: &Path,
+    making: &dyn Fn(&O) -> Made,
+    made: &Made,
+) -> Result<Option<O>, ProofError> {
     let Ok(text) = std::fs::read_to_string(path) else {
         return Ok(None);
     };
-    let Ok(outcome) = serde_json::from_str::<Outcome>(&text) else {
+    let Ok(outcome) = serde_json::from_str::<O>(&text) else {
         return Ok(None);
     };
-    if outcome.made == *made {
+    let found = making(&outcome);
+    if found == *made {
         return Ok(Some(outcome));
     }
     Err(ProofError::OtherPlan {
         path: path.to_owned(),
-        found: outcome.made.to_string(),
+        found: found.to_string(),
         expected: made.to_string(),
     })
 }
@@ -205,6 +255,7 @@ fn attempt(
         name: name.clone(),
         seed: task.seed,
         effects,
+        law: None,
         duration: plan.duration,
         conditions: plan.conditions.of(task.seed, plan.duration),
     };
