@@ -338,15 +338,21 @@ impl Search<'_> {
         if promising.first().is_some_and(|best| best.fit.rough > noise) {
             self.converge(&mut promising, observer);
         }
-        let mut found = self.formulas(base, &promising, scale, observer);
-        found.retain(|h| scale.is_adequate(h) && self.term_shows(h));
+        let formulas = self.formulas(base, &promising, scale, observer);
+        let adequate = |h: &Hypothesis| scale.is_adequate(h) && self.term_shows(h);
+        let (mut found, others): (Vec<Hypothesis>, Vec<Hypothesis>) =
+            formulas.into_iter().partition(adequate);
         if found.is_empty() {
             promising.retain(|h| h.fit.rough < noise);
             found = self.curves_in_full(base, &promising, observer);
             found.retain(|h| scale.is_adequate(h));
         }
-        self.name_variables(base, &mut found, &promising);
         self.put_named_first(&mut found, scale, observer);
+        if !found.is_empty() {
+            // The next best forms, to be shown beside it.
+            found.extend(others);
+        }
+        self.name_variables(base, &mut found, &promising);
         found
     }
 
