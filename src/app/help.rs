@@ -150,5 +150,5 @@ Exit codes: 0 done, 2 bad input.
 Examples:
   # The ten cases of assets/proof, made anew.
   idc laboratory --out runs/laboratory
-  # Two devices with a law each that no list holds, to look at with `idc diagnose`.
+  # Two devices with a law each that no list holds, for `idc diagnose`.
   idc laboratory --laws 2 --out runs/laws-cases";

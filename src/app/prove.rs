@@ -243,32 +243,9 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
             bar.println(format!("{done} of {total}: {line}"));
         }
     };
-    let (count, text, json) = match arguments.laws {
-        None => {
-            let outcomes = sweep(&plan, &arguments.out, &*diagnose(), &tell);
-            bar.finish_and_clear();
-            let outcomes = outcomes?;
-            let json = serde_json::to_string_pretty(&outcomes)?;
-            (outcomes.len(), page(&outcomes), json)
-        }
-        Some(count) => {
-            let outcomes = laws(
-                &law_plan(count, arguments),
-                &Course {
-                    out: &arguments.out,
-                    jobs: plan.jobs,
-                    resume: plan.resume,
-                    replace: plan.replace,
-                },
-                &*diagnose(),
-                &tell,
-            );
-            bar.finish_and_clear();
-            let outcomes = outcomes?;
-            let json = serde_json::to_string_pretty(&outcomes)?;
-            (outcomes.len(), laws_page(&outcomes), json)
-        }
-    };
+    let found = swept(arguments, &plan, &tell);
+    bar.finish_and_clear();
+    let (count, text, json) = found?;
     write_text(&file, &text)?;
     if arguments.json {
         say(&(json + "\n"))?;
@@ -283,6 +260,28 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
         ))?;
     }
     Ok(ExitCode::Done)
+}
+
+/// Outcomes of a sweep over effects or laws: how many there are, their tables, and as JSON.
+fn swept(
+    arguments: &SweepArguments,
+    plan: &SweepPlan,
+    tell: &(dyn Fn(usize, usize, &str) + Sync),
+) -> Result<(usize, String, String), AppError> {
+    let Some(count) = arguments.laws else {
+        let outcomes = sweep(plan, &arguments.out, &*diagnose(), tell)?;
+        let json = serde_json::to_string_pretty(&outcomes)?;
+        return Ok((outcomes.len(), page(&outcomes), json));
+    };
+    let course = Course {
+        out: &arguments.out,
+        jobs: plan.jobs,
+        resume: plan.resume,
+        replace: plan.replace,
+    };
+    let outcomes = laws(&law_plan(count, arguments), &course, &*diagnose(), tell)?;
+    let json = serde_json::to_string_pretty(&outcomes)?;
+    Ok((outcomes.len(), laws_page(&outcomes), json))
 }
 
 fn law_plan(count: u64, arguments: &SweepArguments) -> LawPlan {

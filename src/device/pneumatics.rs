@@ -315,7 +315,6 @@ impl Device {
 
     /// Rates of the air at an outlet pressure of the regulator [Pa absolute], under outside influences. Into its one caller: a tenth of a step.
     #[inline(always)]
-    #[expect(clippy::too_many_lines, reason = "one balance, inlined as one")]
     pub(super) fn air_rates<const LEDGER: bool>(
         &self,
         air: &AirState,

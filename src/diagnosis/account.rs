@@ -5,6 +5,7 @@ mod document;
 mod link;
 mod missing;
 mod rivals;
+mod tried;
 mod unlisted;
 
 pub use document::{Account, AccountSection, SectionKind};

@@ -16,7 +16,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::concealed::{Concealed, Seals};
-use super::law::{Driver, Law, Place};
+use super::law::{AT_ONCE, Driver, Law, Place};
 use super::programme::Surface;
 use super::rig::LaboratoryRig;
 
@@ -66,9 +66,7 @@ const WALL_CAPACITY: f64 = 135.0;
 /// Conductance from wall to surroundings [W/K].
 const WALL_TO_AIR: f64 = 1.0;
 /// Time in which the droop of an outlet builds up [s].
-const DROOP_TIME: f64 = 1e-3;
-/// Memory that is none [s]: it breaks the loop of a law at the outlet of what flows from there.
-pub(super) const AT_ONCE: f64 = DROOP_TIME;
+const DROOP_TIME: f64 = AT_ONCE;
 /// Speed over which the direction of motion turns where a law says so [m/s].
 const TURNS: f64 = 1e-3;
 /// Least share of an orifice or a stiffness that a law leaves [1].
@@ -363,6 +361,32 @@ impl<'a> Equations<'a> {
         self.rates_and_flow(time, state).0
     }
 
+    /// Rates of a chamber's and its wall's temperature, as the state has them, by what flows in and the power [W] that the air gives to the piston:
+    /// m cv T' = cp (sum m'_in T_in - m'_out T) - cv T m' - p V' + G (T_w - T).
+    fn warming(
+        &self,
+        state: &State,
+        side: usize,
+        conductance: f64,
+        [mass_in, warmth_in]: [f64; 2],
+        work: f64,
+    ) -> [f64; 2] {
+        let gas = &self.rig.gas;
+        let warmth = state[at::WARMTH + side];
+        let cv = gas.constant / (gas.ratio - 1.0);
+        let cp = gas.ratio * cv;
+        let mass = state[at::AIR + side] * UNIT * self.swept / (gas.constant * gas.temperature);
+        let wall = 1.0 + 1e-3 * state[at::WALL + side];
+        let heat = conductance * (wall - warmth) * gas.temperature;
+        let brought = (cp * warmth_in - cv * warmth * mass_in) * gas.temperature;
+        let power = brought - work + heat;
+        let lost = WALL_TO_AIR * (wall - 1.0) * gas.temperature;
+        [
+            power / (mass * cv * gas.temperature),
+            -1e3 * (heat + lost) / WALL_CAPACITY / gas.temperature,
+        ]
+    }
+
     /// Rates of the state, and the air drawn from the regulator [kg/s].
     fn rates_and_flow(&self, time: f64, state: &State) -> (State, f64) {
         let (rig, concealed, gas) = (self.rig, self.concealed, &self.rig.gas);
@@ -412,19 +436,10 @@ impl<'a> Equations<'a> {
         for side in 0..2 {
             rates[at::AIR + side] = into[side][0] * rt / self.swept / UNIT;
             if let Some(conductance) = concealed.wall_conductance {
-                // m cv T' = cp (sum m'_in T_in - m'_out T) - cv T m' - p V' + G (T_w - T)
-                let cv = gas.constant / (gas.ratio - 1.0);
-                let cp = gas.ratio * cv;
-                let mass = state[at::AIR + side] * UNIT * self.swept / rt;
-                let wall = 1.0 + 1e-3 * state[at::WALL + side];
-                let heat = conductance * (wall - warmth[side]) * gas.temperature;
-                let power = (cp * into[side][1] - cv * warmth[side] * into[side][0])
-                    * gas.temperature
-                    - pressures[side] * growth[side]
-                    + heat;
-                rates[at::WARMTH + side] = power / (mass * cv * gas.temperature);
-                let lost = WALL_TO_AIR * (wall - 1.0) * gas.temperature;
-                rates[at::WALL + side] = -1e3 * (heat + lost) / WALL_CAPACITY / gas.temperature;
+                let work = pressures[side] * growth[side];
+                let [warming, wall] = self.warming(state, side, conductance, into[side], work);
+                rates[at::WARMTH + side] = warming;
+                rates[at::WALL + side] = wall;
             }
         }
         for (cell, rate) in line.rates.iter().enumerate() {
@@ -441,13 +456,7 @@ impl<'a> Equations<'a> {
             let goal = self.undrooped(time, state) - concealed.outlet_droop * line.drawn;
             rates[at::DROOPED] = (goal / UNIT - state[at::DROOPED]) / DROOP_TIME;
         }
-        if let Some(law) = concealed.law.as_ref().filter(|law| law.memory > 0.0) {
-            let value = match law.driver {
-                Driver::MassFlow => line.drawn,
-                driver => self.driver(driver, time, state),
-            };
-            rates[at::MEMORY] = (law.scaled(value) - state[at::MEMORY]) / law.memory;
-        }
+        self.remember(time, state, line.drawn, &mut rates);
 
         let (force, contact, seal_rate) = self.piston(time, state, pressures);
         rates[at::PLACE] = speed / rig.stroke;
@@ -458,6 +467,17 @@ impl<'a> Equations<'a> {
             rates[at::FORCE] = (signal / 100.0 - state[at::FORCE]) / concealed.force_lag;
         }
         (rates, line.drawn)
+    }
+
+    /// Rate of a law's memory, at a flow drawn from the regulator [kg/s].
+    fn remember(&self, time: f64, state: &State, drawn: f64, rates: &mut State) {
+        if let Some(law) = self.concealed.law.as_ref().filter(|law| law.memory > 0.0) {
+            let value = match law.driver {
+                Driver::MassFlow => drawn,
+                driver => self.driver(driver, time, state),
+            };
+            rates[at::MEMORY] = (law.scaled(value) - state[at::MEMORY]) / law.memory;
+        }
     }
 
     fn regulate(&self, time: f64, state: &State, rates: &mut State) {

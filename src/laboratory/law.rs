@@ -8,6 +8,9 @@
 //!
 //! Friction presses the seals: Coulomb friction of `equations::seal` at a level that the law gives.
 
+/// Memory that is none [s]: it breaks the loop of a law at the outlet of what flows from there.
+pub(super) const AT_ONCE: f64 = 1e-3;
+
 /// Where a law acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Place {
@@ -314,7 +317,7 @@ impl Law {
             0.0 => format!(", u = {name} / {range}"),
             _ => format!(", u = ({name} - {origin}) / {range}"),
         };
-        if self.memory > super::equations::AT_ONCE {
+        if self.memory > AT_ONCE {
             text += &format!(" lagged by {:.4} s", self.memory);
         }
         text

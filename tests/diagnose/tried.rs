@@ -71,8 +71,8 @@ fn a_guess_that_is_none_is_refused_with_its_place_and_writes_nothing() {
             "at `c / (x - x)`, character 1 of the expression: it is not finite in press.csv at 0.0000 s",
         ),
         (
-            "surface: c * ln(0.2 - t); c = 1..2",
-            "at `ln(0.2 - t)`, character 5 of the expression: it is not finite in press.csv at 0.2",
+            "surface: c * ln(1 - t / tau); c = 1..2 m; tau = 0.2 s",
+            "at `ln(1 - t / tau)`, character 5 of the expression: it is not finite in press.csv at 0.2",
         ),
     ] {
         let refused = diagnose(&bench, &["case", "--try", law, "--out", "out"]);

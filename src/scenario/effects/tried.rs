@@ -160,6 +160,9 @@ fn constant(part: &str) -> Result<Constant, LineError> {
     let numeric = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
     let end = value.find(|c| !numeric(c)).unwrap_or(value.len());
     let (numbers, unit) = value.split_at(end);
+    if numbers.is_empty() {
+        return Err(refuse(form));
+    }
     let unit = Some(unit.trim()).filter(|unit| !unit.is_empty());
     if let Some(unit) = unit
         && Unit::read(unit).is_err()
