@@ -71,6 +71,11 @@ impl Scale {
         (hypothesis.fit.rough - self.noise) / (self.rough - self.noise)
     }
 
+    /// Whether a rough fit leaves no more than the idealisation of its laws may, fitted in full or not.
+    pub fn is_idealised(&self, hypothesis: &Hypothesis) -> bool {
+        self.left_roughly(hypothesis) < 2.0 * IDEALISATION_LEFT
+    }
+
     /// Whether it explains at least half.
     pub fn is_half_explained(&self, hypothesis: &Hypothesis) -> bool {
         self.left_roughly(hypothesis) < 0.5

@@ -205,7 +205,8 @@ impl Search<'_> {
                 climb.full = self.in_full(&children, scale, &mut climb.done, observer);
                 climb.full.retain(|h| scale.is_adequate(h));
             }
-            if climb.full.is_empty() && (climb.levels.len() > 1 || self.asks_early(best, scale)) {
+            let asks = climb.levels.len() > 1 || self.asks_early(best, scale);
+            if climb.full.is_empty() && asks && !scale.is_idealised(best) {
                 self.formulas_beside_fewer(&mut climb, &children, scale, observer);
             } else if climb.full.first().is_some_and(|best| self.found(best) > 1) {
                 self.add_one_law(&mut climb, scale, observer);

@@ -257,7 +257,10 @@ impl Search<'_> {
             &climb.levels[0][0],
             climb.levels.get(1).map(|level| &level[0]),
         );
-        let Some(single) = single.filter(|_| !climb.asked.contains(&none.names())) else {
+        // In a cell a curve costs minutes.
+        let in_cell = (self.evidence.recordings.iter()).any(|r| r.inputs.cell.is_some());
+        let asks = !in_cell && !climb.asked.contains(&none.names());
+        let Some(single) = single.filter(|_| asks) else {
             return;
         };
         climb.asked.push(none.names());
