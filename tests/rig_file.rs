@@ -51,20 +51,29 @@ set_pressure_bar_gauge = 2
 "#;
 
 /// Laws as a diagnosis writes them, one for each kind of port.
-const LAWS: [(&str, &str); 10] = [
-    ("piston_force", "-250 * max(v, 0)"),
-    ("friction", "3 + 400 * x"),
-    ("set_pressure", "-min(p_set, 11000)"),
-    ("outlet_pressure", "1750 * sin(22 * t)"),
+const LAWS: [(&str, &str, &str); 10] = [
+    ("piston_force", "c * max(v, 0)", "c = -250"),
+    (
+        "friction",
+        "height + gain * x",
+        "height = 3\ngain = 400\nbristle_stiffness = 1e5",
+    ),
+    ("set_pressure", "-min(p_set, limit)", "limit = 11000"),
+    (
+        "outlet_pressure",
+        "height * sin(2 * pi * frequency * t)",
+        "height = 1750\nfrequency = 3.5",
+    ),
     (
         "first_chamber_leak",
-        "1.2e-6 * min(max((0.0112 - x) / 0.002, 0), 1)",
+        "area * min(max((x_0 - x) / width, 0), 1)",
+        "area = 1.2e-6\nx_0 = 0.0112\nwidth = 0.002",
     ),
-    ("supply_orifice", "-4e-7 * t"),
-    ("exhaust_orifice", "-3e-5 * x"),
-    ("surface", "2e-4 * t"),
-    ("contact_stiffness", "-2e4 * t"),
-    ("force_reading", "-min(max(f, -10), 10)"),
+    ("supply_orifice", "gain * t", "gain = -4e-7"),
+    ("exhaust_orifice", "gain * x", "gain = -3e-5"),
+    ("surface", "gain * t", "gain = 2e-4"),
+    ("contact_stiffness", "gain * t", "gain = -2e4"),
+    ("force_reading", "-min(max(f, -limit), limit)", "limit = 10"),
 ];
 
 /// What a diagnosis ends with is a law in a file: a bench that runs it and a prediction from it are one computation.
@@ -83,13 +92,9 @@ fn bench_and_prediction_of_a_law_are_the_same() {
         (recording, predicted, plant.device.gas.atmosphere)
     };
     let (_, bare, _) = readings("");
-    for (port, is) in LAWS {
-        let stiffness = match port {
-            "friction" => "bristle_stiffness = 1e5\n",
-            _ => "",
-        };
+    for (port, is, constants) in LAWS {
         let law = format!(
-            "\n[[effect]]\nname = \"unlisted\"\nacts_on = \"{port}\"\nis = \"{is}\"\n{stiffness}"
+            "\n[[effect]]\nname = \"unlisted\"\nacts_on = \"{port}\"\nis = \"{is}\"\n{constants}\n"
         );
         let (recording, predicted, atmosphere) = readings(&law);
         let mut moved = 0.0f64;
