@@ -1,12 +1,16 @@
-//! `idc edges`: what edges a part has.
+//! `idc edges`: what edges a part has, as a list or as a page to pick one from.
+
+mod page;
 
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::error::{AppError, ExitCode};
+use super::files::{Standing, is_same, prepare_file};
 use super::output::say;
 use super::progress;
+use crate::recording::atomic::write_text;
 use crate::workpiece::{
     Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, list_edges, load_mesh,
 };
@@ -22,6 +26,12 @@ pub(super) struct EdgesArguments {
     /// Dihedral angle above which an edge counts as sharp [deg].
     #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
     sharp_angle_deg: f64,
+    /// File for a page with the part in 3D, on which edges are picked; its lines go into a scenario.
+    #[arg(long, value_name = "PAGE.html", help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Put the page in place of a file that --out names.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
     /// Print them as JSON.
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -32,6 +42,17 @@ enum MeshUnit {
     Mm,
     M,
     Inch,
+}
+
+impl MeshUnit {
+    /// As `mesh_unit` of a scenario has it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Mm => "mm",
+            Self::M => "m",
+            Self::Inch => "inch",
+        }
+    }
 }
 
 pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
@@ -48,6 +69,13 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
             expected: "1 to 170",
         });
     }
+    if let Some(out) = &arguments.out
+        && is_same(out, &arguments.mesh)
+    {
+        return Err(AppError::Overwrites {
+            file: out.display().to_string(),
+        });
+    }
     let spinner = progress::spinner("looking for edges", arguments.json);
     let mesh = load_mesh(&arguments.mesh, scale)?;
     let search = EdgeSearch {
@@ -56,11 +84,18 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     };
     let list = list_edges(&mesh, &search);
     spinner.finish_and_clear();
+    if let Some(out) = &arguments.out {
+        prepare_file(out, "--out", Standing::of(arguments.force))?;
+        write_text(out, &page::page(arguments, &mesh, &list))?;
+    }
     say(&if arguments.json {
         json(arguments, &list)
     } else {
         list.table()
     })?;
+    if let (Some(out), false) = (&arguments.out, arguments.json) {
+        say(&format!("page written to {}\n", out.display()))?;
+    }
     Ok(ExitCode::Done)
 }
 
@@ -75,25 +110,33 @@ fn json(arguments: &EdgesArguments, list: &EdgeList) -> String {
     format!("{document:#}\n")
 }
 
-fn described(curve: &EdgeCurve) -> serde_json::Value {
-    let millimetres = |point: Option<&DVec3>| point.map(|point| (*point * 1e3).to_array());
-    let kind = match curve.kind {
+fn kind(curve: &EdgeCurve) -> &'static str {
+    match curve.kind {
         CurveKind::Straight => "straight",
         CurveKind::Arc { .. } => "arc",
         CurveKind::Polyline => "polyline",
-    };
-    let convexity = match curve.convexity {
+    }
+}
+
+fn convexity(curve: &EdgeCurve) -> &'static str {
+    match curve.convexity {
         Convexity::Convex => "convex",
         Convexity::Concave => "concave",
         Convexity::Mixed => "mixed",
-    };
+    }
+}
+
+fn described(curve: &EdgeCurve) -> serde_json::Value {
+    let millimetres = |point: Option<&DVec3>| point.map(|point| (*point * 1e3).to_array());
     serde_json::json!({
         "id": curve.id,
-        "kind": kind,
+        "kind": kind(curve),
         "length_mm": curve.length * 1e3,
+        // Smallest and largest.
+        "angle_deg": curve.dihedral_range().map(f64::to_degrees),
         "start_mm": millimetres(curve.points.first()),
         "end_mm": millimetres(curve.points.last()),
-        "convexity": convexity,
+        "convexity": convexity(curve),
         "closed": curve.closed,
         "corners": curve.corners.len(),
     })

@@ -1,13 +1,14 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, figures.svg of a bench, varied.toml of `--set`; those of a
-//! study: design.json, override.toml,
-//! front.svg, report.html. All appear, or none.
+//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, drawing.json, figures.svg of a bench, varied.toml of
+//! `--set`; those of a study: design.json, override.toml, front.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::error::AppError;
+use super::space;
 use crate::drawing;
 use crate::metrics::FOLLOW_PHASE;
+use crate::page::Drawing;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
@@ -20,11 +21,13 @@ pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const FIGURES: &str = "figures.svg";
 pub(super) const CELL: &str = "cell.svg";
 pub(super) const EDGE: &str = "edge.svg";
+/// What the page draws in space.
+pub(super) const DRAWING: &str = "drawing.json";
 /// The scenario as `--set` made it.
 pub(super) const VARIED: &str = "varied.toml";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 8] = [
-    RECORDING, SAMPLES, SUMMARY, FIGURES, CELL, EDGE, REPORT, VARIED,
+pub(super) const RUN_NAMES: [&str; 9] = [
+    RECORDING, SAMPLES, SUMMARY, FIGURES, CELL, EDGE, DRAWING, REPORT, VARIED,
 ];
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
@@ -170,6 +173,11 @@ impl OutputFolder {
             write_text(&unfinished.path().join(EDGE), edge)?;
             names.push(EDGE);
         }
+        if let Some(space) = &output.sketches.space {
+            let text = serde_json::to_string(space)?;
+            write_text(&unfinished.path().join(DRAWING), &text)?;
+            names.push(DRAWING);
+        }
         if recorded {
             names.insert(0, RECORDING);
         }
@@ -252,7 +260,7 @@ pub(super) struct RunOutput<'a> {
     pub figures: Option<&'a str>,
     /// varied.toml.
     pub varied: Option<&'a str>,
-    /// cell.svg and edge.svg.
+    /// cell.svg, edge.svg and drawing.json.
     pub sketches: &'a Sketches,
     /// report.html.
     pub report: &'a str,
@@ -264,6 +272,8 @@ pub(super) struct Sketches {
     pub cell: String,
     /// The edge in the colours of its force error; none on a bench.
     pub edge: Option<String>,
+    /// Both in space; none on a bench.
+    pub space: Option<Drawing>,
 }
 
 impl Sketches {
@@ -275,6 +285,7 @@ impl Sketches {
         Self {
             cell: drawing::cell(scene, moment),
             edge: drawing::edge(scene),
+            space: space::of_run(scene, moment),
         }
     }
 }

@@ -28,6 +28,7 @@ mod prove;
 mod report;
 mod run;
 mod schema;
+mod space;
 mod view;
 mod viewer;
 

@@ -16,8 +16,8 @@ use clap::Args;
 use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
-    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, EDGE, FRONT, REPORT, SAMPLES, SUMMARY, Sketches,
-    Standing, is_same, prepare_file,
+    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, FRONT, REPORT, SAMPLES, SUMMARY,
+    Sketches, Standing, is_same, prepare_file,
 };
 use super::output::say;
 use crate::diagnosis::answer::Answer;
@@ -66,7 +66,7 @@ pub(super) struct ReportArguments {
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
     let inputs = [
-        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DESIGN, FRONT,
+        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DRAWING, DESIGN, FRONT,
     ];
     if let Some(out) = &arguments.out
         && inputs.iter().any(|name| is_same(&folder.join(name), out))
@@ -132,6 +132,7 @@ pub(super) fn page_of_run(
         recording: Cow::Borrowed(recording),
         cell: Some(Cow::Borrowed(&sketches.cell)),
         edge: sketches.edge.as_deref().map(Cow::Borrowed),
+        space: sketches.space.as_ref().map(Cow::Borrowed),
     }))
 }
 
@@ -143,11 +144,15 @@ pub(super) fn of_design(document: &serde_json::Value, front: Option<&str>) -> St
 /// A run as its folder has it.
 pub(super) fn read_run(folder: &Path) -> Result<RunResult<'static>, AppError> {
     let picture = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+    // A bench has none, nor has a run of an older version.
+    let space = folder.join(DRAWING);
+    let space = space.is_file().then(|| read_json(&space)).transpose()?;
     Ok(RunResult {
         document: read_json(&folder.join(SUMMARY))?,
         recording: Cow::Owned(read_parquet(&folder.join(SAMPLES))?.recording),
         cell: picture(CELL).map(Cow::Owned),
         edge: picture(EDGE).map(Cow::Owned),
+        space: space.map(Cow::Owned),
     })
 }
 

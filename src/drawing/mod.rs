@@ -2,18 +2,23 @@
 //! the force, names, a scale. An SVG document in the colours of the page that it stands in; the same scene gives the same bytes.
 
 mod faces;
+mod numbered;
 mod png;
 mod raster;
+mod solids;
 mod view;
 
 use glam::{DVec2, DVec3};
 
 use self::faces::{Face, faces};
 use self::raster::{Camera, Raster};
-use self::view::edge_direction;
 use crate::quantity::with_unit;
 use crate::recording::error_scale::ErrorScale;
-use crate::recording::scene::{EdgePath, Scene};
+use crate::recording::scene::{ContactArrow, EdgePath, Scene};
+
+pub use self::numbered::{Numbered, numbered};
+pub use self::solids::Solid;
+pub use self::view::edge_direction;
 
 /// Size of a picture [pixel]; shown smaller where there is less room.
 const SIZE: [usize; 2] = [640, 440];
@@ -23,6 +28,8 @@ const MARGIN: f64 = 46.0;
 const LEGEND: usize = 64;
 /// Depth by which something must lie nearer to the eye to hide a piece of the edge [m].
 const HIDDEN: f64 = 0.003;
+/// From where a cell is looked at.
+pub const CELL_EYE: DVec3 = DVec3::new(0.75, -1.0, 0.45);
 /// Length of the arrow of the largest force [pixel].
 const ARROW: f64 = 70.0;
 
@@ -31,8 +38,7 @@ const ARROW: f64 = 70.0;
 pub fn cell(scene: &Scene, moment: f64) -> String {
     let frame = frame_at(scene, moment);
     let all = faces(scene, frame, |_| true);
-    let eye = DVec3::new(0.75, -1.0, 0.45);
-    let (camera, image) = drawn(&all, eye, SIZE);
+    let (camera, image) = drawn(&all, CELL_EYE, SIZE);
     let mut svg = Svg::new(SIZE, "The cell", &image);
     edge_line(&mut svg, &scene.edge_path, &camera, None);
     names(&mut svg, scene, &all, &camera);
@@ -64,6 +70,17 @@ pub fn edge(scene: &Scene) -> Option<String> {
     scale_bar(&mut svg, &camera, SIZE[1] as f64 - 14.0);
     legend(&mut svg, scale, path);
     Some(svg.end())
+}
+
+/// The bodies at a moment [s], and the contact force; where they have more triangles than `most` together, they are simplified.
+#[must_use]
+pub fn solids(scene: &Scene, moment: f64, most: usize) -> (Vec<Solid>, Option<ContactArrow>) {
+    let frame = frame_at(scene, moment);
+    let arrow = scene.contact_arrows.get(frame).copied();
+    (
+        solids::solids(scene, frame, most),
+        arrow.filter(|arrow| arrow.force_in_world != DVec3::ZERO),
+    )
 }
 
 /// The frame nearest to a moment.

@@ -13,7 +13,8 @@ const OUTSIDE: f64 = 0.3;
 const USUAL: f64 = 0.08;
 
 /// From the part towards the eye: of the directions on the side that the tool comes from that in which the edge looks longest, a usual one of equals.
-pub(super) fn edge_direction(scene: &Scene) -> DVec3 {
+#[must_use]
+pub fn edge_direction(scene: &Scene) -> DVec3 {
     let usual = DVec3::new(0.75, -1.0, 0.55).normalize();
     let points = &scene.edge_path.points_in_world;
     let pieces: Vec<DVec3> = points.windows(2).map(|two| two[1] - two[0]).collect();

@@ -1,9 +1,8 @@
 //! A chart: a panel of a figure with its numbers, as the page's script takes it.
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
+use super::packed;
 use super::thin::kept;
 use crate::figure::{Horizontal, Panel, Series, Stroke};
 
@@ -168,12 +167,14 @@ fn coarse(value: f64) -> f64 {
 
 /// Little-endian `f32` in base64.
 fn packed(values: impl Iterator<Item = f64>) -> String {
-    let bytes: Vec<u8> = values.flat_map(|v| (v as f32).to_le_bytes()).collect();
-    STANDARD.encode(bytes)
+    packed::text(values.flat_map(|v| (v as f32).to_le_bytes()))
 }
 
 #[cfg(test)]
 mod tests {
+    use base64::Engine as _;
+    use base64::engine::general_purpose::STANDARD;
+
     use super::*;
     use crate::figure::Role;
 

@@ -1,6 +1,7 @@
 //! A page as one HTML document.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+use serde_json::{Value, json};
 
 use super::{Block, Chart, Page, PageSection, PageTable, Strip, TableCell, Tone};
 
@@ -8,6 +9,8 @@ const STYLE: &str = include_str!("../../assets/page/page.css");
 const CHART_STYLE: &str = include_str!("../../assets/page/uplot/uPlot.min.css");
 const CHART_SCRIPT: &str = include_str!("../../assets/page/uplot/uPlot.iife.min.js");
 const SCRIPT: &str = include_str!("../../assets/page/page.js");
+const SPACE_LIBRARY: &str = include_str!("../../assets/page/three/three.iife.min.js");
+const SPACE_SCRIPT: &str = include_str!("../../assets/page/drawing.js");
 /// Nothing may be asked for over a network.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
@@ -64,12 +67,16 @@ pub fn html(page: &Page<'_>) -> String {
                     nav aria-label="Contents" { @for section in &page.sections {
                         a href={ "#" (anchor(&section.title)) } { (section.title) }
                     } }
-                    noscript { p { "The charts need JavaScript; all numbers stand in the tables." } }
+                    noscript { p { "Charts, and drawings that turn, need JavaScript; all numbers stand in the tables." } }
                 }
                 main { @for part in &page.sections { (section(part, &budget)) } }
                 footer { (page.footer) }
                 script { (PreEscaped(CHART_SCRIPT)) }
                 script { (PreEscaped(SCRIPT)) }
+                @if page.sections.iter().any(|section| in_space(&section.blocks)) {
+                    script { (PreEscaped(SPACE_LIBRARY)) }
+                    script { (PreEscaped(SPACE_SCRIPT)) }
+                }
             }
         }
     }
@@ -85,6 +92,15 @@ fn numbers(blocks: &[Block<'_>]) -> (usize, usize) {
     };
     let counts = blocks.iter().map(of);
     counts.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
+}
+
+/// Whether there is a drawing in space.
+fn in_space(blocks: &[Block<'_>]) -> bool {
+    blocks.iter().any(|block| match block {
+        Block::InSpace(..) => true,
+        Block::Folded(_, blocks) => in_space(blocks),
+        _ => false,
+    })
 }
 
 fn section(part: &PageSection<'_>, budget: &Budget) -> Markup {
@@ -108,10 +124,11 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Lines(text) => pre { (text) },
             // Drawn by src/figure, whose texts are escaped.
             Block::Picture(svg) => div.picture { (PreEscaped(svg)) },
-            // Drawn by src/drawing, whose texts are its own.
-            Block::Sketches(all) => div.sketches { @for (words, svg) in all {
-                figure { (PreEscaped(svg)) figcaption { (words) } }
-            } },
+            Block::Sketches(all) => (sketches(all)),
+            Block::InSpace(drawing, instead) => div.space {
+                (sketches(instead))
+                script type="application/json" { (PreEscaped(within_script(&json!(drawing)))) }
+            },
             Block::File(name, words) => p { a href=(name) { (name) } ": " (words) },
             Block::Folded(summary, blocks) => details {
                 summary { (summary) }
@@ -121,13 +138,26 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
     }
 }
 
+// Drawn by src/drawing, whose texts are its own.
+fn sketches(all: &[(String, String)]) -> Markup {
+    markup! {
+        div.sketches { @for (words, svg) in all {
+            figure { (PreEscaped(svg)) figcaption { (words) } }
+        } }
+    }
+}
+
+/// Data in a script, within which `</script>` would end it, and `<!--<script>` hide its end.
+fn within_script(data: &Value) -> String {
+    data.to_string().replace('<', "\\u003c")
+}
+
 fn chart(chart: &Chart<'_>, budget: &Budget) -> Markup {
     let columns = chart.panel.series.len() + 1;
     let share = (budget.share * chart.numbers() as f64) as usize;
     let most = share.max(budget.least) / columns;
     let (told, [kept, of]) = chart.told(most);
-    // Within a script `</script>` would end it, and `<!--<script>` hide its end.
-    let told = told.to_string().replace('<', "\\u003c");
+    let told = within_script(&told);
     let picked = match chart.is_cloud() {
         true => "an even pick",
         false => "the extremes of each stretch",

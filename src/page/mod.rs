@@ -1,13 +1,17 @@
 //! Pages for a browser: one HTML file with everything in it, for people who have nothing else installed.
 //!
-//! A [`Page`] is plain data. Its charts are drawn in the browser by uPlot (`assets/page/uplot/`), which stands in the file; the page may ask for nothing
-//! over a network, and says so to the browser (Content-Security-Policy). The same page gives the same bytes.
+//! A [`Page`] is plain data. Its charts are drawn in the browser by uPlot (`assets/page/uplot/`) and what is seen in space by three.js
+//! (`assets/page/three/`), which stand in the file; the page may ask for nothing over a network, and says so to the browser (Content-Security-Policy).
+//! The same page gives the same bytes.
 
 mod chart;
+mod drawing;
 mod html;
+mod packed;
 mod thin;
 
 pub use chart::Chart;
+pub use drawing::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
 pub use html::html;
 pub use thin::kept;
 
@@ -87,6 +91,8 @@ pub enum Block<'a> {
     Picture(String),
     /// Pictures of our own side by side as far as there is room: what each shows, and an SVG document in the page's colours.
     Sketches(Vec<(String, String)>),
+    /// Bodies and lines in space, which a reader can turn; on paper, and where a browser does not draw in space, pictures as above.
+    InSpace(&'a Drawing, Vec<(String, String)>),
     /// A file beside the page: its name, and what it holds.
     File(String, String),
     /// A part that is folded away until it is asked for: a summary and blocks.

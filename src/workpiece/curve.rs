@@ -141,6 +141,14 @@ impl EdgeCurve {
         normal_a.angle_between(normal_b)
     }
 
+    /// The smallest and the largest of these angles [rad].
+    pub fn dihedral_range(&self) -> [f64; 2] {
+        let angles = (0..self.normals.len()).map(|segment| self.dihedral_angle(segment));
+        angles.fold([f64::INFINITY, 0.0], |[low, high], angle| {
+            [low.min(angle), high.max(angle)]
+        })
+    }
+
     /// The place at path length `position` [m]. Beyond its ends an open curve holds them; a closed
     /// curve is periodic.
     ///

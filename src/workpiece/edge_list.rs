@@ -79,11 +79,7 @@ fn table_line(curve: &EdgeCurve) -> String {
             .map(|metres| (metres * 1e6).round() / 1e3 + 0.0);
         format!("({x:.3} {y:.3} {z:.3})")
     };
-    let angles: Vec<f64> = (0..curve.normals.len())
-        .map(|segment| curve.dihedral_angle(segment).to_degrees())
-        .collect();
-    let low = angles.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = angles.iter().copied().fold(0.0, f64::max);
+    let [low, high] = curve.dihedral_range().map(f64::to_degrees);
     let angle = if high - low < 0.1 {
         format!("{low:.1}")
     } else {

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::provenance::provenance_of;
 use super::signals::{along_the_path, joints, signals};
 use crate::metrics::{BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, WIDE_BAND};
-use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
+use crate::page::{Block, Drawing, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 use crate::recording::Recording;
 use crate::report::{LEVELS, LevelColumn, far_from_desired, shown};
@@ -22,6 +22,8 @@ pub(in super::super) struct RunResult<'a> {
     pub cell: Option<Cow<'a, str>>,
     /// edge.svg.
     pub edge: Option<Cow<'a, str>>,
+    /// drawing.json.
+    pub space: Option<Cow<'a, Drawing>>,
 }
 
 /// A metric for people.
@@ -293,7 +295,12 @@ fn pictures<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let pictures: Vec<(String, String)> = (pictures.into_iter())
         .filter_map(|(words, svg)| Some((words.to_owned(), svg.as_ref()?.to_string())))
         .collect();
-    (!pictures.is_empty()).then(|| PageSection::new(title, vec![Block::Sketches(pictures)]))
+    let block = match &run.space {
+        Some(space) => Block::InSpace(space, pictures),
+        None if pictures.is_empty() => return None,
+        None => Block::Sketches(pictures),
+    };
+    Some(PageSection::new(title, vec![block]))
 }
 
 /// Result of each command of a bench.

@@ -1,0 +1,345 @@
+//! The page of a part's edges, from which one is picked for a scenario.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+use glamx::DPose3;
+
+use super::super::picture::PART;
+use super::super::space::{MILLIMETRES, body, floats};
+use super::{EdgesArguments, convexity, kind};
+use crate::drawing::{self, Numbered};
+use crate::page::{
+    Block, Drawing, DrawnLine, DrawnView, Fact, Page, PageSection, PageTable, TableCell, html,
+};
+use crate::quantity::counted;
+use crate::recording::scene::{Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
+use crate::workpiece::{Convexity, CurveKind, EdgeCurve, EdgeList, TriangleMesh};
+
+/// Triangles of the part at most: about 5 MB.
+const MOST_TRIANGLES: usize = 200_000;
+/// The page's colours for lines.
+const COLOURS: usize = 6;
+/// How far an outline is drawn within the face that it bounds, so that outlines of neighbours lie apart: share of the part's size, and of its own length [1].
+const INSET: [f64; 2] = [0.012, 0.04];
+/// From where a part is looked at.
+const EYE: DVec3 = DVec3::new(0.6, -1.0, 0.7);
+
+/// The page as a document.
+pub(super) fn page(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeList) -> String {
+    let scene = scene_of(mesh);
+    let (solids, _) = drawing::solids(&scene, 0.0, MOST_TRIANGLES);
+    let (low, high) = mesh.bounds();
+    let size = high - low;
+    let lines = |curves: &[EdgeCurve], view: usize| -> Vec<DrawnLine> {
+        let colours = told_apart(curves);
+        let curves = curves.iter().zip(colours);
+        curves
+            .map(|(curve, colour)| DrawnLine {
+                view: Some(view),
+                colour,
+                ..line(arguments, curve, size.length())
+            })
+            .collect()
+    };
+    let view = |name: &str| DrawnView {
+        name: name.to_owned(),
+        eye: EYE.to_array(),
+    };
+    let drawn = Drawing {
+        name: "The part and its edges".to_owned(),
+        views: vec![view("Edges"), view("Outlines of faces")],
+        bodies: solids.iter().map(|solid| body(solid, None, None)).collect(),
+        lines: [lines(&list.edges, 0), lines(&list.loops, 1)].concat(),
+        ..Drawing::default()
+    };
+    let numbered = |(number, curve): (usize, &EdgeCurve)| Numbered {
+        points: closed(curve, curve.points.clone()),
+        number,
+        pale: curve.convexity != Convexity::Convex,
+    };
+    let numbered: Vec<Numbered> = list.edges.iter().enumerate().map(numbered).collect();
+    let picture = (
+        "The part and the numbers of its edges; pale where the part hides them.".to_owned(),
+        drawing::numbered(&scene, &numbered, EYE),
+    );
+    let triangles: usize = solids.iter().map(|solid| solid.triangles.len()).sum();
+    let kept = (triangles < mesh.triangles().len()).then(|| {
+        let all = mesh.triangles().len();
+        Block::Hint(format!(
+            "The part is drawn with {triangles} of its {all} triangles; edges and numbers are those of the whole."
+        ))
+    });
+    let blocks = [Block::InSpace(&drawn, vec![picture])]
+        .into_iter()
+        .chain(kept)
+        .chain([Block::PageTable(table(list))]);
+    html(&Page {
+        title: format!("Edges of {}", name_of(arguments)),
+        verdict: verdict(list),
+        lead: vec![
+            "Pick an edge in the drawing or in the table: the lines beside it go into a scenario in the place of its [workpiece.edge].".to_owned(),
+        ],
+        facts: facts(arguments, size, list),
+        sections: vec![PageSection::new("Part and edges", blocks.collect())],
+        footer: "Made by idc edges.".to_owned(),
+        ..Page::default()
+    })
+}
+
+fn name_of(arguments: &EdgesArguments) -> String {
+    let name = arguments.mesh.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}
+
+fn is_convex(curve: &&EdgeCurve) -> bool {
+    curve.convexity == Convexity::Convex
+}
+
+fn verdict(list: &EdgeList) -> String {
+    let outlines = counted(list.loops.len(), "outline");
+    match list.edges.len() {
+        0 => "The part has no sharp edge.".to_owned(),
+        edges => format!(
+            "{} and {outlines} of faces; a tool can ride {} and {} of them.",
+            counted(edges, "edge"),
+            list.edges.iter().filter(is_convex).count(),
+            list.loops.iter().filter(is_convex).count(),
+        ),
+    }
+}
+
+fn facts(arguments: &EdgesArguments, size: DVec3, list: &EdgeList) -> Vec<Fact> {
+    let size = (MILLIMETRES * size).to_array().map(short).join(" × ");
+    let curves = list.edges.iter();
+    let longest = curves.max_by(|a, b| a.length.total_cmp(&b.length));
+    let size = Fact {
+        name: "size in x, y, z".to_owned(),
+        value: format!("{size} mm"),
+        remark: format!("with the file in {}", arguments.unit.name()),
+    };
+    let longest = longest.map(|curve| Fact {
+        name: "longest edge".to_owned(),
+        value: format!("{} mm", short(MILLIMETRES * curve.length)),
+        remark: curve.id.clone(),
+    });
+    let sharp = Fact {
+        name: "sharp from".to_owned(),
+        value: format!("{}°", short(arguments.sharp_angle_deg)),
+        remark: "between the normals of two faces (--sharp-angle-deg)".to_owned(),
+    };
+    [Some(size), longest, Some(sharp)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// The part alone, in its own frame.
+fn scene_of(mesh: &TriangleMesh) -> Scene {
+    Scene {
+        bodies: vec![SceneBody {
+            entity: "workpiece".to_owned(),
+            shapes: vec![SceneShape {
+                body_from_shape: DPose3::IDENTITY,
+                geometry: SceneGeometry::Mesh {
+                    vertices: mesh.vertices().to_vec(),
+                    triangles: mesh.triangles().to_vec(),
+                },
+                colour: PART,
+            }],
+            world_from_body: ScenePoses::Static(DPose3::IDENTITY),
+        }],
+        ..Scene::default()
+    }
+}
+
+fn line(arguments: &EdgesArguments, curve: &EdgeCurve, size: f64) -> DrawnLine {
+    let points = match curve.id.starts_with("loop") {
+        true => within_its_face(curve, (INSET[0] * size).min(INSET[1] * curve.length)),
+        false => curve.points.clone(),
+    };
+    let outward = curve.normals.iter().map(|(a, b)| *a + *b).sum::<DVec3>();
+    let remark = match curve.convexity {
+        Convexity::Convex => "",
+        Convexity::Concave => "An inside edge, cannot be ridden.",
+        Convexity::Mixed => "An inside edge in a part of it, cannot be ridden.",
+    };
+    DrawnLine {
+        id: curve.id.clone(),
+        label: number(curve).to_owned(),
+        points: floats(closed(curve, points)),
+        pale: !remark.is_empty(),
+        outward: outward.normalize_or_zero().to_array(),
+        facts: told(curve),
+        remark: remark.to_owned(),
+        lines: match remark {
+            "" => to_paste(arguments, curve),
+            _ => String::new(),
+        },
+        ..DrawnLine::default()
+    }
+}
+
+fn number(curve: &EdgeCurve) -> &str {
+    curve.id.rsplit('-').next().unwrap_or_default()
+}
+
+/// A closed curve ends where it began.
+fn closed(curve: &EdgeCurve, mut points: Vec<DVec3>) -> Vec<DVec3> {
+    if curve.closed {
+        points.extend(points.first().copied());
+    }
+    points
+}
+
+/// An outline moved into the face on its left.
+fn within_its_face(curve: &EdgeCurve, by: f64) -> Vec<DVec3> {
+    let count = curve.points.len();
+    let left = |segment: usize| {
+        let along = curve.points[(segment + 1) % count] - curve.points[segment];
+        curve.normals[segment].0.cross(along).normalize_or_zero()
+    };
+    let moved = |(index, point): (usize, &DVec3)| {
+        let [before, after] = [left((index + count - 1) % count), left(index)];
+        // At a corner as far as both sides ask for, within bounds where it is acute.
+        let both = before + after;
+        *point + by * both * (2.0 / both.length_squared().max(1.0))
+    };
+    curve.points.iter().enumerate().map(moved).collect()
+}
+
+/// Colours such that curves that touch differ, as far as there are colours.
+fn told_apart(curves: &[EdgeCurve]) -> Vec<usize> {
+    let key = |point: &DVec3| (1e7 * *point).round().to_array().map(|v| v as i64);
+    let mut taken: BTreeMap<[i64; 3], BTreeSet<usize>> = BTreeMap::new();
+    let mut used = [0usize; COLOURS];
+    let mut colours = Vec::new();
+    for curve in curves {
+        let keys: Vec<_> = curve.points.iter().map(key).collect();
+        let touched: BTreeSet<usize> = (keys.iter())
+            .filter_map(|key| taken.get(key))
+            .flatten()
+            .copied()
+            .collect();
+        let order = |colour: &usize| (touched.contains(colour), used[*colour]);
+        let colour = (0..COLOURS).min_by_key(order).unwrap_or(0);
+        used[colour] += 1;
+        for key in keys {
+            taken.entry(key).or_default().insert(colour);
+        }
+        colours.push(colour);
+    }
+    colours
+}
+
+/// What is told of an edge, the first two under the pointer as well.
+fn told(curve: &EdgeCurve) -> Vec<[String; 2]> {
+    let shape = match curve.kind {
+        CurveKind::Arc { radius, angle } => format!(
+            "arc, radius {} mm over {}°",
+            short(MILLIMETRES * radius),
+            short(angle.to_degrees())
+        ),
+        CurveKind::Polyline => format!("polyline of {}", counted(curve.normals.len(), "piece")),
+        CurveKind::Straight => kind(curve).to_owned(),
+    };
+    let mut told = vec![
+        ("length", format!("{} mm", length(curve))),
+        ("angle between the faces", angle(curve)),
+        ("form", shape),
+        ("side", convexity(curve).to_owned()),
+        ("start", format!("({}) mm", place(curve.points[0]))),
+    ];
+    if curve.closed {
+        told.push((
+            "closed",
+            format!("yes, {}", counted(curve.corners.len(), "corner")),
+        ));
+    } else {
+        told.push(("end", format!("({}) mm", place(end(curve)))));
+    }
+    told.into_iter()
+        .map(|(name, value)| [name.to_owned(), value])
+        .collect()
+}
+
+fn end(curve: &EdgeCurve) -> DVec3 {
+    curve
+        .at(if curve.closed { 0.0 } else { curve.length })
+        .point
+}
+
+/// Lines of a scenario that choose an edge.
+fn to_paste(arguments: &EdgesArguments, curve: &EdgeCurve) -> String {
+    let key = curve.id.split('-').next().unwrap_or_default();
+    let mesh = arguments.mesh.display().to_string();
+    let mut text = format!(
+        "# [workpiece] has the part: mesh = {mesh:?}, mesh_unit = \"{}\"\n[workpiece.edge]\n{key} = {}\n",
+        arguments.unit.name(),
+        number(curve),
+    );
+    if (arguments.sharp_angle_deg
+        - crate::workpiece::EdgeSearch::default()
+            .sharp_angle
+            .to_degrees())
+    .abs()
+        > 1e-9
+    {
+        text += &format!("sharp_angle_deg = {:?}\n", arguments.sharp_angle_deg);
+    }
+    text + &format!("# start_mm = 0\n# end_mm = {}\n", length(curve))
+}
+
+/// All curves with their numbers.
+fn table(list: &EdgeList) -> PageTable {
+    let columns = [
+        "id",
+        "form",
+        "#length, mm",
+        "#angle, deg",
+        "side",
+        "start, mm",
+        "end, mm",
+        "closed",
+        "#corners",
+    ];
+    let row = |curve: &EdgeCurve| {
+        let cells = [
+            curve.id.clone(),
+            kind(curve).to_owned(),
+            length(curve),
+            angle(curve).replace('°', ""),
+            convexity(curve).to_owned(),
+            place(curve.points[0]),
+            place(end(curve)),
+            if curve.closed { "yes" } else { "no" }.to_owned(),
+            curve.corners.len().to_string(),
+        ];
+        cells.map(TableCell::from).to_vec()
+    };
+    let curves = list.edges.iter().chain(&list.loops);
+    let caption = "Edges, then outlines of faces (loops), in the part's frame. Angle: between the normals of the two faces. Convex ones can be ridden.";
+    PageTable::new(caption, &columns, curves.map(row).collect())
+}
+
+fn length(curve: &EdgeCurve) -> String {
+    format!("{:.3}", MILLIMETRES * curve.length)
+}
+
+fn angle(curve: &EdgeCurve) -> String {
+    let [low, high] = curve.dihedral_range().map(f64::to_degrees);
+    match high - low < 0.1 {
+        true => format!("{low:.1}°"),
+        false => format!("{low:.1} to {high:.1}°"),
+    }
+}
+
+fn place(point: DVec3) -> String {
+    (MILLIMETRES * point).to_array().map(short).join(", ")
+}
+
+/// To a micrometre, or a thousandth of a degree, without zeros at its end.
+fn short(value: f64) -> String {
+    // Adding 0 turns -0 into 0.
+    ((1e3 * value).round() / 1e3 + 0.0).to_string()
+}

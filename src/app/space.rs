@@ -1,0 +1,113 @@
+//! Scenes as drawings that are turned on a page.
+
+use glam::DVec3;
+
+use crate::drawing::{self, CELL_EYE, Solid, edge_direction};
+use crate::page::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
+use crate::quantity::with_unit;
+use crate::recording::error_scale::ErrorScale;
+use crate::recording::scene::{Colour, Scene};
+
+/// Millimetres a metre.
+pub(super) const MILLIMETRES: f64 = 1e3;
+/// Triangles of a cell at most, so that its page stays small.
+const MOST_TRIANGLES: usize = 30_000;
+/// Shades of a legend.
+const STEPS: usize = 41;
+/// The view of a run's drawing that shows all.
+const CELL: usize = 1;
+
+/// The part and its edge in the colours of its force error, and the whole cell at a moment [s]; none without an edge.
+pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
+    if scene.edge_path.relative_force_error.is_empty() {
+        return None;
+    }
+    let (solids, force) = drawing::solids(scene, moment, MOST_TRIANGLES);
+    let drawn = |solid: &Solid| match solid.entity.as_str() {
+        "workpiece" => body(solid, None, None),
+        _ => body(solid, Some(CELL), Some(shade(solid.colour))),
+    };
+    let arrow = force.map(|arrow| {
+        let force = arrow.force_in_world;
+        DrawnArrow {
+            view: Some(CELL),
+            at: (MILLIMETRES * arrow.point_in_world).as_vec3().to_array(),
+            along: force.normalize_or_zero().as_vec3().to_array(),
+            label: with_unit(force.length(), "N"),
+        }
+    });
+    let view = |name: &str, eye: DVec3| DrawnView {
+        name: name.to_owned(),
+        eye: eye.to_array(),
+    };
+    Some(Drawing {
+        name: "The part, its edge in the colours of the force error, and the cell".to_owned(),
+        views: vec![
+            view("Edge", edge_direction(scene)),
+            view("Whole cell", CELL_EYE),
+        ],
+        bodies: solids.iter().map(drawn).collect(),
+        lines: vec![edge(scene)],
+        arrow,
+        legend: Some(legend(scene)),
+    })
+}
+
+fn edge(scene: &Scene) -> DrawnLine {
+    let path = &scene.edge_path;
+    let scale = ErrorScale::of(path);
+    let errors = path.relative_force_error.iter();
+    let pieces = path.points_in_world.windows(2);
+    let length: f64 = pieces.map(|two| two[0].distance(two[1])).sum();
+    DrawnLine {
+        id: "followed edge".to_owned(),
+        points: floats(path.points_in_world.iter().copied()),
+        shades: errors.clone().map(|e| shade(scale.colour(*e))).collect(),
+        values: errors.map(|error| (100.0 * error) as f32).collect(),
+        facts: vec![["length".to_owned(), with_unit(MILLIMETRES * length, "mm")]],
+        ..DrawnLine::default()
+    }
+}
+
+fn legend(scene: &Scene) -> DrawnLegend {
+    let scale = ErrorScale::of(&scene.edge_path);
+    let end = scale.percent();
+    let errors = &scene.edge_path.relative_force_error;
+    let place = |step: usize| scale.end * (2.0 * step as f64 / (STEPS - 1) as f64 - 1.0);
+    let none = || (shade(scale.colour(f64::NAN)), "no contact".to_owned());
+    DrawnLegend {
+        title: "force error".to_owned(),
+        unit: "%".to_owned(),
+        ends: [
+            format!("−{end} %"),
+            "as desired".to_owned(),
+            format!("+{end} %"),
+        ],
+        shades: (0..STEPS)
+            .map(|step| shade(scale.colour(place(step))))
+            .collect(),
+        none: errors.iter().any(|error| error.is_nan()).then(none),
+    }
+}
+
+/// A solid as a page draws it.
+pub(super) fn body(solid: &Solid, view: Option<usize>, shade: Option<Shade>) -> DrawnBody {
+    DrawnBody {
+        view,
+        shade,
+        corners: floats(solid.corners.iter().copied()),
+        triangles: solid.triangles.iter().flatten().copied().collect(),
+    }
+}
+
+/// Coordinates [mm] one after the other.
+pub(super) fn floats(points: impl IntoIterator<Item = DVec3>) -> Vec<f32> {
+    let points = points.into_iter();
+    points
+        .flat_map(|point| (MILLIMETRES * point).as_vec3().to_array())
+        .collect()
+}
+
+fn shade([red, green, blue, _]: Colour) -> Shade {
+    [red, green, blue]
+}
