@@ -14,6 +14,7 @@ mod design;
 mod determinism;
 mod diagnose;
 mod drawn;
+mod edges;
 mod effects;
 mod equations;
 mod estimator;

@@ -141,8 +141,9 @@ fn note(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
 }
 
 /// The files of a run.
-pub const FILES: [&str; 6] = [
+pub const FILES: [&str; 7] = [
     "cell.svg",
+    "drawing.json",
     "edge.svg",
     "recording.rrd",
     "report.html",

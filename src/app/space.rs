@@ -1,6 +1,6 @@
 //! Scenes as drawings that are turned on a page.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use crate::drawing::{self, CELL_EYE, Solid, edge_direction};
 use crate::page::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
@@ -12,6 +12,8 @@ use crate::recording::scene::{Colour, Scene};
 pub(super) const MILLIMETRES: f64 = 1e3;
 /// Triangles of a cell at most, so that its page stays small.
 const MOST_TRIANGLES: usize = 30_000;
+/// From the direction in which the edge looks longest, so that the part looks solid too [rad].
+const TURN: f64 = 0.4;
 /// Shades of a legend.
 const STEPS: usize = 41;
 /// The view of a run's drawing that shows all.
@@ -43,7 +45,7 @@ pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
     Some(Drawing {
         name: "The part, its edge in the colours of the force error, and the cell".to_owned(),
         views: vec![
-            view("Edge", edge_direction(scene)),
+            view("Edge", DQuat::from_rotation_z(TURN) * edge_direction(scene)),
             view("Whole cell", CELL_EYE),
         ],
         bodies: solids.iter().map(drawn).collect(),

@@ -8,7 +8,7 @@ use super::faces::{Face, faces};
 use crate::recording::scene::{Colour, Scene};
 
 /// Cells along the longest side of what is simplified, at first.
-const FINEST: f64 = 2048.0;
+const FINEST: f64 = 1024.0;
 /// Triangles that a body keeps in any case.
 const LEAST: usize = 50;
 
@@ -65,7 +65,7 @@ fn simplified(faces: &[Face], most: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         if merged.1.len() <= most {
             return merged;
         }
-        cell *= std::f64::consts::SQRT_2;
+        cell *= 1.5;
     }
 }
 

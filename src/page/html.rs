@@ -64,9 +64,9 @@ pub fn html(page: &Page<'_>) -> String {
                             div { dt { (fact.name) } dd { (fact.value) @if !fact.remark.is_empty() { small { (fact.remark) } } } }
                         } }
                     }
-                    nav aria-label="Contents" { @for section in &page.sections {
+                    @if page.sections.len() > 1 { nav aria-label="Contents" { @for section in &page.sections {
                         a href={ "#" (anchor(&section.title)) } { (section.title) }
-                    } }
+                    } } }
                     noscript { p { "Charts, and drawings that turn, need JavaScript; all numbers stand in the tables." } }
                 }
                 main { @for part in &page.sections { (section(part, &budget)) } }

@@ -1,7 +1,7 @@
-// What the pages use of three.js; build.mjs bundles it.
+// What the pages use of three.js; README.md says how it is bundled.
 export {
-  BufferAttribute, BufferGeometry, Color, ConeGeometry, DirectionalLight, FrontSide, Group, HemisphereLight, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, MOUSE,
-  OrthographicCamera, Quaternion, Scene, SphereGeometry, TOUCH, Vector3, WebGLRenderer, WebGLRenderTarget,
+  BufferAttribute, BufferGeometry, Color, ConeGeometry, DirectionalLight, Group, HemisphereLight, Mesh, MeshBasicMaterial, MeshLambertMaterial, OrthographicCamera, Scene,
+  SphereGeometry, Vector3, WebGLRenderer, WebGLRenderTarget,
 } from "three";
 export { OrbitControls } from "three/addons/controls/OrbitControls.js";
 export { LineMaterial } from "three/addons/lines/LineMaterial.js";

@@ -10,7 +10,7 @@ use super::super::space::{MILLIMETRES, body, floats};
 use super::{EdgesArguments, convexity, kind};
 use crate::drawing::{self, Numbered};
 use crate::page::{
-    Block, Drawing, DrawnLine, DrawnView, Fact, Page, PageSection, PageTable, TableCell, html,
+    Block, Drawing, DrawnLine, DrawnView, Page, PageSection, PageTable, TableCell, html,
 };
 use crate::quantity::counted;
 use crate::recording::scene::{Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
@@ -48,7 +48,7 @@ pub(super) fn page(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeL
     };
     let drawn = Drawing {
         name: "The part and its edges".to_owned(),
-        views: vec![view("Edges"), view("Outlines of faces")],
+        views: vec![view("Edges"), view("Outlines (loops)")],
         bodies: solids.iter().map(|solid| body(solid, None, None)).collect(),
         lines: [lines(&list.edges, 0), lines(&list.loops, 1)].concat(),
         ..Drawing::default()
@@ -76,11 +76,12 @@ pub(super) fn page(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeL
         .chain([Block::PageTable(table(list))]);
     html(&Page {
         title: format!("Edges of {}", name_of(arguments)),
-        verdict: verdict(list),
-        lead: vec![
-            "Pick an edge in the drawing or in the table: the lines beside it go into a scenario in the place of its [workpiece.edge].".to_owned(),
-        ],
-        facts: facts(arguments, size, list),
+        verdict: verdict(mesh, list),
+        lead: vec![format!(
+            "Pick an edge: its lines take the place of a scenario's [workpiece.edge]. Sharp from {}° between two faces, file in {}.",
+            short(arguments.sharp_angle_deg),
+            arguments.unit.name()
+        )],
         sections: vec![PageSection::new("Part and edges", blocks.collect())],
         footer: "Made by idc edges.".to_owned(),
         ..Page::default()
@@ -92,46 +93,28 @@ fn name_of(arguments: &EdgesArguments) -> String {
     name.to_string_lossy().into_owned()
 }
 
-fn is_convex(curve: &&EdgeCurve) -> bool {
-    curve.convexity == Convexity::Convex
-}
-
-fn verdict(list: &EdgeList) -> String {
-    let outlines = counted(list.loops.len(), "outline");
-    match list.edges.len() {
-        0 => "The part has no sharp edge.".to_owned(),
-        edges => format!(
-            "{} and {outlines} of faces; a tool can ride {} and {} of them.",
+fn verdict(mesh: &TriangleMesh, list: &EdgeList) -> String {
+    let (low, high) = mesh.bounds();
+    let size = (MILLIMETRES * (high - low)).to_array().map(short);
+    let ridden = |curves: &[EdgeCurve]| {
+        let convex = |curve: &&EdgeCurve| curve.convexity == Convexity::Convex;
+        curves.iter().filter(convex).count()
+    };
+    let [edges, outlines] = [list.edges.len(), list.loops.len()];
+    let can = match [ridden(&list.edges), ridden(&list.loops)] {
+        _ if edges == 0 => "no sharp edge".to_owned(),
+        can if can == [edges, outlines] => format!(
+            "{} and {} of faces, all of which a tool can ride",
             counted(edges, "edge"),
-            list.edges.iter().filter(is_convex).count(),
-            list.loops.iter().filter(is_convex).count(),
+            counted(outlines, "outline")
         ),
-    }
-}
-
-fn facts(arguments: &EdgesArguments, size: DVec3, list: &EdgeList) -> Vec<Fact> {
-    let size = (MILLIMETRES * size).to_array().map(short).join(" × ");
-    let curves = list.edges.iter();
-    let longest = curves.max_by(|a, b| a.length.total_cmp(&b.length));
-    let size = Fact {
-        name: "size in x, y, z".to_owned(),
-        value: format!("{size} mm"),
-        remark: format!("with the file in {}", arguments.unit.name()),
+        [of_edges, of_outlines] => format!(
+            "{} and {} of faces, of which a tool can ride {of_edges} and {of_outlines}",
+            counted(edges, "edge"),
+            counted(outlines, "outline")
+        ),
     };
-    let longest = longest.map(|curve| Fact {
-        name: "longest edge".to_owned(),
-        value: format!("{} mm", short(MILLIMETRES * curve.length)),
-        remark: curve.id.clone(),
-    });
-    let sharp = Fact {
-        name: "sharp from".to_owned(),
-        value: format!("{}°", short(arguments.sharp_angle_deg)),
-        remark: "between the normals of two faces (--sharp-angle-deg)".to_owned(),
-    };
-    [Some(size), longest, Some(sharp)]
-        .into_iter()
-        .flatten()
-        .collect()
+    format!("{} mm: {can}.", size.join(" × "))
 }
 
 /// The part alone, in its own frame.
@@ -244,7 +227,10 @@ fn told(curve: &EdgeCurve) -> Vec<[String; 2]> {
         CurveKind::Straight => kind(curve).to_owned(),
     };
     let mut told = vec![
-        ("length", format!("{} mm", length(curve))),
+        (
+            "length",
+            format!("{} mm", short(MILLIMETRES * curve.length)),
+        ),
         ("angle between the faces", angle(curve)),
         ("form", shape),
         ("side", convexity(curve).to_owned()),
@@ -274,7 +260,7 @@ fn to_paste(arguments: &EdgesArguments, curve: &EdgeCurve) -> String {
     let key = curve.id.split('-').next().unwrap_or_default();
     let mesh = arguments.mesh.display().to_string();
     let mut text = format!(
-        "# [workpiece] has the part: mesh = {mesh:?}, mesh_unit = \"{}\"\n[workpiece.edge]\n{key} = {}\n",
+        "# of [workpiece] with mesh = {mesh:?}\n# and mesh_unit = \"{}\"\n[workpiece.edge]\n{key} = {}\n",
         arguments.unit.name(),
         number(curve),
     );
@@ -287,7 +273,9 @@ fn to_paste(arguments: &EdgesArguments, curve: &EdgeCurve) -> String {
     {
         text += &format!("sharp_angle_deg = {:?}\n", arguments.sharp_angle_deg);
     }
-    text + &format!("# start_mm = 0\n# end_mm = {}\n", length(curve))
+    // Rounded up it would lie beyond the end.
+    let end = (1e3 * MILLIMETRES * curve.length + 1e-6).floor() / 1e3;
+    text + &format!("# start_mm = 0\n# end_mm = {end}\n")
 }
 
 /// All curves with their numbers.
