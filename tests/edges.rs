@@ -81,7 +81,7 @@ fn the_page_of_a_part_has_the_numbers_of_its_list() {
         let page = fs::read_to_string(bench.path("new/page.html")).unwrap();
         let drawing = drawn(&page);
         let lines = drawing["lines"].as_array().unwrap();
-        let curves = ["edges", "loops"].map(|key| list[key].as_array().unwrap());
+        let curves = ["edges", "loops"].map(|key| list[key].as_array().unwrap().as_slice());
         assert_eq!(curves[0].len(), edges);
         let curves = curves.concat();
         assert_eq!(lines.len(), curves.len());
@@ -212,7 +212,10 @@ fn the_edge_of_a_run_is_drawn_in_the_errors_of_its_recording() {
         // A sample at the border of two segments may be of either.
         let expected: f64 = sum / count;
         let off = (error - expected).abs();
-        assert!(off < 0.05 * expected.abs() + 0.02, "{segment}: {error} for {expected}");
+        assert!(
+            off < 0.05 * expected.abs() + 0.02,
+            "{segment}: {error} for {expected}"
+        );
         most = most.max(expected.abs());
     }
     assert!(most > 0.2, "the burr moves the force by {most} %");

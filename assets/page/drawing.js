@@ -17,7 +17,7 @@
   const [WIDTH, PICKED, REACH, COARSE] = [3.5, 6, 14, 26];
   const MARGIN = 40;
   // Bodies lie back by half a line's width, so that of lines on their edges the whole width is seen.
-  const BACK = { polygonOffset: true, polygonOffsetFactor: 5, polygonOffsetUnits: 4 };
+  const back = (ratio) => ({ polygonOffset: true, polygonOffsetFactor: 5 * ratio, polygonOffsetUnits: 4 });
   // Triangles up to which normals are smoothed; of more, a facet is smaller than can be seen.
   const SMOOTHED = 60000;
 
@@ -62,9 +62,11 @@
       this.scene = new THREE.Scene();
       this.camera = new THREE.OrthographicCamera();
       this.camera.up.set(0, 0, 1);
-      this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9fa4, 2.2));
-      const lamp = new THREE.DirectionalLight(0xffffff, 2.1);
-      lamp.position.set(-0.4, 0.7, 1);
+      const sky = new THREE.HemisphereLight(0xffffff, 0x707880, 2.3);
+      sky.position.set(0, 0, 1);
+      this.scene.add(sky);
+      const lamp = new THREE.DirectionalLight(0xffffff, 1.9);
+      lamp.position.set(-0.7, 0.5, 0.8);
       this.camera.add(lamp);
       this.scene.add(this.camera);
       this.lines = this.told.lines.map(unpacked);
@@ -97,10 +99,11 @@
       });
       const reset = element("button", { type: "button", class: "reset" }, "Reset view");
       reset.addEventListener("click", () => this.look(this.view));
-      const how = element("span", { class: "how" }, matchMedia("(pointer: coarse)").matches ? "One finger turns, two move and zoom, a tap tells more." : "Drag turns, right drag moves, the wheel zooms once the drawing is clicked.");
+      const how = element("span", { class: "how" }, matchMedia("(pointer: coarse)").matches ? "One finger turns, two move and zoom, a tap picks." : "Drag turns, right drag moves, the wheel zooms once the drawing is clicked.");
       this.tools = element("div", { class: "tools" }, ...(told.views.length > 1 ? this.buttons : []), reset, how);
       const parts = [this.tools, this.stage];
       if (told.legend) parts.push(this.legend(told.legend));
+      if (told.words) parts.push(element("p", { class: "hint" }, told.words));
       if (told.lines.some((line) => line.lines || line.remark)) {
         this.panel = element("aside", { class: "panel", "aria-live": "polite" });
         parts.push(this.panel);
@@ -128,7 +131,7 @@
       const triangles = new Uint32Array(buffer(told.triangles));
       geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
       const smooth = triangles.length / 3 <= SMOOTHED;
-      const material = new THREE.MeshLambertMaterial({ flatShading: !smooth, ...(told.shade ? {} : BACK) });
+      const material = new THREE.MeshLambertMaterial({ flatShading: !smooth, ...(told.shade ? {} : back(this.renderer.getPixelRatio())) });
       const mesh = new THREE.Mesh(smooth ? THREE.toCreasedNormals(geometry, 0.5) : geometry, material);
       mesh.layers.enable(1);
       mesh.userData = { told, material };
@@ -395,7 +398,7 @@
     numbers() {
       const [width, height] = this.size;
       if (this.stale || !this.seenNumbers) {
-        const black = (this.black ??= new THREE.MeshBasicMaterial({ color: 0, ...BACK }));
+        const black = (this.black ??= new THREE.MeshBasicMaterial({ color: 0, ...back(1) }));
         for (const mesh of this.bodies) mesh.material = black;
         this.camera.layers.set(1);
         this.renderer.setRenderTarget(this.target);
@@ -442,13 +445,15 @@
 
     seen(line, sample) { return this.at(...this.project(sample))?.line === line; }
 
-    // Places on a line, from its middle outwards.
+    // Places on a line, from its middle outwards; the middle of an outline would be a corner of most.
     samples(line) {
       const count = 25;
-      return Array.from({ length: count }, (_, i) => {
+      line.samples ??= Array.from({ length: count }, (_, i) => {
         const step = Math.ceil(i / 2) * (i % 2 ? 1 : -1);
-        return along(line, line.length * (0.5 + (0.92 * step) / count)).at;
+        const share = (line.id.startsWith("loop") ? 0.375 : 0.5) + (0.92 * step) / count;
+        return along(line, line.length * (share < 0 ? share + 1 : share)).at;
       });
+      return line.samples;
     }
 
     // Where numbers stand: on what is seen of their lines, none on another.

@@ -76,6 +76,9 @@ Exit codes: 0 done, 2 bad input.
 Examples:
   # Their numbers are what [workpiece.edge] of a scenario asks for.
   idc edges assets/bracket.stl
+  # A page with the part in 3D: an edge that is picked shows the lines that a
+  # scenario needs. It is one file and asks for no network.
+  idc edges assets/bracket.stl --out runs/bracket_edges.html
   # The same for a program, with a greater angle for what counts as sharp.
   idc edges assets/bracket.stl --sharp-angle-deg 60 --json";
 

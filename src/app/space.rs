@@ -44,6 +44,10 @@ pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
     };
     Some(Drawing {
         name: "The part, its edge in the colours of the force error, and the cell".to_owned(),
+        words: format!(
+            "The mean force error of each of {} pieces of the edge while following. The whole cell is that in the middle of following; its arrow is the contact force with its friction.",
+            scene.edge_path.relative_force_error.len()
+        ),
         views: vec![
             view("Edge", DQuat::from_rotation_z(TURN) * edge_direction(scene)),
             view("Whole cell", CELL_EYE),

@@ -10,6 +10,8 @@ pub type Shade = [u8; 3];
 pub struct Drawing {
     /// What it shows, for those who do not see it.
     pub name: String,
+    /// What helps to read it; may be empty.
+    pub words: String,
     /// Ways to look at it, the first at first.
     pub views: Vec<DrawnView>,
     /// Solid bodies.

@@ -16,7 +16,7 @@ before(async () => {
     run("edges", `assets/${name}.stl`, "--out", page, "--force");
     return page;
   };
-  pages = { plate: edges("plate"), bracket: edges("bracket"), run: join(made("drawn", "run", "scenarios/slow_regulator.toml"), "report.html") };
+  pages = { plate: edges("plate"), bracket: edges("bracket"), run: join(made("drawn", "run", "scenarios/burred_edge.toml"), "report.html") };
 });
 after(() => browser.close());
 
@@ -147,7 +147,7 @@ test("the part turns by mouse, wheel and keys, and comes back", async () => {
   await page.mouse.wheel(0, -200);
   await page.waitForTimeout(200);
   assert.equal(await zoom(), whole);
-  await page.evaluate(() => document.querySelector(".space").scrollIntoView());
+  await page.evaluate(() => document.querySelector(".space").scrollIntoView({ behavior: "instant" }));
   const moved = await page.locator(".space canvas").boundingBox();
   await page.mouse.move(moved.x + 60, moved.y + 60);
   await page.mouse.down();
@@ -169,7 +169,7 @@ test("the part turns by mouse, wheel and keys, and comes back", async () => {
 
 test("a finger turns the part, two zoom it, a tap picks", async () => {
   const { page, faults } = await opened("plate", { hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
-  await page.evaluate(() => document.querySelector(".space").scrollIntoView());
+  await page.evaluate(() => document.querySelector(".space").scrollIntoView({ behavior: "instant" }));
   const box = await page.locator(".space canvas").boundingBox();
   const client = await page.context().newCDPSession(page);
   const touch = (type, places) => client.send("Input.dispatchTouchEvent", { type, touchPoints: places.map(([x, y], id) => ({ id, x: box.x + x, y: box.y + y })) });
