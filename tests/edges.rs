@@ -185,7 +185,7 @@ fn the_edge_of_a_run_is_drawn_in_the_errors_of_its_recording() {
     let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
     let drawing = drawn(&page);
     let file = fs::read_to_string(bench.path("out/drawing.json")).unwrap();
-    assert_eq!(drawing, serde_json::from_str::<Value>(&file).unwrap());
+    assert!(drawing == serde_json::from_str::<Value>(&file).unwrap());
     let line = &drawing["lines"][0];
     let [points, errors] = ["points", "values"].map(|key| floats(&line[key]));
     // 10 to 290 mm of an edge along x of a part that is turned by -90 degrees about z at (750, 0, 200) mm.

@@ -174,7 +174,7 @@ impl OutputFolder {
             names.push(EDGE);
         }
         if let Some(space) = &output.sketches.space {
-            let text = serde_json::to_string(space)?;
+            let text = serde_json::to_value(space)?.to_string();
             write_text(&unfinished.path().join(DRAWING), &text)?;
             names.push(DRAWING);
         }

@@ -40,7 +40,8 @@ pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
     });
     let view = |name: &str, eye: DVec3| DrawnView {
         name: name.to_owned(),
-        eye: eye.to_array(),
+        // So few digits that they come back from a file as they were.
+        eye: ((1e3 * eye).round() / 1e3).to_array(),
     };
     Some(Drawing {
         name: "The part, its edge in the colours of the force error, and the cell".to_owned(),

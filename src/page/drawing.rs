@@ -41,10 +41,10 @@ pub struct DrawnBody {
     /// Its colour; none for that of a part, which goes with the page's.
     pub shade: Option<Shade>,
     /// Its corners, three numbers each [mm].
-    #[serde(with = "floats")]
+    #[serde(with = "super::packed::floats")]
     pub corners: Vec<f32>,
     /// Three corners a triangle, counter-clockwise from outside.
-    #[serde(with = "indices")]
+    #[serde(with = "super::packed::indices")]
     pub triangles: Vec<u32>,
 }
 
@@ -58,7 +58,7 @@ pub struct DrawnLine {
     /// The one view that shows it; none where all do.
     pub view: Option<usize>,
     /// Its points, three numbers each [mm]; a closed one ends with its first.
-    #[serde(with = "floats")]
+    #[serde(with = "super::packed::floats")]
     pub points: Vec<f32>,
     /// Which of the page's colours it has.
     pub colour: usize,
@@ -67,7 +67,7 @@ pub struct DrawnLine {
     /// A colour for each segment in place of that one; may be empty.
     pub shades: Vec<Shade>,
     /// Value of each segment, in the legend's unit, NaN where there is none; may be empty.
-    #[serde(with = "floats")]
+    #[serde(with = "super::packed::floats")]
     pub values: Vec<f32>,
     /// Direction away from the bodies.
     pub outward: [f64; 3],
@@ -105,38 +105,6 @@ pub struct DrawnLegend {
     pub shades: Vec<Shade>,
     /// Shade and name of what has no value; none where all have one.
     pub none: Option<(Shade, String)>,
-}
-
-/// Little-endian `f32` in base64.
-mod floats {
-    use serde::{Deserializer, Serializer};
-
-    use super::super::packed;
-
-    pub(super) fn serialize<S: Serializer>(values: &[f32], to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(&packed::text(values.iter().flat_map(|v| v.to_le_bytes())))
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f32>, D::Error> {
-        let words = packed::words(from)?.into_iter();
-        Ok(words.map(f32::from_le_bytes).collect())
-    }
-}
-
-/// Little-endian `u32` in base64.
-mod indices {
-    use serde::{Deserializer, Serializer};
-
-    use super::super::packed;
-
-    pub(super) fn serialize<S: Serializer>(values: &[u32], to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(&packed::text(values.iter().flat_map(|v| v.to_le_bytes())))
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u32>, D::Error> {
-        let words = packed::words(from)?.into_iter();
-        Ok(words.map(u32::from_le_bytes).collect())
-    }
 }
 
 #[cfg(test)]

@@ -11,12 +11,46 @@ pub(super) fn text(bytes: impl Iterator<Item = u8>) -> String {
 }
 
 /// Words of a text.
-pub(super) fn words<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<[u8; 4]>, D::Error> {
+fn words<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<[u8; 4]>, D::Error> {
     let text = String::deserialize(from)?;
     let bytes = STANDARD.decode(text).map_err(D::Error::custom)?;
     let (words, rest) = bytes.as_chunks::<4>();
     match rest {
         [] => Ok(words.to_vec()),
         _ => Err(D::Error::custom("expected words of four bytes")),
+    }
+}
+
+/// A field of `f32`.
+pub(super) mod floats {
+    use serde::{Deserializer, Serializer};
+
+    /// As a text.
+    pub fn serialize<S: Serializer>(values: &[f32], to: S) -> Result<S::Ok, S::Error> {
+        let bytes = values.iter().flat_map(|value| value.to_le_bytes());
+        to.serialize_str(&super::text(bytes))
+    }
+
+    /// From one.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f32>, D::Error> {
+        let words = super::words(from)?.into_iter();
+        Ok(words.map(f32::from_le_bytes).collect())
+    }
+}
+
+/// A field of `u32`.
+pub(super) mod indices {
+    use serde::{Deserializer, Serializer};
+
+    /// As a text.
+    pub fn serialize<S: Serializer>(values: &[u32], to: S) -> Result<S::Ok, S::Error> {
+        let bytes = values.iter().flat_map(|value| value.to_le_bytes());
+        to.serialize_str(&super::text(bytes))
+    }
+
+    /// From one.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u32>, D::Error> {
+        let words = super::words(from)?.into_iter();
+        Ok(words.map(u32::from_le_bytes).collect())
     }
 }
