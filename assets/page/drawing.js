@@ -5,7 +5,7 @@
   const css = (name) => getComputedStyle(root).getPropertyValue("--" + name).trim();
   const buffer = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer;
   const floats = (text) => new Float32Array(buffer(text));
-  const palette = ["Regulator", "Chamber1", "Chamber2", "Estimate", "Band", "Measured"];
+  const palette = ["Regulator", "Chamber1", "Chamber2", "Estimate", "Band"];
   const element = (name, attributes = {}, ...children) => {
     const made = document.createElement(name);
     for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);

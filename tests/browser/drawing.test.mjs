@@ -248,5 +248,6 @@ test("on paper the picture stands in the drawing's place", async () => {
   await page.emulateMedia({ media: "print" });
   assert.ok(await page.locator(".space .sketches svg").isVisible());
   assert.ok(!(await page.locator(".space canvas").isVisible()));
+  assert.ok(await page.getByText("edge-0", { exact: true }).isVisible(), "the table has its names");
   await page.context().close();
 });

@@ -19,7 +19,7 @@ use crate::workpiece::{Convexity, CurveKind, EdgeCurve, EdgeList, TriangleMesh};
 /// Triangles of the part at most: about 5 MB.
 const MOST_TRIANGLES: usize = 200_000;
 /// The page's colours for lines.
-const COLOURS: usize = 6;
+const COLOURS: usize = 5;
 /// How far an outline is drawn within the face that it bounds, so that outlines of neighbours lie apart: share of the part's size, and of its own length [1].
 const INSET: [f64; 2] = [0.012, 0.04];
 /// From where a part is looked at.
