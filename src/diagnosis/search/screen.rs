@@ -8,7 +8,7 @@ use super::super::hypothesis::Hypothesis;
 use super::super::spectrum::{self, Line};
 use super::{Search, same};
 use crate::effects::{Clues, Coordinate, Effect, Subsystem};
-use crate::plant::{PlantParameters, Quantity, registry};
+use crate::plant::{Latent, PlantParameters, Quantity, registry};
 use rayon::prelude::*;
 
 /// Effects whose starts are looked at with all their derivatives, beside those that have no secant.
@@ -249,14 +249,20 @@ impl Search<'_> {
         let new = start.free(&self.believed);
         let (kept, columns) = self.beside(from, &new);
         let is_phase = |f: &Free| from.effects.iter().any(|e| e.has_phase(&f.quantity));
-        let (phases, kept): (Vec<_>, Vec<_>) =
-            (kept.into_iter().zip(columns)).partition(|(f, _)| is_phase(f));
+        let of_term =
+            &from.fit.free[from.fit.free.len() - from.unlisted().map_or(0, Latent::numbers)..];
+        let there = &from.fit.prediction.plant;
+        let is_of_term = |f: &Free| of_term.iter().any(|own| same(own, f, there));
+        let (term, kept): (Vec<_>, Vec<_>) =
+            (kept.into_iter().zip(columns)).partition(|(f, _)| is_of_term(f));
+        let (phases, kept): (Vec<_>, Vec<_>) = kept.into_iter().partition(|(f, _)| is_phase(f));
         let (mut free, frozen): (Vec<Free>, Vec<Vec<f64>>) = kept.into_iter().unzip();
-        // Phases come last, and are not frozen: a recording each, they cost little.
+        // Phases and the numbers of a term without a name come last (`Hypothesis::tolerated`), and are not frozen: they are few.
         let (own, own_phases) = new.split_at(start.values.len());
         free.extend(own);
         free.extend(phases.into_iter().map(|(f, _)| f));
         free.extend(own_phases);
+        free.extend(term.into_iter().map(|(f, _)| f));
         let mut plant = from.fit.prediction.plant.clone();
         for f in &free {
             f.quantity.set(&mut plant, f.start);
@@ -272,7 +278,7 @@ impl Search<'_> {
                 stages,
                 Limit::of(iterations),
             ),
-            depends_on: Vec::new(),
+            depends_on: from.depends_on.clone(),
         }
     }
 
