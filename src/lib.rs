@@ -7,12 +7,14 @@
 //! - [`device`]: the device made of them
 //! - [`arm`]: the robot arm from URDF: kinematics, dynamics
 //! - [`workpiece`]: mesh, edges, burrs, where a ball touches
+//! - [`collision`]: bodies that must not meet, checked along a motion
 //! - [`path`]: the tool's path along an edge and the joint motion that follows it
 //! - [`sensing`]: the chain between controller and device: converters, amplifiers, filters, sensors
 //! - [`control`]: joint servo and force controllers
 //! - [`estimation`]: contact force without a load cell, with its uncertainty
 //! - [`scenario`]: the file that says what to simulate, checked
 //! - [`cell`]: all of it assembled and checked
+//! - [`place`]: where the part of a cell can lie
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
 //! - [`recording`]: sampled signals, CSV, Parquet, Rerun
@@ -39,6 +41,7 @@ pub mod app;
 pub mod arm;
 pub mod case;
 pub mod cell;
+pub mod collision;
 pub mod control;
 #[cfg(feature = "cli")]
 pub mod design;
@@ -59,6 +62,8 @@ pub mod metrics;
 pub mod page;
 pub mod path;
 pub mod physics;
+#[cfg(feature = "cli")]
+pub mod place;
 pub mod plant;
 #[cfg(feature = "cli")]
 pub mod proof;

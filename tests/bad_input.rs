@@ -310,8 +310,8 @@ fn paths_and_forces_beyond_the_cell() {
                 "scenario.toml: approach, waypoint 1 of",
                 "(3750.0, 140.0, 200.0) mm",
                 "out of reach by",
-                "axis ",
-                "its limit is ",
+                "it can be done with the part moved by (",
+                "workpiece.position_mm = [",
             ],
         ),
         refusal(
@@ -363,8 +363,8 @@ fn paths_and_forces_beyond_the_cell() {
             |b| edit(b, "force_n = 150", "force_n = 5"),
             &[
                 "scenario.toml: `process.force_n` is 5 N",
-                "-0.14 bar gauge",
-                "expected 27.7 to 992.8 N",
+                "alone presses with 27.7 N",
+                "device.override.moving_mass_kg at most 0.72 (now 4)",
             ],
         ),
     ]);

@@ -4,6 +4,7 @@ mod air;
 mod bad_input;
 mod balance;
 mod bench_reference;
+mod collision;
 mod command_line;
 mod common;
 mod contact;

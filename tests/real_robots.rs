@@ -3,6 +3,7 @@
 //! `.ci/install_references` installs them and writes `build/references/robots.json`; without it these tests
 //! say that they were skipped.
 
+mod collisions;
 mod engine;
 mod five_axes;
 mod plate_edge;

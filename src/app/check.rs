@@ -12,7 +12,10 @@ use clap::Args;
 
 use self::report::Report;
 use super::error::{AppError, ExitCode};
+use super::files::{Standing, prepare_file};
 use super::output::say;
+use crate::cell::Cell;
+use crate::recording::atomic::write_text;
 use crate::scenario::{self, AnyScenario, ScenarioError};
 
 /// For the help.
@@ -27,6 +30,8 @@ Examples:
   idc check scenarios/studies/device_design.toml
   # A case for idc diagnose: its rig file and the recordings that it names.
   idc check assets/proof/cases/case-03
+  # How the tool stands across the edge, drawn.
+  idc check scenarios/tilted_wrist.toml --draw runs/tilted_wrist_tool.svg
   # For a program.
   idc check scenarios/hand_push.toml --json";
 
@@ -34,6 +39,12 @@ Examples:
 pub(super) struct CheckArguments {
     /// Scenario, rig file, import map, study or device model; or a folder with rig.toml and its recordings.
     pub(super) file: PathBuf,
+    /// SVG file for a drawing of how a cell's tool stands across its edge.
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(super) draw: Option<PathBuf>,
+    /// Put a new drawing in place of an old one.
+    #[arg(long, help_heading = "Output", requires = "draw")]
+    pub(super) force: bool,
     /// Print nothing but errors.
     #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
@@ -44,6 +55,11 @@ pub(super) struct CheckArguments {
 
 /// Explains a file.
 pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
+    if let Some(draw) = &arguments.draw {
+        prepare_file(draw, "--draw", Standing::of(arguments.force))?;
+        let cell = Cell::load(&arguments.file)?;
+        write_text(draw, &cell::drawn(&cell))?;
+    }
     let report = explained(&arguments.file)?;
     if arguments.json {
         say(&report.json()?)?;

@@ -51,6 +51,9 @@ enum Command {
     /// List the sharp edges of a part and the outlines of its faces.
     #[command(after_help = help::EDGES)]
     Edges(super::edges::EdgesArguments),
+    /// Say where the part of a cell can lie: over a grid of positions, where the whole job can be done.
+    #[command(after_help = super::place::EXAMPLES)]
+    Place(super::place::PlaceArguments),
     /// Make a recording of the logs of a real device, as a map says what their columns are.
     #[command(after_help = help::IMPORT)]
     Import(super::import::ImportArguments),
@@ -120,6 +123,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Design(arguments) => design(arguments),
         Command::View(arguments) => super::view::run(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
+        Command::Place(arguments) => super::place::run(arguments),
         Command::Import(arguments) => super::import::run(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),

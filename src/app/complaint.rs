@@ -62,7 +62,9 @@ fn place(error: &AppError) -> Option<Place> {
         AppError::Cell(CellError::JointStiffness { file, .. }) => {
             of_key(file, "joints.stiffness_n_m_per_rad")
         }
-        AppError::Cell(CellError::Supply { file, .. }) => of_key(file, "process.force_n"),
+        AppError::Cell(CellError::Supply { file, .. } | CellError::Weight { file, .. }) => {
+            of_key(file, "process.force_n")
+        }
         AppError::Cell(CellError::SeedPosture { file, .. }) => of_key(file, "arm.seed_posture_deg"),
         AppError::Cell(CellError::EdgeStretch { file, key, .. }) => {
             of_key(file, &format!("workpiece.edge.{key}"))

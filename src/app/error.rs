@@ -252,6 +252,17 @@ pub enum AppError {
         /// The part.
         part: String,
     },
+    /// Something of a cell for another kind of file.
+    #[error("{option} is for a cell, a {kind} has none")]
+    OfACell {
+        /// The option.
+        option: &'static str,
+        /// The kind of file.
+        kind: &'static str,
+    },
+    /// A picture that the drawing library refuses.
+    #[error("the picture could not be drawn: {0}")]
+    Picture(String),
     /// A number on the command line.
     #[error("--{option} is {value}, expected {expected}")]
     Option {

@@ -22,6 +22,7 @@ mod manual;
 mod new;
 mod output;
 mod picture;
+mod place;
 mod predict;
 mod progress;
 mod prove;

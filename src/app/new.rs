@@ -7,8 +7,11 @@ use clap::{Args, ValueEnum};
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
+use crate::arm::likely_flange;
+use crate::cell::CellError;
 use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
+use crate::workpiece::load_mesh;
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -18,6 +21,8 @@ Examples:
   # A robot cell; arm, device and part go beside it.
   idc new cell runs/mine/cell.toml
   idc run runs/mine/cell.toml --out runs/mine/first
+  # The same with a part of one's own; --urdf takes an arm.
+  idc new cell runs/mine/own.toml --part assets/bracket.stl
   # A rig file and an import map, for logs of a device on a bench.
   idc new rig runs/mine/rig.toml
   idc new import runs/mine/map.toml
@@ -46,6 +51,12 @@ pub(super) struct NewArguments {
     /// Logs for the map to be drafted by looking at them: text, .parquet, .mat, .mcap, .db3 or a bag's folder. A last one that ends in .toml is FILE.
     #[arg(long, value_name = "LOG", num_args = 1.., help_heading = "Input")]
     from: Vec<PathBuf>,
+    /// URDF file of the arm of a cell, in place of the one that comes with the program.
+    #[arg(long, value_name = "FILE", help_heading = "Input")]
+    urdf: Option<PathBuf>,
+    /// Mesh of the part of a cell, in place of the plate.
+    #[arg(long, value_name = "FILE", help_heading = "Input")]
+    part: Option<PathBuf>,
     /// The same as FILE.
     #[arg(
         long,
@@ -128,8 +139,17 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         [] => None,
         logs => Some(draft(&stem.replace('_', " "), logs)?),
     };
+    let own = [("--urdf", &arguments.urdf), ("--part", &arguments.part)];
+    if let Some((option, _)) = own.iter().find(|(_, given)| given.is_some())
+        && !matches!(kind, Kind::Cell)
+    {
+        return Err(AppError::OfACell {
+            option,
+            kind: kind.name(),
+        });
+    }
     let files = match &drafted {
-        None => files(kind, &file),
+        None => with_own(files(kind, &file), arguments)?,
         Some(draft) => vec![(file.clone(), draft.text.clone().into_bytes())],
     };
     // All are looked at before the first is written. What stands there as it would be written can stay.
@@ -178,6 +198,72 @@ fn told(draft: &Draft) -> String {
         .collect();
     lines.extend(draft.open.iter().map(|what| format!("asked: {what}")));
     lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// The cell's file with arm and part of the user's own.
+fn with_own(
+    mut files: Vec<(PathBuf, Vec<u8>)>,
+    arguments: &NewArguments,
+) -> Result<Vec<(PathBuf, Vec<u8>)>, AppError> {
+    let whole = |path: &Path| {
+        std::fs::canonicalize(path).map_err(|error| AppError::OutputFile {
+            file: path.display().to_string(),
+            option: "--urdf and --part",
+            reason: error.to_string(),
+        })
+    };
+    let mut text = String::from_utf8_lossy(&files[0].1).into_owned();
+    let mut put = |line: &str, value: &str| {
+        let lines = text.lines().map(|old| match old.split_once(" = ") {
+            Some((key, _)) if key == line => format!("{key} = {value}"),
+            _ => old.to_owned(),
+        });
+        text = lines.map(|line| line + "\n").collect();
+    };
+    if let Some(urdf) = &arguments.urdf {
+        let urdf = whole(urdf)?;
+        let flange = likely_flange(&urdf).map_err(CellError::from)?;
+        put("urdf", &format!("{:?}", urdf.display().to_string()));
+        put("flange_link", &format!("{flange:?}"));
+        files.retain(|(path, _)| !path.ends_with(BESIDE[0].0));
+    }
+    if let Some(part) = &arguments.part {
+        let part = whole(part)?;
+        let unit = likely_unit(&part)?;
+        put("mesh", &format!("{:?}", part.display().to_string()));
+        put("mesh_unit", &format!("\"{unit}\""));
+        put(
+            "edge",
+            "0                                # by its number in `idc edges`, which with --out draws them",
+        );
+        // Of a part of one's own the whole edge.
+        let stretch = |line: &&str| !line.starts_with("start_mm") && !line.starts_with("end_mm");
+        text = text
+            .lines()
+            .filter(stretch)
+            .map(|line| format!("{line}\n"))
+            .collect();
+        files.retain(|(path, _)| !path.ends_with(BESIDE[2].0));
+    }
+    files[0].1 = text.into_bytes();
+    Ok(files)
+}
+
+/// The unit with which a mesh is read as a part of a usual size; millimetres first.
+fn likely_unit(part: &Path) -> Result<&'static str, AppError> {
+    let mut refused = None;
+    for (unit, scale) in [("mm", 1e-3), ("m", 1.0), ("inch", 0.0254)] {
+        match load_mesh(part, scale) {
+            Ok(_) => return Ok(unit),
+            Err(error) => {
+                refused.get_or_insert(error);
+            }
+        }
+    }
+    match refused {
+        Some(error) => Err(error.into()),
+        None => Ok("mm"),
+    }
 }
 
 /// The file and what it needs beside it, with their contents.

@@ -1,11 +1,9 @@
 //! The scene that belongs to a run: arm, device, workpiece, edge, contact force.
 
-use glam::DVec3;
 use glamx::DPose3;
 
-use crate::arm::Arm;
-use crate::arm::urdf::VisualShape;
-use crate::cell::Cell;
+use crate::arm::{Arm, Visual, VisualShape};
+use crate::cell::{Cell, DeviceShape};
 use crate::recording::scene::{
     Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits, ScenePoses,
     SceneShape,
@@ -16,11 +14,8 @@ use crate::simulation::FrameLog;
 
 /// Segments of the drawn edge.
 const EDGE_SEGMENTS: usize = 400;
-const HOUSING: Colour = [70, 80, 92, 255];
-const CYLINDER: Colour = [176, 184, 192, 255];
-const CARRIAGE: Colour = [222, 143, 5, 255];
-const TOOL: Colour = [60, 60, 60, 255];
 pub(super) const PART: Colour = [150, 165, 178, 255];
+const OBSTACLE: Colour = [200, 190, 170, 255];
 
 /// Builds the scene of a run.
 ///
@@ -36,6 +31,7 @@ pub fn scene_of(
         body.shapes.extend(visual_shapes(&cell.arm, index));
     }
     scene.bodies.push(part(cell));
+    scene.bodies.extend(obstacles(cell));
     scene.edge_path = edge_path(cell, recording)?;
     Ok(scene)
 }
@@ -93,11 +89,15 @@ pub(super) fn visual_shapes(arm: &Arm, link: usize) -> impl Iterator<Item = Scen
     let visuals = arm.visuals.iter();
     visuals
         .filter(move |visual| visual.link_index == link)
-        .map(|visual| SceneShape {
-            body_from_shape: visual.link_from_visual,
-            geometry: geometry(&visual.shape),
-            colour: visual.colour,
-        })
+        .map(shape_of)
+}
+
+fn shape_of(visual: &Visual) -> SceneShape {
+    SceneShape {
+        body_from_shape: visual.link_from_visual,
+        geometry: geometry(&visual.shape),
+        colour: visual.colour,
+    }
 }
 
 fn geometry(shape: &VisualShape) -> SceneGeometry {
@@ -118,22 +118,6 @@ fn geometry(shape: &VisualShape) -> SceneGeometry {
     }
 }
 
-fn along_z(radius: f64, length: f64, x: f64, middle: f64, colour: Colour) -> SceneShape {
-    SceneShape {
-        body_from_shape: DPose3::from_translation(DVec3::new(x, 0.0, middle)),
-        geometry: SceneGeometry::Cylinder { radius, length },
-        colour,
-    }
-}
-
-fn plate(size: DVec3, middle: f64, colour: Colour) -> SceneShape {
-    SceneShape {
-        body_from_shape: DPose3::from_translation(DVec3::new(0.0, 0.0, middle)),
-        geometry: SceneGeometry::Box { size },
-        colour,
-    }
-}
-
 fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
     let last = cell.arm.chain.len() - 1;
     let flange = |links: &Vec<DPose3>| links[last] * cell.arm.chain.tip_from_last;
@@ -150,75 +134,44 @@ pub(super) fn device_bodies(
     world_from_flange: ScenePoses,
     world_from_slide: ScenePoses,
 ) -> [SceneBody; 2] {
-    let parameters = &scenario.parameters;
-    let barrel = 0.5 * parameters.bore + 0.004;
-    let spacing = barrel + 0.028;
-    let length = parameters.full_stroke.min(0.6 * scenario.tool_centre);
-    let sides: &[f64] = if parameters.cylinder_count > 1 {
-        &[-1.0, 1.0]
-    } else {
-        &[0.0]
-    };
-    let mut fixed = vec![plate(
-        DVec3::new(2.0 * (spacing + barrel), 2.0 * barrel, 0.012),
-        0.006,
-        HOUSING,
-    )];
-    let mut moving = vec![plate(
-        DVec3::new(2.0 * (spacing + barrel), 1.6 * barrel, 0.012),
-        length + 0.02,
-        CARRIAGE,
-    )];
-    for side in sides {
-        fixed.push(along_z(
-            barrel,
-            length,
-            side * spacing,
-            0.012 + 0.5 * length,
-            CYLINDER,
-        ));
-        moving.push(along_z(
-            0.5 * parameters.rod,
-            length,
-            side * spacing,
-            0.5 * length + 0.016,
-            TOOL,
-        ));
-    }
-    let spindle_end = scenario.tool_centre - 0.03;
-    moving.push(along_z(
-        0.019,
-        spindle_end - length,
-        0.0,
-        0.5 * (spindle_end + length),
-        HOUSING,
-    ));
-    moving.push(along_z(
-        0.5 * scenario.tool_radius,
-        0.03,
-        0.0,
-        spindle_end + 0.015,
-        TOOL,
-    ));
-    moving.push(SceneShape {
-        body_from_shape: DPose3::from_translation(DVec3::new(0.0, 0.0, scenario.tool_centre)),
-        geometry: SceneGeometry::Sphere {
-            radius: scenario.tool_radius,
-        },
-        colour: CARRIAGE,
-    });
+    let shape = DeviceShape::of(scenario);
+    let moving = shape.moving.iter().chain([&shape.ball]);
     [
         SceneBody {
             entity: "device/cylinders".into(),
-            shapes: fixed,
+            shapes: shape.fixed.iter().map(shape_of).collect(),
             world_from_body: world_from_flange,
         },
         SceneBody {
             entity: "device/slide".into(),
-            shapes: moving,
+            shapes: moving.map(shape_of).collect(),
             world_from_body: world_from_slide,
         },
     ]
+}
+
+/// What stands in the cell beside arm and part.
+fn obstacles(cell: &Cell) -> impl Iterator<Item = SceneBody> {
+    let obstacles = cell.scenario.collision.obstacles.iter().enumerate();
+    obstacles.filter_map(|(index, obstacle)| {
+        let body = (cell.collision.bodies()).find(|body| body.name == obstacle.name)?;
+        let shapes = body.solids.iter().map(|solid| {
+            let (vertices, triangles) = solid.triangles();
+            SceneShape {
+                body_from_shape: DPose3::IDENTITY,
+                geometry: SceneGeometry::Mesh {
+                    vertices,
+                    triangles,
+                },
+                colour: OBSTACLE,
+            }
+        });
+        Some(SceneBody {
+            entity: format!("obstacles/{}", index + 1),
+            shapes: shapes.collect(),
+            world_from_body: ScenePoses::Static(obstacle.world_from_obstacle),
+        })
+    })
 }
 
 fn part(cell: &Cell) -> SceneBody {

@@ -39,6 +39,15 @@ pub(super) fn cases(count: usize, hidden: bool) -> ProgressBar {
     bar
 }
 
+/// A bar of so many places.
+pub(super) fn places(count: usize, hidden: bool) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());
+    let style = ProgressStyle::with_template("{pos} of {len} places {wide_bar} {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    show_later(&bar, hidden);
+    bar
+}
+
 /// A bar of so many runs, each of so many parts; its message is how many are done.
 pub(super) fn runs(count: usize, parts: usize, hidden: bool) -> ProgressBar {
     let total = (count * parts) as u64;

@@ -12,4 +12,7 @@ pub mod urdf;
 pub(crate) mod test_chains;
 
 pub use chain::{BodyInertia, Joint, JointKind, KinematicChain, MAX_JOINTS};
-pub use urdf::{Arm, ArmError, ArmOptions, LimitOverride, Visual, VisualShape, load_arm};
+pub use urdf::{
+    Arm, ArmError, ArmOptions, CollisionShape, LimitOverride, Visual, VisualShape, likely_flange,
+    load_arm,
+};

@@ -4,6 +4,7 @@
 //! off the path (gripper fingers), is welded on with its mass. Format: <http://wiki.ros.org/urdf/XML>.
 
 mod arm;
+mod collisions;
 mod error;
 mod graph;
 mod inertia;
@@ -15,7 +16,7 @@ mod visuals;
 #[cfg(test)]
 mod tests;
 
-pub use arm::{Arm, ArmOptions, LimitOverride, Visual, VisualShape};
+pub use arm::{Arm, ArmOptions, CollisionShape, LimitOverride, Visual, VisualShape};
 pub use error::{ArmError, Refusal};
 
 use crate::arm::chain::KinematicChain;
@@ -54,6 +55,41 @@ pub fn load_arm(path: &Path, options: &ArmOptions) -> Result<Arm, ArmError> {
     })
 }
 
+/// The link of a URDF file that a device would be mounted on: of those by which an arm can be loaded one with a usual name, else the last.
+///
+/// # Errors
+/// The file cannot be read, or no link of it ends an arm; why not by its last link.
+pub fn likely_flange(path: &Path) -> Result<String, ArmError> {
+    const USUAL: [&str; 3] = ["tool0", "flange", "ee_link"];
+    let text = std::fs::read_to_string(path).map_err(|source| ArmError::Unreadable {
+        file: path.to_path_buf(),
+        source,
+    })?;
+    let robot = urdf_rs::read_from_string(&text).map_err(|source| ArmError::Malformed {
+        file: path.to_path_buf(),
+        source,
+    })?;
+    let loads = |link: &str| {
+        let options = ArmOptions {
+            tip_link: link.to_owned(),
+            skip_visuals: true,
+            ..ArmOptions::default()
+        };
+        load_arm(path, &options).map(|_| link.to_owned())
+    };
+    let usual = USUAL.into_iter().find_map(|link| loads(link).ok());
+    let last = || {
+        let links = robot.links.iter().rev();
+        links
+            .map(|link| link.name.as_str())
+            .find_map(|link| loads(link).ok())
+    };
+    match usual.or_else(last) {
+        Some(link) => Ok(link),
+        None => loads(robot.links.last().map_or("", |link| &link.name)),
+    }
+}
+
 fn assemble(robot: &urdf_rs::Robot, folder: &Path, options: &ArmOptions) -> Result<Arm, Refusal> {
     let mut notes = Vec::new();
     let tree = Tree::build(
@@ -74,12 +110,14 @@ fn assemble(robot: &urdf_rs::Robot, folder: &Path, options: &ArmOptions) -> Resu
     for (moving, body) in tree.moving.iter().zip(bodies) {
         joints.push(joints::path_joint(moving, body, options, &mut notes)?);
     }
-    let visuals = if options.skip_visuals {
-        Vec::new()
+    let (visuals, collisions) = if options.skip_visuals {
+        (Vec::new(), Vec::new())
     } else {
-        visuals::load(&tree, folder, options, &mut notes)?
+        (
+            visuals::load(&tree, folder, options, &mut notes)?,
+            collisions::load(&tree, folder, options, &mut notes)?,
+        )
     };
-    notes.push("collision shapes of the arm are not simulated".to_string());
     Ok(Arm {
         name: robot.name.clone(),
         chain: KinematicChain {
@@ -88,6 +126,7 @@ fn assemble(robot: &urdf_rs::Robot, folder: &Path, options: &ArmOptions) -> Resu
         },
         link_names: tree.link_names(),
         visuals,
+        collisions,
         notes,
     })
 }

@@ -178,7 +178,7 @@ impl Case {
     fn sources(&self) -> Vec<(String, PathBuf)> {
         let within = |name: &str| (name.to_owned(), self.folder.join(name));
         let mut sources = match self.cell().map(|cell| &cell.scenario) {
-            Some(cell) => files_of_cell(&cell.path, &cell.arm, &cell.device, &cell.workpiece)
+            Some(cell) => files_of_cell(&cell.path, &cell.arm, &cell.device, &cell.workpiece, &[])
                 .into_iter()
                 .map(|path| (path.display().to_string(), path.clone()))
                 .collect(),

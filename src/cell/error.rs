@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use super::advice::Advice;
 use crate::arm::urdf::ArmError;
+use crate::collision::ModelError;
 use crate::path::PlanError;
 use crate::scenario::{Scenario, ScenarioError};
 use crate::workpiece::WorkpieceError;
@@ -116,12 +118,55 @@ pub enum CellError {
         axes: usize,
     },
     /// The path.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {source}{advice}", file.display())]
     Plan {
         /// Scenario file.
         file: PathBuf,
+        /// What would make it possible.
+        advice: Advice,
         /// The obstacle.
         source: Box<PlanError>,
+    },
+    /// Bodies that cannot be checked for collisions.
+    #[error("{}: {source}", file.display())]
+    CollisionModel {
+        /// Scenario file.
+        file: PathBuf,
+        /// Why not.
+        source: ModelError,
+    },
+    /// What stands still stands in each other.
+    #[error("{}: {} stands {:.1} mm deep in {}{advice}", file.display(), names[0], 1e3 * depth, names[1])]
+    Standing {
+        /// Scenario file.
+        file: PathBuf,
+        /// What would make it possible.
+        advice: Advice,
+        /// The two bodies.
+        names: [String; 2],
+        /// Depth [m].
+        depth: f64,
+    },
+    /// The tool's weight alone presses harder than is asked for.
+    #[error("{}: `process.force_n` is {force} N, but at {:.1} mm along the edge the weight of tool and slide alone presses with {:.1} N: device.override.moving_mass_kg at most {} (now {mass}), or force_n at least {:.1}, or the tool's axis at least {:.0} deg from the vertical (now {:.0}), by another lean or the part turned",
+        file.display(), 1e3 * edge_length, pressing, (most_mass * 100.0).floor() / 100.0, (pressing * 10.0).ceil() / 10.0, least_tilt.to_degrees().ceil(), tilt.to_degrees())]
+    Weight {
+        /// Scenario file.
+        file: PathBuf,
+        /// Desired force [N].
+        force: f64,
+        /// Where [m].
+        edge_length: f64,
+        /// Contact force by the weight alone [N].
+        pressing: f64,
+        /// Moving mass [kg].
+        mass: f64,
+        /// Largest moving mass at which the force can be had there [kg].
+        most_mass: f64,
+        /// Angle of the tool's axis to gravity there [rad], and the least at which the force can be had.
+        tilt: f64,
+        /// The least at which the force can be had [rad].
+        least_tilt: f64,
     },
     /// The supply cannot give the force, or the command's way not the set pressure.
     #[error("{}: `process.force_n` is {force} N, which needs {:.2} bar gauge at the regulator at {:.1} mm along the edge; {giver} 0 to {:.2} bar, expected {:.1} to {:.1} N there",
@@ -153,6 +198,7 @@ impl CellError {
     pub(super) fn plan(scenario: &Scenario, source: PlanError) -> Self {
         Self::Plan {
             file: scenario.path.clone(),
+            advice: Advice::default(),
             source: Box::new(source),
         }
     }

@@ -1,29 +1,37 @@
 //! The cell, assembled from a scenario and checked: everything that does not change during a run.
 
+mod advice;
+mod collision;
+mod device_shape;
 mod error;
 mod part;
 mod plant;
+mod remedy;
+mod setup;
+mod supply;
 
 use std::path::Path;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use glamx::DPose3;
 
+pub use advice::Advice;
+pub use device_shape::DeviceShape;
 pub use error::CellError;
 pub use part::{Part, choose_edge, station};
+pub use setup::{Setup, Stance, arm_options};
 
-use crate::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain, MAX_JOINTS};
+use crate::arm::chain::{KinematicChain, MAX_JOINTS};
 use crate::arm::kinematics::{jacobian_at, link_poses};
-use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
+use crate::arm::urdf::Arm;
+use crate::collision::{CollisionModel, Meeting};
 use crate::control::force::ForceController;
 use crate::control::transmission::TransmissionParameters;
-use crate::device::{Device, PressureMap};
-use crate::path::PlanRequest;
-use crate::path::profile::MotionLimits;
-use crate::path::{Plan, ToolPath};
+use crate::device::Device;
+use crate::path::Plan;
 use crate::physics::push_only::PushOnly;
 use crate::plant::{EdgeStation, PlantParameters, Relief};
-use crate::scenario::{ArmScenario, Scenario, ScenarioError, attainable_set_pressure, load};
+use crate::scenario::{Scenario, ScenarioError, load};
 
 /// A cell, ready to run.
 pub struct Cell {
@@ -47,8 +55,12 @@ pub struct Cell {
     pub controller: ForceController,
     /// Part, edge and burr.
     pub part: Part,
+    /// What must not meet, the part where it is believed to be.
+    pub collision: CollisionModel,
     /// The job.
     pub plan: Plan,
+    /// Cosine between the tool's axis and the contact normal in the middle of the edge: the share of the contact force that the device sees there [1].
+    pub axial_share: f64,
     /// Least and greatest component of gravity along the tool's axis on the edge [m/s2].
     pub gravity_on_edge: [f64; 2],
     /// Notes on what a user may not expect, one sentence each.
@@ -69,40 +81,49 @@ impl Cell {
     /// # Errors
     /// Something is missing, refused or out of reach; the error names file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
-        let mut arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
-        check_drives(&scenario, &arm.chain)?;
-        let plant = plant::of(&scenario, &arm.chain)?;
-        for (joint, friction) in arm.chain.joints.iter_mut().zip(plant.cell.joint_friction) {
-            joint.friction = friction;
+        let setup = Setup::load(scenario)?;
+        if let Some(Meeting { names, depth, .. }) = setup.collision.standing().into_iter().next() {
+            return Err(CellError::Standing {
+                file: setup.scenario.path.clone(),
+                advice: remedy::for_standing(&setup),
+                names,
+                depth,
+            });
         }
-        let transmissions = plant::transmissions(&scenario, &arm.chain, &plant.cell);
-        check_seed_posture(&scenario, &arm.chain)?;
-        let believed_mass = scenario.device.parameters.moving_mass;
-        let arm_with_slide = with_slide(&arm.chain, &scenario, believed_mass);
-        let bodies = with_slide(&arm.chain, &scenario, plant.device.moving_mass);
-        let part = Part::load(&scenario)?;
+        let stance = setup.stance();
+        let refused = |error| CellError::plan(&setup.scenario, error);
+        let tool_path = setup.tool_path(&stance).map_err(refused)?;
+        let gravity_on_edge = supply::check(&setup.scenario, &tool_path)?;
+        let axial_share = tool_path.at(0.5 * tool_path.length()).share;
+        let controller = controller(&setup.scenario, axial_share)?;
+        let request = setup.request(&stance, &setup.collision, tool_path);
+        let plan = Plan::new(&request).map_err(|source| CellError::Plan {
+            file: setup.scenario.path.clone(),
+            advice: remedy::for_plan(&setup, &source),
+            source: Box::new(source),
+        })?;
+        let device = Device::new(
+            setup
+                .plant
+                .with_friction_of_terms(setup.plant.device.clone()),
+        );
+        let Setup {
+            scenario,
+            arm,
+            arm_with_slide,
+            bodies,
+            transmissions,
+            plant,
+            part,
+            collision,
+            mut notes,
+        } = setup;
+        notes.extend(plan.notes.iter().cloned());
         let middle = station(
             &part.edge,
             scenario.workpiece.world_from_part,
             0.5 * part.edge.length,
         );
-        let device = Device::new(plant.with_friction_of_terms(plant.device.clone()));
-        let tool_path = ToolPath::along(
-            part.edge.clone(),
-            scenario.workpiece.world_from_part,
-            scenario.process.lean,
-        )
-        .map_err(|error| CellError::plan(&scenario, error))?;
-        let gravity_on_edge = check_supply(&scenario, &tool_path)?;
-        let controller = controller(&scenario)?;
-        let plan = Plan::new(&plan_request(
-            &scenario,
-            &arm.chain,
-            &arm_with_slide,
-            tool_path,
-        ))
-        .map_err(|error| CellError::plan(&scenario, error))?;
-        let notes = arm.notes.iter().chain(&plan.notes).cloned().collect();
         Ok(Self {
             scenario,
             arm,
@@ -114,6 +135,8 @@ impl Cell {
             device,
             controller,
             part,
+            collision,
+            axial_share,
             plan,
             gravity_on_edge,
             notes,
@@ -154,129 +177,11 @@ impl Cell {
         let most = (0..count).max_by(|&a, &b| along(a).abs().total_cmp(&along(b).abs()));
         most.unwrap_or_default() + 1
     }
-
-    /// Cosine between the tool's axis and the contact normal: the share of the contact force that the device sees.
-    pub fn axial_share(&self) -> f64 {
-        self.scenario.process.lean.cos()
-    }
-}
-
-/// The parts of its file that a scenario's arm takes.
-pub fn arm_options(arm: &ArmScenario) -> ArmOptions {
-    ArmOptions {
-        base_link: arm.base_link.clone(),
-        tip_link: arm.flange_link.clone(),
-        package_directories: arm.package_directories.clone(),
-        limit_overrides: arm
-            .limit_overrides
-            .iter()
-            .map(|o| {
-                (
-                    o.joint.clone(),
-                    LimitOverride {
-                        effort: o.effort,
-                        velocity: o.velocity,
-                    },
-                )
-            })
-            .collect(),
-        skip_visuals: false,
-    }
-}
-
-fn check_drives(scenario: &Scenario, chain: &KinematicChain) -> Result<(), CellError> {
-    let known = |name: &str| chain.joints.iter().any(|joint| joint.name == name);
-    match scenario.arm.drives.iter().find(|d| !known(&d.joint)) {
-        None => Ok(()),
-        Some(drive) => Err(CellError::DriveUnknown {
-            file: scenario.path.clone(),
-            joint: drive.joint.clone(),
-            joints: chain.joints.iter().map(|j| j.name.clone()).collect(),
-        }),
-    }
-}
-
-fn check_seed_posture(scenario: &Scenario, arm: &KinematicChain) -> Result<(), CellError> {
-    match &scenario.arm.seed_posture {
-        Some(posture) if posture.len() != arm.len() => Err(CellError::SeedPosture {
-            file: scenario.path.clone(),
-            found: posture.len(),
-            axes: arm.len(),
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// The arm's chain with the device's moving part, of a mass [kg], on a prismatic joint along the flange's z.
-fn with_slide(arm: &KinematicChain, scenario: &Scenario, mass: f64) -> KinematicChain {
-    let device = &scenario.device;
-    let gyration = device.moving_radius_of_gyration;
-    let mut chain = arm.clone();
-    chain.joints.push(Joint {
-        name: "device_slide".into(),
-        kind: JointKind::Prismatic,
-        parent_from_joint: arm.tip_from_last,
-        axis: DVec3::Z,
-        lower: 0.0,
-        upper: device.parameters.full_stroke,
-        effort: f64::INFINITY,
-        velocity: f64::INFINITY,
-        damping: 0.0,
-        friction: 0.0,
-        body: BodyInertia {
-            mass,
-            centre_of_mass: DVec3::new(0.0, 0.0, device.moving_centre_of_mass),
-            inertia: DMat3::from_diagonal(DVec3::splat(mass * gyration * gyration)),
-        },
-    });
-    chain.tip_from_last = DPose3::from_translation(DVec3::new(0.0, 0.0, device.tool_centre));
-    chain
-}
-
-fn plan_request<'a>(
-    scenario: &'a Scenario,
-    arm: &'a KinematicChain,
-    arm_with_slide: &'a KinematicChain,
-    tool_path: ToolPath,
-) -> PlanRequest<'a> {
-    let (process, device) = (&scenario.process, &scenario.device);
-    // A free slide stands at its outer end until the tool touches; a locked one does not move.
-    let push_back = if device.locked {
-        0.0
-    } else {
-        device.parameters.full_stroke - process.working_stroke
-    };
-    PlanRequest {
-        arm,
-        arm_with_slide,
-        world_from_base: scenario.arm.world_from_base,
-        gravity: scenario.simulation.gravity,
-        tool_path,
-        tool_distance: device.tool_centre + process.working_stroke,
-        tool_radius: device.tool_radius,
-        penetration: process.force / scenario.contact.stiffness,
-        working_stroke: process.working_stroke,
-        push_back,
-        force: process.force,
-        friction: scenario.contact.friction,
-        feed: process.feed,
-        corner_feed: process.corner_feed,
-        limits: MotionLimits {
-            acceleration: process.acceleration,
-            jerk: process.jerk,
-        },
-        approach_distance: process.approach_distance,
-        approach_speed: process.approach_speed,
-        engage_speed: process.engage_speed,
-        settle_time: process.settle_time,
-        seed_posture: scenario.arm.seed_posture.as_deref(),
-        seed: scenario.simulation.seed,
-    }
 }
 
 /// The controller against the contact as the slide feels it: of the normal's stiffness the share along the axis, twice.
-fn controller(scenario: &Scenario) -> Result<ForceController, ScenarioError> {
-    let share = scenario.process.lean.cos().powi(2);
+fn controller(scenario: &Scenario, axial_share: f64) -> Result<ForceController, ScenarioError> {
+    let share = axial_share.powi(2);
     ForceController::of_scenario(
         &scenario.controller,
         &scenario.device.parameters,
@@ -287,35 +192,4 @@ fn controller(scenario: &Scenario) -> Result<ForceController, ScenarioError> {
         }),
         scenario.simulation.step,
     )
-}
-
-/// The supply must give the force wherever the wrist turns, and gravity alone must not press harder than asked for. Returns the least and greatest
-/// component of gravity along the tool's axis [m/s2].
-fn check_supply(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2], CellError> {
-    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-    let map = PressureMap::new(&scenario.device.parameters);
-    let axial = scenario.process.force * scenario.process.lean.cos();
-    let device = &scenario.device.parameters;
-    let (supply, giver) = attainable_set_pressure(device, &scenario.sensing.command);
-    let length = tool_path.length();
-    let count = (length / 5e-3).ceil().max(1.0) as usize;
-    for i in 0..=count {
-        let station = tool_path.at(length * i as f64 / count as f64);
-        let gravity = scenario.simulation.gravity.dot(station.axis);
-        range = [range[0].min(gravity), range[1].max(gravity)];
-        let needed = map.unlimited(axial, gravity);
-        if needed > supply || needed < 0.0 {
-            return Err(CellError::Supply {
-                file: scenario.path.clone(),
-                force: scenario.process.force,
-                edge_length: station.edge_length,
-                needed,
-                supply,
-                giver,
-                attainable: [map.force(0.0, gravity), map.force(supply, gravity)]
-                    .map(|force| force / scenario.process.lean.cos()),
-            });
-        }
-    }
-    Ok(range)
 }

@@ -1,17 +1,22 @@
 //! A scene as a picture: solid bodies seen from one side as an image, over it in lines what is to be read - the edge in the colours of its force error,
 //! the force, names, a scale. An SVG document in the colours of the page that it stands in; the same scene gives the same bytes.
 
+mod cross_section;
 mod faces;
 mod numbered;
 mod png;
 mod raster;
 mod solids;
+mod svg;
 mod view;
 
 use glam::{DVec2, DVec3};
 
+pub use cross_section::{CrossSection, cross_section};
+
 use self::faces::{Face, faces};
 use self::raster::{Camera, Raster};
+use self::svg::Svg;
 use crate::quantity::with_unit;
 use crate::recording::error_scale::ErrorScale;
 use crate::recording::scene::{ContactArrow, EdgePath, Scene};
@@ -39,7 +44,7 @@ pub fn cell(scene: &Scene, moment: f64) -> String {
     let frame = frame_at(scene, moment);
     let all = faces(scene, frame, |_| true);
     let (camera, image) = drawn(&all, CELL_EYE, SIZE);
-    let mut svg = Svg::new(SIZE, "The cell", &image);
+    let mut svg = Svg::with_image((SIZE, SIZE), "The cell", &image);
     edge_line(&mut svg, &scene.edge_path, &camera, None);
     names(&mut svg, scene, &all, &camera);
     force(&mut svg, scene, frame, &camera);
@@ -63,7 +68,7 @@ pub fn edge(scene: &Scene) -> Option<String> {
     let (camera, image) = drawn(&part, edge_direction(scene), SIZE);
     let raster = Raster::of(&part, &camera, SIZE);
     let size = [SIZE[0], SIZE[1] + LEGEND];
-    let mut svg = Svg::new(size, "The edge", &image);
+    let mut svg = Svg::with_image((size, SIZE), "The edge", &image);
     let scale = ErrorScale::of(path);
     edge_line(&mut svg, path, &camera, Some((scale, &raster)));
     ends(&mut svg, path, &camera);
@@ -273,70 +278,6 @@ fn legend(svg: &mut Svg, scale: ErrorScale, path: &EdgePath) {
 
 fn hex([red, green, blue, _]: [u8; 4]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
-}
-
-/// An SVG document in the making.
-struct Svg {
-    text: String,
-}
-
-impl Svg {
-    fn new([width, height]: [usize; 2], name: &str, image: &str) -> Self {
-        let [shown_width, shown_height] = SIZE;
-        Self {
-            text: format!(
-                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{name}\" font-family=\"system-ui, Arial, sans-serif\" font-size=\"16\">\n<image href=\"data:image/png;base64,{image}\" width=\"{shown_width}\" height=\"{shown_height}\"/>\n"
-            ),
-        }
-    }
-
-    fn line(&mut self, [from, to]: [DVec2; 2], colour: &str, width: f64, opacity: f64) {
-        self.text += &format!(
-            "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\"",
-            from.x, from.y, to.x, to.y
-        );
-        if opacity < 1.0 {
-            self.text += &format!(" opacity=\"{opacity}\"");
-        }
-        self.text += "/>\n";
-    }
-
-    fn arrow(&mut self, [from, to]: [DVec2; 2], colour: &str, width: f64) {
-        let along = (to - from).normalize_or(DVec2::X);
-        let aside = DVec2::new(-along.y, along.x);
-        let head = 3.0 + 3.0 * width;
-        let neck = to - head * along;
-        self.line([from, neck], colour, width, 1.0);
-        let [one, other] = [1.0, -1.0].map(|side| neck + 0.5 * side * head * aside);
-        self.text += &format!(
-            "<polygon points=\"{:.1},{:.1} {:.1},{:.1} {:.1},{:.1}\" fill=\"{colour}\"/>\n",
-            to.x, to.y, one.x, one.y, other.x, other.y
-        );
-    }
-
-    fn dot(&mut self, at: DVec2, radius: f64) {
-        self.text += &format!(
-            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{radius}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"2\"/>\n",
-            at.x, at.y
-        );
-    }
-
-    fn bar(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], colour: &str) {
-        self.text += &format!(
-            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"/>\n"
-        );
-    }
-
-    /// Words of this program, in which nothing is to be escaped.
-    fn text(&mut self, [x, y]: [f64; 2], anchor: &str, words: &str) {
-        self.text += &format!(
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"currentColor\">{words}</text>\n"
-        );
-    }
-
-    fn end(self) -> String {
-        self.text + "</svg>\n"
-    }
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ pub fn numbered(scene: &Scene, lines: &[Numbered], eye: DVec3) -> String {
     let bodies = faces(scene, 0, |_| true);
     let (camera, image) = drawn(&bodies, eye, SIZE);
     let raster = Raster::of(&bodies, &camera, SIZE);
-    let mut svg = Svg::new(SIZE, "The part and its edges", &image);
+    let mut svg = Svg::with_image((SIZE, SIZE), "The part and its edges", &image);
     let mut words: Vec<(DVec2, usize)> = Vec::new();
     for line in lines {
         let mut seen = Vec::new();

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::collision::Meeting;
+
 /// Obstacle at a waypoint. Angles [rad], torques [N m].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Obstacle {
@@ -48,6 +50,8 @@ pub enum Obstacle {
         /// Its position in the pose [rad].
         needed: f64,
     },
+    /// Two bodies come nearer than they may.
+    Collision(Meeting),
     /// The arm is all but singular.
     Singular {
         /// Smallest singular value of the scaled Jacobian [1].
@@ -103,6 +107,35 @@ impl std::fmt::Display for Obstacle {
                 value.to_degrees(),
                 needed.to_degrees()
             ),
+            Self::Collision(meeting) => {
+                let Meeting {
+                    names: [first, second],
+                    depth,
+                    margin,
+                    ..
+                } = meeting;
+                if *depth >= 0.0 {
+                    write!(
+                        f,
+                        "collision: {first} meets {second}, at worst {:.1} mm deep",
+                        1e3 * depth
+                    )?;
+                } else {
+                    write!(
+                        f,
+                        "collision: {first} comes within {:.1} mm of {second}",
+                        -1e3 * depth
+                    )?;
+                }
+                if *margin > 0.0 {
+                    write!(
+                        f,
+                        " (clearance asked for: collision.margin_mm = {})",
+                        1e3 * margin
+                    )?;
+                }
+                Ok(())
+            }
             Self::Singular { value, limit, axis } => write!(
                 f,
                 "the arm is all but singular (smallest singular value {value:.5}, least accepted {limit}); axis {axis} would move most"
@@ -131,6 +164,26 @@ pub enum PlanError {
         /// The obstacle.
         obstacle: Obstacle,
     },
+    /// Bodies that stand still stand in each other.
+    #[error("{} stands {:.1} mm deep in {}", _0.names[0], 1e3 * _0.depth, _0.names[1])]
+    Standing(Meeting),
+    /// A given direction of the tool that stands too far from the bisector.
+    #[error("at {:.1} mm along the edge, point ({:.1}, {:.1}, {:.1}) mm, the tool's axis ({:.3}, {:.3}, {:.3}) stands {:.1} deg from the edge's bisector ({:.3}, {:.3}, {:.3}), expected at most {:.0} deg: turn the part, or choose another process.tool_axis",
+        1e3 * edge_length, 1e3 * point.x, 1e3 * point.y, 1e3 * point.z, axis.x, axis.y, axis.z, lean.to_degrees(), bisector.x, bisector.y, bisector.z, most.to_degrees())]
+    Lean {
+        /// Length along the edge [m].
+        edge_length: f64,
+        /// Point of the edge in the world [m].
+        point: DVec3,
+        /// Angle between them [rad].
+        lean: f64,
+        /// Largest that is accepted [rad].
+        most: f64,
+        /// The tool's axis, towards the part.
+        axis: DVec3,
+        /// The bisector, into the part.
+        bisector: DVec3,
+    },
     /// A corner that turns inwards.
     #[error("the edge turns inwards by {:.0} deg at {:.1} mm, point ({:.1}, {:.1}, {:.1}) mm: a ball cannot reach into a sharp inside corner; choose a stretch without it",
         turn.to_degrees(), 1e3 * edge_length, 1e3 * point.x, 1e3 * point.y, 1e3 * point.z)]
@@ -142,4 +195,14 @@ pub enum PlanError {
         /// Angle turned [rad].
         turn: f64,
     },
+}
+
+impl PlanError {
+    /// Whether bodies meet along the motion.
+    pub(super) fn is_collision(&self) -> bool {
+        let Self::Waypoint { obstacle, .. } = self else {
+            return false;
+        };
+        matches!(obstacle, Obstacle::Collision(_))
+    }
 }

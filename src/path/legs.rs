@@ -5,7 +5,7 @@ use glamx::DPose3;
 use super::error::PlanError;
 use super::feed;
 use super::poses::{backed_off, places, poses_along};
-use super::posture::Standing;
+use super::posture::{Outline, Standing};
 use super::profile::Profile;
 use super::request::{KNOT_SPACING, Leg, Phase, PlanRequest, Way, waypoint_error};
 use super::spline::Spline;
@@ -40,16 +40,14 @@ pub(super) struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    /// Lays out all legs for a spin [rad] of the flange, from joint angles near the first pose, starting `far` [m] from the edge.
+    /// Lays out all legs for a roll of the flange, from joint angles near the first pose.
     ///
     /// # Errors
     /// The waypoint that is not reached.
     pub(super) fn lay_out(
         request: &'a PlanRequest<'a>,
         standing: &'a Standing<'a>,
-        spin: f64,
-        start: Vec<f64>,
-        far: f64,
+        Outline { roll, start, .. }: Outline,
     ) -> Result<(Vec<Leg>, Vec<String>), PlanError> {
         let mut layout = Self {
             request,
@@ -58,9 +56,9 @@ impl<'a> Layout<'a> {
             legs: Vec::new(),
             notes: Vec::new(),
         };
-        let length = request.tool_path.length();
+        let (length, far) = (request.tool_path.length(), request.far());
         let knots = places(length, KNOT_SPACING);
-        let poses = poses_along(request, &knots, spin);
+        let poses = poses_along(request, &knots, roll);
         let (first, last) = (poses[0], poses[poses.len() - 1]);
         let near = request.push_back + CLEARANCE.min(0.5 * request.approach_distance);
         let (fast, gentle) = (request.approach_speed, request.engage_speed);
@@ -135,7 +133,7 @@ impl<'a> Layout<'a> {
         let angles = self
             .standing
             .track(poses, &self.angles)
-            .map_err(|(index, obstacle)| {
+            .map_err(|(index, stop)| {
                 let place = match way {
                     Way::Edge => knots[index],
                     Way::Axial { place, .. } => place,
@@ -146,7 +144,7 @@ impl<'a> Layout<'a> {
                     index,
                     poses.len(),
                     place,
-                    obstacle,
+                    self.standing.why(stop),
                 )
             })?;
         if let Some(last) = angles.last() {

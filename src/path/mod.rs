@@ -6,6 +6,7 @@
 //! - [`plan`]: the whole job (approach, engage, settle, follow, retract), checked against the arm's limits before anything moves.
 
 mod check;
+mod collisions;
 mod error;
 mod feed;
 mod legs;
@@ -19,5 +20,6 @@ pub mod toolpath;
 
 pub use error::{Obstacle, PlanError};
 pub use plan::{Plan, Reference};
+pub use posture::Outline;
 pub use request::{Phase, PlanRequest};
-pub use toolpath::{ToolPath, ToolStation};
+pub use toolpath::{ToolAxis, ToolPath, ToolStation};

@@ -6,14 +6,16 @@
 use glam::DVec3;
 
 use super::check;
+use super::collisions;
 use super::error::PlanError;
 use super::legs::Layout;
 use super::poses::Coarse;
-use super::posture::Standing;
+use super::posture::{Outline, Standing};
 use super::profile::PathState;
 use super::request::{Leg, Phase, PlanRequest, Way};
 use super::toolpath::ToolPath;
 use crate::arm::chain::MAX_JOINTS;
+use crate::collision::JointMotion;
 
 /// Where the arm and the tool should be at a time.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +40,8 @@ pub struct Reference {
     pub tangent: DVec3,
     /// Where the ball's centre should be, at the working stroke [m].
     pub centre: DVec3,
+    /// Cosine between the tool's axis and the contact normal: the share of the contact force that the device sees [1].
+    pub share: f64,
 }
 
 impl Reference {
@@ -56,6 +60,27 @@ impl Reference {
     }
 }
 
+/// Ways, by roll and posture, that are planned in full before a collision is told.
+const WAYS: usize = 4;
+
+/// The most comfortable rolls and postures, at least one and at most `most`.
+fn outlines(request: &PlanRequest, most: usize) -> Result<Vec<Outline>, PlanError> {
+    let standing = Standing::of(request);
+    let coarse = Coarse::new(request);
+    let passable = |angles: &[Vec<f64>]| collisions::passable(request, &coarse, angles);
+    let blockade = |angles: &[Vec<f64>]| collisions::blockade(request, &coarse, angles);
+    standing
+        .choose(
+            &standing.spins(request.roll),
+            |spin| coarse.poses(request, spin),
+            (passable, blockade),
+            request.seed_posture,
+            request.seed,
+            most,
+        )
+        .map_err(|(index, obstacle)| coarse.failure(request, index, obstacle))
+}
+
 /// The planned job.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -63,34 +88,57 @@ pub struct Plan {
     pub(super) tool_path: ToolPath,
     offset: f64,
     joints: usize,
+    pub(super) motion: JointMotion,
+    /// Angle of the flange's x axis about the tool's axis from the direction of travel, at the start of the edge [rad].
+    pub roll: f64,
     /// Where the feed was slowed, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl Plan {
-    /// Plans the job and checks it against the arm's limits.
+    /// Chooses roll and posture by widely spaced poses of the whole job.
     ///
     /// # Errors
-    /// The waypoint that cannot be passed, the axis and its limit.
+    /// The pose that cannot be passed, and why.
+    pub fn outline(request: &PlanRequest) -> Result<Outline, PlanError> {
+        let mut outlines = outlines(request, 1)?;
+        Ok(outlines.remove(0))
+    }
+
+    /// Plans the job and checks it against the arm's limits and what stands about.
+    ///
+    /// # Errors
+    /// The waypoint that cannot be passed, the axis and its limit, or the bodies that meet.
     pub fn new(request: &PlanRequest) -> Result<Self, PlanError> {
-        let standing = Standing {
-            chain: request.arm,
-            loaded: request.arm_with_slide,
-            stroke: request.working_stroke,
-            world_from_base: request.world_from_base,
-            gravity: request.gravity,
+        let mut ways = outlines(request, WAYS)?.into_iter();
+        let first = ways
+            .next()
+            .map(|outline| Self::from_outline(request, outline));
+        let meets = |planned: &Result<Self, PlanError>| {
+            planned.as_ref().is_err_and(PlanError::is_collision)
         };
-        let far = request.push_back + request.approach_distance;
-        let coarse = Coarse::new(request, far);
-        let (spin, start) = standing
-            .choose(
-                |spin| coarse.poses(request, spin),
-                request.seed_posture,
-                request.seed,
-            )
-            .map_err(|(index, obstacle)| coarse.failure(request, index, obstacle))?;
-        let (legs, notes) = Layout::lay_out(request, &standing, spin, start, far)?;
+        // Another roll or posture may pass what is met between the widely spaced poses.
+        let mut others = ways.map(|outline| Self::from_outline(request, outline));
+        match first {
+            Some(planned) if meets(&planned) => {
+                others.find(|other| !meets(other)).unwrap_or(planned)
+            }
+            Some(planned) => planned,
+            None => Self::from_outline(request, Self::outline(request)?),
+        }
+    }
+
+    /// Plans the job with roll and posture as they were chosen.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn from_outline(request: &PlanRequest, outline: Outline) -> Result<Self, PlanError> {
+        let standing = Standing::of(request);
+        let roll = outline.roll;
+        let (legs, notes) = Layout::lay_out(request, &standing, outline)?;
         let plan = Self {
+            motion: collisions::motion(request, &legs),
+            roll,
             legs,
             tool_path: request.tool_path.clone(),
             offset: request.tool_radius - request.penetration,
@@ -98,7 +146,13 @@ impl Plan {
             notes,
         };
         check::limits(request, &standing, &plan)?;
+        collisions::check(request, &plan.motion, &plan.legs)?;
         Ok(plan)
+    }
+
+    /// The whole motion of arm and slide, its knots the waypoints of all legs.
+    pub fn motion(&self) -> &JointMotion {
+        &self.motion
     }
 
     /// Duration of the whole job [s].
@@ -160,6 +214,7 @@ impl Plan {
             normal: station.normal,
             axis: station.axis,
             tangent: station.tangent,
+            share: station.share,
             centre: station.point + station.normal * self.offset - station.axis * back,
         }
     }

@@ -6,6 +6,7 @@ use glamx::DPose3;
 use super::error::{Obstacle, PlanError};
 use super::request::{Phase, PlanRequest, waypoint_error};
 use super::toolpath::ToolStation;
+use crate::collision::Positions;
 
 /// Distance between the poses by which a posture is chosen [m].
 const COARSE_SPACING: f64 = 8e-3;
@@ -19,9 +20,9 @@ pub(super) struct Coarse {
 }
 
 impl Coarse {
-    pub(super) fn new(request: &PlanRequest, far: f64) -> Self {
+    pub(super) fn new(request: &PlanRequest) -> Self {
         Self {
-            backs: places_between(far, 0.0, COARSE_SPACING),
+            backs: places_between(request.far(), 0.0, COARSE_SPACING),
             places: places(request.tool_path.length(), COARSE_SPACING),
         }
     }
@@ -46,6 +47,22 @@ impl Coarse {
                 .collect(),
             forces,
         )
+    }
+
+    /// Joint positions of arm and slide at all of its poses.
+    pub(super) fn positions<'a>(
+        &'a self,
+        request: &'a PlanRequest,
+        angles: &'a [Vec<f64>],
+    ) -> impl Iterator<Item = Positions> + 'a {
+        let (before, after) = (self.backs.len(), self.backs.len() + self.places.len());
+        let back = move |index: usize| match index {
+            _ if index < before => self.backs[index],
+            _ if index < after => 0.0,
+            _ => self.backs[before - 1 - (index - after)],
+        };
+        let poses = angles.iter().enumerate();
+        poses.map(move |(index, q)| request.with_stroke(q, back(index)))
     }
 
     /// The error of a coarse pose that is not reached.

@@ -7,6 +7,7 @@ use glamx::DPose3;
 use nalgebra::{DMatrix, DVector};
 
 use super::error::Obstacle;
+use super::request::PlanRequest;
 use crate::arm::chain::{KinematicChain, MAX_JOINTS};
 use crate::arm::dynamics::gravity_torques;
 use crate::arm::inverse_kinematics::{IkOptions, TipOrientation, distinct_solutions, solve};
@@ -42,6 +43,22 @@ pub struct Standing<'a> {
     pub world_from_base: DPose3,
     /// Gravity in the world [m/s2].
     pub gravity: DVec3,
+    /// Whether reasons are left at what is known without a search.
+    pub briefly: bool,
+}
+
+impl<'a> Standing<'a> {
+    /// The arm of a request.
+    pub fn of(request: &PlanRequest<'a>) -> Self {
+        Self {
+            chain: request.arm,
+            loaded: request.arm_with_slide,
+            stroke: request.working_stroke,
+            world_from_base: request.world_from_base,
+            gravity: request.gravity,
+            briefly: request.briefly,
+        }
+    }
 }
 
 impl Standing<'_> {
@@ -81,22 +98,16 @@ impl Standing<'_> {
     ///
     /// # Errors
     /// The number of the pose that is not reached, and why.
-    pub fn track(
-        &self,
-        poses: &[DPose3],
-        start: &[f64],
-    ) -> Result<Vec<Vec<f64>>, (usize, Obstacle)> {
+    pub fn track(&self, poses: &[DPose3], start: &[f64]) -> Result<Vec<Vec<f64>>, (usize, Stop)> {
         let mut q = start.to_vec();
         let mut angles = Vec::with_capacity(poses.len());
         for (index, pose) in poses.iter().enumerate() {
             let before = q.clone();
             if !self.reach(pose, &mut q) {
-                q = self
-                    .walk(pose, &before)
-                    .map_err(|obstacle| (index, obstacle))?;
+                q = self.walk(pose, &before).map_err(|stop| (index, stop))?;
             }
             if let Some(obstacle) = self.over_limit(&q) {
-                return Err((index, obstacle));
+                return Err((index, Stop::Met(obstacle)));
             }
             angles.push(q.clone());
         }
@@ -115,7 +126,7 @@ impl Standing<'_> {
     }
 
     /// Goes to a pose that Newton steps did not lead to, along the straight way there, in steps as short as it takes.
-    fn walk(&self, pose: &DPose3, start: &[f64]) -> Result<Vec<f64>, Obstacle> {
+    fn walk(&self, pose: &DPose3, start: &[f64]) -> Result<Vec<f64>, Stop> {
         let from = tip_pose(self.chain, self.world_from_base, start);
         let (mut q, mut done, mut step) = (start.to_vec(), 0.0, 0.125f64);
         while done < 1.0 {
@@ -130,7 +141,10 @@ impl Standing<'_> {
             } else if step > SHORTEST {
                 step *= 0.5;
             } else {
-                return Err(self.explain(pose, &q));
+                return Err(Stop::NotReached {
+                    pose: *pose,
+                    from: q,
+                });
             }
         }
         Ok(q)
@@ -223,6 +237,21 @@ impl Standing<'_> {
         }
     }
 
+    /// Why a way ended.
+    pub fn why(&self, stop: Stop) -> Obstacle {
+        match stop {
+            Stop::Met(obstacle) => obstacle,
+            Stop::NotReached { pose, from } if self.briefly => {
+                let tip = tip_pose(self.chain, self.world_from_base, &from);
+                Obstacle::OutOfReach {
+                    distance: (tip.translation - pose.translation).length(),
+                    axis: None,
+                }
+            }
+            Stop::NotReached { pose, from } => self.explain(&pose, &from),
+        }
+    }
+
     /// Why a pose is not reached.
     fn explain(&self, pose: &DPose3, start: &[f64]) -> Obstacle {
         match solve(
@@ -253,8 +282,10 @@ impl Standing<'_> {
             }
             Err(failure) => Obstacle::OutOfReach {
                 distance: failure.position_error,
+                // Where it is not reached without limits either, no axis is to blame.
                 axis: failure
                     .axis
+                    .filter(|_| failure.reachable_without_limits)
                     .map(|axis| (axis.name, axis.position, axis.limit)),
             },
         }
@@ -276,7 +307,7 @@ impl Standing<'_> {
         most.map_or_else(String::new, |joint| self.chain.joints[joint].name.clone())
     }
 
-    /// Comfort of joint angles, 0 to 1 for the worst of: distance from singularity, from position limits, from torque limits under gravity,
+    /// Comfort of joint angles, the least of: distance from singularity, from position limits, from torque limits under gravity, each 1 where it is comfortable,
     /// the device's included, and `tool_force` on the tool [N, world]; negative below the floor.
     fn comfort(&self, q: &[f64], tool_force: DVec3) -> f64 {
         let count = self.chain.len();
@@ -289,7 +320,7 @@ impl Standing<'_> {
         link_poses(self.loaded, self.world_from_base, position, links);
         let tool = links[count] * self.loaded.tip_from_last;
         let jacobian = jacobian_at(self.loaded, links, tool.translation);
-        let mut comfort = (self.singularity(q) / 0.15).min(1.0);
+        let mut comfort = self.singularity(q) / 0.15;
         let mut torques = [0.0; MAX_JOINTS];
         gravity_torques(
             self.loaded,
@@ -307,9 +338,7 @@ impl Standing<'_> {
             )
             .dot(tool_force);
             let spare = 1.0 - ((torques[index] - push).abs() + joint.friction) / joint.effort;
-            comfort = comfort
-                .min((margin / 0.5).min(1.0))
-                .min((spare / 0.3).min(1.0));
+            comfort = comfort.min(margin / 0.5).min(spare / 0.3);
         }
         let up = -self.gravity.normalize_or_zero();
         let lowest = links
@@ -342,20 +371,75 @@ impl Standing<'_> {
         solutions.into_iter().map(|solution| solution.q).collect()
     }
 
-    /// Chooses spin and posture: `poses_at` gives the coarse poses of the whole job for a spin [rad], with the force on the tool at each.
+    /// Spins of the flange about the tool's axis that are tried [rad], or the one that is given.
+    pub fn spins(&self, given: Option<f64>) -> Vec<f64> {
+        let count = if self.chain.len() < 6 { 1 } else { SPINS };
+        let all = (0..count).map(|i| i as f64 * std::f64::consts::TAU / count as f64);
+        given.map_or_else(|| all.collect(), |spin| vec![spin])
+    }
+
+    /// Chooses spin and posture: the most comfortable ways, at most `most`, through all poses that `passable` lets pass; `blockade` says where one that it does not is blocked. `poses_at` gives the coarse poses of the whole job
+    /// for a spin [rad], with the force on the tool at each.
     ///
     /// # Errors
-    /// The best try's pose that is not reached, and why.
+    /// The best try's pose that is not reached or passed, and why.
     pub fn choose(
         &self,
+        spins: &[f64],
+        poses_at: impl Fn(f64) -> (Vec<DPose3>, Vec<DVec3>),
+        (passable, blockade): (
+            impl Fn(&[Vec<f64>]) -> bool,
+            impl Fn(&[Vec<f64>]) -> Option<(usize, Obstacle)>,
+        ),
+        seed_posture: Option<&[f64]>,
+        seed: u64,
+        most: usize,
+    ) -> Result<Vec<Outline>, (usize, Obstacle)> {
+        let (mut ways, failure) = self.ways(spins, poses_at, seed_posture, seed);
+        // Of ways as good as each other to rounding the first found stays first.
+        let rank = |way: &PassedWay| (way.worth / 1e-9).round();
+        ways.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+        let mut outlines = Vec::new();
+        let mut blocked: Option<Vec<Vec<f64>>> = None;
+        for way in ways {
+            if !passable(&way.angles) {
+                blocked.get_or_insert(way.angles);
+                continue;
+            }
+            outlines.push(Outline {
+                roll: way.spin,
+                start: way.start,
+                comfort: way.comfort,
+            });
+            if outlines.len() == most {
+                break;
+            }
+        }
+        if !outlines.is_empty() {
+            return Ok(outlines);
+        }
+        let stopped = |(index, stop)| (index, self.why(stop));
+        let unreachable = Obstacle::OutOfReach {
+            distance: f64::NAN,
+            axis: None,
+        };
+        Err(blocked
+            .and_then(|angles| blockade(&angles))
+            .or_else(|| failure.map(stopped))
+            .unwrap_or((0, unreachable)))
+    }
+
+    /// All ways through the poses, and of those that ended where the one did that came farthest.
+    fn ways(
+        &self,
+        spins: &[f64],
         poses_at: impl Fn(f64) -> (Vec<DPose3>, Vec<DVec3>),
         seed_posture: Option<&[f64]>,
         seed: u64,
-    ) -> Result<(f64, Vec<f64>), (usize, Obstacle)> {
-        let spins = if self.chain.len() < 6 { 1 } else { SPINS };
-        let mut best: Option<(f64, f64, Vec<f64>)> = None;
-        let mut failure: Option<(usize, Obstacle)> = None;
-        for spin in (0..spins).map(|i| i as f64 * std::f64::consts::TAU / spins as f64) {
+    ) -> (Vec<PassedWay>, Option<(usize, Stop)>) {
+        let mut ways: Vec<PassedWay> = Vec::new();
+        let mut failure: Option<(usize, Stop)> = None;
+        for &spin in spins {
             let (poses, forces) = poses_at(spin);
             let starts = self.starts(&poses[0], seed_posture, seed);
             if starts.is_empty() && failure.is_none() {
@@ -365,16 +449,24 @@ impl Standing<'_> {
                     .iter()
                     .map(|joint| joint.middle().unwrap_or(0.0))
                     .collect();
-                failure = Some((0, self.explain(&poses[0], &middle)));
+                failure = Some((
+                    0,
+                    Stop::NotReached {
+                        pose: poses[0],
+                        from: middle,
+                    },
+                ));
             }
             for start in starts {
                 match self.track(&poses, &start) {
                     Ok(angles) => {
-                        let mut worth = angles
+                        let comfort = angles
                             .iter()
                             .zip(&forces)
                             .map(|(q, &force)| self.comfort(q, force))
                             .fold(f64::INFINITY, f64::min);
+                        // Beyond comfortable all are as good as each other.
+                        let mut worth = comfort.min(1.0);
                         if let Some(posture) = seed_posture {
                             let far = posture
                                 .iter()
@@ -383,9 +475,13 @@ impl Standing<'_> {
                                 .fold(0.0, f64::max);
                             worth -= 10.0 * far;
                         }
-                        if best.as_ref().is_none_or(|b| worth > b.0 + 1e-9) {
-                            best = Some((worth, spin, start));
-                        }
+                        ways.push(PassedWay {
+                            worth,
+                            comfort,
+                            spin,
+                            start,
+                            angles,
+                        });
                     }
                     Err(reached) => {
                         if failure.as_ref().is_none_or(|f| reached.0 > f.0) {
@@ -395,18 +491,43 @@ impl Standing<'_> {
                 }
             }
         }
-        match (best, failure) {
-            (Some((_, spin, start)), _) => Ok((spin, start)),
-            (None, Some(failure)) => Err(failure),
-            (None, None) => Err((
-                0,
-                Obstacle::OutOfReach {
-                    distance: f64::NAN,
-                    axis: None,
-                },
-            )),
-        }
+        (ways, failure)
     }
+}
+
+/// Roll and posture of a job.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outline {
+    /// Angle of the flange's x axis about the tool's axis from the direction of travel, at the start of the edge [rad].
+    pub roll: f64,
+    /// Joint angles at the start of the edge [rad].
+    pub start: Vec<f64>,
+    /// How far the whole way keeps from singularity (least singular value over 0.15), limits of position (distance over 0.5 rad) and of torque (spare share over
+    /// 0.3), the least of these [1]; 0 at a limit, from 1 on comfortable.
+    pub comfort: f64,
+}
+
+/// Where a way through poses ended; why is found out only of the one that is told.
+#[derive(Debug, Clone)]
+pub enum Stop {
+    /// At an obstacle.
+    Met(Obstacle),
+    /// Before a pose that was not reached.
+    NotReached {
+        /// The pose.
+        pose: DPose3,
+        /// Joint angles nearest to it [rad].
+        from: Vec<f64>,
+    },
+}
+
+/// A way through all poses.
+struct PassedWay {
+    worth: f64,
+    comfort: f64,
+    spin: f64,
+    start: Vec<f64>,
+    angles: Vec<Vec<f64>>,
 }
 
 /// Axis times angle of the shortest turn of one unit vector onto another.

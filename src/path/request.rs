@@ -7,7 +7,8 @@ use super::error::{Obstacle, PlanError};
 use super::profile::{MotionLimits, Profile};
 use super::spline::Spline;
 use super::toolpath::ToolPath;
-use crate::arm::chain::KinematicChain;
+use crate::arm::chain::{KinematicChain, MAX_JOINTS};
+use crate::collision::{CollisionModel, Positions};
 
 /// Distance between the knots of the joint angles' spline [m].
 pub(super) const KNOT_SPACING: f64 = 1e-3;
@@ -38,7 +39,7 @@ impl Phase {
 }
 
 /// Request of a plan.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct PlanRequest<'a> {
     /// The arm, base to flange.
     pub arm: &'a KinematicChain,
@@ -78,13 +79,32 @@ pub struct PlanRequest<'a> {
     pub engage_speed: f64,
     /// Time at rest on the edge [s].
     pub settle_time: f64,
+    /// Bodies that must not meet; none are checked when absent.
+    pub collision: Option<&'a CollisionModel>,
+    /// Angle of the flange's x axis about the tool's axis from the direction of travel at the start of the edge [rad]; chosen when absent.
+    pub roll: Option<f64>,
     /// Posture near which to look first [rad].
     pub seed_posture: Option<&'a [f64]>,
+    /// Whether the reason of a pose that is not reached is left at how far it is: for those who try many jobs.
+    pub briefly: bool,
     /// Seed of the search.
     pub seed: u64,
 }
 
 impl PlanRequest<'_> {
+    /// Joint positions of arm and slide, with the tool backed off from the edge by a distance [m]: it stands at its outer end until it touches.
+    pub(super) fn with_stroke(&self, angles: &[f64], back: f64) -> Positions {
+        let mut positions = [0.0; MAX_JOINTS];
+        positions[..angles.len()].copy_from_slice(angles);
+        positions[angles.len()] = self.working_stroke + back.clamp(0.0, self.push_back);
+        positions
+    }
+
+    /// Distance from the edge at which the motion starts [m].
+    pub(super) fn far(&self) -> f64 {
+        self.push_back + self.approach_distance
+    }
+
     /// Force of the part on the tool while it follows the edge: contact force and friction against the motion [N].
     pub(super) fn force_on_tool(&self, normal: DVec3, tangent: DVec3) -> DVec3 {
         self.force * (normal - self.friction * tangent)

@@ -1,6 +1,6 @@
 //! Where the tool touches the edge, and how its axis stands there.
 //!
-//! The tool follows the edge with its axis along the bisector of the two faces, or leaned from it about the edge. At a corner the touching point stays
+//! The tool follows the edge with its axis along the bisector of the two faces, leaned from it about the edge, or along a direction of the world. At a corner the touching point stays
 //! and the tool turns about it. Places along the path are measured by a length that counts the edge's own length and, at a corner, the angle turned times
 //! `CORNER_RADIUS`.
 
@@ -28,7 +28,23 @@ pub struct ToolStation {
     pub normal: DVec3,
     /// Axis of the tool, from the flange towards the part.
     pub axis: DVec3,
+    /// Cosine between that and the normal: the share of the contact force that the device sees [1].
+    pub share: f64,
 }
+
+/// How the tool's axis stands along an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ToolAxis {
+    /// Leaned about the edge from the bisector towards the left face [rad].
+    Lean(f64),
+    /// Along a direction of the world, a unit vector from the flange towards the part.
+    Direction(DVec3),
+}
+
+/// Largest angle between the tool's axis and the edge's bisector [rad]: beyond it the device sees less than half of the contact force.
+const MOST_LEAN: f64 = std::f64::consts::FRAC_PI_3;
+/// Distance between the places at which that is checked [m].
+const LEAN_SPACING: f64 = 1e-3;
 
 /// Kind of a stretch of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,20 +81,24 @@ pub struct ToolpathSection {
 pub struct ToolPath {
     curve: EdgeCurve,
     world_from_part: DPose3,
-    lean: f64,
+    tool_axis: ToolAxis,
     sections: Vec<ToolpathSection>,
 }
 
 impl ToolPath {
-    /// Along all of `curve` (part frame), with the tool leaned by `lean` [rad] about the edge towards its left face.
+    /// Along all of `curve` (part frame).
     ///
     /// # Errors
-    /// A corner that turns inwards, where a ball cannot reach the edge.
-    pub fn along(curve: EdgeCurve, world_from_part: DPose3, lean: f64) -> Result<Self, PlanError> {
+    /// A corner that turns inwards, where a ball cannot reach the edge; a direction of the tool too far from the bisector.
+    pub fn along(
+        curve: EdgeCurve,
+        world_from_part: DPose3,
+        tool_axis: ToolAxis,
+    ) -> Result<Self, PlanError> {
         let mut path = Self {
             curve,
             world_from_part,
-            lean,
+            tool_axis,
             sections: Vec::new(),
         };
         let length = path.curve.length;
@@ -93,7 +113,30 @@ impl ToolPath {
             from = corner;
         }
         path.push(length - from, Stretch::Edge { from, to: length });
+        path.check_lean()?;
         Ok(path)
+    }
+
+    /// A direction of the world may stand anyhow to an edge.
+    fn check_lean(&self) -> Result<(), PlanError> {
+        let ToolAxis::Direction(_) = self.tool_axis else {
+            return Ok(());
+        };
+        let count = (self.length() / LEAN_SPACING).ceil().max(1.0) as usize;
+        for index in 0..=count {
+            let station = self.at(self.length() * index as f64 / count as f64);
+            if station.share < MOST_LEAN.cos() - 1e-9 {
+                return Err(PlanError::Lean {
+                    edge_length: station.edge_length,
+                    point: station.point,
+                    lean: station.axis.angle_between(-station.normal),
+                    most: MOST_LEAN,
+                    axis: station.axis,
+                    bisector: -station.normal,
+                });
+            }
+        }
+        Ok(())
     }
 
     fn push(&mut self, length: f64, stretch: Stretch) {
@@ -162,10 +205,18 @@ impl ToolPath {
                 let turn = |from: DVec3, to: DVec3| {
                     DQuat::IDENTITY.slerp(DQuat::from_rotation_arc(from, to), share) * from
                 };
+                let (axis, normal) = (
+                    turn(before.axis, after.axis),
+                    turn(before.normal, after.normal),
+                );
                 ToolStation {
-                    axis: turn(before.axis, after.axis),
-                    normal: turn(before.normal, after.normal),
+                    axis,
+                    normal,
                     tangent: turn(before.tangent, after.tangent),
+                    share: match self.tool_axis {
+                        ToolAxis::Lean(_) => before.share,
+                        ToolAxis::Direction(_) => -axis.dot(normal),
+                    },
                     ..before
                 }
             }
@@ -175,15 +226,22 @@ impl ToolPath {
     fn on_edge(&self, edge_length: f64) -> ToolStation {
         let edge = self.curve.at(edge_length);
         let rotation = self.world_from_part.rotation;
-        let side =
-            (edge.normal_a - edge.bisector * edge.normal_a.dot(edge.bisector)).normalize_or_zero();
-        let outward = edge.bisector * self.lean.cos() + side * self.lean.sin();
+        let normal = rotation * edge.bisector;
+        let (axis, share) = match self.tool_axis {
+            ToolAxis::Lean(lean) => {
+                let side = edge.normal_a - edge.bisector * edge.normal_a.dot(edge.bisector);
+                let outward = edge.bisector * lean.cos() + side.normalize_or_zero() * lean.sin();
+                (-(rotation * outward), lean.cos())
+            }
+            ToolAxis::Direction(axis) => (axis, -axis.dot(normal)),
+        };
         ToolStation {
             edge_length,
             point: self.world_from_part.transform_point(edge.point),
             tangent: rotation * edge.tangent,
-            normal: rotation * edge.bisector,
-            axis: -(rotation * outward),
+            normal,
+            axis,
+            share,
         }
     }
 }
@@ -226,7 +284,7 @@ mod tests {
             .iter()
             .find(|l| l.points.iter().all(|p| p.z > 0.099))
             .unwrap();
-        ToolPath::along(top.clone(), DPose3::IDENTITY, lean).unwrap()
+        ToolPath::along(top.clone(), DPose3::IDENTITY, ToolAxis::Lean(lean)).unwrap()
     }
 
     #[test]
@@ -271,7 +329,7 @@ mod tests {
         for (_, wall) in &mut curve.normals {
             *wall = -*wall;
         }
-        let refused = ToolPath::along(curve, DPose3::IDENTITY, 0.0).unwrap_err();
+        let refused = ToolPath::along(curve, DPose3::IDENTITY, ToolAxis::Lean(0.0)).unwrap_err();
         assert!(
             matches!(refused, PlanError::InwardCorner { .. }),
             "{refused}"

@@ -27,6 +27,8 @@ pub struct Scenario {
     pub contact: ContactScenario,
     /// Process of the cell.
     pub process: ProcessScenario,
+    /// What must not meet.
+    pub collision: CollisionScenario,
     /// Settings of its simulation.
     pub simulation: SimulationScenario,
     /// Sensing between controller and device.
@@ -245,6 +247,10 @@ pub struct ProcessScenario {
     pub working_stroke: f64,
     /// Lean of the tool axis about the edge, from the bisector towards the face on the left of the direction of travel [rad].
     pub lean: f64,
+    /// Direction of the tool's axis in the world, from the flange towards the part, in place of a lean.
+    pub tool_axis: Option<DVec3>,
+    /// Angle of the flange's x axis about the tool's axis from the direction of travel, at the start of the edge [rad]; found by search when absent.
+    pub roll: Option<f64>,
     /// Distance in front of the edge at which the motion starts [m].
     pub approach_distance: f64,
     /// Speed of approach and retraction [m/s].
@@ -253,6 +259,44 @@ pub struct ProcessScenario {
     pub engage_speed: f64,
     /// Time at rest on the edge before following starts [s].
     pub settle_time: f64,
+}
+
+/// Bodies that must not meet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CollisionScenario {
+    /// Least clearance between them [m].
+    pub margin: f64,
+    /// Height of the floor in the world [m]; that of the world's origin, unless something stands below it, when absent.
+    pub floor_height: Option<f64>,
+    /// Bodies that may meet, by name.
+    pub allowed_pairs: Vec<[String; 2]>,
+    /// What else stands in the cell.
+    pub obstacles: Vec<Obstacle>,
+}
+
+/// Something that stands in the cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstacle {
+    /// Its name for people.
+    pub name: String,
+    /// Its shape.
+    pub shape: ObstacleShape,
+    /// Its place: a box's middle, a mesh's origin.
+    pub world_from_obstacle: DPose3,
+}
+
+/// Shape of an obstacle.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ObstacleShape {
+    /// A box of edge lengths [m].
+    Box(DVec3),
+    /// A mesh file.
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// Metres per unit of it [m].
+        scale: f64,
+    },
 }
 
 /// Settings of a simulation.

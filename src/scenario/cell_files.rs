@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::{ArmScenario, BurrScenario, DeviceScenario, WorkpieceScenario};
+use super::{
+    ArmScenario, BurrScenario, DeviceScenario, Obstacle, ObstacleShape, WorkpieceScenario,
+};
 
 /// The files that a cell is made of, that of its scenario first.
 pub fn files_of_cell<'a>(
@@ -10,6 +12,7 @@ pub fn files_of_cell<'a>(
     arm: &'a ArmScenario,
     device: &'a DeviceScenario,
     workpiece: &'a WorkpieceScenario,
+    obstacles: &'a [Obstacle],
 ) -> Vec<&'a PathBuf> {
     let mut files = vec![path];
     let burr = match &workpiece.burr {
@@ -17,7 +20,13 @@ pub fn files_of_cell<'a>(
         _ => None,
     };
     let others = [&device.model, &arm.urdf, &workpiece.mesh];
-    for file in others.into_iter().chain(burr) {
+    let obstacles = obstacles
+        .iter()
+        .filter_map(|obstacle| match &obstacle.shape {
+            ObstacleShape::Mesh { path, .. } => Some(path),
+            ObstacleShape::Box(_) => None,
+        });
+    for file in others.into_iter().chain(burr).chain(obstacles) {
         if !files.contains(&file) {
             files.push(file);
         }

@@ -61,6 +61,10 @@ pub(super) struct ScenarioFile {
     pub contact: ContactKeys,
     pub process: ProcessKeys,
     #[serde(default)]
+    pub collision: CollisionKeys,
+    #[serde(default)]
+    pub obstacle: Vec<ObstacleKeys>,
+    #[serde(default)]
     pub simulation: SimulationKeys,
     #[serde(default)]
     pub sensing: SensingKeys,
@@ -169,6 +173,17 @@ pub(super) enum MeshUnit {
     Inch,
 }
 
+impl MeshUnit {
+    /// Its length [m].
+    pub fn length(self) -> f64 {
+        match self {
+            Self::Mm => 1e-3,
+            Self::M => 1.0,
+            Self::Inch => 0.0254,
+        }
+    }
+}
+
 /// `[workpiece.edge]`.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -244,10 +259,54 @@ pub(super) struct ProcessKeys {
     pub jerk_mm_per_s3: Option<f64>,
     pub working_stroke_mm: Option<f64>,
     pub lean_deg: Option<f64>,
+    pub tool_axis: Option<ToolAxisKeys>,
+    pub roll_deg: Option<f64>,
     pub approach_distance_mm: Option<f64>,
     pub approach_speed_mm_per_s: Option<f64>,
     pub engage_speed_mm_per_s: Option<f64>,
     pub settle_time_s: Option<f64>,
+}
+
+/// `process.tool_axis`.
+#[derive(Debug, Clone, Deserialize, schemars::JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "\"down\" or a direction in the world such as [0, 0, -1]"
+)]
+pub(super) enum ToolAxisKeys {
+    /// A direction by name.
+    Word(ToolAxisWord),
+    /// A direction in the world.
+    Direction(Vec<f64>),
+}
+
+/// A direction by name.
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum ToolAxisWord {
+    /// Along the world's -z.
+    Down,
+}
+
+/// `[collision]`.
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CollisionKeys {
+    pub margin_mm: Option<f64>,
+    pub floor_height_mm: Option<f64>,
+    pub allowed_pairs: Option<Vec<[String; 2]>>,
+}
+
+/// `[[obstacle]]`.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObstacleKeys {
+    pub name: Option<String>,
+    pub box_mm: Option<Vec<f64>>,
+    pub mesh: Option<PathBuf>,
+    pub mesh_unit: Option<MeshUnit>,
+    pub position_mm: Option<Vec<f64>>,
+    pub rotation_deg: Option<Vec<f64>>,
 }
 
 /// `[simulation]`.

@@ -6,6 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::check::Section;
+use super::collision::collision;
 use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
 use super::document::Document;
@@ -54,6 +55,7 @@ pub(super) fn from_document(
         process: process(&section("process"), &file.process, &device)?,
         sensing,
         controller,
+        collision: collision(document, &file.collision, &file.obstacle)?,
         simulation,
         expect: expectations(&section("expect"), &file.expect)?,
         effects: of_whole(document, &file.effect, &device, &contact)?,
@@ -253,6 +255,8 @@ fn process(
         jerk: section.number("jerk_mm_per_s3", keys.jerk_mm_per_s3.unwrap_or(5000.0), 10.0..=1_000_000.0)?,
         working_stroke: working_stroke(section, keys, device.parameters.full_stroke)?,
         lean: section.number("lean_deg", keys.lean_deg.unwrap_or(0.0), -60.0..=60.0)?,
+        tool_axis: tool_axis(section, keys)?,
+        roll: keys.roll_deg.map(|roll| section.number("roll_deg", roll, -360.0..=360.0)).transpose()?,
         approach_distance: section.number("approach_distance_mm", keys.approach_distance_mm.unwrap_or(50.0), 1.0..=1000.0)?,
         approach_speed: section.number("approach_speed_mm_per_s", keys.approach_speed_mm_per_s.unwrap_or(100.0), 1.0..=2000.0)?,
         engage_speed: section.number("engage_speed_mm_per_s", keys.engage_speed_mm_per_s.unwrap_or(20.0), 0.1..=200.0)?,
@@ -263,6 +267,31 @@ fn process(
         return Err(section.refuse_number("corner_feed_mm_per_s", corner_feed, expected));
     }
     Ok(process)
+}
+
+/// The direction that is given in place of a lean.
+fn tool_axis(
+    section: &Section<'_>,
+    keys: &file::ProcessKeys,
+) -> Result<Option<DVec3>, ScenarioError> {
+    let Some(axis) = &keys.tool_axis else {
+        return Ok(None);
+    };
+    if keys.lean_deg.is_some() {
+        let reason = "`process.lean_deg` is given too, expected one of the two".to_owned();
+        return Err(section.misplaced("tool_axis", reason));
+    }
+    let direction = match axis {
+        file::ToolAxisKeys::Word(file::ToolAxisWord::Down) => DVec3::NEG_Z,
+        file::ToolAxisKeys::Direction(numbers) => {
+            section.vector("tool_axis", Some(numbers), DVec3::NEG_Z, -1e6..=1e6)?
+        }
+    };
+    let expected = || "a direction in the world from the flange to the part, as [0, 0, -1]".into();
+    match direction.try_normalize() {
+        Some(direction) => Ok(Some(direction)),
+        None => Err(section.refuse("tool_axis", "[0, 0, 0]".to_owned(), expected())),
+    }
 }
 
 /// Half the full stroke unless given; strictly between the end stops.

@@ -6,6 +6,7 @@ mod bench_file;
 mod cell;
 mod cell_files;
 pub(crate) mod check;
+mod collision;
 pub mod controller;
 mod device;
 pub(crate) mod document;
@@ -31,9 +32,9 @@ mod workpiece;
 pub use any::{AnyScenario, keys_given, load, load_any, load_bench, place_of};
 pub use bench::BenchScenario;
 pub use cell::{
-    ArmScenario, BurrScenario, ContactScenario, DeviceScenario, DriveScenario, EdgeChoice,
-    EdgeSelection, Expectation, LimitOverride, Misplacement, ProcessScenario, Scenario,
-    ServoScenario, SimulationScenario, WorkpieceScenario,
+    ArmScenario, BurrScenario, CollisionScenario, ContactScenario, DeviceScenario, DriveScenario,
+    EdgeChoice, EdgeSelection, Expectation, LimitOverride, Misplacement, Obstacle, ObstacleShape,
+    ProcessScenario, Scenario, ServoScenario, SimulationScenario, WorkpieceScenario,
 };
 pub use cell_files::files_of_cell;
 pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};

@@ -25,6 +25,8 @@ pub(crate) fn scenario_sections() -> Vec<Table> {
         ("workpiece.burr", keys::<file::BurrKeys>()),
         ("contact", keys::<file::ContactKeys>()),
         ("process", keys::<file::ProcessKeys>()),
+        ("collision", keys::<file::CollisionKeys>()),
+        ("obstacle", keys::<file::ObstacleKeys>()),
         ("simulation", keys::<file::SimulationKeys>()),
         ("controller", keys::<controller::ControllerKeys>()),
         ("expect.*", keys::<file::BoundKeys>()),

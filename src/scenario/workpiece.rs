@@ -2,7 +2,7 @@
 
 use super::check::Section;
 use super::error::ScenarioError;
-use super::file::{self, BurrKind, MeshUnit};
+use super::file::{self, BurrKind};
 use super::sensing::stages::only;
 use super::{BurrScenario, EdgeChoice, EdgeSelection, Misplacement, WorkpieceScenario};
 
@@ -14,11 +14,7 @@ pub(super) fn workpiece(
     let table = |name: &str| Section::new(section.document(), format!("workpiece.{name}"));
     Ok(WorkpieceScenario {
         mesh: section.file("mesh", &keys.mesh)?,
-        mesh_scale: match keys.mesh_unit {
-            MeshUnit::Mm => 1e-3,
-            MeshUnit::M => 1.0,
-            MeshUnit::Inch => 0.0254,
-        },
+        mesh_scale: keys.mesh_unit.length(),
         world_from_part: section.pose(
             ("position_mm", Some(&keys.position_mm)),
             ("rotation_deg", keys.rotation_deg.as_deref()),

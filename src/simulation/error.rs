@@ -33,6 +33,20 @@ pub enum SimulationError {
         /// Contact force [N].
         force: f64,
     },
+    /// Two bodies met.
+    #[error("collision: {} met {} at {time:.3} s in phase {phase}, {:.1} mm along the edge, {:.2} mm deep", names[0], names[1], 1e3 * edge_length, 1e3 * depth)]
+    Collision {
+        /// The two bodies.
+        names: [String; 2],
+        /// Depth [m].
+        depth: f64,
+        /// When [s].
+        time: f64,
+        /// Phase of the job.
+        phase: &'static str,
+        /// Where [m].
+        edge_length: f64,
+    },
     /// A state is not a number any more, or an amount of air is negative.
     #[error("{quantity} became {value:.3e} at {time:.3} s in phase {phase}; step_ms = {} is too long for this cell, or device_substeps are too few, or a parameter is far out of range", 1e3 * step)]
     NotFinite {

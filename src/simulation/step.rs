@@ -16,6 +16,7 @@ use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::point_force_torques;
 use crate::cell::Cell;
+use crate::collision::ClearanceWatch;
 use crate::control::command_lag::CommandLag;
 use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::JointLaw;
@@ -84,6 +85,7 @@ pub struct Simulation<'a> {
     log: SampleLog,
     frames: FrameLog,
     next_frame: f64,
+    clearance: ClearanceWatch,
 }
 
 impl<'a> Simulation<'a> {
@@ -93,7 +95,7 @@ impl<'a> Simulation<'a> {
         let mut world = World::new(&WorldDescription::of(cell));
         let reference = cell.plan.reference(0.0);
         let gravity = cell.gravity_along(reference.axis);
-        let desired = scenario.process.force * cell.axial_share();
+        let desired = scenario.process.force * reference.share;
         let set_pressure =
             PressureMap::new(&scenario.device.parameters).set_pressure(desired, gravity);
         let parameters = &scenario.device.parameters;
@@ -165,6 +167,7 @@ impl<'a> Simulation<'a> {
             log: SampleLog::new(count - 1, total_steps),
             frames: FrameLog::default(),
             next_frame: 0.0,
+            clearance: clearance(cell, &positions),
         }
     }
 
@@ -250,7 +253,7 @@ impl<'a> Simulation<'a> {
         }
         let observation = ForceObservation {
             time: self.steps as f64 * step,
-            desired_axial_force: self.cell.scenario.process.force * self.cell.axial_share(),
+            desired_axial_force: self.cell.scenario.process.force * reference.share,
             gravity_along_axis: self.cell.gravity_along(reference.axis),
             measured_axial_force: self.readings.force,
             stroke: self.readings.stroke,
@@ -447,7 +450,7 @@ impl<'a> Simulation<'a> {
             &mut torque[..=n],
         );
         if cell.scenario.arm.servo.contact_feed_forward {
-            let contact = (device - torque[n]) / cell.axial_share();
+            let contact = (device - torque[n]) / reference.share;
             let mut links = [DPose3::IDENTITY; MAX_JOINTS];
             self.world.link_poses(&mut links);
             let mut pressed = [0.0; MAX_JOINTS];
@@ -586,6 +589,7 @@ impl<'a> Simulation<'a> {
         if time >= self.next_frame {
             self.frame(time, reference, force_on_part, normal);
             self.next_frame += FRAME_INTERVAL;
+            self.check_clearance(reference, time)?;
         }
         let radius = cell.scenario.device.tool_radius;
         if reference.phase == Phase::Follow && across.length() > radius {
@@ -625,6 +629,19 @@ impl<'a> Simulation<'a> {
             .push(self.world.tool_centre() - normal * radius);
         self.frames.contact_forces.push(force);
     }
+}
+
+/// A watch over what must not meet, the part where it really is.
+fn clearance(cell: &Cell, positions: &[f64]) -> ClearanceWatch {
+    let standing = cell.collision.with_part_at(cell.part.world_from_part);
+    ClearanceWatch::new(standing, to_array(positions))
+}
+
+/// Positions of as many joints as there are, and zeros.
+fn to_array(positions: &[f64]) -> [f64; MAX_JOINTS] {
+    let mut array = [0.0; MAX_JOINTS];
+    array[..positions.len()].copy_from_slice(positions);
+    array
 }
 
 /// Share of a joint's own inertia that its rotor has, seen from the joint [1]: gears of robots make it of the same order.

@@ -53,8 +53,8 @@ pub enum MeshFault {
     },
     /// The part is implausibly small or large.
     #[error(
-        "is {extent} m long when its unit is {scale} m, expected 0.001 m to 10 m; STL and OBJ carry no unit: \
-         a file in millimetres needs mesh_unit (or --unit) mm"
+        "is {extent} m long when its unit is {scale} m, expected 0.001 m to 10 m; STL and OBJ carry no unit: {}",
+        units_that_fit(*extent / *scale)
     )]
     Implausible {
         /// Largest side of the bounding box [m].
@@ -62,6 +62,24 @@ pub enum MeshFault {
         /// Scale that was applied [m per file unit].
         scale: f64,
     },
+}
+
+/// Units with which a part of a size in units of its file would be one that a robot can carry a tool along.
+fn units_that_fit(size: f64) -> String {
+    const USUAL: std::ops::RangeInclusive<f64> = 0.01..=5.0;
+    let units = [("mm", 1e-3), ("m", 1.0), ("inch", 0.0254)];
+    let lengths = units.map(|(name, length)| (name, size * length));
+    let fitting = lengths.iter().filter(|(_, length)| USUAL.contains(length));
+    let fitting: Vec<String> = fitting
+        .map(|(name, length)| format!("{name} ({:.0} mm)", 1e3 * length))
+        .collect();
+    match &fitting[..] {
+        [] => format!("its points span {size:.3e} units, which is no usual part in mm, m or inch"),
+        fitting => format!(
+            "with mesh_unit (or --unit) {} it would be of a usual size",
+            fitting.join(" or ")
+        ),
+    }
 }
 
 /// Errors of the workpiece module.

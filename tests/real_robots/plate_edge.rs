@@ -12,22 +12,68 @@ use super::references;
 use crate::common::{run, scenario};
 
 /// A robot's job.
-struct Job {
-    robot: &'static str,
+pub(super) struct Job {
+    pub robot: &'static str,
     /// Part in front of the robot and above its base [m].
     place: [f64; 2],
     /// Part turned about world y, its far side down [deg].
     pitch: f64,
     /// Force within the effort limits [N].
-    force: f64,
+    pub force: f64,
     /// Force beyond them [N].
     too_much: f64,
     /// The axis that gives in first, and its effort limit as the robot's file has it [N m].
     axis: (&'static str, f64),
 }
 
+/// A job for each of the robots.
+pub(super) const JOBS: [Job; 5] = [
+    // The file gives every axis 300 N m, so it takes a force far beyond its payload to exceed one.
+    Job {
+        robot: "kuka_iiwa",
+        place: [0.5, 0.2],
+        pitch: 30.0,
+        force: 300.0,
+        too_much: 1500.0,
+        axis: ("lbr_iiwa_joint_2", 300.0),
+    },
+    // Its wrist has 12 N m, of which holding the device alone takes a third or more.
+    Job {
+        robot: "panda",
+        place: [0.4, 0.2],
+        pitch: 0.0,
+        force: 100.0,
+        too_much: 300.0,
+        axis: ("panda_joint6", 12.0),
+    },
+    Job {
+        robot: "xarm6",
+        place: [0.4, 0.35],
+        pitch: 30.0,
+        force: 150.0,
+        too_much: 200.0,
+        axis: ("joint2", 50.0),
+    },
+    Job {
+        robot: "ur5",
+        place: [0.55, 0.2],
+        pitch: 0.0,
+        force: 300.0,
+        too_much: 400.0,
+        axis: ("shoulder_lift_joint", 150.0),
+    },
+    Job {
+        robot: "ur10",
+        place: [0.7, 0.2],
+        pitch: 0.0,
+        force: 300.0,
+        too_much: 600.0,
+        axis: ("wrist_1_joint", 54.0),
+    },
+];
+
 /// The scenario, unless the robots are not installed.
-fn scenario_of(job: &Job, force: f64) -> Option<Scenario> {
+pub(super) fn scenario_of(job: &Job, force: f64) -> Option<Scenario> {
     let robot = references()?
         .into_iter()
         .find(|robot| robot.name == job.robot)
@@ -88,9 +134,10 @@ fn check(job: &Job) {
 
 /// Too much force is refused before anything moves, by axis and limit.
 fn refused(job: &Job) {
-    let error = Cell::new(scenario_of(job, job.too_much).unwrap())
-        .err()
-        .unwrap();
+    let mut scenario = scenario_of(job, job.too_much).unwrap();
+    // Or the tool would be planned so deep in the part that its shank is in it.
+    scenario.contact.stiffness *= 20.0;
+    let error = Cell::new(scenario).err().unwrap();
     println!("{}: {} N: {error}", job.robot, job.too_much);
     let CellError::Plan { source, .. } = &error else {
         panic!("{error}");
@@ -116,64 +163,31 @@ fn refused(job: &Job) {
     )));
 }
 
+fn check_of(robot: &str) {
+    check(JOBS.iter().find(|job| job.robot == robot).unwrap());
+}
+
 #[test]
 fn kuka_iiwa() {
-    // The file gives every axis 300 N m, so it takes a force far beyond its payload to exceed one.
-    check(&Job {
-        robot: "kuka_iiwa",
-        place: [0.5, 0.2],
-        pitch: 30.0,
-        force: 300.0,
-        too_much: 1500.0,
-        axis: ("lbr_iiwa_joint_2", 300.0),
-    });
+    check_of("kuka_iiwa");
 }
 
 #[test]
 fn panda() {
-    // Its wrist has 12 N m, of which holding the device alone takes a third or more.
-    check(&Job {
-        robot: "panda",
-        place: [0.4, 0.2],
-        pitch: 0.0,
-        force: 100.0,
-        too_much: 200.0,
-        axis: ("panda_joint6", 12.0),
-    });
+    check_of("panda");
 }
 
 #[test]
 fn xarm6() {
-    check(&Job {
-        robot: "xarm6",
-        place: [0.4, 0.35],
-        pitch: 30.0,
-        force: 150.0,
-        too_much: 200.0,
-        axis: ("joint2", 50.0),
-    });
+    check_of("xarm6");
 }
 
 #[test]
 fn ur5() {
-    check(&Job {
-        robot: "ur5",
-        place: [0.55, 0.2],
-        pitch: 0.0,
-        force: 300.0,
-        too_much: 400.0,
-        axis: ("shoulder_lift_joint", 150.0),
-    });
+    check_of("ur5");
 }
 
 #[test]
 fn ur10() {
-    check(&Job {
-        robot: "ur10",
-        place: [0.7, 0.2],
-        pitch: 0.0,
-        force: 300.0,
-        too_much: 600.0,
-        axis: ("wrist_1_joint", 54.0),
-    });
+    check_of("ur10");
 }

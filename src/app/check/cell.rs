@@ -5,6 +5,7 @@ use std::path::Path;
 use super::super::error::AppError;
 use super::report::{Report, shown};
 use crate::cell::Cell;
+use crate::drawing::{CrossSection, cross_section};
 use crate::metrics;
 use crate::replay::LoadedCell;
 use crate::scenario::{
@@ -43,6 +44,7 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
             shown(process.working_stroke * 1e3)
         ),
     );
+    tool(&mut report, &cell);
     report.number("force_n", process.force);
     report.number("feed_mm_per_s", process.feed * 1e3);
     report.number("edge_length_mm", cell.part.edge.length * 1e3);
@@ -62,6 +64,83 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     }
     report.next(format!("idc run {}", file.display()));
     Ok(report)
+}
+
+/// How the tool stands to the edge, in words.
+fn tool(report: &mut Report, cell: &Cell) {
+    let reference = cell.plan.reference(0.5 * cell.plan.duration());
+    let angle = reference.axis.angle_between(-reference.normal).to_degrees();
+    // Where the handle goes from the bisector: what of the way back along the axis is not along the normal.
+    let aside = -reference.axis - reference.normal * reference.share;
+    let lean = if angle < 0.05 {
+        "along the edge's bisector".to_owned()
+    } else {
+        format!(
+            "leaned {} deg from the edge's bisector, its handle {}",
+            shown((angle * 10.0).round() / 10.0),
+            towards(aside)
+        )
+    };
+    let roll = (cell.plan.roll.to_degrees() * 10.0).round() / 10.0;
+    let chosen = match cell.scenario.process.roll {
+        Some(_) => "",
+        None => ", found by search",
+    };
+    let text = format!(
+        "points {}, {lean}; flange turned by {} deg about it{chosen}",
+        towards(reference.axis),
+        shown(roll)
+    );
+    report.fact("tool", text);
+    report.number("lean_deg", angle);
+    report.number("roll_deg", roll);
+    let margin = cell.scenario.collision.margin;
+    let names: Vec<&str> = cell.collision.names().collect();
+    let text = format!(
+        "none of {} bodies along the whole motion, {} mm apart at least",
+        names.len(),
+        shown(margin * 1e3)
+    );
+    report.fact("collisions", text);
+}
+
+/// How the tool stands across the edge in its middle, as a picture.
+pub(super) fn drawn(cell: &Cell) -> String {
+    let edge = &cell.part.edge;
+    let place = edge.at(0.5 * edge.length);
+    let turn = cell.scenario.workpiece.world_from_part.rotation;
+    let reference = cell.plan.reference(0.5 * cell.plan.duration());
+    cross_section(&CrossSection {
+        tangent: turn * place.tangent,
+        normals: [turn * place.normal_a, turn * place.normal_b],
+        bisector: turn * place.bisector,
+        axis: reference.axis,
+        gravity: cell.scenario.simulation.gravity,
+    })
+}
+
+/// A direction of the world in words: the nearest of its axes, and how far off where it is more than a little.
+fn towards(direction: glam::DVec3) -> String {
+    use glam::DVec3;
+    let axes = [
+        (DVec3::Z, "up"),
+        (-DVec3::Z, "down"),
+        (DVec3::X, "towards +x"),
+        (-DVec3::X, "towards -x"),
+        (DVec3::Y, "towards +y"),
+        (-DVec3::Y, "towards -y"),
+    ];
+    let Some(direction) = direction.try_normalize() else {
+        return "nowhere".to_owned();
+    };
+    let mut along: Vec<(f64, &str)> = axes
+        .iter()
+        .map(|(axis, word)| (axis.dot(direction), *word))
+        .filter(|(share, _)| *share > 0.25)
+        .collect();
+    along.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let words: Vec<&str> = along.iter().map(|(_, word)| *word).collect();
+    words.join(" and ")
 }
 
 /// A cell of which there are recordings.

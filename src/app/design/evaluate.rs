@@ -140,7 +140,7 @@ fn cell(scenario: Scenario) -> Result<Run, Failure> {
     );
     Ok(Run {
         metrics: values_of(METRICS, &finished.summary),
-        force_range: axial.map(|force| force / cell.axial_share()),
+        force_range: axial.map(|force| force / cell.axial_share),
     })
 }
 

@@ -42,6 +42,7 @@ impl From<ScenarioError> for Failure {
 impl From<CellError> for Failure {
     fn from(error: CellError) -> Self {
         let reason = match &error {
+            CellError::Weight { .. } => "the tool's weight presses harder",
             CellError::Supply { .. } => "the supply cannot give the force",
             CellError::Plan { .. } => "the arm cannot follow the edge",
             _ => "cell refused",
@@ -65,6 +66,7 @@ impl From<SimulationError> for Failure {
             SimulationError::NotFinite { quantity, .. } => {
                 return Self::new(format!("{quantity} not finite"), &error);
             }
+            SimulationError::Collision { .. } => "bodies collided",
             SimulationError::AxisLost { .. } => "an axis lost its path",
         };
         Self::new(reason, &error)

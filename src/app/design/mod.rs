@@ -103,9 +103,13 @@ fn sources(study: &Study) -> Result<Provenance, AppError> {
     let mut files = vec![&study.path];
     for scenario in &scenarios {
         let own = match scenario {
-            AnyScenario::Cell(cell) => {
-                files_of_cell(&cell.path, &cell.arm, &cell.device, &cell.workpiece)
-            }
+            AnyScenario::Cell(cell) => files_of_cell(
+                &cell.path,
+                &cell.arm,
+                &cell.device,
+                &cell.workpiece,
+                &cell.collision.obstacles,
+            ),
             AnyScenario::Bench(bench) => vec![&bench.path, &bench.device.model],
         };
         for file in own {

@@ -104,10 +104,14 @@ impl Job {
                     arm,
                     device,
                     workpiece,
+                    collision,
                     simulation,
                     ..
                 } = &cell.scenario;
-                (files_of_cell(path, arm, device, workpiece), simulation.seed)
+                (
+                    files_of_cell(path, arm, device, workpiece, &collision.obstacles),
+                    simulation.seed,
+                )
             }
             Self::Bench(rig) => {
                 let BenchScenario {

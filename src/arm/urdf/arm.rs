@@ -17,7 +17,7 @@ pub struct ArmOptions {
     pub package_directories: BTreeMap<String, PathBuf>,
     /// Drive limits that replace those of the file, by joint name.
     pub limit_overrides: BTreeMap<String, LimitOverride>,
-    /// Whether to leave out everything that is only drawn.
+    /// Whether to leave out everything that is only drawn, and what would meet other things.
     pub skip_visuals: bool,
 }
 
@@ -41,6 +41,8 @@ pub struct Arm {
     pub link_names: Vec<String>,
     /// Shapes to draw.
     pub visuals: Vec<Visual>,
+    /// Shapes that nothing may meet.
+    pub collisions: Vec<CollisionShape>,
     /// Changes to the file's content that its reader may not expect, one sentence each.
     pub notes: Vec<String>,
 }
@@ -56,6 +58,17 @@ pub struct Visual {
     pub shape: VisualShape,
     /// Red, green, blue, opacity [0 to 255].
     pub colour: [u8; 4],
+}
+
+/// One shape that nothing may meet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CollisionShape {
+    /// Link it moves with: 0 is the base, `i` the link behind joint `i - 1` of the chain.
+    pub link_index: usize,
+    /// Pose of the shape in that link's frame.
+    pub link_from_shape: DPose3,
+    /// The shape; of a mesh its convex hull counts.
+    pub shape: VisualShape,
 }
 
 /// Geometry of a [`Visual`], centred on its frame.

@@ -130,15 +130,17 @@ pub enum Refusal {
     },
     #[error("{place} is not finite")]
     NotFinite { place: String },
-    #[error("link `{link}` has a visual {shape} of {value}; expected positive sizes")]
-    VisualSize {
+    #[error("link `{link}` has a {role} {shape} of {value}; expected positive sizes")]
+    ShapeSize {
         link: String,
+        role: &'static str,
         shape: &'static str,
         value: String,
     },
-    #[error("link `{link}`: visual mesh `{mesh}` cannot be used: {reason}")]
+    #[error("link `{link}`: {role} mesh `{mesh}` cannot be used: {reason}")]
     Mesh {
         link: String,
+        role: &'static str,
         mesh: String,
         reason: String,
     },

@@ -33,7 +33,7 @@ pub(super) fn load(
                 uncoloured.insert(material.name.clone());
             }
             for (shape, own_colour, shift) in
-                shapes(placed, &source.geometry, folder, options, notes)?
+                shapes(placed, &source.geometry, "visual", folder, options, notes)?
             {
                 visuals.push(Visual {
                     link_index: placed.link_index,
@@ -84,10 +84,11 @@ pub(super) fn bytes(rgba: [f64; 4]) -> [u8; 4] {
 
 type Shape = (VisualShape, Option<[u8; 4]>, DPose3);
 
-/// The shapes of one geometry, each with a colour of its own if it has one, and its shift.
-fn shapes(
+/// The shapes of one geometry, each with a colour of its own if it has one, and its shift; `role` is visual or collision.
+pub(super) fn shapes(
     placed: &Placed,
     geometry: &Geometry,
+    role: &'static str,
     folder: &Path,
     options: &ArmOptions,
     notes: &mut Vec<String>,
@@ -98,8 +99,9 @@ fn shapes(
         if values.iter().all(|value| value.is_finite() && *value > 0.0) {
             Ok(())
         } else {
-            Err(Refusal::VisualSize {
+            Err(Refusal::ShapeSize {
                 link: link.clone(),
+                role,
                 shape,
                 value: format!("{values:?}"),
             })
@@ -134,6 +136,7 @@ fn shapes(
             let scale = scale.map_or(DVec3::ONE, |scale| DVec3::from_array(*scale));
             let refused = |reason| Refusal::Mesh {
                 link: link.clone(),
+                role,
                 mesh: filename.clone(),
                 reason,
             };

@@ -92,6 +92,7 @@ fn beside(key: &str) -> String {
         ("arm.drives", "backlash_deg") => {
             "[[arm.drives]]\njoint = 'a'\nstiffness_n_m_per_rad = 1e6".into()
         }
+        ("obstacle", _) => "[[obstacle]]\nbox_mm = [1, 1, 1]".into(),
         ("arm.drives", _) => "[[arm.drives]]\njoint = 'a'".into(),
         ("estimator", _) => "[estimator]\n".into(),
         ("hand", _) => "[hand]\npeak_force_n = 1\nfrequency_hz = 1".into(),

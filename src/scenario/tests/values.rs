@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::super::{
     BurrScenario, DriveScenario, EdgeSelection, Expectation, LimitOverride, Misplacement,
-    ProcessScenario, ServoScenario, SimulationScenario,
+    ObstacleShape, ProcessScenario, ServoScenario, SimulationScenario,
 };
 use super::{MINIMAL, edited, read, scenarios};
 
@@ -14,7 +14,7 @@ use super::{MINIMAL, edited, read, scenarios};
 fn every_key_of_the_process_reaches_its_field() {
     let text = edited(
         "feed_mm_per_s = 20\n",
-        "feed_mm_per_s = 21\ncorner_feed_mm_per_s = 7\nacceleration_mm_per_s2 = 600\njerk_mm_per_s3 = 7000\nworking_stroke_mm = 18\nlean_deg = -45\n\
+        "feed_mm_per_s = 21\ncorner_feed_mm_per_s = 7\nacceleration_mm_per_s2 = 600\njerk_mm_per_s3 = 7000\nworking_stroke_mm = 18\nlean_deg = -45\nroll_deg = 90\n\
          approach_distance_mm = 60\napproach_speed_mm_per_s = 110\nengage_speed_mm_per_s = 25\nsettle_time_s = 1.5\n",
     );
     let expected = ProcessScenario {
@@ -25,12 +25,102 @@ fn every_key_of_the_process_reaches_its_field() {
         jerk: 7.0,
         working_stroke: 0.018,
         lean: -PI / 4.0,
+        tool_axis: None,
+        roll: Some(FRAC_PI_2),
         approach_distance: 0.06,
         approach_speed: 0.11,
         engage_speed: 0.025,
         settle_time: 1.5,
     };
     assert_eq!(read(&text).unwrap().process, expected);
+}
+
+#[test]
+fn the_tool_s_axis_is_a_word_or_a_direction_in_place_of_a_lean() {
+    let with = |axis: &str| {
+        let keys = format!("feed_mm_per_s = 20\ntool_axis = {axis}\n");
+        read(&edited("feed_mm_per_s = 20\n", &keys))
+    };
+    let axis = |text: &str| with(text).unwrap().process.tool_axis;
+    assert_eq!(axis("\"down\""), Some(DVec3::NEG_Z));
+    let given = axis("[3, 0, -4]").unwrap();
+    assert!(
+        (given - DVec3::new(0.6, 0.0, -0.8)).length() < 1e-12,
+        "{given}"
+    );
+    for (wrong, expected) in [
+        ("[0, 0, 0]", "a direction in the world"),
+        ("[0, 1]", "a list of 3"),
+        ("\"sideways\"", "\"down\" or a direction"),
+        ("\"down\"\nlean_deg = 5", "expected one of the two"),
+    ] {
+        let message = with(wrong).unwrap_err().to_string();
+        assert!(message.contains(expected), "{wrong}: {message}");
+    }
+}
+
+#[test]
+fn collisions_and_obstacles_reach_their_fields() {
+    let text = format!(
+        "{MINIMAL}[collision]\nmargin_mm = 8\nfloor_height_mm = -700\nallowed_pairs = [[\"tool\", \"table\"]]\n\
+         [[obstacle]]\nname = \"table\"\nbox_mm = [1000, 800, 30]\nposition_mm = [1, 2, 3]\n\
+         [[obstacle]]\nmesh = \"../assets/plate.stl\"\nmesh_unit = \"inch\"\nrotation_deg = [0, 0, 90]\n"
+    );
+    let collision = read(&text).unwrap().collision;
+    assert_eq!(
+        (collision.margin, collision.floor_height),
+        (0.008, Some(-0.7))
+    );
+    assert_eq!(
+        collision.allowed_pairs,
+        [["tool".to_owned(), "table".to_owned()]]
+    );
+    let [table, part] = &collision.obstacles[..] else {
+        panic!("two obstacles");
+    };
+    assert_eq!(table.shape, ObstacleShape::Box(DVec3::new(1.0, 0.8, 0.03)));
+    assert!(
+        (table.world_from_obstacle.translation - DVec3::new(1e-3, 2e-3, 3e-3)).length() < 1e-15
+    );
+    assert_eq!(part.name, "obstacle 2");
+    let path = scenarios().join("../assets/plate.stl");
+    assert_eq!(
+        part.shape,
+        ObstacleShape::Mesh {
+            path,
+            scale: 0.0254
+        }
+    );
+    let turned = part.world_from_obstacle.rotation * DVec3::X;
+    assert!((turned - DVec3::Y).length() < 1e-12);
+    let none = read(MINIMAL).unwrap().collision;
+    assert_eq!(
+        (none.margin, none.floor_height, none.obstacles.len()),
+        (0.005, None, 0)
+    );
+    for (wrong, expected) in [
+        (
+            "[[obstacle]]\nname = \"x\"\n",
+            "box_mm = [x, y, z], or mesh",
+        ),
+        ("[[obstacle]]\nbox_mm = [1, 2]\n", "a list of 3"),
+        ("[[obstacle]]\nbox_mm = [1, 2, 0]\n", "0.01 to 100000"),
+        (
+            "[[obstacle]]\nmesh = \"../assets/plate.stl\"\n",
+            "mm, m or inch",
+        ),
+        (
+            "[[obstacle]]\nmesh = \"none.stl\"\nmesh_unit = \"m\"\n",
+            "an existing file",
+        ),
+        (
+            "[[obstacle]]\nbox_mm = [1, 2, 3]\n[[obstacle]]\nname = \"obstacle 1\"\nbox_mm = [1, 2, 3]\n",
+            "each name once",
+        ),
+    ] {
+        let message = read(&format!("{MINIMAL}{wrong}")).unwrap_err().to_string();
+        assert!(message.contains(expected), "{wrong}: {message}");
+    }
 }
 
 #[test]

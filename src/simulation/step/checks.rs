@@ -67,6 +67,25 @@ impl Simulation<'_> {
         Ok(())
     }
 
+    /// No body may meet another.
+    pub(super) fn check_clearance(
+        &mut self,
+        reference: &Reference,
+        time: f64,
+    ) -> Result<(), SimulationError> {
+        let positions = super::to_array(self.world.positions());
+        match self.clearance.meets(&positions) {
+            None => Ok(()),
+            Some((names, depth)) => Err(SimulationError::Collision {
+                names,
+                depth,
+                time,
+                phase: reference.phase.name(),
+                edge_length: reference.edge_length,
+            }),
+        }
+    }
+
     /// The slide must never reach its inner end, and on the edge not its outer one either.
     pub(super) fn check_stroke(
         &self,

@@ -1,0 +1,76 @@
+//! Shapes in the file that nothing may meet: the links' collision geometry, or what is drawn of a link that has none that can be used.
+
+use std::path::Path;
+
+use super::tree::{Placed, Tree, pose_of};
+use super::visuals::shapes;
+use super::{ArmOptions, CollisionShape, Refusal};
+use urdf_rs::{Geometry, Pose};
+
+/// Collision shapes of the base and of the moving links.
+pub(super) fn load(
+    tree: &Tree,
+    folder: &Path,
+    options: &ArmOptions,
+    notes: &mut Vec<String>,
+) -> Result<Vec<CollisionShape>, Refusal> {
+    let mut found = Vec::new();
+    let mut without = Vec::new();
+    for placed in &tree.placed {
+        let link = placed.link;
+        let own: Vec<_> = (link.collision.iter())
+            .map(|collision| (&collision.origin, &collision.geometry))
+            .collect();
+        let drawn: Vec<_> = (link.visual.iter())
+            .map(|visual| (&visual.origin, &visual.geometry))
+            .collect();
+        if own.is_empty() {
+            // The colours and axes of what is drawn have been noted already.
+            found.extend(of_link(placed, &drawn, folder, options, &mut Vec::new())?);
+            if !drawn.is_empty() {
+                without.push(link.name.as_str());
+            }
+            continue;
+        }
+        match of_link(placed, &own, folder, options, notes) {
+            Ok(shapes) => found.extend(shapes),
+            Err(refusal @ Refusal::Mesh { .. }) if !drawn.is_empty() => {
+                notes.push(format!(
+                    "{refusal}; for collisions link `{}` has the shape that is drawn of it",
+                    link.name
+                ));
+                found.extend(of_link(placed, &drawn, folder, options, &mut Vec::new())?);
+            }
+            Err(refusal) => return Err(refusal),
+        }
+    }
+    if !without.is_empty() {
+        notes.push(format!(
+            "links without collision geometry have for collisions the shape that is drawn of them: {}",
+            without.join(", ")
+        ));
+    }
+    Ok(found)
+}
+
+fn of_link(
+    placed: &Placed,
+    geometries: &[(&Pose, &Geometry)],
+    folder: &Path,
+    options: &ArmOptions,
+    notes: &mut Vec<String>,
+) -> Result<Vec<CollisionShape>, Refusal> {
+    let mut found = Vec::new();
+    for (origin, geometry) in geometries {
+        let link = &placed.link.name;
+        let origin = pose_of(origin, || format!("collision origin of link `{link}`"))?;
+        for (shape, _, shift) in shapes(placed, geometry, "collision", folder, options, notes)? {
+            found.push(CollisionShape {
+                link_index: placed.link_index,
+                link_from_shape: placed.moving_from_link * origin * shift,
+                shape,
+            });
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,89 @@
+//! `[collision]` and `[[obstacle]]` of a scenario file.
+
+use glam::DVec3;
+
+use super::check::Section;
+use super::document::Document;
+use super::error::ScenarioError;
+use super::file::{CollisionKeys, ObstacleKeys};
+use super::{CollisionScenario, Obstacle, ObstacleShape};
+
+/// Clearance asked for where the file says nothing [mm]: twice the path error of a usual robot, and what its shapes leave out of hoses.
+const MARGIN: f64 = 5.0;
+
+/// What must not meet.
+pub(super) fn collision(
+    document: &Document<'_>,
+    keys: &CollisionKeys,
+    obstacles: &[ObstacleKeys],
+) -> Result<CollisionScenario, ScenarioError> {
+    let section = Section::new(document, "collision");
+    let margin = keys.margin_mm.unwrap_or(MARGIN);
+    let floor = keys.floor_height_mm;
+    let mut found: Vec<Obstacle> = Vec::with_capacity(obstacles.len());
+    for (index, keys) in obstacles.iter().enumerate() {
+        let section = Section::new(document, format!("obstacle[{index}]"));
+        let obstacle = obstacle(&section, keys, index)?;
+        if found.iter().any(|other| other.name == obstacle.name) {
+            let again = format!("\"{}\" again", obstacle.name);
+            return Err(section.refuse("name", again, "each name once".to_owned()));
+        }
+        found.push(obstacle);
+    }
+    Ok(CollisionScenario {
+        margin: section.number("margin_mm", margin, 0.0..=200.0)?,
+        floor_height: floor
+            .map(|height| section.number("floor_height_mm", height, -100_000.0..=100_000.0))
+            .transpose()?,
+        allowed_pairs: keys.allowed_pairs.clone().unwrap_or_default(),
+        obstacles: found,
+    })
+}
+
+fn obstacle(
+    section: &Section<'_>,
+    keys: &ObstacleKeys,
+    index: usize,
+) -> Result<Obstacle, ScenarioError> {
+    let shape = match (&keys.box_mm, &keys.mesh) {
+        (Some(_), Some(_)) => {
+            let reason =
+                format!("`obstacle[{index}].box_mm` is given too, expected one of the two");
+            return Err(section.misplaced("mesh", reason));
+        }
+        (None, None) => {
+            return Err(section.missing("box_mm", "box_mm = [x, y, z], or mesh with mesh_unit"));
+        }
+        (Some(size), None) => {
+            if keys.mesh_unit.is_some() {
+                let reason = "a box has no mesh; its size is in millimetres".to_owned();
+                return Err(section.misplaced("mesh_unit", reason));
+            }
+            ObstacleShape::Box(section.vector(
+                "box_mm",
+                Some(size),
+                DVec3::ONE,
+                0.01..=100_000.0,
+            )?)
+        }
+        (None, Some(mesh)) => ObstacleShape::Mesh {
+            path: section.file("mesh", mesh)?,
+            scale: match keys.mesh_unit {
+                Some(unit) => unit.length(),
+                None => return Err(section.missing("mesh_unit", "mm, m or inch")),
+            },
+        },
+    };
+    let given = |name: &String| section.text("name", name);
+    Ok(Obstacle {
+        name: match keys.name.as_ref().map(given) {
+            Some(name) => name?,
+            None => format!("obstacle {}", index + 1),
+        },
+        shape,
+        world_from_obstacle: section.pose(
+            ("position_mm", keys.position_mm.as_deref()),
+            ("rotation_deg", keys.rotation_deg.as_deref()),
+        )?,
+    })
+}
