@@ -17,12 +17,12 @@ use crate::scenario::load;
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
-The part is moved over a grid of positions, its rotation as the scenario has it;
-at each the flange is turned about the tool's axis in steps. Reach, limits of the
-axes, singularities, torque, speed and collisions are checked along the whole job.
-Comfort is the least over the job of: singular value / 0.15, distance from an
-axis's limit / 0.5 rad, spare torque / 30 %; 0 at a limit, from 1 on comfortable.
-Exit codes: 0 there is a place, 1 there is none, 2 bad input.
+The part is moved over a grid of positions, its rotation as the scenario has
+it; at each the flange is turned about the tool's axis in steps. Reach, limits
+of the axes, singularities, torque, speed and collisions are checked along the
+whole job. Comfort is the least over the job of: singular value / 0.15, distance
+from an axis's limit / 0.5 rad, spare torque / 30 %; 0 at a limit, from 1 on
+comfortable. Exit codes: 0 there is a place, 1 there is none, 2 bad input.
 
 Examples:
   # a map; without ranges of 20 x 20 positions, 600 mm to either side
