@@ -123,7 +123,7 @@ pub enum CellError {
         /// Scenario file.
         file: PathBuf,
         /// What would make it possible.
-        advice: Advice,
+        advice: Box<Advice>,
         /// The obstacle.
         source: Box<PlanError>,
     },
@@ -141,7 +141,7 @@ pub enum CellError {
         /// Scenario file.
         file: PathBuf,
         /// What would make it possible.
-        advice: Advice,
+        advice: Box<Advice>,
         /// The two bodies.
         names: [String; 2],
         /// Depth [m].
@@ -198,7 +198,7 @@ impl CellError {
     pub(super) fn plan(scenario: &Scenario, source: PlanError) -> Self {
         Self::Plan {
             file: scenario.path.clone(),
-            advice: Advice::default(),
+            advice: Box::default(),
             source: Box::new(source),
         }
     }

@@ -85,7 +85,7 @@ impl Cell {
         if let Some(Meeting { names, depth, .. }) = setup.collision.standing().into_iter().next() {
             return Err(CellError::Standing {
                 file: setup.scenario.path.clone(),
-                advice: remedy::for_standing(&setup),
+                advice: Box::new(remedy::for_standing(&setup)),
                 names,
                 depth,
             });
@@ -94,12 +94,12 @@ impl Cell {
         let refused = |error| CellError::plan(&setup.scenario, error);
         let tool_path = setup.tool_path(&stance).map_err(refused)?;
         let gravity_on_edge = supply::check(&setup.scenario, &tool_path)?;
-        let axial_share = tool_path.at(0.5 * tool_path.length()).share;
+        let axial_share = tool_path.share(&tool_path.at(0.5 * tool_path.length()));
         let controller = controller(&setup.scenario, axial_share)?;
         let request = setup.request(&stance, &setup.collision, tool_path);
         let plan = Plan::new(&request).map_err(|source| CellError::Plan {
             file: setup.scenario.path.clone(),
-            advice: remedy::for_plan(&setup, &source),
+            advice: Box::new(remedy::for_plan(&setup, &source)),
             source: Box::new(source),
         })?;
         let device = Device::new(
@@ -136,8 +136,8 @@ impl Cell {
             controller,
             part,
             collision,
-            axial_share,
             plan,
+            axial_share,
             gravity_on_edge,
             notes,
         })

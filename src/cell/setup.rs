@@ -119,8 +119,7 @@ impl Setup {
     #[must_use]
     pub fn is_possible(&self, stance: &Stance) -> bool {
         let supplied = |path: &ToolPath| supply::check(&self.scenario, path).is_ok();
-        self.tool_path(stance).as_ref().is_ok_and(supplied)
-            && self.tried(stance, |request| Plan::new(request)).is_ok()
+        self.tool_path(stance).as_ref().is_ok_and(supplied) && self.tried(stance, Plan::new).is_ok()
     }
 
     /// The plan of the job with part and tool standing otherwise, or its outline.
@@ -135,7 +134,7 @@ impl Setup {
         let tool_path = self.tool_path(stance)?;
         let collision = self.collision.with_part_at(stance.world_from_part);
         if let Some(meeting) = collision.standing().into_iter().next() {
-            return Err(PlanError::Standing(meeting));
+            return Err(PlanError::Standing(Box::new(meeting)));
         }
         let request = PlanRequest {
             briefly: true,

@@ -16,9 +16,10 @@ pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2
     let count = (length / 5e-3).ceil().max(1.0) as usize;
     for i in 0..=count {
         let station = tool_path.at(length * i as f64 / count as f64);
+        let share = tool_path.share(&station);
         let gravity = scenario.simulation.gravity.dot(station.axis);
         range = [range[0].min(gravity), range[1].max(gravity)];
-        let axial = scenario.process.force * station.share;
+        let axial = scenario.process.force * share;
         let needed = map.unlimited(axial, gravity);
         if needed < 0.0 {
             let pull = scenario.simulation.gravity.length();
@@ -27,7 +28,7 @@ pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2
                 file: scenario.path.clone(),
                 force: scenario.process.force,
                 edge_length: station.edge_length,
-                pressing: map.force(0.0, gravity) / station.share,
+                pressing: map.force(0.0, gravity) / share,
                 mass: device.moving_mass,
                 most_mass: axial / gravity,
                 tilt: cosine(gravity),
@@ -43,7 +44,7 @@ pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2
                 supply,
                 giver,
                 attainable: [map.force(0.0, gravity), map.force(supply, gravity)]
-                    .map(|force| force / station.share),
+                    .map(|force| force / share),
             });
         }
     }

@@ -60,13 +60,13 @@ impl RiddenEdge {
             .genuine_contacts(centre, self.radius + reach, &mut contacts);
         let elsewhere = contacts
             .iter()
-            .filter(|contact| self.from_edge(contact.point) > ZONE * self.radius);
+            .filter(|contact| self.distance_to_edge(contact.point) > ZONE * self.radius);
         elsewhere
             .map(|contact| contact.distance - self.radius)
             .fold(reach, f64::min)
     }
 
-    fn from_edge(&self, point: DVec3) -> f64 {
+    fn distance_to_edge(&self, point: DVec3) -> f64 {
         let pieces = self.points.windows(2).map(|two| {
             let along = two[1] - two[0];
             let share = (point - two[0]).dot(along) / along.length_squared().max(1e-300);

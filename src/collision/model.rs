@@ -238,7 +238,7 @@ impl CollisionModel {
                 margin
             }
             // A clamped part stands in its clamps; obstacles and the floor are each other's business; the base stands on the floor.
-            [Part | Obstacle, Obstacle] | [Obstacle, Part | Floor] | [Floor, Obstacle] => {
+            [Part | Obstacle | Floor, Obstacle] | [Obstacle, Part | Floor] => {
                 return Ok(None);
             }
             [Robot, Floor] if between == 0 => return Ok(None),
@@ -264,7 +264,7 @@ impl CollisionModel {
         links: &Links,
     ) -> Result<bool, ModelError> {
         let [a, b] = [moved, other].map(|body| &self.bodies[body].1);
-        let poses = [a, b].map(|body| self.place(body, links));
+        let poses = [a, b].map(|body| Self::place(body, links));
         if a.distance(poses[0], b, poses[1], margin) > margin {
             return Ok(false);
         }
@@ -284,7 +284,7 @@ impl CollisionModel {
     }
 
     /// World pose of a body.
-    pub(super) fn place(&self, body: &Body, links: &Links) -> DPose3 {
+    pub(super) fn place(body: &Body, links: &Links) -> DPose3 {
         match body.mount {
             Mount::World(pose) => pose,
             Mount::Link(_) => body.mount.pose(links),
@@ -336,11 +336,11 @@ impl CollisionModel {
     pub(super) fn distance(&self, pair: &Pair, links: &Links, enough: f64) -> f64 {
         let enough = enough.max(pair.margin.max(0.0) + BEYOND);
         let moved = &self.bodies[pair.moved].1;
-        let at = self.place(moved, links);
+        let at = Self::place(moved, links);
         match (pair.other, &self.ridden) {
             (Some(other), _) => {
                 let other = &self.bodies[other].1;
-                let other_at = self.place(other, links);
+                let other_at = Self::place(other, links);
                 let distance = moved.distance(at, other, other_at, enough);
                 // Standing bodies that are settled into each other, no deeper than the pair's margin.
                 if distance <= 0.0 && pair.margin < 0.0 {
@@ -357,9 +357,9 @@ impl CollisionModel {
     pub(super) fn shift(&self, pair: &Pair, [from, to]: [&Links; 2]) -> f64 {
         let moved = &self.bodies[pair.moved].1;
         let seen = |links: &Links| {
-            let at = self.place(moved, links);
+            let at = Self::place(moved, links);
             match pair.other {
-                Some(other) => self.place(&self.bodies[other].1, links).inverse() * at,
+                Some(other) => Self::place(&self.bodies[other].1, links).inverse() * at,
                 None => at,
             }
         };
@@ -380,7 +380,7 @@ impl CollisionModel {
             return -self.distance(pair, links, reach);
         };
         let (moved, other) = (&self.bodies[pair.moved].1, &self.bodies[other].1);
-        let poses = [moved, other].map(|body| self.place(body, links));
+        let poses = [moved, other].map(|body| Self::place(body, links));
         let depth = moved.depth(poses[0], other, poses[1], reach);
         let enclosed = other.encloses(poses[1], moved, poses[0]);
         match depth {
@@ -400,7 +400,7 @@ impl CollisionModel {
             return false;
         };
         let (moved, other) = (&self.bodies[pair.moved].1, &self.bodies[other].1);
-        let poses = [moved, other].map(|body| self.place(body, links));
+        let poses = [moved, other].map(|body| Self::place(body, links));
         other.encloses(poses[1], moved, poses[0]) || moved.encloses(poses[0], other, poses[1])
     }
 

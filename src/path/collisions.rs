@@ -35,7 +35,7 @@ pub(super) fn blockade(
             deepest
         }
     });
-    Some((index, Obstacle::Collision(deepest)))
+    Some((index, Obstacle::Collision(Box::new(deepest))))
 }
 
 /// The motion over all legs, a knot for each of their knots; neighbouring legs share one.
@@ -107,7 +107,7 @@ pub(super) fn check(
                 first,
                 knots.len(),
                 place,
-                Obstacle::Collision(meeting),
+                Obstacle::Collision(Box::new(meeting)),
             ));
         }
         first -= knots.len() - 1;

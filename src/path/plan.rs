@@ -214,7 +214,7 @@ impl Plan {
             normal: station.normal,
             axis: station.axis,
             tangent: station.tangent,
-            share: station.share,
+            share: self.tool_path.share(&station),
             centre: station.point + station.normal * self.offset - station.axis * back,
         }
     }

@@ -28,8 +28,6 @@ pub struct ToolStation {
     pub normal: DVec3,
     /// Axis of the tool, from the flange towards the part.
     pub axis: DVec3,
-    /// Cosine between that and the normal: the share of the contact force that the device sees [1].
-    pub share: f64,
 }
 
 /// How the tool's axis stands along an edge.
@@ -117,6 +115,14 @@ impl ToolPath {
         Ok(path)
     }
 
+    /// Cosine between the tool's axis and the contact normal at a station of this path: the share of the contact force that the device sees [1].
+    pub fn share(&self, station: &ToolStation) -> f64 {
+        match self.tool_axis {
+            ToolAxis::Lean(lean) => lean.cos(),
+            ToolAxis::Direction(_) => -station.axis.dot(station.normal),
+        }
+    }
+
     /// A direction of the world may stand anyhow to an edge.
     fn check_lean(&self) -> Result<(), PlanError> {
         let ToolAxis::Direction(_) = self.tool_axis else {
@@ -125,7 +131,7 @@ impl ToolPath {
         let count = (self.length() / LEAN_SPACING).ceil().max(1.0) as usize;
         for index in 0..=count {
             let station = self.at(self.length() * index as f64 / count as f64);
-            if station.share < MOST_LEAN.cos() - 1e-9 {
+            if self.share(&station) < MOST_LEAN.cos() - 1e-9 {
                 return Err(PlanError::Lean {
                     edge_length: station.edge_length,
                     point: station.point,
@@ -205,18 +211,10 @@ impl ToolPath {
                 let turn = |from: DVec3, to: DVec3| {
                     DQuat::IDENTITY.slerp(DQuat::from_rotation_arc(from, to), share) * from
                 };
-                let (axis, normal) = (
-                    turn(before.axis, after.axis),
-                    turn(before.normal, after.normal),
-                );
                 ToolStation {
-                    axis,
-                    normal,
+                    axis: turn(before.axis, after.axis),
+                    normal: turn(before.normal, after.normal),
                     tangent: turn(before.tangent, after.tangent),
-                    share: match self.tool_axis {
-                        ToolAxis::Lean(_) => before.share,
-                        ToolAxis::Direction(_) => -axis.dot(normal),
-                    },
                     ..before
                 }
             }
@@ -227,13 +225,13 @@ impl ToolPath {
         let edge = self.curve.at(edge_length);
         let rotation = self.world_from_part.rotation;
         let normal = rotation * edge.bisector;
-        let (axis, share) = match self.tool_axis {
+        let axis = match self.tool_axis {
             ToolAxis::Lean(lean) => {
                 let side = edge.normal_a - edge.bisector * edge.normal_a.dot(edge.bisector);
                 let outward = edge.bisector * lean.cos() + side.normalize_or_zero() * lean.sin();
-                (-(rotation * outward), lean.cos())
+                -(rotation * outward)
             }
-            ToolAxis::Direction(axis) => (axis, -axis.dot(normal)),
+            ToolAxis::Direction(axis) => axis,
         };
         ToolStation {
             edge_length,
@@ -241,7 +239,6 @@ impl ToolPath {
             tangent: rotation * edge.tangent,
             normal,
             axis,
-            share,
         }
     }
 }
