@@ -32,7 +32,7 @@ fn described(body: &Body) -> Value {
     };
     let solids = body.solids.iter().map(|solid| {
         let (vertices, triangles) = solid.triangles();
-        let vertices: Vec<[f64; 3]> = vertices.iter().map(|v| v.to_array()).collect();
+        let vertices: Vec<[f64; 3]> = vertices.iter().map(DVec3::to_array).collect();
         json!({ "vertices": vertices, "triangles": triangles, "convex": solid.is_convex() })
     });
     json!({ "name": body.name, "mount": mount, "solids": solids.collect::<Vec<_>>() })
