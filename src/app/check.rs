@@ -14,7 +14,6 @@ use self::report::Report;
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
-use crate::cell::Cell;
 use crate::recording::atomic::write_text;
 use crate::scenario::{self, AnyScenario, ScenarioError};
 
@@ -55,12 +54,14 @@ pub(super) struct CheckArguments {
 
 /// Explains a file.
 pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
-    if let Some(draw) = &arguments.draw {
-        prepare_file(draw, "--draw", Standing::of(arguments.force))?;
-        let cell = Cell::load(&arguments.file)?;
-        write_text(draw, &cell::drawn(&cell))?;
-    }
     let report = explained(&arguments.file)?;
+    if let Some(draw) = &arguments.draw {
+        let drawing = report.drawing.as_ref().ok_or_else(|| AppError::NoTool {
+            file: arguments.file.display().to_string(),
+        })?;
+        prepare_file(draw, "--draw", Standing::of(arguments.force))?;
+        write_text(draw, drawing)?;
+    }
     if arguments.json {
         say(&report.json()?)?;
     } else if !arguments.quiet {

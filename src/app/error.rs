@@ -260,6 +260,12 @@ pub enum AppError {
         /// The kind of file.
         kind: &'static str,
     },
+    /// A drawing of the tool of what has none.
+    #[error("{file} has no tool on an edge to draw, expected a cell that is simulated with --draw")]
+    NoTool {
+        /// The file.
+        file: String,
+    },
     /// A picture that the drawing library refuses.
     #[error("the picture could not be drawn: {0}")]
     Picture(String),

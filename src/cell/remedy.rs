@@ -88,7 +88,7 @@ fn directions(setup: &Setup, stance: &Stance) -> Vec<DVec3> {
     directions
 }
 
-/// The stance with the part a distance [mm] along a direction; its position in whole micrometres, as a scenario gives it.
+/// The stance with the part a distance [mm] along a direction; its position to a tenth of a millimetre, so that what is told is what was tried.
 fn moved(stance: &Stance, direction: DVec3, distance: f64) -> Stance {
     let place = stance.world_from_part.translation + 1e-3 * distance * direction;
     let rounded = (place * 1e4).round() / 1e4;
@@ -126,7 +126,8 @@ fn leaned(setup: &Setup, stance: &Stance) -> Option<f64> {
     let ToolAxis::Lean(lean) = stance.tool_axis else {
         return None;
     };
-    let leans = LEANS.map(|change| lean + change.to_radians());
+    // In whole degrees, as they are told.
+    let leans = LEANS.map(|change| (lean.to_degrees() + change).round().to_radians());
     leans.into_par_iter().find_first(|&lean| {
         let leaned = Stance {
             tool_axis: ToolAxis::Lean(lean),

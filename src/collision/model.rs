@@ -264,7 +264,7 @@ impl CollisionModel {
         links: &Links,
     ) -> Result<bool, ModelError> {
         let [a, b] = [moved, other].map(|body| &self.bodies[body].1);
-        let poses = [a, b].map(|body| Self::place(body, links));
+        let poses = [a, b].map(|body| body.mount.pose(links));
         if a.distance(poses[0], b, poses[1], margin) > margin {
             return Ok(false);
         }
@@ -281,14 +281,6 @@ impl CollisionModel {
             self.touching_at_rest.push([first, second]);
         }
         Ok(between <= 2)
-    }
-
-    /// World pose of a body.
-    pub(super) fn place(body: &Body, links: &Links) -> DPose3 {
-        match body.mount {
-            Mount::World(pose) => pose,
-            Mount::Link(_) => body.mount.pose(links),
-        }
     }
 
     /// Farthest that points of a body get from each joint after the first `from` that moves it.
@@ -336,11 +328,11 @@ impl CollisionModel {
     pub(super) fn distance(&self, pair: &Pair, links: &Links, enough: f64) -> f64 {
         let enough = enough.max(pair.margin.max(0.0) + BEYOND);
         let moved = &self.bodies[pair.moved].1;
-        let at = Self::place(moved, links);
+        let at = moved.mount.pose(links);
         match (pair.other, &self.ridden) {
             (Some(other), _) => {
                 let other = &self.bodies[other].1;
-                let other_at = Self::place(other, links);
+                let other_at = other.mount.pose(links);
                 let distance = moved.distance(at, other, other_at, enough);
                 // Standing bodies that are settled into each other, no deeper than the pair's margin.
                 if distance <= 0.0 && pair.margin < 0.0 {
@@ -357,9 +349,9 @@ impl CollisionModel {
     pub(super) fn shift(&self, pair: &Pair, [from, to]: [&Links; 2]) -> f64 {
         let moved = &self.bodies[pair.moved].1;
         let seen = |links: &Links| {
-            let at = Self::place(moved, links);
+            let at = moved.mount.pose(links);
             match pair.other {
-                Some(other) => Self::place(&self.bodies[other].1, links).inverse() * at,
+                Some(other) => self.bodies[other].1.mount.pose(links).inverse() * at,
                 None => at,
             }
         };
@@ -380,7 +372,7 @@ impl CollisionModel {
             return -self.distance(pair, links, reach);
         };
         let (moved, other) = (&self.bodies[pair.moved].1, &self.bodies[other].1);
-        let poses = [moved, other].map(|body| Self::place(body, links));
+        let poses = [moved, other].map(|body| body.mount.pose(links));
         let depth = moved.depth(poses[0], other, poses[1], reach);
         let enclosed = other.encloses(poses[1], moved, poses[0]);
         match depth {
@@ -400,7 +392,7 @@ impl CollisionModel {
             return false;
         };
         let (moved, other) = (&self.bodies[pair.moved].1, &self.bodies[other].1);
-        let poses = [moved, other].map(|body| Self::place(body, links));
+        let poses = [moved, other].map(|body| body.mount.pose(links));
         other.encloses(poses[1], moved, poses[0]) || moved.encloses(poses[0], other, poses[1])
     }
 

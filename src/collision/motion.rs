@@ -97,12 +97,6 @@ impl JointMotion {
         self.knots.push(end);
     }
 
-    /// Number of knots.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.knots.len()
-    }
-
     /// Whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {

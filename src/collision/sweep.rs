@@ -6,6 +6,9 @@ use super::motion::{Cubic, JointMotion};
 /// Way of a pair below which the time between two moments is not halved further [m].
 const FINEST: f64 = 1e-4;
 
+/// Distance beyond which no pair is measured, but bounded [m]: the time between is halved sooner than all of a surface is looked at.
+const NEAR: f64 = 0.05;
+
 /// A place in a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
@@ -147,13 +150,17 @@ impl<'a> Sweep<'a> {
         pair.moved_by(&ways)
     }
 
+    /// Distance of a pair [m], or a lower bound of it with which it is free over a way to either side; where that is long, another bound will do.
+    fn distance(&self, pair: &Pair, links: &Links, way: f64) -> f64 {
+        let enough = pair.margin + (0.5 * way).min(NEAR);
+        self.model.distance(pair, links, enough)
+    }
+
     /// First place at which a pair comes nearer than it may.
     fn first(&self, pair: &Pair) -> Option<Place> {
         let last = self.links.len() - 1;
         let whole = self.way(pair, 0, last);
-        let start = self
-            .model
-            .distance(pair, &self.links[0], pair.margin + 0.5 * whole);
+        let start = self.distance(pair, &self.links[0], whole);
         if start <= pair.margin || self.model.is_enclosed(pair, &self.links[0]) {
             return Some(Place {
                 knot: 0,
@@ -163,9 +170,7 @@ impl<'a> Sweep<'a> {
         if last == 0 {
             return None;
         }
-        let end = self
-            .model
-            .distance(pair, &self.links[last], pair.margin + 0.5 * whole);
+        let end = self.distance(pair, &self.links[last], whole);
         self.between(pair, [0, last], [start, end])
     }
 
@@ -183,9 +188,7 @@ impl<'a> Sweep<'a> {
                 .map(|share| Place { knot: from, share });
         }
         let middle = usize::midpoint(from, to);
-        let there = self
-            .model
-            .distance(pair, &self.links[middle], pair.margin + 0.5 * way);
+        let there = self.distance(pair, &self.links[middle], way);
         self.between(pair, [from, middle], [apart[0], there])
             .or_else(|| {
                 if there <= pair.margin {
@@ -216,7 +219,7 @@ impl<'a> Sweep<'a> {
         let halves = cubic.halves();
         let middle = 0.5 * (from + to);
         let links = self.model.links(halves[0].end());
-        let there = self.model.distance(pair, &links, pair.margin + 0.5 * way);
+        let there = self.distance(pair, &links, way);
         self.within(
             pair,
             (&halves[0], [from, middle]),

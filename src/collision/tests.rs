@@ -308,7 +308,7 @@ fn a_watch_tells_the_first_frame_at_which_bodies_meet() {
     let frames: Vec<Positions> = (0..=3000)
         .map(|step| positions(&[PI * f64::from(step) / 3000.0, 0.0]))
         .collect();
-    let mut watch = ClearanceWatch::new(model, frames[0]);
+    let mut watch = ClearanceWatch::new(model, &frames[0]);
     let met = frames.iter().position(|frame| watch.meets(frame).is_some());
     // The watch knows no margin: the edge of the arm, 10 mm off its middle line, on the wire of 0.5 mm.
     let expected = (3000.0 * (FRAC_PI_2 - f64::asin(0.0105)) / PI).ceil() as usize;

@@ -634,7 +634,7 @@ impl<'a> Simulation<'a> {
 /// A watch over what must not meet, the part where it really is.
 fn clearance(cell: &Cell, positions: &[f64]) -> ClearanceWatch {
     let standing = cell.collision.with_part_at(cell.part.world_from_part);
-    ClearanceWatch::new(standing, to_array(positions))
+    ClearanceWatch::new(standing, &to_array(positions))
 }
 
 /// Positions of as many joints as there are, and zeros.

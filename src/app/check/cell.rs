@@ -45,6 +45,7 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
         ),
     );
     tool(&mut report, &cell);
+    report.drawing = Some(drawn(&cell));
     report.number("force_n", process.force);
     report.number("feed_mm_per_s", process.feed * 1e3);
     report.number("edge_length_mm", cell.part.edge.length * 1e3);
@@ -105,7 +106,7 @@ fn tool(report: &mut Report, cell: &Cell) {
 }
 
 /// How the tool stands across the edge in its middle, as a picture.
-pub(super) fn drawn(cell: &Cell) -> String {
+fn drawn(cell: &Cell) -> String {
     let edge = &cell.part.edge;
     let place = edge.at(0.5 * edge.length);
     let turn = cell.scenario.workpiece.world_from_part.rotation;

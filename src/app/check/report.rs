@@ -27,6 +27,8 @@ pub(super) struct Report {
     numbers: serde_json::Map<String, serde_json::Value>,
     /// Files that it refers to.
     files: Vec<FileNote>,
+    /// How a cell's tool stands across its edge, as SVG.
+    pub(super) drawing: Option<String>,
     /// Notes on what a user may not expect.
     notes: Vec<String>,
     /// Next step for the user.
@@ -50,6 +52,7 @@ impl Report {
             facts: Vec::new(),
             numbers: serde_json::Map::new(),
             files: Vec::new(),
+            drawing: None,
             notes: Vec::new(),
             next: String::new(),
         }
