@@ -67,18 +67,22 @@ pub enum MeshFault {
 /// Units with which a part of a size in units of its file would be one that a robot can carry a tool along.
 fn units_that_fit(size: f64) -> String {
     const USUAL: std::ops::RangeInclusive<f64> = 0.01..=5.0;
-    let units = [("mm", 1e-3), ("m", 1.0), ("inch", 0.0254)];
-    let lengths = units.map(|(name, length)| (name, size * length));
-    let fitting = lengths.iter().filter(|(_, length)| USUAL.contains(length));
-    let fitting: Vec<String> = fitting
-        .map(|(name, length)| format!("{name} ({:.0} mm)", 1e3 * length))
+    let units = [
+        ("millimetres", "mm", 1e-3),
+        ("metres", "m", 1.0),
+        ("inches", "inch", 0.0254),
+    ];
+    let fitting: Vec<String> = (units.iter())
+        .map(|(name, key, length)| (name, key, size * length))
+        .filter(|(_, _, length)| USUAL.contains(length))
+        .map(|(name, key, length)| {
+            let millimetres = 1e3 * length;
+            format!("in {name} (mesh_unit or --unit {key}) it would be {millimetres:.0} mm long")
+        })
         .collect();
     match &fitting[..] {
-        [] => format!("its points span {size:.3e} units, which is no usual part in mm, m or inch"),
-        fitting => format!(
-            "with mesh_unit (or --unit) {} it would be of a usual size",
-            fitting.join(" or ")
-        ),
+        [] => format!("its points span {size:.3e} units, which is no usual part in any of them"),
+        fitting => fitting.join(", "),
     }
 }
 

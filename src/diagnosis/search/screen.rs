@@ -354,6 +354,53 @@ mod tests {
     use super::super::super::test_evidence::{evidence_of, plant};
     use super::*;
     use crate::effects::every;
+    use crate::plant::{Basis, Port, Variable};
+
+    /// Beside a formula the numbers of a small effect stood behind the formula's and each was taken for the other: improved.toml lacked some and was refused.
+    #[test]
+    fn an_effect_beside_a_term_has_its_numbers_before_those_of_the_term() {
+        let mut truth = plant();
+        registry::FORCE_BIAS.quantity().set(&mut truth, 6.0);
+        let evidence = evidence_of(&truth, vec![vec![2e5; 300]]);
+        let search = Search {
+            evidence: &evidence,
+            believed: plant(),
+            tolerated: Vec::new(),
+            candidates: every()
+                .filter(|e| e.name == "force_sensor_bias_drift")
+                .collect(),
+            shown: Vec::new(),
+            look: 3,
+            most_effects: 1,
+            model_error: ModelError::NONE,
+            settings: Settings::DEFAULT,
+        };
+        let mut with_term = plant();
+        with_term.latent = Some(Latent {
+            port: Port::PistonForce,
+            variable: Variable::Stroke,
+            directed: false,
+            basis: Basis::Hats { ends: [0.0, 0.05] },
+            coefficients: vec![0.0; 2],
+        });
+        let coefficient = |index: usize| Free {
+            quantity: registry::LATENT_COEFFICIENT.quantity().of(index),
+            start: 0.0,
+            coordinate: Coordinate::Linear(1.0),
+            bounds: [-100.0, 100.0],
+            prior: Prior::Flat,
+        };
+        let free = [0, 1].map(coefficient);
+        let limit = Limit::of(3);
+        let mut from = search.fitted(Vec::new(), (&with_term, None), &free, ROUGH, limit);
+        from.depends_on = vec!["stroke_m"];
+        let found = &search.screen(&from, ROUGH, f64::INFINITY)[0];
+        let names: Vec<&str> = found.fit.free.iter().map(|f| f.quantity.name).collect();
+        let of_term = free[0].quantity.name;
+        assert_eq!(names, ["bias_n", "drift_n_per_s", of_term, of_term]);
+        assert_eq!(found.numbers_of(&search.believed, 0), 0..2);
+        assert_eq!(found.depends_on, ["stroke_m"]);
+    }
 
     /// With one phase in all of them a runout that starts anew in each recording was answered "nothing missing".
     #[test]
