@@ -16,6 +16,7 @@ pub(super) fn load(
 ) -> Result<Vec<CollisionShape>, Refusal> {
     let mut found = Vec::new();
     let mut without = Vec::new();
+    let mut unusable: Vec<(&str, Refusal)> = Vec::new();
     for placed in &tree.placed {
         let link = placed.link;
         let own: Vec<_> = (link.collision.iter())
@@ -35,10 +36,7 @@ pub(super) fn load(
         match of_link(placed, &own, folder, options, notes) {
             Ok(shapes) => found.extend(shapes),
             Err(refusal @ Refusal::Mesh { .. }) if !drawn.is_empty() => {
-                notes.push(format!(
-                    "{refusal}; for collisions link `{}` has the shape that is drawn of it",
-                    link.name
-                ));
+                unusable.push((link.name.as_str(), refusal));
                 found.extend(of_link(placed, &drawn, folder, options, &mut Vec::new())?);
             }
             Err(refusal) => return Err(refusal),
@@ -48,6 +46,13 @@ pub(super) fn load(
         notes.push(format!(
             "links without collision geometry have for collisions the shape that is drawn of them: {}",
             without.join(", ")
+        ));
+    }
+    if let Some((_, first)) = unusable.first() {
+        let links: Vec<&str> = unusable.iter().map(|(link, _)| *link).collect();
+        notes.push(format!(
+            "{first}; links with collision meshes that cannot be used have the shape that is drawn of them: {}",
+            links.join(", ")
         ));
     }
     Ok(found)

@@ -507,3 +507,41 @@ fn shapes_carry_their_pose_and_colour() {
     let flat = text.replace("0.5\"/></geometry>", "0\"/></geometry>");
     assert!(refusal(&flat, &options()).contains("link `l2` has a visual sphere of [0.0]"));
 }
+
+#[test]
+fn a_link_without_usable_collision_geometry_has_the_shape_that_is_drawn_of_it() {
+    let drawn = r#"<visual><geometry><box size="1 2 3"/></geometry></visual>"#;
+    let with = |collision: &str| {
+        let link = format!("<link name=\"l2\">{drawn}{collision}");
+        load(&edited(r#"<link name="l2">"#, &link), &options())
+    };
+    let own = r#"<collision><origin xyz="0 0 4"/><geometry><sphere radius="0.5"/></geometry></collision>"#;
+    let arm = with(own).expect("a sphere");
+    assert_eq!(arm.collisions.len(), 1);
+    assert_eq!(arm.collisions[0].shape, VisualShape::Sphere { radius: 0.5 });
+    assert_eq!(arm.collisions[0].link_from_shape.translation.z, 4.0);
+    assert!(arm.notes.is_empty(), "{:?}", arm.notes);
+    let size = DVec3::new(1.0, 2.0, 3.0);
+    let missing = r#"<collision><geometry><mesh filename="none.stl"/></geometry></collision>"#;
+    for (collision, told) in [
+        ("", "links without collision geometry"),
+        (missing, "collision mesh `none.stl` cannot be used"),
+    ] {
+        let arm = with(collision).expect("what is drawn");
+        assert_eq!(arm.collisions.len(), 1);
+        assert_eq!(arm.collisions[0].shape, VisualShape::Box { size });
+        let notes: Vec<&String> = arm
+            .notes
+            .iter()
+            .filter(|note| note.contains(told))
+            .collect();
+        assert!(
+            notes.len() == 1 && notes[0].contains("l2"),
+            "{:?}",
+            arm.notes
+        );
+    }
+    let zero = own.replace("0.5", "0");
+    let refused = with(&zero).unwrap_err().to_string();
+    assert!(refused.contains("collision sphere"), "{refused}");
+}
