@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{EDGE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches};
+use super::super::files::{
+    DRAWING, EDGE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches,
+};
 use super::super::growing::GrowingFile;
 use super::super::picture::scene_of;
 use super::super::report::page_of_run;
@@ -90,7 +92,7 @@ impl Job {
             RECORDING => recorded,
             FIGURES => matches!(self, Self::Bench(_)),
             // Of a run that followed one.
-            EDGE => false,
+            EDGE | DRAWING => false,
             _ => true,
         }
     }
