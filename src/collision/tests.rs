@@ -179,6 +179,21 @@ fn a_body_that_lies_wholly_in_a_closed_surface_is_found() {
 }
 
 #[test]
+fn levers_are_those_of_the_outstretched_arm() {
+    let model = two_links(vec![wire(5.0, 0.0)], 0.0);
+    let of_fore = |pair: &&Pair| model.named(pair) == ["fore", "wire"];
+    let pair = model.pairs.iter().find(of_fore).unwrap();
+    // The farthest corner of the fore link from each joint; the bound goes by a ball about the link, a little farther.
+    for (lever, farthest) in pair.levers.iter().zip([1.1f64, 0.4]) {
+        let farthest = farthest.hypot(0.01);
+        assert!(
+            *lever >= farthest && *lever < 1.05 * farthest,
+            "{lever} {farthest}"
+        );
+    }
+}
+
+#[test]
 fn no_point_moves_farther_than_the_bound_says() {
     for seed in 0..20 {
         let mut chain = random_chain(seed, 6);
