@@ -16,6 +16,7 @@ pub mod orifice;
 pub mod piston;
 pub mod push_only;
 pub mod regulator;
+pub mod removal_law;
 pub mod seal_friction;
 mod subsonic;
 pub mod supply_reservoir;
