@@ -69,6 +69,7 @@ pub mod plant;
 pub mod proof;
 pub mod quantity;
 pub mod recording;
+pub mod removal;
 pub mod replay;
 #[cfg(feature = "cli")]
 pub mod report;

@@ -21,13 +21,24 @@ pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const FIGURES: &str = "figures.svg";
 pub(super) const CELL: &str = "cell.svg";
 pub(super) const EDGE: &str = "edge.svg";
+/// The edge as a turning tool left it, station by station.
+pub(super) const EDGE_PROFILE: &str = "edge_profile.csv";
 /// What the page draws in space.
 pub(super) const DRAWING: &str = "drawing.json";
 /// The scenario as `--set` made it.
 pub(super) const VARIED: &str = "varied.toml";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 9] = [
-    RECORDING, SAMPLES, SUMMARY, FIGURES, CELL, EDGE, DRAWING, REPORT, VARIED,
+pub(super) const RUN_NAMES: [&str; 10] = [
+    RECORDING,
+    SAMPLES,
+    SUMMARY,
+    FIGURES,
+    CELL,
+    EDGE,
+    EDGE_PROFILE,
+    DRAWING,
+    REPORT,
+    VARIED,
 ];
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
@@ -181,7 +192,12 @@ impl OutputFolder {
         if recorded {
             names.insert(0, RECORDING);
         }
-        for (name, text) in [(FIGURES, output.figures), (VARIED, output.varied)] {
+        let texts = [
+            (EDGE_PROFILE, output.edge_profile),
+            (FIGURES, output.figures),
+            (VARIED, output.varied),
+        ];
+        for (name, text) in texts {
             if let Some(text) = text {
                 write_text(&unfinished.path().join(name), text)?;
                 names.push(name);
@@ -256,6 +272,8 @@ pub(super) struct RunOutput<'a> {
     pub picture: Option<Picture<'a>>,
     /// summary.json.
     pub summary: &'a str,
+    /// edge_profile.csv.
+    pub edge_profile: Option<&'a str>,
     /// figures.svg.
     pub figures: Option<&'a str>,
     /// varied.toml.

@@ -3,6 +3,7 @@
 mod charts;
 mod design;
 mod diagnosis;
+mod finished_edge;
 mod provenance;
 mod run;
 mod signals;
@@ -16,8 +17,8 @@ use clap::Args;
 use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
-    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, FRONT, REPORT, SAMPLES, SUMMARY,
-    Sketches, Standing, is_same, prepare_file,
+    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, REPORT,
+    SAMPLES, SUMMARY, Sketches, Standing, is_same, prepare_file,
 };
 use super::output::say;
 use crate::diagnosis::answer::Answer;
@@ -25,7 +26,7 @@ use crate::diagnosis::comparison::Comparison;
 use crate::page::html;
 use crate::recording::atomic::write_text;
 use crate::recording::parquet::read_parquet;
-use crate::recording::{Recording, RecordingError};
+use crate::recording::{EdgeProfile, Recording, RecordingError};
 
 pub(super) use charts::{lacking, most_of, variable};
 pub(super) use run::{Label, RunResult};
@@ -66,7 +67,17 @@ pub(super) struct ReportArguments {
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
     let inputs = [
-        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DRAWING, DESIGN, FRONT,
+        DIAGNOSIS,
+        COMPARISON,
+        BALANCE,
+        SUMMARY,
+        SAMPLES,
+        CELL,
+        EDGE,
+        EDGE_PROFILE,
+        DRAWING,
+        DESIGN,
+        FRONT,
     ];
     if let Some(out) = &arguments.out
         && inputs.iter().any(|name| is_same(&folder.join(name), out))
@@ -125,6 +136,7 @@ pub(super) fn of_run(run: &RunResult<'_>) -> String {
 pub(super) fn page_of_run(
     document: &str,
     recording: &Recording,
+    profile: Option<&EdgeProfile>,
     sketches: &Sketches,
 ) -> Result<String, AppError> {
     Ok(of_run(&RunResult {
@@ -133,6 +145,7 @@ pub(super) fn page_of_run(
         cell: Some(Cow::Borrowed(&sketches.cell)),
         edge: sketches.edge.as_deref().map(Cow::Borrowed),
         space: sketches.space.as_ref().map(Cow::Borrowed),
+        profile: profile.map(Cow::Borrowed),
     }))
 }
 
@@ -147,12 +160,16 @@ pub(super) fn read_run(folder: &Path) -> Result<RunResult<'static>, AppError> {
     // A bench has none, nor has a run of an older version.
     let space = folder.join(DRAWING);
     let space = space.is_file().then(|| read_json(&space)).transpose()?;
+    let profile = folder.join(EDGE_PROFILE);
+    let profile = profile.is_file().then(|| EdgeProfile::read(&profile));
+    let profile = profile.transpose()?;
     Ok(RunResult {
         document: read_json(&folder.join(SUMMARY))?,
         recording: Cow::Owned(read_parquet(&folder.join(SAMPLES))?.recording),
         cell: picture(CELL).map(Cow::Owned),
         edge: picture(EDGE).map(Cow::Owned),
         space: space.map(Cow::Owned),
+        profile: profile.map(Cow::Owned),
     })
 }
 

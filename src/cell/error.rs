@@ -148,6 +148,40 @@ pub enum CellError {
         depth: f64,
     },
     /// The tool's weight alone presses harder than is asked for.
+    #[error("{}: [tool]: the spindle's axis stands {:.1} deg from the contact normal, where the tool's surface hardly moves: it does not cut; spindle_lead_deg or spindle_lean_deg = 45, say, or another process.lean_deg, takes the contact off the pole", file.display(), angle.to_degrees())]
+    /// A tool on its pole.
+    ToolDoesNotCut {
+        /// Scenario file.
+        file: PathBuf,
+        /// Angle of the spindle's axis from the contact normal [rad].
+        angle: f64,
+    },
+    /// A cone that lies with its tip or rim on the edge.
+    #[error("{}: [tool]: the spindle's axis stands {:.0} deg from the contact normal, but a cone of this angle lies with its flank on the edge at {:.0} deg: else its tip or its rim cuts; set spindle_lead_deg or spindle_lean_deg for that", file.display(), angle.to_degrees(), needed.to_degrees())]
+    ConeOffEdge {
+        /// Scenario file.
+        file: PathBuf,
+        /// Angle of the spindle's axis from the contact normal [rad].
+        angle: f64,
+        /// That at which the flank lies on the edge [rad].
+        needed: f64,
+    },
+    /// A spindle that does not get its tool round.
+    #[error("{}: [tool]: pass {pass} at {force} N takes {:.2} mm3/s and {:.1} N mm at the spindle, which stalls at {:.1} N mm: expected less force_n, a contact nearer to the spindle's axis, or stall_torque_n_mm of a stronger spindle", file.display(), 1e9 * rate, 1e3 * torque, 1e3 * stall_torque)]
+    SpindleStalls {
+        /// Scenario file.
+        file: PathBuf,
+        /// Pass, from 1.
+        pass: usize,
+        /// Its force [N].
+        force: f64,
+        /// Torque that it takes [N m].
+        torque: f64,
+        /// That at which the spindle stalls [N m].
+        stall_torque: f64,
+        /// Removal rate [m3/s].
+        rate: f64,
+    },
     #[error("{}: `process.force_n` is {force} N, but at {:.1} mm along the edge the weight of tool and slide alone presses with {:.1} N: device.override.moving_mass_kg at most {} (now {mass}), or force_n at least {:.1}, or the tool's axis at least {:.0} deg from the vertical (now {:.0}), by another lean or the part turned",
         file.display(), 1e3 * edge_length, pressing, (most_mass * 100.0).floor() / 100.0, (pressing * 10.0).ceil() / 10.0, least_tilt.to_degrees().ceil(), tilt.to_degrees())]
     Weight {

@@ -2,6 +2,7 @@
 
 mod advice;
 mod collision;
+mod cutting;
 mod device_shape;
 mod error;
 mod part;
@@ -94,6 +95,7 @@ impl Cell {
         let refused = |error| CellError::plan(&setup.scenario, error);
         let tool_path = setup.tool_path(&stance).map_err(refused)?;
         let gravity_on_edge = supply::check(&setup.scenario, &tool_path)?;
+        cutting::check(&setup.scenario, &tool_path)?;
         let axial_share = tool_path.share(&tool_path.at(0.5 * tool_path.length()));
         let controller = controller(&setup.scenario, axial_share)?;
         let request = setup.request(&stance, &setup.collision, tool_path);
@@ -117,6 +119,7 @@ impl Cell {
             part,
             collision,
             mut notes,
+            ..
         } = setup;
         notes.extend(plan.notes.iter().cloned());
         let middle = station(
@@ -150,12 +153,22 @@ impl Cell {
 
     /// Offset of the part's surface from its mesh where the ball is, at a place along the edge [m].
     pub fn relief(&self, place: f64) -> Relief {
+        let place = place.clamp(0.0, self.part.edge.length);
+        let ride = self.part.ride.as_ref();
+        self.relief_ridden(
+            place,
+            ride.map(|ride| (ride.lift(place), ride.slope(place))),
+        )
+    }
+
+    /// The same of an edge on which the ball rides with a lift [m] and its slope [1].
+    pub fn relief_ridden(&self, place: f64, ridden: Option<(f64, f64)>) -> Relief {
         let world_from_part = self.scenario.workpiece.world_from_part;
         let here = station(&self.part.edge, world_from_part, place);
         let mut relief = self.plant.cell.relief(&self.middle, &here);
-        if let Some(ride) = &self.part.ride {
-            relief.height += ride.lift(here.station);
-            relief.gradient += here.tangent * ride.slope(here.station);
+        if let Some((lift, slope)) = ridden {
+            relief.height += lift;
+            relief.gradient += here.tangent * slope;
         }
         relief
     }

@@ -7,6 +7,7 @@ use glamx::DPose3;
 
 use super::error::{CellError, millimetres};
 use crate::plant::EdgeStation;
+use crate::removal::EdgeState;
 use crate::scenario::{
     BurrScenario, EdgeChoice, EdgeSelection, Misplacement, Scenario, WorkpieceScenario,
 };
@@ -30,6 +31,8 @@ pub struct Part {
     pub edge: EdgeCurve,
     /// Lift of the ball's centre by the burr along the followed edge; none without a burr.
     pub ride: Option<RiddenProfile>,
+    /// The followed edge as it comes to the cell.
+    pub edge_state: EdgeState,
 }
 
 impl Part {
@@ -56,12 +59,15 @@ impl Part {
                     source,
                 }
             })?;
+        let profile = burr(&workpiece.burr).ok().flatten();
+        let edge_state = EdgeState::new(&edge, profile.as_ref(), workpiece.burr_root);
         Ok(Self {
             mesh,
             mesh_in_world,
             world_from_part,
             edge,
             ride,
+            edge_state,
         })
     }
 }

@@ -13,9 +13,9 @@ use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
 use crate::collision::CollisionModel;
 use crate::control::transmission::TransmissionParameters;
 use crate::path::profile::MotionLimits;
-use crate::path::{Outline, Plan, PlanError, PlanRequest, ToolAxis, ToolPath};
+use crate::path::{Outline, Pass, Plan, PlanError, PlanRequest, ToolAxis, ToolPath};
 use crate::plant::PlantParameters;
-use crate::scenario::{ArmScenario, Scenario};
+use crate::scenario::{ArmScenario, PassScenario, Scenario};
 
 /// Arm, device and part of a scenario.
 pub struct Setup {
@@ -35,6 +35,8 @@ pub struct Setup {
     pub part: Part,
     /// What must not meet, the part where it is believed to be.
     pub collision: CollisionModel,
+    /// Passes along the edge.
+    pub passes: Vec<Pass>,
     /// Notes on what a user may not expect, one sentence each.
     pub notes: Vec<String>,
 }
@@ -70,7 +72,12 @@ impl Setup {
         let part = Part::load(&scenario)?;
         let mut notes = std::mem::take(&mut arm.notes);
         let collision = collision::model(&scenario, &arm, &arm_with_slide, &part, &mut notes)?;
+        let pass = |pass: &PassScenario| Pass {
+            force: pass.force,
+            feed: pass.feed,
+        };
         Ok(Self {
+            passes: scenario.passes.iter().map(pass).collect(),
             scenario,
             arm,
             arm_with_slide,
@@ -170,9 +177,13 @@ impl Setup {
             penetration: process.force / scenario.contact.stiffness,
             working_stroke: process.working_stroke,
             push_back,
-            force: process.force,
+            force: self
+                .passes
+                .iter()
+                .map(|pass| pass.force)
+                .fold(0.0, f64::max),
             friction: scenario.contact.friction,
-            feed: process.feed,
+            passes: &self.passes,
             corner_feed: process.corner_feed,
             limits: MotionLimits {
                 acceleration: process.acceleration,

@@ -3,7 +3,7 @@
 use super::error::CellError;
 use crate::device::PressureMap;
 use crate::path::ToolPath;
-use crate::scenario::{Scenario, attainable_set_pressure};
+use crate::scenario::{PassScenario, Scenario, attainable_set_pressure};
 
 /// The supply must give the force wherever the wrist turns, and gravity alone must not press harder than asked for. Returns the least and greatest
 /// component of gravity along the tool's axis [m/s2].
@@ -19,33 +19,35 @@ pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2
         let share = tool_path.share(&station);
         let gravity = scenario.simulation.gravity.dot(station.axis);
         range = [range[0].min(gravity), range[1].max(gravity)];
-        let axial = scenario.process.force * share;
-        let needed = map.unlimited(axial, gravity);
-        if needed < 0.0 {
-            let pull = scenario.simulation.gravity.length();
-            let cosine = |along: f64| (along / pull).clamp(-1.0, 1.0).acos();
-            return Err(CellError::Weight {
-                file: scenario.path.clone(),
-                force: scenario.process.force,
-                edge_length: station.edge_length,
-                pressing: map.force(0.0, gravity) / share,
-                mass: device.moving_mass,
-                most_mass: axial / gravity,
-                tilt: cosine(gravity),
-                least_tilt: cosine(axial / device.moving_mass),
-            });
-        }
-        if needed > supply {
-            return Err(CellError::Supply {
-                file: scenario.path.clone(),
-                force: scenario.process.force,
-                edge_length: station.edge_length,
-                needed,
-                supply,
-                giver,
-                attainable: [map.force(0.0, gravity), map.force(supply, gravity)]
-                    .map(|force| force / share),
-            });
+        for &PassScenario { force, .. } in &scenario.passes {
+            let axial = force * share;
+            let needed = map.unlimited(axial, gravity);
+            if needed < 0.0 {
+                let pull = scenario.simulation.gravity.length();
+                let cosine = |along: f64| (along / pull).clamp(-1.0, 1.0).acos();
+                return Err(CellError::Weight {
+                    file: scenario.path.clone(),
+                    force,
+                    edge_length: station.edge_length,
+                    pressing: map.force(0.0, gravity) / share,
+                    mass: device.moving_mass,
+                    most_mass: axial / gravity,
+                    tilt: cosine(gravity),
+                    least_tilt: cosine(axial / device.moving_mass),
+                });
+            }
+            if needed > supply {
+                return Err(CellError::Supply {
+                    file: scenario.path.clone(),
+                    force,
+                    edge_length: station.edge_length,
+                    needed,
+                    supply,
+                    giver,
+                    attainable: [map.force(0.0, gravity), map.force(supply, gravity)]
+                        .map(|force| force / share),
+                });
+            }
         }
     }
     Ok(range)

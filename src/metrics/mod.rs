@@ -9,6 +9,7 @@
 
 pub mod bench;
 mod catalogue;
+mod edge;
 mod engagement;
 mod error;
 mod expect;
@@ -24,12 +25,13 @@ mod window;
 
 pub use bench::{BENCH_METRICS, BenchLimits, BenchSummary, LevelSummary, summarise_bench};
 pub use catalogue::{METRICS, Metric, metric};
+pub use edge::EdgeLimits;
 pub use error::MetricsError;
 pub use expect::{BoundCheck, check, validate};
 pub use limits::{FOLLOW_PHASE, NARROW_BAND, SummaryLimits, TOUCH_SHARE, WIDE_BAND};
 pub use summary::{ForceTenth, JointTorqueShare, Summary, Timing};
 
-use crate::recording::Recording;
+use crate::recording::{EdgeProfile, Recording};
 use window::Window;
 
 /// Measures a recording. `timing` is left empty; the caller knows the wall clock.
@@ -52,7 +54,13 @@ pub fn summarise(recording: &Recording, limits: &SummaryLimits) -> Result<Summar
         motion::measure(&mut summary, &follow, limits.stroke_limits)?;
     }
     load::measure(&mut summary, &run, limits)?;
+    edge::of_tool(&mut summary, &run)?;
     Ok(summary)
+}
+
+/// Adds the numbers of an edge that a turning tool has worked.
+pub fn summarise_edge(summary: &mut Summary, profile: &EdgeProfile, limits: &EdgeLimits) {
+    edge::measure(summary, profile, limits);
 }
 
 #[cfg(test)]

@@ -69,6 +69,51 @@ pub struct Summary {
     pub most_loaded_joint: Option<String>,
     /// Largest gap in the balance of the air in the chambers, of their mass, over the run [1].
     pub air_mass_balance_relative: Option<f64>,
+    /// Mean leg of the chamfer along the edge [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamfer_leg_mean_mm: Option<f64>,
+    /// Population standard deviation of the leg [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamfer_leg_standard_deviation_mm: Option<f64>,
+    /// Least leg [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamfer_leg_min_mm: Option<f64>,
+    /// Largest leg [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamfer_leg_max_mm: Option<f64>,
+    /// Height of the highest burr that is left [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_burr_max_mm: Option<f64>,
+    /// Share of the edge on which more burr is left than may be [%]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_burr_share_percent: Option<f64>,
+    /// Share of the edge out of tolerance, by leg or burr [%]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub out_of_tolerance_share_percent: Option<f64>,
+    /// Mean section that was taken, of burr and edge [mm2]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section_removed_mean_mm2: Option<f64>,
+    /// Standard deviation of that section over its mean [%]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section_variation_percent: Option<f64>,
+    /// Volume that was taken [mm3]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub removed_volume_mm3: Option<f64>,
+    /// Mean removal rate while something comes off [mm3/s]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub removal_rate_mean_mm3_per_s: Option<f64>,
+    /// Largest power at the tool [W]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spindle_power_max_w: Option<f64>,
+    /// Energy that the spindle gave at the tool [kJ]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spindle_energy_kj: Option<f64>,
+    /// Work of force and cutting speed that the tool has done [kJ]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tool_wear_kj: Option<f64>,
+    /// Air that has entered the device [g]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub air_used_g: Option<f64>,
     /// Simulated time of the whole run [s].
     pub duration_s: f64,
     /// Each joint's largest torque, base first.

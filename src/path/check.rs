@@ -5,7 +5,7 @@ use glamx::DPose3;
 use super::error::{Obstacle, PlanError};
 use super::plan::Plan;
 use super::posture::{SINGULAR_LIMIT, Standing};
-use super::request::{Phase, PlanRequest, Way, waypoint_error};
+use super::request::{Phase, PlanRequest, waypoint_error};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::inverse_dynamics;
 use crate::arm::kinematics::{jacobian_at, link_poses};
@@ -39,10 +39,8 @@ fn singularities(standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
                     limit: SINGULAR_LIMIT,
                     axis,
                 };
-                let place = match leg.way {
-                    Way::Edge => leg.spline.knots()[index],
-                    Way::Axial { place, .. } => place,
-                };
+                let along = leg.spline.knots()[index];
+                let place = leg.way.place(along, plan.tool_path.length());
                 return Err(waypoint_error(
                     &plan.tool_path,
                     leg.phase,
@@ -123,10 +121,7 @@ fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError
             .knots()
             .partition_point(|&knot| knot <= along)
             .saturating_sub(1);
-        let place = match leg.way {
-            Way::Edge => along,
-            Way::Axial { place, .. } => place,
-        };
+        let place = leg.way.place(along, plan.tool_path.length());
         return Err(waypoint_error(
             &plan.tool_path,
             leg.phase,

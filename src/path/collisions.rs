@@ -2,7 +2,7 @@
 
 use super::error::{Obstacle, PlanError};
 use super::poses::Coarse;
-use super::request::{Leg, PlanRequest, Way, waypoint_error};
+use super::request::{Leg, PlanRequest, waypoint_error};
 use crate::arm::chain::MAX_JOINTS;
 use crate::collision::{CollisionModel, JointMotion, Positions};
 
@@ -44,12 +44,10 @@ pub(super) fn motion(request: &PlanRequest, legs: &[Leg]) -> JointMotion {
     let mut motion = JointMotion::default();
     for leg in legs {
         let knots = leg.spline.knots();
-        let back = |place: f64| match leg.way {
-            Way::Edge => 0.0,
-            Way::Axial { from, sign, .. } => from + sign * place,
+        let at = |index: usize| {
+            let back = leg.way.backed_off(knots[index]);
+            request.with_stroke(&leg.spline.values()[index], back)
         };
-        let at =
-            |index: usize| request.with_stroke(&leg.spline.values()[index], back(knots[index]));
         if motion.is_empty() {
             motion.line_to(at(0));
         }
@@ -97,10 +95,7 @@ pub(super) fn check(
     for (index, leg) in legs.iter().enumerate() {
         let knots = leg.spline.knots();
         if first < knots.len() - 1 || index == last {
-            let place = match leg.way {
-                Way::Edge => knots[first],
-                Way::Axial { place, .. } => place,
-            };
+            let place = leg.way.place(knots[first], request.tool_path.length());
             return Err(waypoint_error(
                 &request.tool_path,
                 leg.phase,

@@ -21,20 +21,21 @@ struct Slowest {
     joint: usize,
 }
 
-/// Speed limits along the edge for joint angles over the path, and a note if the feed had to be slowed.
+/// Speed limits along the edge at a feed [m/s] for joint angles over the path, and a note if the feed had to be slowed.
 ///
 /// # Errors
 /// An axis is so slow that next to nothing of the feed would be left.
 pub(super) fn sections(
     request: &PlanRequest,
+    feed: f64,
     spline: &Spline,
 ) -> Result<(Vec<SpeedSection>, Option<String>), PlanError> {
     let mut sections = Vec::new();
     let mut slowest: Option<Slowest> = None;
     for section in request.tool_path.sections() {
         let wanted = match section.stretch {
-            Stretch::Edge { .. } => request.feed,
-            Stretch::Corner { .. } => request.corner_feed,
+            Stretch::Edge { .. } => feed,
+            Stretch::Corner { .. } => feed.min(request.corner_feed),
         };
         let chunks = (section.length / FEED_CHUNK).ceil().max(1.0);
         let length = section.length / chunks;
@@ -55,17 +56,22 @@ pub(super) fn sections(
         }
     }
     let note = slowest
-        .map(|slowest| note(request, spline, &slowest))
+        .map(|slowest| note(request, feed, spline, &slowest))
         .transpose()?;
     Ok((sections, note))
 }
 
-fn note(request: &PlanRequest, spline: &Spline, slowest: &Slowest) -> Result<String, PlanError> {
+fn note(
+    request: &PlanRequest,
+    feed: f64,
+    spline: &Spline,
+    slowest: &Slowest,
+) -> Result<String, PlanError> {
     let axis = &request.arm.joints[slowest.joint];
-    if slowest.speed < LEAST_SHARE * request.feed {
+    if slowest.speed < LEAST_SHARE * feed {
         let obstacle = Obstacle::Velocity {
             axis: axis.name.clone(),
-            value: axis.velocity * SPEED_SHARE * request.feed / slowest.speed,
+            value: axis.velocity * SPEED_SHARE * feed / slowest.speed,
             limit: axis.velocity,
         };
         let (waypoint, count) = (

@@ -7,7 +7,7 @@ use super::feed;
 use super::poses::{backed_off, places, poses_along};
 use super::posture::{Outline, Standing};
 use super::profile::Profile;
-use super::request::{KNOT_SPACING, Leg, Phase, PlanRequest, Way, waypoint_error};
+use super::request::{KNOT_SPACING, Leg, Pass, Phase, PlanRequest, Way, waypoint_error};
 use super::spline::Spline;
 
 /// Distance before touching at which approach hands over to engage [m].
@@ -36,6 +36,7 @@ pub(super) struct Layout<'a> {
     /// Joint angles at the end of the last leg [rad].
     angles: Vec<f64>,
     legs: Vec<Leg>,
+    pass: usize,
     notes: Vec<String>,
 }
 
@@ -54,6 +55,7 @@ impl<'a> Layout<'a> {
             standing,
             angles: start,
             legs: Vec::new(),
+            pass: 0,
             notes: Vec::new(),
         };
         let (length, far) = (request.tool_path.length(), request.far());
@@ -80,18 +82,21 @@ impl<'a> Layout<'a> {
             speed,
             rest,
         };
-        layout.axial(&at_start(Phase::Approach, far, near, fast, 0.0))?;
-        layout.axial(&at_start(
-            Phase::Engage,
-            near,
-            0.0,
-            gentle,
-            request.settle_time,
-        ))?;
-        layout.follow(knots, &poses)?;
-        // Gently until the slide stands at its outer stop again: there it takes the tool off the edge with a jolt.
-        layout.axial(&at_end(0.0, near, gentle, 0.0))?;
-        layout.axial(&at_end(near, far, fast, FINAL_REST))?;
+        let last_pass = request.passes.len() - 1;
+        for (pass, &Pass { feed, .. }) in request.passes.iter().enumerate() {
+            layout.pass = pass;
+            layout.axial(&at_start(Phase::Approach, far, near, fast, 0.0))?;
+            let settle = request.settle_time;
+            layout.axial(&at_start(Phase::Engage, near, 0.0, gentle, settle))?;
+            layout.follow(&knots, &poses, feed)?;
+            // Gently until the slide stands at its outer stop again: there it takes the tool off the edge with a jolt.
+            layout.axial(&at_end(0.0, near, gentle, 0.0))?;
+            layout.axial(&at_end(near, far, fast, FINAL_REST))?;
+            if pass < last_pass {
+                layout.pass = pass + 1;
+                layout.back(&knots, &poses, far)?;
+            }
+        }
         Ok((layout.legs, layout.notes))
     }
 
@@ -114,9 +119,23 @@ impl<'a> Layout<'a> {
         Ok(())
     }
 
-    fn follow(&mut self, knots: Vec<f64>, poses: &[DPose3]) -> Result<(), PlanError> {
-        let spline = self.track(Phase::Follow, Way::Edge, knots, poses)?;
-        let (sections, note) = feed::sections(self.request, &spline)?;
+    /// Back to the start of the edge, the tool backed off by a distance [m].
+    fn back(&mut self, knots: &[f64], poses: &[DPose3], from: f64) -> Result<(), PlanError> {
+        let length = self.request.tool_path.length();
+        let away: Vec<DPose3> = (poses.iter().rev())
+            .map(|pose| backed_off(*pose, from))
+            .collect();
+        let places = knots.iter().rev().map(|knot| length - knot).collect();
+        let way = Way::Back { from };
+        let spline = self.track(Phase::Approach, way, places, &away)?;
+        let profile = Profile::single(length, self.request.approach_speed, self.request.limits);
+        self.push(Phase::Approach, way, spline, profile, 0.0);
+        Ok(())
+    }
+
+    fn follow(&mut self, knots: &[f64], poses: &[DPose3], feed: f64) -> Result<(), PlanError> {
+        let spline = self.track(Phase::Follow, Way::Edge, knots.to_vec(), poses)?;
+        let (sections, note) = feed::sections(self.request, feed, &spline)?;
         self.notes.extend(note);
         let profile = Profile::through(&sections, self.request.limits);
         self.push(Phase::Follow, Way::Edge, spline, profile, 0.0);
@@ -134,10 +153,7 @@ impl<'a> Layout<'a> {
             .standing
             .track(poses, &self.angles)
             .map_err(|(index, stop)| {
-                let place = match way {
-                    Way::Edge => knots[index],
-                    Way::Axial { place, .. } => place,
-                };
+                let place = way.place(knots[index], self.request.tool_path.length());
                 waypoint_error(
                     &self.request.tool_path,
                     phase,
@@ -161,6 +177,7 @@ impl<'a> Layout<'a> {
         let duration = profile.duration() + rest;
         self.legs.push(Leg {
             phase,
+            pass: self.pass,
             start_time,
             duration,
             profile,

@@ -21,5 +21,5 @@ pub mod toolpath;
 pub use error::{Obstacle, PlanError};
 pub use plan::{Plan, Reference};
 pub use posture::Outline;
-pub use request::{Phase, PlanRequest};
+pub use request::{Pass, Phase, PlanRequest};
 pub use toolpath::{ToolAxis, ToolPath, ToolStation};

@@ -22,6 +22,8 @@ use crate::collision::JointMotion;
 pub struct Reference {
     /// Part of the job.
     pub phase: Phase,
+    /// Pass, from 0.
+    pub pass: usize,
     /// Joint angles [rad].
     pub position: [f64; MAX_JOINTS],
     /// Joint speeds [rad/s].
@@ -200,12 +202,15 @@ impl Plan {
         }
         let (station, back, feed) = match leg.way {
             Way::Edge => (self.tool_path.at(along.position), 0.0, along.speed),
-            Way::Axial { place, from, sign } => {
-                (self.tool_path.at(place), from + sign * along.position, 0.0)
+            way => {
+                let place = way.place(along.position, self.tool_path.length());
+                let back = way.backed_off(along.position);
+                (self.tool_path.at(place), back, 0.0)
             }
         };
         Reference {
             phase: leg.phase,
+            pass: leg.pass,
             position,
             velocity,
             acceleration,

@@ -61,12 +61,12 @@ pub struct PlanRequest<'a> {
     pub working_stroke: f64,
     /// Way that the slide is pushed back when the tool is set on the edge [m].
     pub push_back: f64,
-    /// Desired force along the contact normal [N].
+    /// Largest desired force along the contact normal [N].
     pub force: f64,
     /// Coulomb friction coefficient between tool and part [1].
     pub friction: f64,
-    /// Feed along the edge [m/s].
-    pub feed: f64,
+    /// Passes, at least one.
+    pub passes: &'a [Pass],
     /// Feed past corners [m/s].
     pub corner_feed: f64,
     /// Acceleration and jerk along the path.
@@ -115,6 +115,8 @@ impl PlanRequest<'_> {
 #[derive(Debug, Clone)]
 pub(super) struct Leg {
     pub(super) phase: Phase,
+    /// Pass that it belongs to, from 0.
+    pub(super) pass: usize,
     pub(super) start_time: f64,
     /// Motion, then rest until the next leg starts.
     pub(super) duration: f64,
@@ -130,6 +132,37 @@ pub(super) enum Way {
     Axial { place: f64, from: f64, sign: f64 },
     /// Along the edge.
     Edge,
+    /// Back along the edge to its start, backed off from it [m].
+    Back { from: f64 },
+}
+
+impl Way {
+    /// Place on a path of a length [m] after a way of this leg [m].
+    pub(super) fn place(self, along: f64, length: f64) -> f64 {
+        match self {
+            Self::Edge => along,
+            Self::Axial { place, .. } => place,
+            Self::Back { .. } => length - along,
+        }
+    }
+
+    /// Distance by which the tool is backed off there [m].
+    pub(super) fn backed_off(self, along: f64) -> f64 {
+        match self {
+            Self::Edge => 0.0,
+            Self::Axial { from, sign, .. } => from + sign * along,
+            Self::Back { from } => from,
+        }
+    }
+}
+
+/// A pass along the edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pass {
+    /// Desired force along the contact normal [N].
+    pub force: f64,
+    /// Feed along the edge [m/s].
+    pub feed: f64,
 }
 
 /// The error of a waypoint, counted from 0 here and from 1 in the message.

@@ -4,6 +4,8 @@
 
 pub mod axial_load;
 pub mod chamber;
+pub mod chamfer;
+pub mod cutting_force;
 pub mod end_cushioning;
 pub mod flow_slope;
 pub mod gas;
@@ -18,6 +20,7 @@ pub mod push_only;
 pub mod regulator;
 pub mod removal_law;
 pub mod seal_friction;
+pub mod spindle;
 mod subsonic;
 pub mod supply_reservoir;
 pub mod switching_delay;

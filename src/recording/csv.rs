@@ -11,12 +11,14 @@ use columns::{COLUMNS, Column, TIME};
 
 mod cell;
 mod columns;
+mod edge_profile;
 mod table;
 #[cfg(test)]
 mod tests;
 
 pub use cell::{CellRecording, read_cell_csv};
 pub use columns::{median_step, plausible_range};
+pub use edge_profile::EdgeProfile;
 
 /// A recording with what its file holds besides.
 #[derive(Debug, Clone, PartialEq)]

@@ -54,6 +54,17 @@ pub const PATH_ERROR_AXIAL: &str = "path_error_axial";
 /// Speed of the tool along the edge.
 pub const FEED: &str = "feed";
 
+/// Speed of the tool's surface where it touches.
+pub const CUTTING_SPEED: &str = "cutting_speed";
+/// Volume that the tool takes off per time.
+pub const REMOVAL_RATE: &str = "removal_rate";
+/// Torque of the tool's contact on its spindle.
+pub const SPINDLE_TORQUE: &str = "spindle_torque";
+/// Power that the spindle gives at the tool.
+pub const SPINDLE_POWER: &str = "spindle_power";
+/// Work of normal force and cutting speed that the tool has done.
+pub const TOOL_WEAR: &str = "tool_wear";
+
 /// Force of the device's seals on its moving part.
 pub const SEAL_FORCE: &str = "seal_force";
 /// Acceleration of the device's slide.
@@ -180,6 +191,21 @@ pub const SIGNALS: [SignalDefinition; 22] = [
         "Speed of the tool along the edge."),
 ];
 
+/// Signals of a tool that turns, recorded behind the sensors.
+#[rustfmt::skip]
+pub const CUTTING_SIGNALS: [SignalDefinition; 5] = [
+    signal(CUTTING_SPEED, Unit::MetrePerSecond, None, "cutting speed",
+        "Speed of the tool's surface where it touches."),
+    signal(REMOVAL_RATE, Unit::CubicMetrePerSecond, None, "removal rate",
+        "Volume that the tool takes off per time."),
+    signal(SPINDLE_TORQUE, Unit::NewtonMetre, None, "spindle torque",
+        "Torque of the tool's contact on its spindle."),
+    signal(SPINDLE_POWER, Unit::Watt, None, "spindle power",
+        "Power that the spindle gives at the tool."),
+    signal(TOOL_WEAR, Unit::Joule, None, "tool wear",
+        "Work of normal force and cutting speed that the tool has done."),
+];
+
 /// Sensors of a cell, recorded behind its signals.
 pub const CELL_SENSORS: [&str; 3] = [MEASURED_REGULATOR_PRESSURE, MEASURED_STROKE, MEASURED_FORCE];
 
@@ -297,6 +323,7 @@ pub fn definition(quantity: &str) -> Option<&'static SignalDefinition> {
     SIGNALS
         .iter()
         .chain(&BENCH_SIGNALS)
+        .chain(&CUTTING_SIGNALS)
         .find(|signal| signal.quantity == quantity)
 }
 

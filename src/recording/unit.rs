@@ -33,13 +33,19 @@ pub enum Unit {
     Radian,
     /// Angular velocity [rad/s].
     RadianPerSecond,
+    /// Volume per time [m3/s].
+    CubicMetrePerSecond,
+    /// Power [W].
+    Watt,
+    /// Work [J].
+    Joule,
     /// A pure number, as of a valve's state.
     One,
 }
 
 impl Unit {
     /// Every unit.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 17] = [
         Self::Second,
         Self::Metre,
         Self::MetrePerSecond,
@@ -53,6 +59,9 @@ impl Unit {
         Self::Volt,
         Self::Radian,
         Self::RadianPerSecond,
+        Self::CubicMetrePerSecond,
+        Self::Watt,
+        Self::Joule,
         Self::One,
     ];
 
@@ -73,6 +82,9 @@ impl Unit {
             Self::Volt => "v",
             Self::Radian => "rad",
             Self::RadianPerSecond => "rad_per_s",
+            Self::CubicMetrePerSecond => "m3_per_s",
+            Self::Watt => "w",
+            Self::Joule => "j",
             Self::One => "1",
         }
     }
@@ -94,6 +106,9 @@ impl Unit {
             Self::Volt => "V",
             Self::Radian => "rad",
             Self::RadianPerSecond => "rad/s",
+            Self::CubicMetrePerSecond => "m3/s",
+            Self::Watt => "W",
+            Self::Joule => "J",
             Self::One => "1",
         }
     }

@@ -8,6 +8,10 @@ use glamx::DPose3;
 use super::controller::ControllerScenario;
 use crate::device::DeviceParameters;
 use crate::effects::PresentEffect;
+use crate::physics::cutting_force::CuttingForce;
+use crate::physics::removal_law::RemovalLaw;
+use crate::physics::spindle::Spindle;
+use crate::removal::TurningTool;
 use crate::sensing::SensingParameters;
 
 /// A whole cell and its job.
@@ -27,6 +31,12 @@ pub struct Scenario {
     pub contact: ContactScenario,
     /// Process of the cell.
     pub process: ProcessScenario,
+    /// Passes along the edge, at least one.
+    pub passes: Vec<PassScenario>,
+    /// Tool on a spindle, if it turns.
+    pub tool: Option<ToolScenario>,
+    /// What it takes off.
+    pub removal: Option<RemovalScenario>,
     /// What must not meet.
     pub collision: CollisionScenario,
     /// Settings of its simulation.
@@ -141,6 +151,10 @@ pub struct WorkpieceScenario {
     pub misplacement: Misplacement,
     /// Burr on the edge.
     pub burr: BurrScenario,
+    /// Thickness of its root [m].
+    pub burr_root: f64,
+    /// What the edge should be like.
+    pub chamfer: ChamferScenario,
 }
 
 /// The edge to follow.
@@ -239,6 +253,8 @@ pub struct ProcessScenario {
     pub feed: f64,
     /// Feed past corners [m/s].
     pub corner_feed: f64,
+    /// Whether the feed is lowered by what is measured.
+    pub feed_follows: Option<FeedFollows>,
     /// Acceleration along the path [m/s2].
     pub acceleration: f64,
     /// Jerk along the path [m/s3].
@@ -259,6 +275,70 @@ pub struct ProcessScenario {
     pub engage_speed: f64,
     /// Time at rest on the edge before following starts [s].
     pub settle_time: f64,
+}
+
+/// A pass along the edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PassScenario {
+    /// Desired contact force along the contact normal [N].
+    pub force: f64,
+    /// Feed along the edge [m/s].
+    pub feed: f64,
+}
+
+/// Feed lowered by what is measured: to the share limit over measured value, within bounds, first order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FeedFollows {
+    /// What is measured.
+    pub by: FeedMeasure,
+    /// Its value above which the feed is lowered [N or W].
+    pub limit: f64,
+    /// Least share of the feed [1].
+    pub least_share: f64,
+    /// Time constant [s].
+    pub time_constant: f64,
+}
+
+/// Value that a feed follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FeedMeasure {
+    /// Tangential force on the tool.
+    Force,
+    /// Power at the tool.
+    Power,
+}
+
+/// A tool that turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToolScenario {
+    /// The tool on its spindle.
+    pub tool: TurningTool,
+    /// Speed under torque.
+    pub spindle: Spindle,
+    /// Whether it turns only while the edge is followed.
+    pub while_following: bool,
+}
+
+/// What a turning tool takes off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RemovalScenario {
+    /// Rate.
+    pub law: RemovalLaw,
+    /// Contact area that the law is taken at [m2].
+    pub contact_area: f64,
+    /// Length of edge on which the tool touches at a time [m].
+    pub contact_length: f64,
+    /// Tangential force.
+    pub cutting: CuttingForce,
+}
+
+/// What the edge should be like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChamferScenario {
+    /// Least and largest leg [m].
+    pub leg: [f64; 2],
+    /// Largest burr that may be left [m].
+    pub residual_burr: f64,
 }
 
 /// Bodies that must not meet.

@@ -61,6 +61,10 @@ pub(super) struct ScenarioFile {
     pub contact: ContactKeys,
     pub process: ProcessKeys,
     #[serde(default)]
+    pub pass: Vec<PassKeys>,
+    pub tool: Option<ToolKeys>,
+    pub removal: Option<RemovalKeys>,
+    #[serde(default)]
     pub collision: CollisionKeys,
     #[serde(default)]
     pub obstacle: Vec<ObstacleKeys>,
@@ -159,6 +163,8 @@ pub(super) struct WorkpieceKeys {
     #[serde(default)]
     pub misplacement: MisplacementKeys,
     pub burr: Option<BurrKeys>,
+    #[serde(default)]
+    pub chamfer: ChamferKeys,
 }
 
 /// Unit of a mesh file, which itself states none.
@@ -210,6 +216,7 @@ pub(super) struct MisplacementKeys {
 #[serde(deny_unknown_fields)]
 pub(super) struct BurrKeys {
     pub kind: BurrKind,
+    pub root_mm: Option<f64>,
     pub height_mm: Option<f64>,
     pub mean_height_mm: Option<f64>,
     pub standard_deviation_mm: Option<f64>,
@@ -259,12 +266,123 @@ pub(super) struct ProcessKeys {
     pub jerk_mm_per_s3: Option<f64>,
     pub working_stroke_mm: Option<f64>,
     pub lean_deg: Option<f64>,
+    pub feed_follows: Option<FeedFollowsKeys>,
     pub tool_axis: Option<ToolAxisKeys>,
     pub roll_deg: Option<f64>,
     pub approach_distance_mm: Option<f64>,
     pub approach_speed_mm_per_s: Option<f64>,
     pub engage_speed_mm_per_s: Option<f64>,
     pub settle_time_s: Option<f64>,
+}
+
+/// `[[pass]]`: one along the edge; what is not given is as in `[process]`.
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PassKeys {
+    pub force_n: Option<f64>,
+    pub feed_mm_per_s: Option<f64>,
+}
+
+/// `[tool]`: a tool on a spindle.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ToolKeys {
+    pub shape: ToolShapeWord,
+    pub spindle_speed_rpm: f64,
+    pub spindle_sense: Option<SpindleSense>,
+    pub spindle_start: Option<SpindleStart>,
+    pub spindle_lead_deg: Option<f64>,
+    pub spindle_lean_deg: Option<f64>,
+    pub stall_torque_n_mm: Option<f64>,
+    pub wheel_radius_mm: Option<f64>,
+    pub cone_angle_deg: Option<f64>,
+    pub cone_length_mm: Option<f64>,
+    pub cone_contact_mm: Option<f64>,
+    pub cone_tip_radius_mm: Option<f64>,
+}
+
+/// Shape of the part of a tool that touches.
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum ToolShapeWord {
+    /// The device's ball.
+    Ball,
+    /// A cone with its flank on the edge.
+    Cone,
+    /// A belt over a wheel.
+    Belt,
+}
+
+/// Sense of a spindle, seen along its axis towards the tool.
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum SpindleSense {
+    /// Right-handed about the axis.
+    Clockwise,
+    /// Left-handed.
+    Counterclockwise,
+}
+
+/// When the spindle is switched on.
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum SpindleStart {
+    /// Before the tool touches.
+    Approach,
+    /// As following starts.
+    Follow,
+}
+
+/// `[removal]`: `law` says which of the other keys there are.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RemovalKeys {
+    pub law: RemovalWord,
+    pub coefficient_mm3_per_j: Option<f64>,
+    pub threshold_force_n: Option<f64>,
+    pub rate_mm3_per_s: Option<f64>,
+    pub reference_force_n: Option<f64>,
+    pub reference_speed_m_per_s: Option<f64>,
+    pub force_exponent: Option<f64>,
+    pub speed_exponent: Option<f64>,
+    pub reference_area_mm2: Option<f64>,
+    pub area_exponent: Option<f64>,
+    pub contact_area_mm2: Option<f64>,
+    pub wear_work_kj: Option<f64>,
+    pub contact_length_mm: Option<f64>,
+    pub specific_energy_j_per_mm3: Option<f64>,
+    pub friction_coefficient: Option<f64>,
+}
+
+/// Law of removal.
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum RemovalWord {
+    /// In proportion to force and speed.
+    Preston,
+    /// The same above a threshold force.
+    Threshold,
+    /// Powers of force, speed and contact area.
+    Power,
+}
+
+/// `[workpiece.chamfer]`: what the edge should be like.
+#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ChamferKeys {
+    pub leg_min_mm: Option<f64>,
+    pub leg_max_mm: Option<f64>,
+    pub residual_burr_max_mm: Option<f64>,
+}
+
+/// `process.feed_follows`: the feed is lowered where this is above its limit.
+#[derive(Debug, Clone, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FeedFollowsKeys {
+    pub force_n: Option<f64>,
+    pub power_w: Option<f64>,
+    pub least_share: Option<f64>,
+    pub time_constant_s: Option<f64>,
 }
 
 /// `process.tool_axis`.

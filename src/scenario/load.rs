@@ -16,10 +16,12 @@ use super::file::{self, ScenarioFile};
 use super::rig_device::is_rig;
 use super::sections::scenario_sections;
 use super::sensing::sensing;
+use super::tool;
 use super::workpiece::workpiece;
 use super::{
-    ArmScenario, ContactScenario, DeviceScenario, DriveScenario, Expectation, LimitOverride,
-    ProcessScenario, Scenario, ServoScenario, SimulationScenario,
+    ArmScenario, ContactScenario, DeviceScenario, DriveScenario, Expectation, FeedFollows,
+    FeedMeasure, LimitOverride, PassScenario, ProcessScenario, RemovalScenario, Scenario,
+    ServoScenario, SimulationScenario,
 };
 use crate::effects::{Effect, PresentEffect, every};
 use crate::plant::{CellParameters, PlantParameters, registry};
@@ -52,7 +54,12 @@ pub(super) fn from_document(
         title: section("").text("title", &file.title)?,
         arm: arm(&section("arm"), &file.arm)?,
         workpiece: workpiece(&section("workpiece"), &file.workpiece)?,
+        passes: passes(document, &file)?,
         process: process(&section("process"), &file.process, &device)?,
+        tool: (file.tool.as_ref())
+            .map(|keys| tool::tool(&section("tool"), keys, device.tool_radius))
+            .transpose()?,
+        removal: removal(document, &file)?,
         sensing,
         controller,
         collision: collision(document, &file.collision, &file.obstacle)?,
@@ -255,6 +262,7 @@ fn process(
         jerk: section.number("jerk_mm_per_s3", keys.jerk_mm_per_s3.unwrap_or(5000.0), 10.0..=1_000_000.0)?,
         working_stroke: working_stroke(section, keys, device.parameters.full_stroke)?,
         lean: section.number("lean_deg", keys.lean_deg.unwrap_or(0.0), -60.0..=60.0)?,
+        feed_follows: feed_follows(section, keys)?,
         tool_axis: tool_axis(section, keys)?,
         roll: keys.roll_deg.map(|roll| section.number("roll_deg", roll, -360.0..=360.0)).transpose()?,
         approach_distance: section.number("approach_distance_mm", keys.approach_distance_mm.unwrap_or(50.0), 1.0..=1000.0)?,
@@ -267,6 +275,82 @@ fn process(
         return Err(section.refuse_number("corner_feed_mm_per_s", corner_feed, expected));
     }
     Ok(process)
+}
+
+/// The passes in their order; one as the process says where none is listed.
+fn passes(
+    document: &Document<'_>,
+    file: &ScenarioFile,
+) -> Result<Vec<PassScenario>, ScenarioError> {
+    let process = &file.process;
+    let pass = |(index, keys): (usize, &file::PassKeys)| {
+        let section = Section::new(document, format!("pass[{index}]"));
+        let (force, feed) = (keys.force_n, keys.feed_mm_per_s);
+        Ok(PassScenario {
+            force: section.number("force_n", force.unwrap_or(process.force_n), 0.1..=5000.0)?,
+            feed: section.number(
+                "feed_mm_per_s",
+                feed.unwrap_or(process.feed_mm_per_s),
+                0.1..=1000.0,
+            )?,
+        })
+    };
+    if file.pass.is_empty() {
+        return Ok(vec![PassScenario {
+            force: process.force_n,
+            feed: process.feed_mm_per_s * 1e-3,
+        }]);
+    }
+    file.pass.iter().enumerate().map(pass).collect()
+}
+
+/// What is taken off needs a tool that turns.
+fn removal(
+    document: &Document<'_>,
+    file: &ScenarioFile,
+) -> Result<Option<RemovalScenario>, ScenarioError> {
+    let Some(keys) = &file.removal else {
+        return Ok(None);
+    };
+    let section = Section::new(document, "removal");
+    if file.tool.is_none() {
+        let reason = "there is no [tool], and a tool that does not turn takes nothing off";
+        return Err(section.misplaced_itself(reason.to_owned()));
+    }
+    tool::removal(&section, keys).map(Some)
+}
+
+/// Feed that is lowered by what is measured.
+fn feed_follows(
+    section: &Section<'_>,
+    keys: &file::ProcessKeys,
+) -> Result<Option<FeedFollows>, ScenarioError> {
+    let Some(keys) = &keys.feed_follows else {
+        return Ok(None);
+    };
+    let section = Section::new(section.document(), "process.feed_follows");
+    let (by, limit) = match (keys.force_n, keys.power_w) {
+        (Some(force), None) => (
+            FeedMeasure::Force,
+            section.number("force_n", force, 0.01..=5000.0)?,
+        ),
+        (None, Some(power)) => (
+            FeedMeasure::Power,
+            section.number("power_w", power, 0.01..=100_000.0)?,
+        ),
+        (None, None) => return Err(section.missing("force_n", "it or power_w to be given")),
+        (Some(_), Some(_)) => {
+            let reason = "`process.feed_follows.force_n` is given too, expected one of the two";
+            return Err(section.misplaced("power_w", reason.to_owned()));
+        }
+    };
+    let (share, time) = (keys.least_share, keys.time_constant_s);
+    Ok(Some(FeedFollows {
+        by,
+        limit,
+        least_share: section.number("least_share", share.unwrap_or(0.2), 0.01..=1.0)?,
+        time_constant: section.number("time_constant_s", time.unwrap_or(0.1), 0.001..=10.0)?,
+    }))
 }
 
 /// The direction that is given in place of a lean.

@@ -25,6 +25,7 @@ mod sensing;
 pub(crate) mod suggestion;
 #[cfg(test)]
 mod tests;
+mod tool;
 pub(crate) mod units;
 mod variation;
 mod workpiece;
@@ -32,9 +33,10 @@ mod workpiece;
 pub use any::{AnyScenario, keys_given, load, load_any, load_bench, place_of};
 pub use bench::BenchScenario;
 pub use cell::{
-    ArmScenario, BurrScenario, CollisionScenario, ContactScenario, DeviceScenario, DriveScenario,
-    EdgeChoice, EdgeSelection, Expectation, LimitOverride, Misplacement, Obstacle, ObstacleShape,
-    ProcessScenario, Scenario, ServoScenario, SimulationScenario, WorkpieceScenario,
+    ArmScenario, BurrScenario, ChamferScenario, CollisionScenario, ContactScenario, DeviceScenario,
+    DriveScenario, EdgeChoice, EdgeSelection, Expectation, FeedFollows, FeedMeasure, LimitOverride,
+    Misplacement, Obstacle, ObstacleShape, PassScenario, ProcessScenario, RemovalScenario,
+    Scenario, ServoScenario, SimulationScenario, ToolScenario, WorkpieceScenario,
 };
 pub use cell_files::files_of_cell;
 pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};

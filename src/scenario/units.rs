@@ -24,7 +24,13 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 43] = [
+const UNITS: [Unit; 50] = [
+    unit("_mm3_per_s", "mm3/s", Divide(1e9)),
+    unit("_mm3_per_j", "mm3/J", Divide(1e9)),
+    unit("_j_per_mm3", "J/mm3", Multiply(1e9)),
+    unit("_n_mm", "N mm", Divide(1e3)),
+    unit("_rpm", "1/min", Multiply(PI / 30.0)),
+    unit("_kj", "kJ", Multiply(1e3)),
     unit("_mv_per_v", "mV/V", Divide(1e3)),
     unit("_pa_s_per_kg", "Pa s/kg", Divide(1.0)),
     unit("_n_m_per_rad", "N m/rad", Divide(1.0)),
@@ -67,6 +73,7 @@ const UNITS: [Unit; 43] = [
     unit("_s", "s", Divide(1.0)),
     unit("_k", "K", Divide(1.0)),
     unit("_v", "V", Divide(1.0)),
+    unit("_w", "W", Divide(1.0)),
     // A pure number: every key ends with nothing.
     unit("", "", Divide(1.0)),
 ];

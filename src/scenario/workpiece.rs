@@ -4,7 +4,14 @@ use super::check::Section;
 use super::error::ScenarioError;
 use super::file::{self, BurrKind};
 use super::sensing::stages::only;
-use super::{BurrScenario, EdgeChoice, EdgeSelection, Misplacement, WorkpieceScenario};
+use super::{
+    BurrScenario, ChamferScenario, EdgeChoice, EdgeSelection, Misplacement, WorkpieceScenario,
+};
+
+/// Thickness of a burr's root where the file says nothing [mm]; judged: 0.05 to 0.3 is usual.
+const BURR_ROOT: f64 = 0.15;
+/// Height up to which a burr counts as gone where the file says nothing [mm]: it is not felt by a finger any more.
+const RESIDUAL_BURR: f64 = 0.02;
 
 /// `[workpiece]` and the tables in it.
 pub(super) fn workpiece(
@@ -25,6 +32,11 @@ pub(super) fn workpiece(
             None => BurrScenario::None,
             Some(keys) => burr(&table("burr"), keys)?,
         },
+        burr_root: {
+            let root = keys.burr.as_ref().and_then(|burr| burr.root_mm);
+            table("burr").number("root_mm", root.unwrap_or(BURR_ROOT), 0.001..=5.0)?
+        },
+        chamfer: chamfer(&table("chamfer"), &keys.chamfer)?,
     })
 }
 
@@ -60,6 +72,28 @@ fn edge(section: &Section<'_>, keys: &file::EdgeKeys) -> Result<EdgeChoice, Scen
     })
 }
 
+/// Leg and burr within which an edge is good; without bounds anything is.
+fn chamfer(
+    section: &Section<'_>,
+    keys: &file::ChamferKeys,
+) -> Result<ChamferScenario, ScenarioError> {
+    let least = keys.leg_min_mm.unwrap_or(0.0);
+    let most = keys.leg_max_mm.unwrap_or(f64::INFINITY);
+    let burr = keys.residual_burr_max_mm.unwrap_or(RESIDUAL_BURR);
+    let leg = [
+        section.number("leg_min_mm", least, 0.0..=20.0)?,
+        section.number("leg_max_mm", most, 0.0..=f64::INFINITY)?,
+    ];
+    if least >= most {
+        let expected = format!("more than leg_min_mm, {least} mm");
+        return Err(section.refuse_number("leg_max_mm", most, expected));
+    }
+    Ok(ChamferScenario {
+        leg,
+        residual_burr: section.number("residual_burr_max_mm", burr, 0.0..=5.0)?,
+    })
+}
+
 fn misplacement(
     section: &Section<'_>,
     keys: &file::MisplacementKeys,
@@ -74,18 +108,19 @@ fn misplacement(
 fn keys_of(kind: BurrKind) -> (&'static str, &'static [&'static str]) {
     match kind {
         BurrKind::None => ("none", &[]),
-        BurrKind::Constant => ("constant", &["height_mm"]),
+        BurrKind::Constant => ("constant", &["height_mm", "root_mm"]),
         BurrKind::Random => (
             "random",
             &[
                 "mean_height_mm",
                 "standard_deviation_mm",
                 "correlation_length_mm",
+                "root_mm",
                 "seed",
             ],
         ),
-        BurrKind::Bump => ("bump", &["position_mm", "height_mm", "width_mm"]),
-        BurrKind::Table => ("table", &["path"]),
+        BurrKind::Bump => ("bump", &["position_mm", "height_mm", "width_mm", "root_mm"]),
+        BurrKind::Table => ("table", &["path", "root_mm"]),
     }
 }
 

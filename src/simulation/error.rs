@@ -33,6 +33,18 @@ pub enum SimulationError {
         /// Contact force [N].
         force: f64,
     },
+    /// The spindle could not turn the tool.
+    #[error("the spindle stalled at {time:.3} s, {:.1} mm along the edge: cutting takes {:.1} N mm, it gives at most {:.1} N mm; less force_n, a contact nearer to the spindle's axis or a stronger spindle would turn", 1e3 * edge_length, 1e3 * torque, 1e3 * stall_torque)]
+    Stalled {
+        /// When [s].
+        time: f64,
+        /// Where [m].
+        edge_length: f64,
+        /// Torque [N m].
+        torque: f64,
+        /// That at which it stalls [N m].
+        stall_torque: f64,
+    },
     /// Two bodies met.
     #[error("collision: {} met {} at {time:.3} s in phase {phase}, {:.1} mm along the edge, {:.2} mm deep", names[0], names[1], 1e3 * edge_length, 1e3 * depth)]
     Collision {

@@ -2,7 +2,8 @@
 
 use super::{FrameLog, Simulation, SimulationError};
 use crate::cell::Cell;
-use crate::recording::{Recording, RecordingError};
+use crate::recording::{EdgeProfile, Recording, RecordingError};
+use crate::removal::{EdgeState, EdgeStationState};
 
 /// A run that has ended.
 pub struct CellRun {
@@ -10,6 +11,8 @@ pub struct CellRun {
     pub recording: Recording,
     /// Poses for the picture.
     pub frames: FrameLog,
+    /// The edge as a turning tool left it.
+    pub edge: Option<EdgeProfile>,
     /// Reason why it ended early, if it did.
     pub stop: Option<SimulationError>,
 }
@@ -29,11 +32,25 @@ impl Cell {
             stop = simulation.step().err();
             observer(&simulation);
         }
-        let (samples, frames) = simulation.into_logs();
+        let (samples, frames, edge) = simulation.into_logs();
         Ok(CellRun {
+            edge: edge.as_ref().map(profile),
             recording: samples.into_recording()?,
             frames,
             stop,
         })
+    }
+}
+
+/// The edge as a recording holds it.
+fn profile(edge: &EdgeState) -> EdgeProfile {
+    let stations = edge.stations();
+    let of = |value: fn(&EdgeStationState) -> f64| stations.iter().map(value).collect();
+    EdgeProfile {
+        place: (0..stations.len()).map(|i| edge.place(i)).collect(),
+        burr_before: of(|station| station.burr_before),
+        burr_after: of(EdgeStationState::burr),
+        chamfer_leg: of(EdgeStationState::leg),
+        section_removed: of(|station| station.removed),
     }
 }

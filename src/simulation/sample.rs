@@ -1,5 +1,7 @@
 //! Record at each step, and its conversion to a recording.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 use glamx::DPose3;
 
@@ -11,42 +13,58 @@ use crate::recording::{PhaseSpan, RecordedChannel, Recording, RecordingError};
 #[derive(Debug, Clone)]
 pub struct SampleLog {
     joints: usize,
+    /// Whether the tool turns.
+    cutting: bool,
     time: Vec<f64>,
     rows: Vec<f64>,
     phases: Vec<PhaseSpan>,
 }
 
 impl SampleLog {
-    /// An empty log for an arm of `joints` axes, with room for `capacity` samples.
-    pub fn new(joints: usize, capacity: usize) -> Self {
+    /// An empty log for an arm of `joints` axes, with room for `capacity` samples; of a tool that turns, or does not.
+    pub fn new(joints: usize, cutting: bool, capacity: usize) -> Self {
         Self {
             joints,
+            cutting,
             time: Vec::with_capacity(capacity),
-            rows: Vec::with_capacity(capacity * Self::width(joints)),
+            rows: Vec::with_capacity(capacity * Self::width(joints, cutting)),
             phases: Vec::new(),
         }
     }
 
-    fn width(joints: usize) -> usize {
-        schema::SIGNALS.len() + schema::CELL_SENSORS.len() + JointSignal::ALL.len() * joints
+    fn width(joints: usize, cutting: bool) -> usize {
+        let of_tool = if cutting {
+            schema::CUTTING_SIGNALS.len()
+        } else {
+            0
+        };
+        schema::SIGNALS.len()
+            + schema::CELL_SENSORS.len()
+            + of_tool
+            + JointSignal::ALL.len() * joints
     }
 
-    /// Adds a sample: `signals` in the order of `schema::SIGNALS` and `schema::CELL_SENSORS`, then those of each joint in the order of `JointSignal::ALL`.
+    /// Adds a sample: `signals` in the order of `schema::SIGNALS` and `schema::CELL_SENSORS`, of a turning tool those of `schema::CUTTING_SIGNALS`, then those of
+    /// each joint in the order of `JointSignal::ALL`. Phases of passes after the first carry their number: `follow_2`.
     pub fn push(
         &mut self,
         time: f64,
-        phase: Phase,
+        (phase, pass): (Phase, usize),
         signals: &[f64],
         joints: &[[f64; JointSignal::ALL.len()]],
     ) {
+        let name = match pass {
+            0 => Cow::Borrowed(phase.name()),
+            later => Cow::Owned(format!("{}_{}", phase.name(), later + 1)),
+        };
         match self.phases.last_mut() {
-            Some(span) if span.name == phase.name() => span.end = time,
+            Some(span) if span.name == *name => span.end = time,
             last => {
                 if let Some(span) = last {
                     span.end = time;
                 }
                 self.phases.push(PhaseSpan {
-                    name: phase.name().to_owned(),
+                    name: name.into_owned(),
                     start: time,
                     end: time,
                 });
@@ -54,6 +72,10 @@ impl SampleLog {
         }
         self.time.push(time);
         self.rows.extend_from_slice(signals);
+        debug_assert_eq!(
+            signals.len() + joints.as_flattened().len(),
+            Self::width(self.joints, self.cutting)
+        );
         self.rows.extend_from_slice(joints.as_flattened());
     }
 
@@ -84,8 +106,9 @@ impl SampleLog {
         });
         Self {
             joints: self.joints,
+            cutting: self.cutting,
             phases: phases.collect(),
-            rows: self.rows[first * Self::width(self.joints)..].to_vec(),
+            rows: self.rows[first * Self::width(self.joints, self.cutting)..].to_vec(),
             time,
         }
     }
@@ -98,11 +121,12 @@ impl SampleLog {
                     .iter()
                     .filter_map(|sensor| schema::definition(sensor)),
             )
+            .chain(schema::CUTTING_SIGNALS.iter().filter(|_| self.cutting))
             .map(|signal| (signal.quantity.to_owned(), signal.unit));
         let joints = (1..=self.joints).flat_map(|joint| {
             JointSignal::ALL.map(|signal| (joint_quantity(joint, signal), signal.unit()))
         });
-        let width = Self::width(self.joints);
+        let width = Self::width(self.joints, self.cutting);
         let column = |index: usize| {
             self.rows
                 .iter()
@@ -155,8 +179,8 @@ mod tests {
 
     #[test]
     fn what_has_come_since_is_the_rest_of_the_whole() {
-        let mut log = SampleLog::new(0, 8);
-        let width = SampleLog::width(0);
+        let mut log = SampleLog::new(0, true, 8);
+        let width = SampleLog::width(0, true);
         for index in 0..8_u32 {
             let phase = if index < 5 {
                 Phase::Approach
@@ -164,7 +188,7 @@ mod tests {
                 Phase::Follow
             };
             let row = vec![f64::from(index); width];
-            log.push(f64::from(index), phase, &row, &[]);
+            log.push(f64::from(index), (phase, 0), &row, &[]);
         }
         let rest = log.since(3).into_recording().unwrap();
         assert_eq!(rest.time(), [3.0, 4.0, 5.0, 6.0, 7.0]);

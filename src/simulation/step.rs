@@ -8,6 +8,7 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use super::contact::Touch;
+use super::cutting::Cutting;
 use super::error::SimulationError;
 use super::sample::{FrameLog, SampleLog};
 use super::slide::{self, SlideCarrier, SlideStep};
@@ -26,9 +27,12 @@ use crate::device::{DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
 use crate::plant::{ForceTerms, Moment, Port, RunningSensors, SensorReadings, StepContact};
 use crate::recording::schema::JointSignal;
+use crate::removal::EdgeState;
 use crate::sensing::noise::{Noise, Stream};
 use crate::sensing::{Readings, SensorChain, Truth};
 
+/// Signals of a sample of a cell whose tool turns, those of its joints apart.
+const SIGNALS_OF_TURNING: usize = 30;
 /// Time between two frames of the picture [s].
 const FRAME_INTERVAL: f64 = 0.02;
 
@@ -86,6 +90,11 @@ pub struct Simulation<'a> {
     frames: FrameLog,
     next_frame: f64,
     clearance: ClearanceWatch,
+    /// The tool's cutting, if it turns.
+    cutting: Option<Cutting>,
+    /// Time by which the plan is behind the clock, where the feed follows what is measured [s], and its rate [1].
+    behind: f64,
+    pace: f64,
 }
 
 impl<'a> Simulation<'a> {
@@ -95,7 +104,7 @@ impl<'a> Simulation<'a> {
         let mut world = World::new(&WorldDescription::of(cell));
         let reference = cell.plan.reference(0.0);
         let gravity = cell.gravity_along(reference.axis);
-        let desired = scenario.process.force * reference.share;
+        let desired = scenario.passes[0].force * reference.share;
         let set_pressure =
             PressureMap::new(&scenario.device.parameters).set_pressure(desired, gravity);
         let parameters = &scenario.device.parameters;
@@ -164,10 +173,13 @@ impl<'a> Simulation<'a> {
             stopped: false,
             laws: vec![JointLaw::default(); count],
             slide_force: 0.0,
-            log: SampleLog::new(count - 1, total_steps),
+            log: SampleLog::new(count - 1, scenario.tool.is_some(), total_steps),
             frames: FrameLog::default(),
             next_frame: 0.0,
             clearance: clearance(cell, &positions),
+            cutting: Cutting::new(cell),
+            behind: 0.0,
+            pace: 1.0,
         }
     }
 
@@ -183,7 +195,8 @@ impl<'a> Simulation<'a> {
 
     /// Whether the job is done, or was stopped by an error.
     pub fn done(&self) -> bool {
-        self.stopped || self.steps >= self.total_steps
+        let behind = self.behind / self.cell.scenario.simulation.step;
+        self.stopped || self.steps as f64 >= self.total_steps as f64 + behind.ceil()
     }
 
     /// The record so far.
@@ -191,9 +204,10 @@ impl<'a> Simulation<'a> {
         (&self.log, &self.frames)
     }
 
-    /// The record so far, and the end of the run.
-    pub fn into_logs(self) -> (SampleLog, FrameLog) {
-        (self.log, self.frames)
+    /// The record so far, and the end of the run: samples, frames, and the edge as a turning tool left it.
+    pub fn into_logs(self) -> (SampleLog, FrameLog, Option<EdgeState>) {
+        let edge = self.cutting.map(Cutting::into_edge);
+        (self.log, self.frames, edge)
     }
 
     /// One step of the coupled cell.
@@ -219,7 +233,7 @@ impl<'a> Simulation<'a> {
         };
         let dt = self.cell.scenario.simulation.step;
         let start = self.steps as f64 * dt;
-        let reference = self.cell.plan.reference(start + dt);
+        let reference = self.lead(start, dt);
         let middle = self.reference.middle(&reference, dt);
         self.reference = reference;
         let set_pressure = self.set_pressure(&reference);
@@ -229,6 +243,7 @@ impl<'a> Simulation<'a> {
         let told = self.told(&middle, dt);
         self.set_laws(&told, slide.device, dt);
         lap(|t| &mut t.servo);
+        self.cut(dt);
         self.move_bodies(&slide, dt);
         self.steps += 1;
         self.touch(&reference);
@@ -243,6 +258,43 @@ impl<'a> Simulation<'a> {
         self.laws.len() - 1
     }
 
+    /// Contact force that the pass asks for [N].
+    fn desired(&self, reference: &Reference) -> f64 {
+        self.cell.scenario.passes[reference.pass].force
+    }
+
+    /// The reference at the end of a step that starts at a time [s]: later by what a feed that follows force or power has lost.
+    fn lead(&mut self, start: f64, dt: f64) -> Reference {
+        let follows = self.cell.scenario.process.feed_follows;
+        if let (Some(follows), Some(cutting)) = (follows, &self.cutting) {
+            let wanted = match self.reference.phase {
+                Phase::Follow => {
+                    (follows.limit / cutting.measured(follows.by)).clamp(follows.least_share, 1.0)
+                }
+                _ => 1.0,
+            };
+            self.pace += (wanted - self.pace) * (-(-dt / follows.time_constant).exp_m1());
+            self.behind += (1.0 - self.pace) * dt;
+        }
+        let mut reference = self.cell.plan.reference(start + dt - self.behind);
+        if self.pace < 1.0 {
+            reference.feed *= self.pace;
+            for axis in 0..MAX_JOINTS {
+                reference.velocity[axis] *= self.pace;
+                reference.acceleration[axis] *= self.pace * self.pace;
+            }
+        }
+        reference
+    }
+
+    /// The turning tool over the step, pressed as the slide has it.
+    fn cut(&mut self, dt: f64) {
+        if let Some(cutting) = &mut self.cutting {
+            let (force, normal) = cutting.advance(&self.reference, &self.pressed, dt);
+            self.world.push_tool(force, normal);
+        }
+    }
+
     fn set_pressure(&mut self, reference: &Reference) -> f64 {
         let step = self.cell.scenario.simulation.step;
         if !self
@@ -253,7 +305,7 @@ impl<'a> Simulation<'a> {
         }
         let observation = ForceObservation {
             time: self.steps as f64 * step,
-            desired_axial_force: self.cell.scenario.process.force * reference.share,
+            desired_axial_force: self.desired(reference) * reference.share,
             gravity_along_axis: self.cell.gravity_along(reference.axis),
             measured_axial_force: self.readings.force,
             stroke: self.readings.stroke,
@@ -468,7 +520,10 @@ impl<'a> Simulation<'a> {
         // The ball is where the arm has really taken it: ahead of the reference's foot point by its error along the edge.
         let along = (self.world.tool_centre() - reference.centre).dot(reference.tangent);
         let place = reference.edge_length + along;
-        let relief = self.cell.relief(place);
+        let relief = match &mut self.cutting {
+            None => self.cell.relief(place),
+            Some(cutting) => self.cell.relief_ridden(place, Some(cutting.ride(place))),
+        };
         self.world.touches(&relief, &mut self.touches);
     }
 
@@ -538,7 +593,8 @@ impl<'a> Simulation<'a> {
         let further = carrier.terms.force(time, motion);
         let added_outlet = self.added_outlet(&carrier);
         let (normal_force, normal, load) = self.pressing(&carrier, motion);
-        let friction = self.world.contact().friction;
+        let cut = self.cutting.as_ref().map(|cutting| cutting.reading().force);
+        let friction = self.world.contact().friction + cut.unwrap_or_default();
         let force_on_part = -(normal + friction);
         let normal = normal.normalize_or_zero();
         let gas = &cell.scenario.device.parameters.gas;
@@ -559,7 +615,7 @@ impl<'a> Simulation<'a> {
         let signals = [
             reference.edge_length,
             normal_force,
-            cell.scenario.process.force,
+            self.desired(reference),
             force_on_part.x,
             force_on_part.y,
             force_on_part.z,
@@ -585,7 +641,16 @@ impl<'a> Simulation<'a> {
         ];
         let joints = self.joint_signals(reference);
         self.check_finite(&signals, &joints[..n], reference.phase, time)?;
-        self.log.push(time, reference.phase, &signals, &joints[..n]);
+        let place = (reference.phase, reference.pass);
+        match &self.cutting {
+            None => self.log.push(time, place, &signals, &joints[..n]),
+            Some(cutting) => {
+                let mut all = [0.0; SIGNALS_OF_TURNING];
+                all[..signals.len()].copy_from_slice(&signals);
+                all[signals.len()..].copy_from_slice(&cutting.signals());
+                self.log.push(time, place, &all, &joints[..n]);
+            }
+        }
         if time >= self.next_frame {
             self.frame(time, reference, force_on_part, normal);
             self.next_frame += FRAME_INTERVAL;
@@ -601,6 +666,7 @@ impl<'a> Simulation<'a> {
                 force: normal_force,
             });
         }
+        self.check_spindle(reference, time)?;
         self.check_axes(&joints[..n], reference.phase, time)?;
         self.check_stroke(reference, stroke, time)
     }

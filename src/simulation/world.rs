@@ -67,7 +67,11 @@ impl<'a> WorldDescription<'a> {
                 centre_in_link: DVec3::new(0.0, 0.0, scenario.device.tool_centre),
             },
             part: &cell.part.mesh_in_world,
-            friction: scenario.contact.friction,
+            // A tool that turns rubs against its own surface's motion (`cutting`), not against its travel.
+            friction: match scenario.tool {
+                Some(_) => 0.0,
+                None => scenario.contact.friction,
+            },
         }
     }
 }
@@ -303,6 +307,15 @@ impl World {
         let velocity = self.moved(&self.velocities[..self.joints.len() - 1]);
         self.part_contact
             .find(relief, centre, velocity, axis, touches);
+    }
+
+    /// Has a force [N] act on the tool over the coming step, where it touches along a normal.
+    pub fn push_tool(&mut self, force: DVec3, normal: DVec3) {
+        let point = self.tool_centre() - normal * self.tool.radius;
+        let body = &mut self.physics.bodies[self.tool_body];
+        body.reset_forces(true);
+        body.reset_torques(true);
+        body.add_force_at_point(force, point, true);
     }
 
     /// Advances by one step, the tool pressed on the part with forces [N] along normals. The slide ends where its own law took it, `slide`, moved on by what

@@ -67,6 +67,7 @@ impl From<SimulationError> for Failure {
                 return Self::new(format!("{quantity} not finite"), &error);
             }
             SimulationError::Collision { .. } => "bodies collided",
+            SimulationError::Stalled { .. } => "the spindle stalled",
             SimulationError::AxisLost { .. } => "an axis lost its path",
         };
         Self::new(reason, &error)

@@ -4,12 +4,13 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
+use super::finished_edge::finished_edge;
 use super::provenance::provenance_of;
 use super::signals::{along_the_path, joints, signals};
 use crate::metrics::{BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, WIDE_BAND};
 use crate::page::{Block, Drawing, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
-use crate::recording::Recording;
+use crate::recording::{EdgeProfile, Recording};
 use crate::report::{LEVELS, LevelColumn, far_from_desired, shown};
 
 /// A run as its folder has it.
@@ -24,6 +25,8 @@ pub(in super::super) struct RunResult<'a> {
     pub edge: Option<Cow<'a, str>>,
     /// drawing.json.
     pub space: Option<Cow<'a, Drawing>>,
+    /// edge_profile.csv.
+    pub profile: Option<Cow<'a, EdgeProfile>>,
 }
 
 /// A metric for people.
@@ -90,6 +93,7 @@ pub(super) fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
     let far = far(run).filter(said).map(|far| format!("{far}."));
     let sections = [
         pictures(run),
+        finished_edge(run),
         signals(run),
         along_the_path(run),
         joints(run),

@@ -7,10 +7,13 @@ use super::super::picture::{motion_of, scene_of};
 use super::super::viewer::{PART_INTERVAL, Watch};
 use super::source::Source;
 use crate::cell::Cell;
-use crate::metrics::{BoundCheck, Summary, SummaryLimits, Timing, summarise};
+use crate::metrics::{
+    BoundCheck, EdgeLimits, Summary, SummaryLimits, Timing, summarise, summarise_edge,
+};
 use crate::recording::provenance::Provenance;
 use crate::recording::scene::Scene;
-use crate::recording::{Recording, RecordingError};
+use crate::recording::{EdgeProfile, Recording, RecordingError};
+use crate::scenario::ChamferScenario;
 use crate::simulation::{CellRun, FrameLog, SampleLog, SimulationError};
 
 /// Steps between two looks at the progress bar.
@@ -26,6 +29,8 @@ pub struct Finished {
     pub summary: Summary,
     /// Reason for an early stop.
     pub stop: Option<SimulationError>,
+    /// The edge as a turning tool left it.
+    pub edge: Option<EdgeProfile>,
 }
 
 /// Simulates the whole job. `progress` is told steps done and in all.
@@ -64,18 +69,46 @@ pub(super) fn run_heard(
         recording,
         frames,
         stop,
+        edge,
     } = run;
     let mut summary = summarise(&recording, &limits(cell)).map_err(|source| AppError::Metrics {
         file: cell.scenario.path.display().to_string(),
         source,
     })?;
+    if let Some(edge) = &edge {
+        summarise_edge(&mut summary, edge, &edge_limits(cell));
+    }
     summary.timing = Some(Timing::new(summary.duration_s, wall));
     Ok(Finished {
         recording,
         frames,
         summary,
         stop,
+        edge,
     })
+}
+
+/// Tolerance of the edge; a leg without upper bound has none.
+fn chamfer(cell: &Cell) -> serde_json::Value {
+    let ChamferScenario {
+        leg: [least, most],
+        residual_burr,
+    } = cell.scenario.workpiece.chamfer;
+    serde_json::json!({
+        "leg_min_mm": 1e3 * least,
+        "leg_max_mm": most.is_finite().then_some(1e3 * most),
+        "residual_burr_max_mm": 1e3 * residual_burr,
+    })
+}
+
+/// What its edge is measured against.
+fn edge_limits(cell: &Cell) -> EdgeLimits {
+    let ChamferScenario { leg, residual_burr } = cell.scenario.workpiece.chamfer;
+    EdgeLimits {
+        leg,
+        residual_burr,
+        ends: (cell.scenario.removal).map_or(0.0, |removal| removal.contact_length),
+    }
 }
 
 /// Samples and frames of a run that have come since the last part.
@@ -166,6 +199,9 @@ pub(super) struct SummaryDocument<'a> {
     /// Keys that have other values than in the scenario's file.
     #[serde(skip_serializing_if = "Option::is_none")]
     set: Option<serde_json::Value>,
+    /// What the edge should be like, where a tool turns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chamfer: Option<serde_json::Value>,
     /// Reason for an early stop of the run; null if it ran to its end.
     stopped: Option<String>,
     summary: &'a Summary,
@@ -190,6 +226,7 @@ impl<'a> SummaryDocument<'a> {
             scenario: &source.name,
             title: &cell.scenario.title,
             set: source.set(),
+            chamfer: finished.edge.as_ref().map(|_| chamfer(cell)),
             stopped: finished.stop.as_ref().map(ToString::to_string),
             summary: &finished.summary,
             expectations,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{
-    DRAWING, EDGE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches,
+    DRAWING, EDGE, EDGE_PROFILE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches,
 };
 use super::super::growing::GrowingFile;
 use super::super::picture::scene_of;
@@ -15,6 +15,7 @@ use super::cell_run::{Listener, SummaryDocument, run_heard};
 use super::source::Source;
 use crate::cell::Cell;
 use crate::metrics::{self, BoundCheck, MetricsError};
+use crate::recording::EdgeProfile;
 use crate::recording::provenance::Provenance;
 use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::recording::scene::Scene;
@@ -92,7 +93,7 @@ impl Job {
             RECORDING => recorded,
             FIGURES => matches!(self, Self::Bench(_)),
             // Of a run that followed one.
-            EDGE | DRAWING => false,
+            EDGE | DRAWING | EDGE_PROFILE => false,
             _ => true,
         }
     }
@@ -172,7 +173,12 @@ fn perform_cell(
         let (report, encoded) = rayon::join(
             || {
                 let sketches = Sketches::of(&scene, &finished.recording);
-                let page = page_of_run(&document, &finished.recording, &sketches);
+                let page = page_of_run(
+                    &document,
+                    &finished.recording,
+                    finished.edge.as_ref(),
+                    &sketches,
+                );
                 page.map(|page| (page, sketches))
             },
             || growing.map(|growing| growing.end(&finished.recording, &scene, &summary)),
@@ -184,6 +190,7 @@ fn perform_cell(
             picture: encoded
                 .map(|encoded| -> Picture<'_> { Box::new(move |path| encoded.write(path)) }),
             summary: &document,
+            edge_profile: finished.edge.as_ref().map(EdgeProfile::text).as_deref(),
             figures: None,
             varied: source.copy(),
             sketches: &sketches,
@@ -217,7 +224,7 @@ fn perform_bench(
     let document = bench::document(scenario, &finished, &verdicts, source, &origin)?;
     let scene = bench_picture::scene_of(scenario, &finished.recording)?;
     let sketches = Sketches::of(&scene, &finished.recording);
-    let report = page_of_run(&document, &finished.recording, &sketches)?;
+    let report = page_of_run(&document, &finished.recording, None, &sketches)?;
     let options = RerunOptions {
         summary_markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
         opening: manner.opening,
@@ -229,6 +236,7 @@ fn perform_bench(
         recording: &finished.recording,
         picture: manner.recorded.then_some(Box::new(picture)),
         summary: &document,
+        edge_profile: None,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
         varied: source.copy(),
         sketches: &sketches,

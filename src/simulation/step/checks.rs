@@ -10,6 +10,23 @@ use crate::simulation::error::SimulationError;
 const LOST: f64 = 0.05;
 
 impl Simulation<'_> {
+    /// The spindle must turn its tool.
+    pub(super) fn check_spindle(
+        &self,
+        reference: &Reference,
+        time: f64,
+    ) -> Result<(), SimulationError> {
+        match &self.cutting {
+            Some(cutting) if cutting.stalled() => Err(SimulationError::Stalled {
+                time,
+                edge_length: reference.edge_length,
+                torque: cutting.reading().torque,
+                stall_torque: cutting.stall_torque(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
     pub(super) fn check_finite(
         &self,
         signals: &[f64],

@@ -1,0 +1,71 @@
+//! The finished edge of a run: chamfer and burr along it.
+
+use std::borrow::Cow;
+
+use super::run::RunResult;
+use crate::figure::{Band, Horizontal, Panel, Role, Series, Stroke};
+use crate::page::{Block, Chart, PageSection};
+use crate::recording::EdgeProfile;
+
+/// Chamfer's leg with its tolerance, and the burr before and after, along the edge.
+pub(super) fn finished_edge<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
+    let profile: &EdgeProfile = run.profile.as_ref()?;
+    let millimetres = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| 1e3 * v).collect() };
+    let places = millimetres(&profile.place);
+    let series = |label: &str, values: &[f64], role, stroke| Series {
+        label: label.to_owned(),
+        horizontal: Cow::Owned(places.clone()),
+        values: Cow::Owned(millimetres(values)),
+        role,
+        stroke,
+        stepwise: false,
+    };
+    let chart = |title: &str, label: &str, series, bands| {
+        Block::Chart(Chart {
+            panel: Panel {
+                title: title.to_owned(),
+                vertical_label: label.to_owned(),
+                horizontal: Horizontal::Quantity("length along the edge [mm]".to_owned()),
+                series,
+                bands,
+                ..Panel::default()
+            },
+            group: "finished edge".to_owned(),
+            ..Chart::default()
+        })
+    };
+    let chamfer = &run.document["chamfer"];
+    let bound = |key: &str| chamfer[key].as_f64();
+    let band = bound("leg_max_mm").map(|high| Band {
+        label: "tolerance".to_owned(),
+        from: bound("leg_min_mm").unwrap_or(0.0),
+        to: high,
+    });
+    let leg = series("leg", &profile.chamfer_leg, Role::Force, Stroke::Plain);
+    let mut blocks = vec![chart(
+        "Leg of the chamfer",
+        "leg [mm]",
+        vec![leg],
+        band.into_iter().collect(),
+    )];
+    if profile.burr_before.iter().any(|height| *height > 0.0) {
+        let burrs = vec![
+            series(
+                "before",
+                &profile.burr_before,
+                Role::Command,
+                Stroke::Dashed,
+            ),
+            series("after", &profile.burr_after, Role::Force, Stroke::Plain),
+        ];
+        blocks.push(chart(
+            "Height of the burr",
+            "height [mm]",
+            burrs,
+            Vec::new(),
+        ));
+    }
+    let told = "The burr comes off first, from its tip, then the edge is chamfered. A secondary burr, pushed over by the tool, is not modelled.";
+    blocks.push(Block::Hint(told.to_owned()));
+    Some(PageSection::new("Finished edge", blocks))
+}
