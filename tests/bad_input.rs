@@ -365,6 +365,7 @@ fn paths_and_forces_beyond_the_cell() {
                 "scenario.toml: `process.force_n` is 5 N",
                 "alone presses with 27.7 N",
                 "device.override.moving_mass_kg at most 0.72 (now 4)",
+                "opposing_pressure_bar_gauge at least 0.17 of a second regulator",
             ],
         ),
     ]);

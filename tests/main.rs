@@ -39,6 +39,7 @@ mod predict;
 mod program;
 mod real_robots;
 mod recorded_cell;
+mod removal;
 mod report;
 mod rig_file;
 mod schemas;

@@ -147,9 +147,8 @@ pub enum CellError {
         /// Depth [m].
         depth: f64,
     },
-    /// The tool's weight alone presses harder than is asked for.
-    #[error("{}: [tool]: the spindle's axis stands {:.1} deg from the contact normal, where the tool's surface hardly moves: it does not cut; spindle_lead_deg or spindle_lean_deg = 45, say, or another process.lean_deg, takes the contact off the pole", file.display(), angle.to_degrees())]
     /// A tool on its pole.
+    #[error("{}: [tool]: the spindle's axis stands {:.1} deg from the contact normal, where the tool's surface hardly moves: it does not cut; spindle_lead_deg or spindle_lean_deg = 45, say, or another process.lean_deg, takes the contact off the pole", file.display(), angle.to_degrees())]
     ToolDoesNotCut {
         /// Scenario file.
         file: PathBuf,
@@ -182,8 +181,9 @@ pub enum CellError {
         /// Removal rate [m3/s].
         rate: f64,
     },
-    #[error("{}: `process.force_n` is {force} N, but at {:.1} mm along the edge the weight of tool and slide alone presses with {:.1} N: device.override.moving_mass_kg at most {} (now {mass}), or force_n at least {:.1}, or the tool's axis at least {:.0} deg from the vertical (now {:.0}), by another lean or the part turned",
-        file.display(), 1e3 * edge_length, pressing, (most_mass * 100.0).floor() / 100.0, (pressing * 10.0).ceil() / 10.0, least_tilt.to_degrees().ceil(), tilt.to_degrees())]
+    /// The tool's weight alone presses harder than is asked for.
+    #[error("{}: `process.force_n` is {force} N, but at {:.1} mm along the edge the weight of tool and slide alone presses with {:.1} N: device.override.moving_mass_kg at most {} (now {mass}), or force_n at least {:.1}, or the tool's axis at least {:.0} deg from the vertical (now {:.0}), by another lean or the part turned, or device.override.opposing_pressure_bar_gauge at least {:.2} of a second regulator",
+        file.display(), 1e3 * edge_length, pressing, (most_mass * 100.0).floor() / 100.0, (pressing * 10.0).ceil() / 10.0, least_tilt.to_degrees().ceil(), tilt.to_degrees(), (least_opposing * 1e-3).ceil() / 100.0)]
     Weight {
         /// Scenario file.
         file: PathBuf,
@@ -201,6 +201,8 @@ pub enum CellError {
         tilt: f64,
         /// The least at which the force can be had [rad].
         least_tilt: f64,
+        /// Least opposing pressure at which it can be had [Pa gauge].
+        least_opposing: f64,
     },
     /// The supply cannot give the force, or the command's way not the set pressure.
     #[error("{}: `process.force_n` is {force} N, which needs {:.2} bar gauge at the regulator at {:.1} mm along the edge; {giver} 0 to {:.2} bar, expected {:.1} to {:.1} N there",

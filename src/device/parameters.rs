@@ -57,6 +57,9 @@ pub struct DeviceParameters {
     pub end_cushioning: EndCushioning,
     /// Reservoir in front of the regulator, if it is finite.
     pub supply_reservoir: Option<SupplyReservoir>,
+    /// Pressure that a second regulator holds behind chamber 2 while the device extends [Pa gauge]: what presses back, so that less than the tool's weight can
+    /// be pressed with; 0 for a chamber that is open to the atmosphere.
+    pub opposing_pressure: f64,
     /// Time from the valve's command to its switching [s].
     pub switching_delay: f64,
 }
@@ -88,6 +91,7 @@ impl Default for DeviceParameters {
             axial_load: AxialLoad::NONE,
             end_cushioning: EndCushioning::NONE,
             supply_reservoir: None,
+            opposing_pressure: 0.0,
             switching_delay: 0.0,
         }
     }

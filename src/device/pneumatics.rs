@@ -95,14 +95,15 @@ impl Device {
         &self.parameters
     }
 
-    /// State at rest at a stroke [m], chamber 1 at the regulated pressure [Pa gauge] and chamber 2 at the atmosphere, a reservoir full.
+    /// State at rest at a stroke [m], chamber 1 at the regulated pressure [Pa gauge] and chamber 2 at the atmosphere or at the opposing pressure, a reservoir full.
     pub fn at_rest(&self, stroke: f64, set_pressure: f64) -> DeviceState {
         let gas = &self.parameters.gas;
         let mut regulator = RegulatorState::at_rest(&self.parameters.regulator, set_pressure);
         if let Some(reservoir) = &self.parameters.supply_reservoir {
             regulator.starve(reservoir.full_pressure - gas.atmosphere);
         }
-        let pressures = [gas.atmosphere + regulator.outlet, gas.atmosphere];
+        let behind = gas.atmosphere + self.parameters.opposing_pressure;
+        let pressures = [gas.atmosphere + regulator.outlet, behind];
         let masses = [0, 1].map(|i| gas.mass(pressures[i], self.chambers[i].volume(stroke)));
         let hose = self.parameters.hose.as_ref();
         let segment = hose.map_or(0.0, |h| gas.mass(pressures[0], h.segment_volume()));
@@ -344,7 +345,12 @@ impl Device {
         let supply = self.supply_conductance(disturbance);
         let exhaust = self.exhaust_conductance(disturbance);
         flows[supplied] = (self.flow).mass_flow(supply, before, pressures[supplied]);
-        flows[vented] = (self.flow).mass_flow(exhaust, gas.atmosphere, pressures[vented]);
+        // A second regulator stands behind chamber 2, if one does.
+        let behind = match valve {
+            ValvePosition::Extend => gas.atmosphere + parameters.opposing_pressure,
+            ValvePosition::Retract => gas.atmosphere,
+        };
+        flows[vented] = (self.flow).mass_flow(exhaust, behind, pressures[vented]);
         let disturbance_flows = disturbance.mass_flows;
         let leaks = if parameters.leakage.is_none() && disturbance.leaks == [0.0; 2] {
             LeakFlows::default()

@@ -1,11 +1,12 @@
 //! From a desired contact force to the set pressure that gives it at rest.
 //!
 //! ```text
-//! p_set = (F - m g_a) / (K A_1)                                  (source paper, eq. 1 at rest, chamber 2 at the atmosphere)
+//! p_set = (F - m g_a + p_o A_2) / (K A_1)                        (source paper, eq. 1 at rest, chamber 2 at the opposing pressure)
 //! ```
 //!
 //! p_set gauge [Pa], F contact force along the axis [N], m moving mass [kg], g_a component of gravity along extension [m/s2],
-//! K regulator gain [1], A_1 area of chamber 1 [m2].
+//! p_o opposing pressure, 0 in the paper,
+//! gauge [Pa], K regulator gain [1], A_1, A_2 areas of the chambers [m2].
 
 use super::DeviceParameters;
 
@@ -15,6 +16,10 @@ pub struct PressureMap {
     moving_mass: f64,
     force_per_pressure: f64,
     supply: f64,
+    /// Force of the opposing pressure [N].
+    opposing: f64,
+    /// Opposing pressure that a set pressure balances, over it [1].
+    opposing_per_set_pressure: f64,
 }
 
 impl PressureMap {
@@ -24,12 +29,20 @@ impl PressureMap {
             moving_mass: parameters.moving_mass,
             force_per_pressure: parameters.regulator.gain * parameters.areas().extending,
             supply: parameters.regulator.supply,
+            opposing_per_set_pressure: parameters.regulator.gain * parameters.areas().extending
+                / parameters.areas().retracting,
+            opposing: parameters.opposing_pressure * parameters.areas().retracting,
         }
+    }
+
+    /// Opposing pressure that a set pressure balances, over it [1].
+    pub fn opposing_per_set_pressure(&self) -> f64 {
+        self.opposing_per_set_pressure
     }
 
     /// Set pressure before any limit [Pa gauge]; may be negative or beyond the supply.
     pub fn unlimited(&self, force: f64, gravity_along_axis: f64) -> f64 {
-        (force - self.moving_mass * gravity_along_axis) / self.force_per_pressure
+        (force - self.moving_mass * gravity_along_axis + self.opposing) / self.force_per_pressure
     }
 
     /// Set pressure within what the regulator can give [Pa gauge].
@@ -41,5 +54,6 @@ impl PressureMap {
     /// Contact force at rest [N] for a set pressure [Pa gauge]: the inverse.
     pub fn force(&self, set_pressure: f64, gravity_along_axis: f64) -> f64 {
         set_pressure * self.force_per_pressure + self.moving_mass * gravity_along_axis
+            - self.opposing
     }
 }

@@ -4,7 +4,7 @@ use crate::metrics::{BoundCheck, Metric, NARROW_BAND, Summary, WIDE_BAND, metric
 use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
 /// Parts of a report and the metrics in each, by key.
-const PARTS: [(&str, &[&str]); 6] = [
+const PARTS: [(&str, &[&str]); 7] = [
     (
         "Force",
         &[
@@ -32,6 +32,19 @@ const PARTS: [(&str, &[&str]); 6] = [
     (
         "Path",
         &["path_length_mm", "path_error_rms_um", "path_error_max_um"],
+    ),
+    (
+        "Edge",
+        &[
+            "chamfer_leg_mean_mm",
+            "chamfer_leg_standard_deviation_mm",
+            "residual_burr_max_mm",
+            "out_of_tolerance_share_percent",
+            "section_variation_percent",
+            "removal_rate_mean_mm3_per_s",
+            "spindle_power_max_w",
+            "tool_wear_kj",
+        ],
     ),
     (
         "Run",
@@ -105,6 +118,10 @@ pub(super) fn rows(summary: &Summary) -> Vec<ReportRow> {
         if name == "real_time_factor" && summary.timing.is_none() {
             return None;
         }
+        // Of a tool that turns.
+        if part == "Edge" && summary.tool_wear_kj.is_none() {
+            return None;
+        }
         let metric = metric(name)?;
         Some(ReportRow {
             part,
@@ -136,6 +153,18 @@ fn fact(name: &str, summary: &Summary) -> Option<String> {
             0.0 => "not above the desired force".to_owned(),
             over => format!("{} above desired", of(over, "%")),
         },
+        "chamfer_leg_mean_mm" => {
+            let (least, most) = (summary.chamfer_leg_min_mm?, summary.chamfer_leg_max_mm?);
+            let least = quantity::number(least, "mm");
+            format!("from {least} to {}", of(most, "mm"))
+        }
+        "residual_burr_max_mm" => {
+            let share = of(summary.residual_burr_share_percent?, "%");
+            format!("too much of it on {share}")
+        }
+        "removal_rate_mean_mm3_per_s" => {
+            format!("{} in all", of(summary.removed_volume_mm3?, "mm3"))
+        }
         "stroke_used_mm" => {
             let (least, greatest) = (summary.stroke_min_mm?, summary.stroke_max_mm?);
             let least = quantity::number(least, "mm");

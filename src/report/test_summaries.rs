@@ -46,6 +46,7 @@ pub(super) fn nominal() -> Summary {
         joints: Vec::new(),
         force_by_tenth: (0..10).map(tenth).collect(),
         timing: Some(Timing::new(12.0, 0.48)),
+        ..Summary::default()
     }
 }
 

@@ -12,7 +12,7 @@ use glam::DVec3;
 use crate::cell::Cell;
 use crate::path::{Phase, Reference};
 use crate::physics::cutting_force::CuttingForce;
-use crate::removal::{EdgeState, Ride};
+use crate::removal::EdgeState;
 use crate::scenario::{FeedMeasure, RemovalScenario, ToolScenario};
 
 /// The tool over the last step.
@@ -38,7 +38,8 @@ pub struct Cutting {
     cutting: CuttingForce,
     edge: EdgeState,
     ball_radius: f64,
-    ride: Option<Ride>,
+    /// Place of the ball along the edge [m].
+    place: f64,
     /// Work of force and speed so far [J].
     wear: f64,
     reading: CuttingReading,
@@ -59,7 +60,7 @@ impl Cutting {
             cutting: scenario.removal.map_or(rubbing, |removal| removal.cutting),
             edge: cell.part.edge_state.clone(),
             ball_radius: scenario.device.tool_radius,
-            ride: None,
+            place: f64::NEG_INFINITY,
             wear: 0.0,
             reading: CuttingReading::default(),
         })
@@ -68,7 +69,7 @@ impl Cutting {
     /// Lift [m] and slope [1] with which the ball rides at a place of the edge [m].
     pub fn ride(&mut self, place: f64) -> (f64, f64) {
         let ride = self.edge.ride(place, self.ball_radius);
-        self.ride = Some(ride);
+        self.place = place;
         (ride.lift, ride.slope)
     }
 
@@ -117,13 +118,13 @@ impl Cutting {
 
     /// Removes material under the tool, and returns how fast [m3/s].
     fn take(&mut self, force: f64, speed: f64, dt: f64) -> f64 {
-        let (Some(removal), Some(ride)) = (&self.removal, self.ride) else {
+        let Some(removal) = &self.removal else {
             return 0.0;
         };
         let rate = (removal.law).removal_rate(force, speed, removal.contact_area, self.wear);
         let half = 0.5 * removal.contact_length;
-        let place = ride.contact;
-        let taken = self.edge.remove(place - half, place + half, rate * dt);
+        let [from, to] = [self.place - half, self.place + half];
+        let taken = self.edge.remove(from, to, rate * dt);
         if taken { rate } else { 0.0 }
     }
 

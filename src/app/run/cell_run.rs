@@ -183,7 +183,7 @@ impl<'a> Listener<'a> {
 fn limits(cell: &Cell) -> SummaryLimits {
     let joints = &cell.arm.chain.joints;
     SummaryLimits {
-        desired_force: cell.scenario.process.force,
+        desired_force: cell.scenario.passes[0].force,
         stroke_limits: (0.0, cell.scenario.device.parameters.full_stroke),
         joint_efforts: joints.iter().map(|joint| joint.effort).collect(),
         joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),

@@ -26,6 +26,8 @@ const SLOPE_STEP: f64 = 2e-4;
 #[derive(Debug, Clone)]
 pub(super) struct ChamberModel {
     gas: Gas,
+    /// Absolute pressure behind chamber 2 [Pa].
+    behind: f64,
     flow: FlowFunction,
     chambers: [Chamber; 2],
     areas: PistonAreas,
@@ -48,12 +50,13 @@ impl ChamberModel {
             supply: device.regulator.supply,
             pressures: [device.gas.atmosphere; 2],
             gas: device.gas,
+            behind: device.gas.atmosphere + device.opposing_pressure,
         }
     }
 
-    /// Chamber 1 at an outlet pressure [Pa gauge], chamber 2 at the atmosphere.
+    /// Chamber 1 at an outlet pressure [Pa gauge], chamber 2 at the pressure behind it.
     pub(super) fn settle(&mut self, outlet: f64) {
-        self.pressures = [self.gas.atmosphere + outlet, self.gas.atmosphere];
+        self.pressures = [self.gas.atmosphere + outlet, self.behind];
     }
 
     /// Force of the gas along extension [N].
@@ -81,7 +84,7 @@ impl ChamberModel {
             let before = self.before_valve(outlet);
             self.pressures = [
                 self.stepped(0, supply, before, stroke, speed, h),
-                self.stepped(1, exhaust, self.gas.atmosphere, stroke, speed, h),
+                self.stepped(1, exhaust, self.behind, stroke, speed, h),
             ];
         }
     }

@@ -31,6 +31,8 @@ numbers! { CYLINDER:
     AXIAL_LOAD = "axial_load.force_n" as "axial_load_n", [-2000.0, 2000.0], (p => p.device.axial_load.force);
     /// spring that pulls back in proportion to the stroke
     RETURN_STIFFNESS = "axial_load.return_stiffness_n_per_m" as "return_stiffness_n_per_m", [-5e4, 1e5], (p => p.device.axial_load.return_stiffness);
+    /// held behind chamber 2 by a second regulator while the device extends; 0: open to the atmosphere
+    OPPOSING_PRESSURE = "cylinder.opposing_pressure_pa" as "opposing_pressure_bar_gauge", [0.0, 1e6], (p => p.device.opposing_pressure);
     /// Coulomb friction of seals and guides, all cylinders together
     SEAL_COULOMB = "seal.coulomb_force_n" as "seal_coulomb_force_n", [0.0, 1000.0], (|p, _| p.device.seal_friction.coulomb, set_coulomb);
     /// breakaway force, at least the Coulomb friction

@@ -25,6 +25,7 @@ fn every_key_of_the_process_reaches_its_field() {
         jerk: 7.0,
         working_stroke: 0.018,
         lean: -PI / 4.0,
+        feed_follows: None,
         tool_axis: None,
         roll: Some(FRAC_PI_2),
         approach_distance: 0.06,
