@@ -244,10 +244,15 @@ mod tests {
             assert!(metric(name).is_some(), "{name}");
         }
         let count: usize = PARTS.iter().map(|(_, names)| names.len()).sum();
-        let untimed = Summary::default();
+        // A tool that turns; without one its part is left out.
+        let untimed = Summary {
+            tool_wear_kj: Some(1.0),
+            ..Summary::default()
+        };
+        assert_eq!(rows(&Summary::default()).len(), count - 9);
         let timed = Summary {
             timing: Some(Timing::new(1.0, 1.0)),
-            ..Summary::default()
+            ..untimed.clone()
         };
         assert_eq!(
             (rows(&untimed).len(), rows(&timed).len()),
