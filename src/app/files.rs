@@ -1,4 +1,4 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, drawing.json, figures.svg of a bench, varied.toml of
+//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, lean.svg, drawing.json, figures.svg of a bench, varied.toml of
 //! `--set`; those of a study: design.json, override.toml, front.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
@@ -21,13 +21,15 @@ pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const FIGURES: &str = "figures.svg";
 pub(super) const CELL: &str = "cell.svg";
 pub(super) const EDGE: &str = "edge.svg";
+/// How the tool stands across the edge.
+pub(super) const LEAN: &str = "lean.svg";
 /// What the page draws in space.
 pub(super) const DRAWING: &str = "drawing.json";
 /// The scenario as `--set` made it.
 pub(super) const VARIED: &str = "varied.toml";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 9] = [
-    RECORDING, SAMPLES, SUMMARY, FIGURES, CELL, EDGE, DRAWING, REPORT, VARIED,
+pub(super) const RUN_NAMES: [&str; 10] = [
+    RECORDING, SAMPLES, SUMMARY, FIGURES, CELL, EDGE, LEAN, DRAWING, REPORT, VARIED,
 ];
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
@@ -169,9 +171,11 @@ impl OutputFolder {
         write_text(&unfinished.path().join(REPORT), output.report)?;
         write_text(&unfinished.path().join(CELL), &output.sketches.cell)?;
         let mut names = vec![SAMPLES, SUMMARY, REPORT, CELL];
-        if let Some(edge) = &output.sketches.edge {
-            write_text(&unfinished.path().join(EDGE), edge)?;
-            names.push(EDGE);
+        for (name, svg) in [(EDGE, &output.sketches.edge), (LEAN, &output.sketches.lean)] {
+            if let Some(svg) = svg {
+                write_text(&unfinished.path().join(name), svg)?;
+                names.push(name);
+            }
         }
         if let Some(space) = &output.sketches.space {
             let text = serde_json::to_value(space)?.to_string();
@@ -260,7 +264,7 @@ pub(super) struct RunOutput<'a> {
     pub figures: Option<&'a str>,
     /// varied.toml.
     pub varied: Option<&'a str>,
-    /// cell.svg, edge.svg and drawing.json.
+    /// cell.svg, edge.svg, lean.svg and drawing.json.
     pub sketches: &'a Sketches,
     /// report.html.
     pub report: &'a str,
@@ -272,7 +276,9 @@ pub(super) struct Sketches {
     pub cell: String,
     /// The edge in the colours of its force error; none on a bench.
     pub edge: Option<String>,
-    /// Both in space; none on a bench.
+    /// The tool across the edge; none on a bench.
+    pub lean: Option<String>,
+    /// Cell and edge in space; none on a bench.
     pub space: Option<Drawing>,
 }
 
@@ -285,6 +291,7 @@ impl Sketches {
         Self {
             cell: drawing::cell(scene, moment),
             edge: drawing::edge(scene),
+            lean: None,
             space: space::of_run(scene, moment),
         }
     }

@@ -16,8 +16,8 @@ use clap::Args;
 use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
-    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, FRONT, REPORT, SAMPLES, SUMMARY,
-    Sketches, Standing, is_same, prepare_file,
+    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, FRONT, LEAN, REPORT, SAMPLES,
+    SUMMARY, Sketches, Standing, is_same, prepare_file,
 };
 use super::output::say;
 use crate::diagnosis::answer::Answer;
@@ -66,7 +66,7 @@ pub(super) struct ReportArguments {
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
     let inputs = [
-        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DRAWING, DESIGN, FRONT,
+        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, LEAN, DRAWING, DESIGN, FRONT,
     ];
     if let Some(out) = &arguments.out
         && inputs.iter().any(|name| is_same(&folder.join(name), out))
@@ -132,6 +132,7 @@ pub(super) fn page_of_run(
         recording: Cow::Borrowed(recording),
         cell: Some(Cow::Borrowed(&sketches.cell)),
         edge: sketches.edge.as_deref().map(Cow::Borrowed),
+        lean: sketches.lean.as_deref().map(Cow::Borrowed),
         space: sketches.space.as_ref().map(Cow::Borrowed),
     }))
 }
@@ -152,6 +153,7 @@ pub(super) fn read_run(folder: &Path) -> Result<RunResult<'static>, AppError> {
         recording: Cow::Owned(read_parquet(&folder.join(SAMPLES))?.recording),
         cell: picture(CELL).map(Cow::Owned),
         edge: picture(EDGE).map(Cow::Owned),
+        lean: picture(LEAN).map(Cow::Owned),
         space: space.map(Cow::Owned),
     })
 }
