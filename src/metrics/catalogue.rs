@@ -136,7 +136,7 @@ pub const METRICS: &[Metric] = &[
         "share of the edge", |s| s.out_of_tolerance_share_percent),
     entry("section_removed_mean_mm2", "mm2", "section removed, mean",
         "of burr and edge", |s| s.section_removed_mean_mm2),
-    entry("section_variation_percent", "%", "section removed, variation",
+    entry("section_variation_percent", "%", "section, variation",
         "standard deviation / mean", |s| s.section_variation_percent),
     entry("removed_volume_mm3", "mm3", "volume removed",
         "of burr and edge", |s| s.removed_volume_mm3),

@@ -41,7 +41,7 @@ const PARTS: [(&str, &[&str]); 7] = [
             "residual_burr_max_mm",
             "out_of_tolerance_share_percent",
             "section_variation_percent",
-            "removal_rate_mean_mm3_per_s",
+            "removed_volume_mm3",
             "spindle_power_max_w",
             "tool_wear_kj",
         ],
@@ -162,8 +162,9 @@ fn fact(name: &str, summary: &Summary) -> Option<String> {
             let share = of(summary.residual_burr_share_percent?, "%");
             format!("too much of it on {share}")
         }
-        "removal_rate_mean_mm3_per_s" => {
-            format!("{} in all", of(summary.removed_volume_mm3?, "mm3"))
+        "removed_volume_mm3" => {
+            let rate = of(summary.removal_rate_mean_mm3_per_s?, "mm3/s");
+            format!("at {rate} while cutting")
         }
         "stroke_used_mm" => {
             let (least, greatest) = (summary.stroke_min_mm?, summary.stroke_max_mm?);

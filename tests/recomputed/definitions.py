@@ -5,6 +5,7 @@ import tomllib
 import xml.etree.ElementTree as xml
 
 import numpy as np
+import pandas as pd
 
 ATMOSPHERE = 101_325.0
 REFERENCE_DENSITY = 1.185
@@ -17,8 +18,8 @@ def finite(values):
 class Run:
     """A run's samples, its scenario, and what both tell."""
 
-    def __init__(self, scenario, samples):
-        self.path, self.samples = scenario, samples
+    def __init__(self, scenario, samples, folder):
+        self.path, self.samples, self.folder = scenario, samples, folder
         self.scenario = tomllib.loads(scenario.read_text())
         device = self.scenario.get("device", {})
         model = scenario.parent / device.get("model", "../models/device.toml")
@@ -53,7 +54,7 @@ class CellRun(Run):
         return np.flatnonzero(phase == name)
 
     def numbers(self):
-        s, desired = {}, float(self.scenario["process"]["force_n"])
+        s, desired = {}, float((self.scenario.get("pass") or [{}])[0].get("force_n", self.scenario["process"]["force_n"]))
         s["desired_force_n"] = desired
         s["duration_s"] = self.time[-1] - self.time[0]
         force, follow = self.column("contact_force_n"), self.phase("follow")
@@ -65,7 +66,39 @@ class CellRun(Run):
             self.following(s, force[follow], desired, follow)
         self.joints(s)
         s["air_mass_balance_relative"] = self.air_balance()
+        if "tool" in self.scenario:
+            s.update(self.finished_edge())
         return s
+
+    def finished_edge(self):
+        """Chamfer and burr from edge_profile.csv, what the spindle did from the samples."""
+        edge = pd.read_csv(self.folder / "edge_profile.csv")
+        chamfer = self.scenario["workpiece"].get("chamfer", {})
+        ends = self.scenario.get("removal", {}).get("contact_length_mm", 1.0 if "removal" in self.scenario else 0.0)
+        place = edge.position_mm.to_numpy()
+        judged = edge[(place >= place[0] + ends) & (place <= place[-1] - ends)]
+        leg, burr, section = judged.chamfer_leg_mm, judged.burr_after_mm, judged.section_removed_mm2
+        left = burr > chamfer.get("residual_burr_max_mm", 0.02)
+        outside = (leg < chamfer.get("leg_min_mm", 0.0)) | (leg > chamfer.get("leg_max_mm", math.inf)) | left
+        step = np.diff(self.time)
+        power, rate = self.column("spindle_power_w")[1:], self.column("removal_rate_m3_per_s")[1:]
+        return {
+            "chamfer_leg_mean_mm": leg.mean(),
+            "chamfer_leg_standard_deviation_mm": leg.std(ddof=0),
+            "chamfer_leg_min_mm": leg.min(),
+            "chamfer_leg_max_mm": leg.max(),
+            "residual_burr_max_mm": burr.max(),
+            "residual_burr_share_percent": 100 * left.mean(),
+            "out_of_tolerance_share_percent": 100 * outside.mean(),
+            "section_removed_mean_mm2": section.mean(),
+            "section_variation_percent": 100 * section.std(ddof=0) / section.mean(),
+            "removed_volume_mm3": edge.section_removed_mm2.sum() * (place[-1] - place[0]) / (len(place) - 1),
+            "removal_rate_mean_mm3_per_s": 1e9 * (step * rate).sum() / step[rate > 0].sum(),
+            "spindle_power_max_w": power.max(),
+            "spindle_energy_kj": 1e-3 * (step * power).sum(),
+            "tool_wear_kj": 1e-3 * self.column("tool_wear_j")[-1],
+            "air_used_g": 1e3 * self.column("mass_entered_kg")[-1],
+        }
 
     def touch(self, s, force, desired, follow):
         end = follow[0] if len(follow) else len(force)
@@ -170,17 +203,27 @@ class CellRun(Run):
         end = self.time[after] if after < len(self.time) else self.time[-1]
         return 0.5 * (self.time[follow[0]] + end)
 
-    def colour_scale(self):
-        """End of the colours of the force error along the edge [%]: of 400 pieces 95 % lie within."""
+    PIECES = 400
+
+    # Length of the edge [m], not in the samples.
+    edge_length = None
+
+    def piece_errors(self):
+        """Mean relative error of the force over each piece of the edge while following [1]; NaN where nothing touched."""
         follow, desired = self.phase("follow"), self.scenario["process"]["force_n"]
         force, place = self.column("contact_force_n", follow), self.column("path_length_m", follow)
-        if not len(follow):
-            return None
-        piece = np.minimum((place / np.nanmax(self.column("path_length_m")) * 400).astype(int), 399)
+        piece = np.minimum((place / self.edge_length * self.PIECES).astype(int), self.PIECES - 1)
         touching = force > 0
-        sums = np.bincount(piece[touching], (force[touching] - desired) / desired, 400)
-        counts = np.bincount(piece[touching], minlength=400)
-        errors = np.sort(np.abs(sums[counts > 0] / counts[counts > 0]))
+        sums = np.bincount(piece[touching], (force[touching] - desired) / desired, self.PIECES)
+        counts = np.bincount(piece[touching], minlength=self.PIECES)
+        return np.divide(sums, counts, out=np.full(self.PIECES, np.nan), where=counts > 0)
+
+    def colour_scale(self):
+        """End of the colours of the force error along the edge [%]: of its pieces 95 % lie within."""
+        if not len(self.phase("follow")):
+            return None
+        errors = self.piece_errors()
+        errors = np.sort(np.abs(errors[np.isfinite(errors)]))
         size = errors[math.ceil(0.95 * len(errors)) - 1] if len(errors) else 0.0
         ends = [step * 10.0**power for power in range(-3, 2) for step in (1, 2, 5)]
         return 100 * next((end for end in ends if size <= end * (1 + 1e-9)), 10.0)
