@@ -3,10 +3,14 @@
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
+use glamx::DPose3;
 use idc_cell::app::{run_cell, scene_of};
+use idc_cell::arm::VisualShape;
 use idc_cell::cell::Cell;
 use idc_cell::recording::rerun::{RerunOptions, write_rrd};
-use rerun::{ChunkStore, ChunkStoreConfig, Transform3D};
+use idc_cell::recording::scene::Scene;
+use idc_cell::scenario::{Obstacle, ObstacleShape};
+use rerun::{ChunkStore, ChunkStoreConfig, CoordinateFrame, Mesh3D, Transform3D};
 
 use crate::common::scenario;
 
@@ -98,4 +102,111 @@ fn the_ball_that_is_drawn_rides_on_the_edge_and_links_hang_on_their_joints() {
             );
         }
     }
+}
+
+/// Corners of an entity's mesh and the frame that they are in; none where it is its own.
+fn mesh(store: &ChunkStore, entity: &str) -> (Vec<DVec3>, Option<String>) {
+    let corners = Mesh3D::descriptor_vertex_positions().component;
+    let frame = CoordinateFrame::descriptor_frame().component;
+    let (mut found, mut rides_on) = (Vec::new(), None);
+    for chunk in store.iter_physical_chunks() {
+        if chunk.entity_path().to_string() == entity {
+            let rows = chunk.iter_slices::<[f32; 3]>(corners).flatten();
+            found.extend(rows.map(|corner| DVec3::from_array(corner.map(f64::from))));
+            let frames = chunk.iter_slices::<String>(frame);
+            rides_on = frames.map(|row| row[0].to_string()).last().or(rides_on);
+        }
+    }
+    (found, rides_on)
+}
+
+/// Distance of a point from the surface of a cylinder about z [m].
+fn from_cylinder(point: DVec3, radius: f64, length: f64) -> f64 {
+    let out = DVec3::new(point.x, point.y, 0.0).length() - radius;
+    let beyond = point.z.abs() - 0.5 * length;
+    if out <= 0.0 && beyond <= 0.0 {
+        out.max(beyond).abs()
+    } else {
+        out.max(0.0).hypot(beyond.max(0.0))
+    }
+}
+
+// Catches: a hull in the frame of another link, an obstacle off its place, a recording that grows with the shapes.
+#[test]
+fn what_is_checked_for_collisions_is_where_the_links_and_obstacles_are() {
+    let mut job = scenario("plate_edge");
+    job.workpiece.edge.start = 0.1;
+    job.workpiece.edge.end = Some(0.13);
+    let (size, turned) = (
+        DVec3::new(0.1, 0.2, 0.3),
+        DPose3::from_parts(DVec3::new(-0.9, 0.9, 0.5), DQuat::from_rotation_z(0.4)),
+    );
+    job.collision.obstacles.push(Obstacle {
+        name: "tool rack".to_owned(),
+        shape: ObstacleShape::Box(size),
+        world_from_obstacle: turned,
+    });
+    let cell = Cell::new(job).unwrap();
+    let run = run_cell(&cell, &mut |_, _| ()).unwrap();
+    let scene = scene_of(&cell, &run.recording, &run.frames).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, scene: &Scene| {
+        let file = folder.path().join(name);
+        write_rrd(&file, &run.recording, scene, &RerunOptions::default()).unwrap();
+        file
+    };
+    let file = write("recording.rrd", &scene);
+    let store = read(&file);
+
+    for (index, name) in cell.arm.link_names.iter().enumerate() {
+        let (corners, frame) = mesh(&store, &format!("/cell/collision/{name}"));
+        let own = cell
+            .arm
+            .visuals
+            .iter()
+            .filter(|own| own.link_index == index);
+        let own: Vec<_> = own.collect();
+        assert_eq!(corners.is_empty(), own.is_empty(), "{name}");
+        let off = |corner: &DVec3| {
+            let from = own.iter().map(|own| match own.shape {
+                VisualShape::Cylinder { radius, length } => {
+                    let point = own.link_from_visual.inverse().transform_point(*corner);
+                    from_cylinder(point, radius, length)
+                }
+                _ => f64::INFINITY,
+            });
+            from.fold(f64::INFINITY, f64::min)
+        };
+        let most = corners.iter().map(off).fold(0.0, f64::max);
+        assert!(most < 1e-6, "{name}: {most} m");
+        // The base stands in the world, here at its origin.
+        let expected = (index > 0).then(|| format!("tf#/cell/arm/{name}"));
+        assert!(corners.is_empty() || frame == expected, "{name}: {frame:?}");
+    }
+    let (corners, frame) = mesh(&store, "/cell/collision/tool");
+    assert_eq!(frame.as_deref(), Some("tf#/cell/device/slide"));
+    // The spindle ends at the ball's centre.
+    let end = corners.iter().map(|corner| corner.z).fold(0.0, f64::max);
+    assert!(
+        (end - cell.scenario.device.tool_centre).abs() < 1e-6,
+        "{end}"
+    );
+    let (corners, frame) = mesh(&store, "/cell/collision/tool\\ rack");
+    assert!(frame.is_none() && corners.len() >= 8);
+    for corner in corners {
+        let own = turned.inverse().transform_point(corner).abs();
+        assert!((own - 0.5 * size).length() < 1e-6, "{own}");
+    }
+    assert!(mesh(&store, "/cell/collision/floor").0.is_empty());
+
+    let bytes = |file: &Path| std::fs::metadata(file).unwrap().len();
+    let bare = write(
+        "bare.rrd",
+        &Scene {
+            collision_shapes: vec![],
+            ..scene
+        },
+    );
+    let grown = bytes(&file) - bytes(&bare);
+    assert!(grown < 100_000, "{grown} bytes");
 }

@@ -141,10 +141,11 @@ fn note(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
 }
 
 /// The files of a run.
-pub const FILES: [&str; 7] = [
+pub const FILES: [&str; 8] = [
     "cell.svg",
     "drawing.json",
     "edge.svg",
+    "lean.svg",
     "recording.rrd",
     "report.html",
     "samples.parquet",

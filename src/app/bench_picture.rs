@@ -64,12 +64,10 @@ pub(super) fn scene_of(
     Ok(Scene {
         title: scenario.title.clone(),
         bodies,
+        collision_shapes: Vec::new(),
         frame_times: frames.iter().map(|&i| recording.time()[i]).collect(),
         frame_path_lengths: vec![0.0; frames.len()],
-        edge_path: EdgePath {
-            points_in_world: Vec::new(),
-            relative_force_error: Vec::new(),
-        },
+        edge_path: EdgePath::default(),
         contact_arrows: frames
             .iter()
             .map(|&i| ContactArrow {

@@ -1,4 +1,4 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, drawing.json, figures.svg of a bench, varied.toml of
+//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, lean.svg, drawing.json, figures.svg of a bench, varied.toml of
 //! `--set`; those of a study: design.json, override.toml, front.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
@@ -23,12 +23,14 @@ pub(super) const CELL: &str = "cell.svg";
 pub(super) const EDGE: &str = "edge.svg";
 /// The edge as a turning tool left it, station by station.
 pub(super) const EDGE_PROFILE: &str = "edge_profile.csv";
+/// How the tool stands across the edge.
+pub(super) const LEAN: &str = "lean.svg";
 /// What the page draws in space.
 pub(super) const DRAWING: &str = "drawing.json";
 /// The scenario as `--set` made it.
 pub(super) const VARIED: &str = "varied.toml";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 10] = [
+pub(super) const RUN_NAMES: [&str; 11] = [
     RECORDING,
     SAMPLES,
     SUMMARY,
@@ -36,6 +38,7 @@ pub(super) const RUN_NAMES: [&str; 10] = [
     CELL,
     EDGE,
     EDGE_PROFILE,
+    LEAN,
     DRAWING,
     REPORT,
     VARIED,
@@ -180,9 +183,11 @@ impl OutputFolder {
         write_text(&unfinished.path().join(REPORT), output.report)?;
         write_text(&unfinished.path().join(CELL), &output.sketches.cell)?;
         let mut names = vec![SAMPLES, SUMMARY, REPORT, CELL];
-        if let Some(edge) = &output.sketches.edge {
-            write_text(&unfinished.path().join(EDGE), edge)?;
-            names.push(EDGE);
+        for (name, svg) in [(EDGE, &output.sketches.edge), (LEAN, &output.sketches.lean)] {
+            if let Some(svg) = svg {
+                write_text(&unfinished.path().join(name), svg)?;
+                names.push(name);
+            }
         }
         if let Some(space) = &output.sketches.space {
             let text = serde_json::to_value(space)?.to_string();
@@ -278,7 +283,7 @@ pub(super) struct RunOutput<'a> {
     pub figures: Option<&'a str>,
     /// varied.toml.
     pub varied: Option<&'a str>,
-    /// cell.svg, edge.svg and drawing.json.
+    /// cell.svg, edge.svg, lean.svg and drawing.json.
     pub sketches: &'a Sketches,
     /// report.html.
     pub report: &'a str,
@@ -290,7 +295,9 @@ pub(super) struct Sketches {
     pub cell: String,
     /// The edge in the colours of its force error; none on a bench.
     pub edge: Option<String>,
-    /// Both in space; none on a bench.
+    /// The tool across the edge; none on a bench.
+    pub lean: Option<String>,
+    /// Cell and edge in space; none on a bench.
     pub space: Option<Drawing>,
 }
 
@@ -303,6 +310,7 @@ impl Sketches {
         Self {
             cell: drawing::cell(scene, moment),
             edge: drawing::edge(scene),
+            lean: None,
             space: space::of_run(scene, moment),
         }
     }

@@ -4,9 +4,12 @@ use glamx::DPose3;
 
 use crate::arm::{Arm, Visual, VisualShape};
 use crate::cell::{Cell, DeviceShape};
+use crate::collision::{Body, Mount, Role};
+use crate::drawing::{CrossSection, cross_section};
+use crate::path::{Phase, Reference};
 use crate::recording::scene::{
-    Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits, ScenePoses,
-    SceneShape,
+    CollisionShape, Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits,
+    ScenePoses, SceneShape,
 };
 use crate::recording::{Recording, RecordingError, schema};
 use crate::scenario::DeviceScenario;
@@ -16,6 +19,8 @@ use crate::simulation::FrameLog;
 const EDGE_SEGMENTS: usize = 400;
 pub(super) const PART: Colour = [150, 165, 178, 255];
 const OBSTACLE: Colour = [200, 190, 170, 255];
+/// Entity of the device's slide with the tool.
+const SLIDE: &str = "device/slide";
 
 /// Builds the scene of a run.
 ///
@@ -32,6 +37,7 @@ pub fn scene_of(
     }
     scene.bodies.push(part(cell));
     scene.bodies.extend(obstacles(cell));
+    scene.collision_shapes = collision_shapes(cell);
     scene.edge_path = edge_path(cell, recording)?;
     Ok(scene)
 }
@@ -43,6 +49,7 @@ pub(super) fn motion_of(cell: &Cell, frames: &FrameLog) -> Scene {
     Scene {
         title: cell.scenario.title.clone(),
         bodies,
+        collision_shapes: Vec::new(),
         frame_times: frames.times.clone(),
         frame_path_lengths: frames.path_lengths.clone(),
         edge_path: EdgePath::default(),
@@ -72,7 +79,7 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
     let count = cell.arm.chain.len();
     (0..=count)
         .map(|index| SceneBody {
-            entity: format!("arm/{}", cell.arm.link_names[index]),
+            entity: arm_entity(&cell.arm.link_names[index]),
             shapes: Vec::new(),
             world_from_body: match index {
                 0 => ScenePoses::Static(cell.scenario.arm.world_from_base),
@@ -82,6 +89,10 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
             },
         })
         .collect()
+}
+
+fn arm_entity(link: &str) -> String {
+    format!("arm/{link}")
 }
 
 /// Appearance of a link of the arm; nothing beyond the last.
@@ -143,7 +154,7 @@ pub(super) fn device_bodies(
             world_from_body: world_from_flange,
         },
         SceneBody {
-            entity: "device/slide".into(),
+            entity: SLIDE.into(),
             shapes: moving.map(shape_of).collect(),
             world_from_body: world_from_slide,
         },
@@ -174,6 +185,40 @@ fn obstacles(cell: &Cell) -> impl Iterator<Item = SceneBody> {
     })
 }
 
+/// What is checked for collisions, but for the floor, which would hide the cell: the part where it is believed to be.
+fn collision_shapes(cell: &Cell) -> Vec<CollisionShape> {
+    let checked = cell.collision.bodies_with_roles();
+    let shown = checked.filter(|(role, _)| *role != Role::Floor);
+    shown.map(|(_, body)| collision_shape(cell, body)).collect()
+}
+
+/// All solids of a body as one mesh.
+fn collision_shape(cell: &Cell, body: &Body) -> CollisionShape {
+    let (moves_with, pose) = match body.mount {
+        Mount::World(pose) => (None, pose),
+        Mount::Link(joint) => {
+            let with = match cell.arm.link_names.get(joint + 1) {
+                Some(link) => arm_entity(link),
+                None => SLIDE.to_owned(),
+            };
+            (Some(with), DPose3::IDENTITY)
+        }
+    };
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for solid in &body.solids {
+        let (corners, own) = solid.triangles();
+        let before = vertices.len() as u32;
+        vertices.extend(corners.iter().map(|corner| pose.transform_point(*corner)));
+        triangles.extend(own.iter().map(|own| own.map(|index| index + before)));
+    }
+    CollisionShape {
+        name: body.name.clone(),
+        moves_with,
+        vertices,
+        triangles,
+    }
+}
+
 fn part(cell: &Cell) -> SceneBody {
     SceneBody {
         entity: "workpiece".into(),
@@ -187,6 +232,30 @@ fn part(cell: &Cell) -> SceneBody {
         }],
         world_from_body: ScenePoses::Static(cell.part.world_from_part),
     }
+}
+
+/// The motion that is planned in the middle of following.
+pub(super) fn in_the_middle(cell: &Cell) -> Reference {
+    let phases = cell.plan.phases();
+    let follow = phases.iter().find(|(phase, ..)| *phase == Phase::Follow);
+    let middle = follow.map_or(0.5 * cell.plan.duration(), |(_, from, to)| {
+        0.5 * (from + to)
+    });
+    cell.plan.reference(middle)
+}
+
+/// How the tool stands across the edge in the middle of following, as a picture.
+pub(super) fn across_the_edge(cell: &Cell) -> String {
+    let reference = in_the_middle(cell);
+    let place = cell.part.edge.at(reference.edge_length);
+    let turn = cell.scenario.workpiece.world_from_part.rotation;
+    cross_section(&CrossSection {
+        tangent: reference.tangent,
+        normals: [turn * place.normal_a, turn * place.normal_b],
+        bisector: reference.normal,
+        axis: reference.axis,
+        gravity: cell.scenario.simulation.gravity,
+    })
 }
 
 /// The edge as it was planned, with the mean relative error of the force over each segment while following.
@@ -225,6 +294,7 @@ fn edge_path(cell: &Cell, recording: &Recording) -> Result<EdgePath, RecordingEr
         .collect();
     Ok(EdgePath {
         points_in_world,
+        length: edge.length,
         relative_force_error,
     })
 }

@@ -17,7 +17,7 @@ use clap::Args;
 use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
-    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, REPORT,
+    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, LEAN, REPORT,
     SAMPLES, SUMMARY, Sketches, Standing, is_same, prepare_file,
 };
 use super::output::say;
@@ -75,6 +75,7 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         CELL,
         EDGE,
         EDGE_PROFILE,
+        LEAN,
         DRAWING,
         DESIGN,
         FRONT,
@@ -144,6 +145,7 @@ pub(super) fn page_of_run(
         recording: Cow::Borrowed(recording),
         cell: Some(Cow::Borrowed(&sketches.cell)),
         edge: sketches.edge.as_deref().map(Cow::Borrowed),
+        lean: sketches.lean.as_deref().map(Cow::Borrowed),
         space: sketches.space.as_ref().map(Cow::Borrowed),
         profile: profile.map(Cow::Borrowed),
     }))
@@ -168,6 +170,7 @@ pub(super) fn read_run(folder: &Path) -> Result<RunResult<'static>, AppError> {
         recording: Cow::Owned(read_parquet(&folder.join(SAMPLES))?.recording),
         cell: picture(CELL).map(Cow::Owned),
         edge: picture(EDGE).map(Cow::Owned),
+        lean: picture(LEAN).map(Cow::Owned),
         space: space.map(Cow::Owned),
         profile: profile.map(Cow::Owned),
     })

@@ -188,6 +188,11 @@ impl CollisionModel {
         self.bodies.iter().map(|(_, body)| body)
     }
 
+    /// Its bodies, and what each is in the cell.
+    pub fn bodies_with_roles(&self) -> impl Iterator<Item = &(Role, Body)> {
+        self.bodies.iter()
+    }
+
     /// All joints at zero, or at the limit nearest to it.
     fn rest(&self) -> Positions {
         let mut rest = [0.0; MAX_JOINTS];

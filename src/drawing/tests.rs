@@ -31,6 +31,7 @@ fn plate() -> Scene {
         edge_path: EdgePath {
             points_in_world: points,
             relative_force_error: errors,
+            ..EdgePath::default()
         },
         contact_arrows: [0.0, -50.0]
             .map(|force| ContactArrow {

@@ -71,6 +71,19 @@ pub struct SceneBody {
     pub world_from_body: ScenePoses,
 }
 
+/// What of a body is checked for collisions: a mesh that moves with a body of the scene, or stands in the world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CollisionShape {
+    /// Name of the body that is checked; it may hold any character.
+    pub name: String,
+    /// Entity of the body of the scene that it moves with; none for the world.
+    pub moves_with: Option<String>,
+    /// Corners in the frame of that body, or in the world [m].
+    pub vertices: Vec<DVec3>,
+    /// Corner indices, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
 /// The contact force at one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactArrow {
@@ -85,6 +98,8 @@ pub struct ContactArrow {
 pub struct EdgePath {
     /// Its corners [m].
     pub points_in_world: Vec<DVec3>,
+    /// Length of the edge [m], of which the corners cut off a little; zero without one.
+    pub length: f64,
     /// Per segment, (force - desired) / desired; NaN where there was no contact.
     pub relative_force_error: Vec<f64>,
 }
@@ -105,6 +120,8 @@ pub struct Scene {
     pub title: String,
     /// Bodies; entities must differ.
     pub bodies: Vec<SceneBody>,
+    /// What is checked for collisions, not shown until it is asked for; names must differ.
+    pub collision_shapes: Vec<CollisionShape>,
     /// Times of the frames, increasing [s].
     pub frame_times: Vec<f64>,
     /// Planned path behind the tool at each frame [m].
@@ -130,19 +147,12 @@ impl Scene {
             self.edge_path.relative_force_error.len(),
             segments,
         )?;
-        let mut entities: Vec<&str> = self.bodies.iter().map(|b| b.entity.as_str()).collect();
-        entities.sort_unstable();
-        if let Some([name, ..]) = entities.windows(2).find(|pair| pair[0] == pair[1]) {
-            let found = format!("`{name}` twice");
-            return Err(RecordingError::scene(
-                "body entity",
-                found,
-                "different names",
-            ));
-        }
+        let entities = self.bodies.iter().map(|b| b.entity.as_str());
+        check_different("body entity", entities.collect())?;
         for body in &self.bodies {
             self.check_body(body)?;
         }
+        self.check_collision_shapes()?;
         for (index, limit) in self.limits.joint_torque.iter().enumerate() {
             if !(limit.is_finite() && *limit > 0.0) {
                 let what = format!("torque limit of joint {}", index + 1);
@@ -192,17 +202,55 @@ impl Scene {
                 vertices,
                 triangles,
             } = &shape.geometry
-                && let Some(index) = triangles
-                    .iter()
-                    .flatten()
-                    .find(|&&index| index as usize >= vertices.len())
             {
-                let what = format!("a vertex index of the mesh of `{name}`");
-                let expected = format!("less than {}", vertices.len());
-                return Err(RecordingError::scene(what, index, expected));
+                check_indices(name, vertices, triangles)?;
             }
         }
         Ok(())
+    }
+
+    fn check_collision_shapes(&self) -> Result<(), RecordingError> {
+        let shapes = &self.collision_shapes;
+        let names = shapes.iter().map(|shape| shape.name.as_str());
+        check_different("collision shape", names.collect())?;
+        for shape in shapes {
+            check_indices(&shape.name, &shape.vertices, &shape.triangles)?;
+            if let Some(with) = &shape.moves_with
+                && !self.bodies.iter().any(|body| body.entity == *with)
+            {
+                let what = format!("what the collision shape of `{}` moves with", shape.name);
+                let found = format!("`{with}`");
+                return Err(RecordingError::scene(what, found, "a body's entity"));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn check_different(what: &str, mut names: Vec<&str>) -> Result<(), RecordingError> {
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        None => Ok(()),
+        Some(pair) => {
+            let found = format!("`{}` twice", pair[0]);
+            Err(RecordingError::scene(what, found, "different names"))
+        }
+    }
+}
+
+fn check_indices(
+    name: &str,
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+) -> Result<(), RecordingError> {
+    let beyond = |index: &&u32| **index as usize >= vertices.len();
+    match triangles.iter().flatten().find(beyond) {
+        None => Ok(()),
+        Some(index) => {
+            let what = format!("a vertex index of the mesh of `{name}`");
+            let expected = format!("less than {}", vertices.len());
+            Err(RecordingError::scene(what, index, expected))
+        }
     }
 }
 
@@ -262,6 +310,17 @@ mod tests {
             bodies,
             ..Scene::default()
         };
+        let hull = |name: &str, with: &str, index| CollisionShape {
+            name: name.to_owned(),
+            moves_with: Some(with.to_owned()),
+            vertices: vec![DVec3::ZERO; 3],
+            triangles: vec![[0, 1, index]],
+        };
+        let hulls = |collision_shapes| Scene {
+            bodies: vec![fixed("arm")],
+            collision_shapes,
+            ..Scene::default()
+        };
         let mut late_frame = with(vec![]);
         late_frame.frame_times = vec![0.0, 0.0];
         let mut lost_frame = with(vec![]);
@@ -285,6 +344,18 @@ mod tests {
             (
                 with(vec![body("arm", still(), vec![[0, 1, 3]])]),
                 "is 3, expected less than 3",
+            ),
+            (
+                hulls(vec![hull("link", "arm", 2), hull("link", "arm", 2)]),
+                "collision shape is `link` twice",
+            ),
+            (
+                hulls(vec![hull("link", "leg", 2)]),
+                "moves with is `leg`, expected a body's entity",
+            ),
+            (
+                hulls(vec![hull("link", "arm", 3)]),
+                "mesh of `link` is 3, expected less than 3",
             ),
             (late_frame, "frame time is 0 s after 0 s"),
             (lost_frame, "frame time is NaN s"),

@@ -170,17 +170,27 @@ class CellRun(Run):
         end = self.time[after] if after < len(self.time) else self.time[-1]
         return 0.5 * (self.time[follow[0]] + end)
 
-    def colour_scale(self):
-        """End of the colours of the force error along the edge [%]: of 400 pieces 95 % lie within."""
+    PIECES = 400
+
+    # Length of the edge [m], not in the samples.
+    edge_length = None
+
+    def piece_errors(self):
+        """Mean relative error of the force over each piece of the edge while following [1]; NaN where nothing touched."""
         follow, desired = self.phase("follow"), self.scenario["process"]["force_n"]
         force, place = self.column("contact_force_n", follow), self.column("path_length_m", follow)
-        if not len(follow):
-            return None
-        piece = np.minimum((place / np.nanmax(self.column("path_length_m")) * 400).astype(int), 399)
+        piece = np.minimum((place / self.edge_length * self.PIECES).astype(int), self.PIECES - 1)
         touching = force > 0
-        sums = np.bincount(piece[touching], (force[touching] - desired) / desired, 400)
-        counts = np.bincount(piece[touching], minlength=400)
-        errors = np.sort(np.abs(sums[counts > 0] / counts[counts > 0]))
+        sums = np.bincount(piece[touching], (force[touching] - desired) / desired, self.PIECES)
+        counts = np.bincount(piece[touching], minlength=self.PIECES)
+        return np.divide(sums, counts, out=np.full(self.PIECES, np.nan), where=counts > 0)
+
+    def colour_scale(self):
+        """End of the colours of the force error along the edge [%]: of its pieces 95 % lie within."""
+        if not len(self.phase("follow")):
+            return None
+        errors = self.piece_errors()
+        errors = np.sort(np.abs(errors[np.isfinite(errors)]))
         size = errors[math.ceil(0.95 * len(errors)) - 1] if len(errors) else 0.0
         ends = [step * 10.0**power for power in range(-3, 2) for step in (1, 2, 5)]
         return 100 * next((end for end in ends if size <= end * (1 + 1e-9)), 10.0)

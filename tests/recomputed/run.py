@@ -19,6 +19,8 @@ NOT_RECOMPUTED = {
     "timing (wall_time_s, real_time_factor)": "differs from run to run",
     "length of the scale in a picture": "follows from the drawing's projection, tested in src/drawing",
     "samples that a chart keeps": "a choice of the drawing; that they are the recording's is checked",
+    "corners of bodies and the arrow's tip in a drawing in space": "follow from poses that samples do not hold, tested in src/drawing and tests/edges.rs",
+    "shades of a drawing in space": "a choice of the drawing; the values that they stand for are recomputed",
     "seed": "is not a result",
 }
 TIMING = {"wall_time_s", "real_time_factor"}
@@ -65,6 +67,15 @@ NOTES = {
 }
 
 
+# Words beside the drawing in space.
+SPACE = ["The whole cell is that in the middle of following; its arrow is the contact force with its friction."]
+
+
+def floats(text):
+    """Numbers as a page packs them."""
+    return np.frombuffer(base64.b64decode(text), "<f4")
+
+
 def full_label(key, label):
     """As a label stands alone: `force, mean`."""
     subject = next((subject for subject in ("force", "engagement") if key.startswith(subject) and subject not in label), None)
@@ -82,6 +93,10 @@ class Job:
         self.document = json.loads((self.folder / "summary.json").read_text())
         self.is_bench = self.document.get("kind") == "bench"
         self.run = (BenchRun if self.is_bench else CellRun)(scenario, samples)
+        if not self.is_bench:
+            # The edge is the mesh's: tested in src/workpiece.
+            told = json.loads(common.run("check", scenario.relative_to(common.PROJECT), "--json"))
+            self.run.edge_length = told["numbers"]["edge_length_mm"] / 1e3
         self.numbers = self.run.numbers()
         self.labels = BENCH_LABELS if self.is_bench else CELL_LABELS
         n = self.numbers
@@ -281,8 +296,11 @@ class Job:
         for tag, kind, text in page.texts:
             if text.strip() and tag not in ("dt", "dd", "small"):
                 self.page_text(tag, kind, " ".join(text.split()))
-        for chart in page.charts:
-            self.chart(json.loads(chart))
+        for data in map(json.loads, page.charts):
+            if "bodies" in data:
+                self.space(data)
+            else:
+                self.chart(data)
 
     def page_text(self, tag, kind, text):
         where = f"page: {tag} {kind}"
@@ -398,6 +416,12 @@ class Job:
             self.checked.number(where, found[1], self.force_shown())
         elif found := re.fullmatch(r"[−+]([\d.]+) %", text):
             self.checked.exact(where, float(found[1]), self.run.colour_scale(), relative=1e-6)
+        elif found := re.fullmatch(rf"lean_deg = ({common.PRINTED}), towards the (left|right) face", text):
+            lean = self.run.scenario["process"].get("lean_deg", 0.0)
+            self.checked.number(where, found[1], lean)
+            self.checked.fact(f"{where}: side", found[2], "left" if lean > 0 else "right")
+        elif text == "along the bisector":
+            self.checked.fact(where, self.run.scenario["process"].get("lean_deg", 0.0), 0.0)
         elif not re.fullmatch(r"[\d.]+ mm", text):
             self.checked.sentence(where, text, [], self.numbers)
 
@@ -411,15 +435,41 @@ class Job:
         across = 0.0 if friction is None or self.is_bench else friction[nearest]
         return float(np.hypot(force[nearest], across))
 
+    def space(self, told):
+        """The drawing in space: each piece of the edge has the mean force error of its samples, its legend their scale, its arrow the force."""
+        where = "page, in space"
+        errors = self.run.piece_errors()
+        (edge,) = told["lines"]
+        values = floats(edge["values"])
+        self.checked.fact(f"{where}: pieces", len(values), len(errors))
+        for number, (value, error) in enumerate(zip(values, errors)):
+            known = [float(v) if np.isfinite(v) else None for v in (value, 100 * error)]
+            self.checked.exact(f"{where}: error of piece {number + 1}", *known, relative=1e-6)
+        points = floats(edge["points"]).reshape(-1, 3)
+        self.checked.fact(f"{where}: ends of pieces", len(points), len(errors) + 1)
+        # The path is followed to its end.
+        self.checked.fact(f"{where}: edge followed", abs(np.nanmax(self.run.column("path_length_m")) - self.run.edge_length) < 1e-5, True)
+        self.checked.sentence(f"{where}: {edge['facts'][0][0]}", edge["facts"][0][1], ["{edge} mm"], {"edge": 1e3 * self.run.edge_length})
+        self.checked.fact(f"{where}: facts", len(edge["facts"]), 1)
+        scale = self.run.colour_scale()
+        for printed, end in zip(told["legend"]["ends"], (-scale, None, scale), strict=True):
+            if end is None:
+                self.checked.fact(f"{where}: legend", printed, "as desired")
+            else:
+                self.checked.sentence(f"{where}: legend", printed, ["{end} %"], {"end": end})
+        self.checked.fact(f"{where}: pieces without contact are in the legend", bool(told["legend"]["none"]), bool(np.isnan(errors).any()))
+        self.checked.sentence(f"{where}: arrow", told["arrow"]["label"], ["{force} N"], {"force": self.force_shown()})
+        self.checked.exact(f"{where}: arrow, length", float(np.linalg.norm(told["arrow"]["along"])), 1.0, relative=1e-6)
+        self.checked.sentence(f"{where}: words", told["words"], [f"The mean force error of each of {{pieces}} pieces of the edge while following. {words}" for words in SPACE], {"pieces": len(errors)})
+
     def chart(self, told):
         """All that a chart draws is in the samples."""
         factor = {"force [N]": 1.0, "stroke [mm]": 1e3, "pressure [bar absolute]": 1e-5, "error [µm]": 1e6, "torque [N m]": 1.0}.get(told["y"])
         if factor is None:
             self.checked.uncovered("chart", told["y"])
             return
-        numbers = lambda text: np.frombuffer(base64.b64decode(text), "<f4")
         for series in told["series"]:
-            drawn = numbers(series["values"])
+            drawn = floats(series["values"])
             drawn = drawn[np.isfinite(drawn)]
             known = self.run.samples.select_dtypes("number").to_numpy() * factor
             fits = np.isin(drawn, known.astype("f4"))

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::super::error::AppError;
+use super::super::picture::{across_the_edge, in_the_middle};
 use super::report::{Report, shown};
 use crate::cell::Cell;
-use crate::drawing::{CrossSection, cross_section};
 use crate::metrics;
 use crate::replay::LoadedCell;
 use crate::scenario::{
@@ -45,7 +45,7 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
         ),
     );
     tool(&mut report, &cell);
-    report.drawing = Some(drawn(&cell));
+    report.drawing = Some(across_the_edge(&cell));
     report.number("force_n", process.force);
     report.number("feed_mm_per_s", process.feed * 1e3);
     report.number("edge_length_mm", cell.part.edge.length * 1e3);
@@ -69,7 +69,7 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
 
 /// How the tool stands to the edge, in words.
 fn tool(report: &mut Report, cell: &Cell) {
-    let reference = cell.plan.reference(0.5 * cell.plan.duration());
+    let reference = in_the_middle(cell);
     let angle = reference.axis.angle_between(-reference.normal).to_degrees();
     // Where the handle goes from the bisector: what of the way back along the axis is not along the normal.
     let aside = -reference.axis - reference.normal * reference.share;
@@ -103,21 +103,6 @@ fn tool(report: &mut Report, cell: &Cell) {
         shown(margin * 1e3)
     );
     report.fact("collisions", text);
-}
-
-/// How the tool stands across the edge in its middle, as a picture.
-fn drawn(cell: &Cell) -> String {
-    let edge = &cell.part.edge;
-    let place = edge.at(0.5 * edge.length);
-    let turn = cell.scenario.workpiece.world_from_part.rotation;
-    let reference = cell.plan.reference(0.5 * cell.plan.duration());
-    cross_section(&CrossSection {
-        tangent: turn * place.tangent,
-        normals: [turn * place.normal_a, turn * place.normal_b],
-        bisector: turn * place.bisector,
-        axis: reference.axis,
-        gravity: cell.scenario.simulation.gravity,
-    })
 }
 
 /// A direction of the world in words: the nearest of its axes, and how far off where it is more than a little.

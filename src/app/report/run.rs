@@ -23,6 +23,8 @@ pub(in super::super) struct RunResult<'a> {
     pub cell: Option<Cow<'a, str>>,
     /// edge.svg.
     pub edge: Option<Cow<'a, str>>,
+    /// lean.svg.
+    pub lean: Option<Cow<'a, str>>,
     /// drawing.json.
     pub space: Option<Cow<'a, Drawing>>,
     /// edge_profile.csv.
@@ -299,12 +301,16 @@ fn pictures<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let pictures: Vec<(String, String)> = (pictures.into_iter())
         .filter_map(|(words, svg)| Some((words.to_owned(), svg.as_ref()?.to_string())))
         .collect();
-    let block = match &run.space {
-        Some(space) => Block::InSpace(space, pictures),
-        None if pictures.is_empty() => return None,
-        None => Block::Sketches(pictures),
+    let mut blocks = match &run.space {
+        Some(space) => vec![Block::InSpace(space, pictures)],
+        None if pictures.is_empty() => vec![],
+        None => vec![Block::Sketches(pictures)],
     };
-    Some(PageSection::new(title, vec![block]))
+    if let Some(lean) = &run.lean {
+        let words = "The tool across the edge in the middle of following, as it is planned; process.lean_deg and process.tool_axis set it.";
+        blocks.push(Block::Sketches(vec![(words.to_owned(), lean.to_string())]));
+    }
+    (!blocks.is_empty()).then(|| PageSection::new(title, blocks))
 }
 
 /// Result of each command of a bench.

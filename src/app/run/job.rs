@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{
-    DRAWING, EDGE, EDGE_PROFILE, FIGURES, OutputFolder, Picture, RECORDING, RunOutput, Sketches,
+    DRAWING, EDGE, EDGE_PROFILE, FIGURES, LEAN, OutputFolder, Picture, RECORDING, RunOutput,
+    Sketches,
 };
 use super::super::growing::GrowingFile;
-use super::super::picture::scene_of;
+use super::super::picture::{across_the_edge, scene_of};
 use super::super::report::page_of_run;
 use super::super::viewer::Watch;
 use super::super::{bench, bench_figures, bench_picture};
@@ -91,6 +92,7 @@ impl Job {
     pub(super) fn writes(&self, name: &str, recorded: bool) -> bool {
         match name {
             RECORDING => recorded,
+            LEAN => matches!(self, Self::Cell(_)),
             FIGURES => matches!(self, Self::Bench(_)),
             // Of a run that followed one.
             EDGE | DRAWING | EDGE_PROFILE => false,
@@ -172,7 +174,10 @@ fn perform_cell(
         let summary = markdown(title, &finished.summary, &verdicts);
         let (report, encoded) = rayon::join(
             || {
-                let sketches = Sketches::of(&scene, &finished.recording);
+                let sketches = Sketches {
+                    lean: Some(across_the_edge(cell)),
+                    ..Sketches::of(&scene, &finished.recording)
+                };
                 let page = page_of_run(
                     &document,
                     &finished.recording,

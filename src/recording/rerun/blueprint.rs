@@ -5,8 +5,8 @@
 //! from one.
 
 use ::rerun::external::re_sdk_types::blueprint::archetypes::{
-    ContainerBlueprint, PanelBlueprint, TimeAxis, TimePanelBlueprint, ViewBlueprint, ViewContents,
-    ViewportBlueprint,
+    ContainerBlueprint, EntityBehavior, PanelBlueprint, TimeAxis, TimePanelBlueprint,
+    ViewBlueprint, ViewContents, ViewportBlueprint,
 };
 use ::rerun::external::re_sdk_types::blueprint::components::{
     ColumnShare, ContainerKind, IncludedContent, PanelState, QueryExpression, RootContainer,
@@ -53,6 +53,8 @@ pub(super) struct View {
     pub(super) contents: Vec<String>,
     /// Settings of the view, each under its archetype's short name.
     pub(super) properties: Vec<(&'static str, Box<dyn AsComponents>)>,
+    /// Entities that are not seen, nor what is below them, until they are asked for in the panel of the blueprint.
+    pub(super) hidden: Vec<&'static str>,
 }
 
 /// A view, or panels that share a part of the screen.
@@ -195,6 +197,10 @@ impl BlueprintWriter<'_> {
         self.add(entity, &head)?;
         for (property, settings) in &view.properties {
             self.add(&format!("{entity}/{property}"), settings.as_ref())?;
+        }
+        for hidden in &view.hidden {
+            let place = format!("{entity}/ViewContents/overrides{hidden}/visualizers");
+            self.add(&place, &EntityBehavior::new().with_visible(false))?;
         }
         Ok(())
     }

@@ -1,9 +1,11 @@
 //! Draws the cell in space: bodies, edge path, contact force.
 
+use ::rerun::components::TransformFrameId;
 use ::rerun::log::TimeColumn;
 use ::rerun::{
-    Arrows3D, Boxes3D, Color, Cylinders3D, Ellipsoids3D, FillMode, LineStrips3D, Mesh3D,
-    Quaternion, Radius, Transform3D, ViewCoordinates,
+    Arrows3D, Boxes3D, Color, CoordinateFrame, Cylinders3D, Ellipsoids3D, EntityPath,
+    EntityPathPart, FillMode, LineStrips3D, Mesh3D, Quaternion, Radius, Transform3D,
+    ViewCoordinates,
 };
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
@@ -14,7 +16,9 @@ use super::rrd::{RrdError, RrdWriter};
 use super::shading::shade;
 use super::timelines::Axes;
 use crate::recording::error_scale::ErrorScale;
-use crate::recording::scene::{EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
+use crate::recording::scene::{
+    CollisionShape, Colour, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
+};
 
 /// Entity of which everything in space is a child.
 pub(super) const CELL: &str = "/cell";
@@ -23,6 +27,11 @@ pub(super) const EDGE_PATH: &str = "/cell/edge_path";
 /// Entity of the contact force's arrow.
 pub(super) const CONTACT_FORCE: &str = "/cell/contact_force";
 
+/// Entity of what is checked for collisions, a child for each body.
+pub(super) const COLLISION: &str = "/cell/collision";
+
+/// Colour of what is checked for collisions: unlike any body's, and seen through.
+const COLLISION_COLOUR: Colour = [204, 121, 167, 110];
 /// Half width of the edge path's line on the screen [points].
 const EDGE_PATH_RADIUS: f32 = 2.5;
 /// Half width of the force arrow's shaft [m].
@@ -42,6 +51,9 @@ pub(super) fn write_bodies(rrd: &mut RrdWriter, scene: &Scene) -> Result<(), Rrd
         for (index, shape) in body.shapes.iter().enumerate() {
             write_shape(rrd, &format!("{entity}/part_{}", index + 1), shape)?;
         }
+    }
+    for shape in &scene.collision_shapes {
+        write_collision_shape(rrd, shape)?;
     }
     // The colour that the contact force has in its plot.
     let look = Arrows3D::update_fields()
@@ -115,6 +127,22 @@ fn write_shape(rrd: &mut RrdWriter, entity: &str, shape: &SceneShape) -> Result<
             rrd.add_static(entity, &solid)
         }
     }
+}
+
+/// In the frame of the body that it moves with, so that the file holds that body's poses once.
+fn write_collision_shape(rrd: &mut RrdWriter, shape: &CollisionShape) -> Result<(), RrdError> {
+    let entity = EntityPath::from(COLLISION).join(&vec![EntityPathPart::new(&*shape.name)].into());
+    let entity = entity.to_string();
+    if let Some(with) = &shape.moves_with {
+        let frame = EntityPath::from(format!("{CELL}/{with}"));
+        let frame = TransformFrameId::from_entity_path(&frame);
+        rrd.add_static(&entity, &CoordinateFrame::new(frame))?;
+    }
+    let mesh = shade(&shape.vertices, &shape.triangles);
+    let solid = Mesh3D::new(mesh.positions)
+        .with_vertex_normals(mesh.normals)
+        .with_albedo_factor(*rerun_colour(COLLISION_COLOUR));
+    rrd.add_static(&entity, &solid)
 }
 
 /// One strip per segment, so that each has its colour.

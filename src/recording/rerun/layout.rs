@@ -13,7 +13,7 @@ use ::rerun::{AsComponents, components::Range1D, datatypes};
 use glam::DVec3;
 
 use super::blueprint::{Panel, View, ViewKind, write_blueprint};
-use super::cell::CELL;
+use super::cell::{CELL, COLLISION};
 use super::colours::rerun_colour;
 use super::options::{PHASES, RerunOptions, SUMMARY};
 use super::plots::Plot;
@@ -139,6 +139,7 @@ pub(super) fn plain_view(kind: ViewKind, name: &str, origin: &str) -> Panel {
         origin: origin.to_owned(),
         contents: vec!["$origin/**".to_owned()],
         properties: vec![],
+        hidden: vec![],
     })
 }
 
@@ -164,6 +165,7 @@ fn plot_view(plot: &Plot) -> Panel {
         origin: plot.entity.to_owned(),
         contents: vec!["$origin/**".to_owned()],
         properties,
+        hidden: vec![],
     })
 }
 
@@ -231,5 +233,6 @@ fn spatial_view(name: &str, eye_and_target: Option<(DVec3, DVec3)>, grid_spacing
         origin: CELL.to_owned(),
         contents: vec!["$origin/**".to_owned()],
         properties,
+        hidden: vec![COLLISION],
     })
 }

@@ -4,16 +4,21 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use ::rerun::external::re_sdk_types::blueprint::archetypes::EntityBehavior;
 use ::rerun::external::re_tuid;
 use ::rerun::log::Chunk;
-use ::rerun::{Arrows3D, ChunkStore, ChunkStoreConfig, Scalars, StateChange, Transform3D};
+use ::rerun::{
+    Arrows3D, ChunkStore, ChunkStoreConfig, ComponentIdentifier, CoordinateFrame, Mesh3D, Scalars,
+    StateChange, Transform3D,
+};
 use glamx::DPose3;
 
 use super::options::PHASES;
 use super::timelines::{PATH_LENGTH, SIM_TIME};
 use super::*;
 use crate::recording::scene::{
-    ContactArrow, EdgePath, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
+    CollisionShape, ContactArrow, EdgePath, SceneBody, SceneGeometry, SceneLimits, ScenePoses,
+    SceneShape,
 };
 use crate::recording::{PhaseSpan, RecordedChannel, Unit, schema};
 use glam::DVec3;
@@ -80,6 +85,20 @@ fn scene() -> Scene {
     Scene {
         title: "plate edge".to_owned(),
         bodies,
+        collision_shapes: vec![
+            CollisionShape {
+                name: "link 1/hull".to_owned(),
+                moves_with: Some("arm/link_1".to_owned()),
+                vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Z],
+                triangles: vec![[0, 1, 2]],
+            },
+            CollisionShape {
+                name: "post".to_owned(),
+                moves_with: None,
+                vertices: vec![DVec3::Y, DVec3::X, DVec3::Z],
+                triangles: vec![[0, 1, 2]],
+            },
+        ],
         frame_path_lengths: frame_times
             .iter()
             .map(|t| (0.05 * (t - 0.5)).max(0.0))
@@ -87,6 +106,7 @@ fn scene() -> Scene {
         edge_path: EdgePath {
             points_in_world: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0],
             relative_force_error: vec![0.02, f64::NAN],
+            length: 2.0,
         },
         contact_arrows: frame_times.iter().map(arrow).collect(),
         frame_times,
@@ -209,6 +229,52 @@ fn bodies_move_at_frame_rate_and_the_arrow_shows_contact_only() {
     // No contact at 0.48 s, 100 N drawn as 0.1 m downwards at 0.5 s.
     assert!(lengths[24].is_empty());
     assert_eq!(lengths[25], [-0.1]);
+}
+
+/// Texts of a component of an entity.
+fn texts(store: &ChunkStore, entity: &str, component: ComponentIdentifier) -> Vec<String> {
+    let own = chunks(store, entity).into_iter();
+    let texts = own.flat_map(|chunk| chunk.iter_slices::<String>(component));
+    texts.map(|row| row[0].to_string()).collect()
+}
+
+#[test]
+fn collision_shapes_ride_on_their_bodies_and_are_hidden_at_first() {
+    let (data, layout) = written();
+    let frame = CoordinateFrame::descriptor_frame().component;
+    let corners = Mesh3D::descriptor_vertex_positions().component;
+    for (entity, rides_on, first) in [
+        // A name with a slash is one part of the path.
+        (
+            "/cell/collision/link\\ 1\\/hull",
+            vec!["tf#/cell/arm/link_1"],
+            [0.0, 0.0, 0.0],
+        ),
+        ("/cell/collision/post", vec![], [0.0, 1.0, 0.0]),
+    ] {
+        let own = chunks(&data, entity);
+        assert!(!own.is_empty() && own.iter().all(|chunk| chunk.is_static()));
+        assert_eq!(texts(&data, entity, frame), rides_on, "{entity}");
+        let mut found = own.iter();
+        let mut found = found.by_ref().flat_map(|chunk| {
+            let rows = chunk.iter_slices::<[f32; 3]>(corners);
+            rows.map(|row| row.to_vec()).collect::<Vec<_>>()
+        });
+        assert_eq!(found.next().unwrap()[0], first, "{entity}");
+    }
+    let hidden = layout.iter_physical_chunks().filter(|chunk| {
+        let place = "/ViewContents/overrides/cell/collision/visualizers";
+        chunk.entity_path().to_string().ends_with(place)
+    });
+    let visible = EntityBehavior::descriptor_visible().component;
+    let hidden: Vec<bool> = hidden
+        .flat_map(|chunk| {
+            let rows = chunk.iter_slices::<bool>(visible);
+            rows.map(|row| row.value(0)).collect::<Vec<_>>()
+        })
+        .collect();
+    // In the view of the cell and in that of the edge.
+    assert_eq!(hidden, [false, false]);
 }
 
 #[test]

@@ -99,6 +99,7 @@ fn cloud_view(index: usize, cloud: &Cloud) -> Panel {
             ("VisualBounds2D", Box::new(VisualBounds2D::new(bounds))),
             ("Background", Box::new(background)),
         ],
+        hidden: vec![],
     })
 }
 
@@ -186,5 +187,6 @@ fn plot_view(entity: &str, sheet: &Sheet, plot: &SheetPlot, linked: bool) -> Pan
         origin: sheet::plot_entity(entity, plot),
         contents: vec!["$origin/**".to_owned()],
         properties,
+        hidden: vec![],
     })
 }
