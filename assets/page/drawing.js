@@ -489,15 +489,22 @@
       return length > 0.2 ? [(15 * x) / length, (-15 * y) / length] : [0, 0];
     }
 
-    // Words beside marks.
+    // Words beside marks: the start's away from the middle of its line, which it would hide.
     words() {
       const made = [];
-      const word = (at, text) => {
+      const word = (at, text, aside = [0, -18]) => {
         const chip = element("span", { class: "word" }, text);
-        this.labels.push({ sample: at, chip, aside: [0, -18] });
+        this.labels.push({ sample: at, chip, aside });
         made.push(chip);
       };
-      if (this.begin.dot.visible) word(this.begin.dot.position, "start");
+      if (this.begin.dot.visible) {
+        const at = this.begin.dot.position;
+        const samples = this.samples(this.begin.line).map((sample) => this.project(sample));
+        const middle = [0, 1].map((axis) => samples.reduce((sum, place) => sum + place[axis], 0) / samples.length);
+        const away = this.project(at).map((value, axis) => value - middle[axis]);
+        const length = Math.hypot(...away);
+        word(at, "start", length > 1 ? [(32 * away[0]) / length, (20 * away[1]) / length] : undefined);
+      }
       const { arrow } = this.told;
       if (arrow && this.arrow.visible) word(() => this.arrow.localToWorld(new THREE.Vector3(0, -84, 0)), arrow.label);
       return made;

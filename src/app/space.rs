@@ -46,8 +46,9 @@ pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
     Some(Drawing {
         name: "The part, its edge in the colours of the force error, and the cell".to_owned(),
         words: format!(
-            "The mean force error of each of {} pieces of the edge while following. The whole cell is that in the middle of following; its arrow is the contact force with its friction.",
-            scene.edge_path.relative_force_error.len()
+            "The mean force error of each of {} pieces of the edge while following. The whole cell is that in the middle of following; its arrow is the contact force with its friction.{}",
+            scene.edge_path.relative_force_error.len(),
+            simplified(&solids).unwrap_or_default()
         ),
         views: vec![
             view("Edge", DQuat::from_rotation_z(TURN) * edge_direction(scene)),
@@ -60,18 +61,28 @@ pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
     })
 }
 
+/// How much of the bodies is drawn, where it is not all.
+fn simplified(solids: &[Solid]) -> Option<String> {
+    let drawn: usize = solids.iter().map(|solid| solid.triangles.len()).sum();
+    let whole: usize = solids.iter().map(|solid| solid.whole).sum();
+    (drawn < whole).then(|| {
+        format!(" The bodies are drawn with {drawn} of their {whole} triangles; the line of the edge is that of the whole part.")
+    })
+}
+
 fn edge(scene: &Scene) -> DrawnLine {
     let path = &scene.edge_path;
     let scale = ErrorScale::of(path);
     let errors = path.relative_force_error.iter();
-    let pieces = path.points_in_world.windows(2);
-    let length: f64 = pieces.map(|two| two[0].distance(two[1])).sum();
     DrawnLine {
         id: "followed edge".to_owned(),
         points: floats(path.points_in_world.iter().copied()),
         shades: errors.clone().map(|e| shade(scale.colour(*e))).collect(),
         values: errors.map(|error| (100.0 * error) as f32).collect(),
-        facts: vec![["length".to_owned(), with_unit(MILLIMETRES * length, "mm")]],
+        facts: vec![[
+            "length".to_owned(),
+            with_unit(MILLIMETRES * path.length, "mm"),
+        ]],
         ..DrawnLine::default()
     }
 }

@@ -23,6 +23,8 @@ pub struct Solid {
     pub corners: Vec<DVec3>,
     /// Corner indices, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Triangles that it has where it is not simplified.
+    pub whole: usize,
 }
 
 /// The bodies at a frame; where they have more triangles than `most` together, each is simplified to its share.
@@ -36,34 +38,36 @@ pub(super) fn solids(scene: &Scene, frame: usize, most: usize) -> Vec<Solid> {
     }
     let solid = |((body, colour), faces): ((u16, Colour), Vec<Face>)| {
         let most = (share * faces.len() as f64) as usize;
-        let (corners, triangles) = simplified(&faces, most.max(LEAST));
+        let (corners, triangles, whole) = simplified(&faces, most.max(LEAST));
         Solid {
             entity: scene.bodies[usize::from(body) - 1].entity.clone(),
             colour,
             corners,
             triangles,
+            whole,
         }
     };
     groups.into_iter().map(solid).collect()
 }
 
-/// Triangles over shared corners; where there are too many, corners in one cell of a grid become one.
-fn simplified(faces: &[Face], most: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+/// Triangles over shared corners; where there are too many, corners in one cell of a grid become one. Beside them how many there are.
+fn simplified(faces: &[Face], most: usize) -> (Vec<DVec3>, Vec<[u32; 3]>, usize) {
     let corners = || faces.iter().flat_map(|face| face.corners);
     let start = corners().next().unwrap_or_default();
     let (low, high) = corners().fold((start, start), |(low, high), corner| {
         (low.min(corner), high.max(corner))
     });
     // As fine as the page's numbers, so that equal corners are one.
-    let exact = merged(faces, low, 1e-8);
-    if exact.1.len() <= most {
-        return exact;
+    let (corners, triangles) = merged(faces, low, 1e-8);
+    let whole = triangles.len();
+    if whole <= most {
+        return (corners, triangles, whole);
     }
     let mut cell = (high - low).max_element() / FINEST;
     loop {
-        let merged = merged(faces, low, cell);
-        if merged.1.len() <= most {
-            return merged;
+        let (corners, triangles) = merged(faces, low, cell);
+        if triangles.len() <= most {
+            return (corners, triangles, whole);
         }
         cell *= 1.5;
     }
@@ -128,8 +132,9 @@ mod tests {
         let exact = &solids(&scene, 0, usize::MAX)[0];
         // 15 rings of 32 corners and two poles; the poles' triangles have no area twice.
         assert_eq!([exact.corners.len(), exact.triangles.len()], [482, 960]);
+        assert_eq!(exact.whole, 960);
         let few = &solids(&scene, 0, 300)[0];
-        assert!((100..=300).contains(&few.triangles.len()));
+        assert!((100..=300).contains(&few.triangles.len()) && few.whole == 960);
         assert!((volume(few) / volume(exact) - 1.0).abs() < 0.1);
         assert_eq!(few.entity, "ball");
     }
