@@ -226,6 +226,98 @@ fn meshes() {
 }
 
 #[test]
+fn obstacles() {
+    /// An obstacle that is a mesh of these triangles [mm], far from all else.
+    fn mesh(b: &Bench, triangles: &[[[u32; 3]; 3]]) {
+        let corner = |[x, y, z]: [u32; 3]| format!("vertex {x} {y} {z}\n");
+        let facet = |corners: &[[u32; 3]; 3]| {
+            let corners: String = corners.iter().copied().map(corner).collect();
+            format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+        };
+        let facets: String = triangles.iter().map(facet).collect();
+        b.write(
+            "thing.stl",
+            format!("solid thing\n{facets}endsolid thing\n"),
+        );
+        obstacle(b, "mesh = \"thing.stl\"\nmesh_unit = \"mm\"");
+    }
+    fn obstacle(b: &Bench, keys: &str) {
+        let keys = format!("[[obstacle]]\nposition_mm = [-900, 900, 50]\n{keys}\n[process]");
+        edit(b, "[process]", &keys);
+    }
+    const A: [u32; 3] = [0, 0, 0];
+    const B: [u32; 3] = [100, 0, 0];
+    const C: [u32; 3] = [0, 100, 0];
+    const D: [u32; 3] = [100, 100, 0];
+    const TOP: [u32; 3] = [30, 30, 50];
+    check(&[
+        refusal(
+            // A tetrahedron whose corners lie in a plane: closed, but without a volume.
+            |b| mesh(b, &[[A, C, B], [B, C, D], [A, B, D], [A, D, C]]),
+            &["thing.stl: mesh is flat: its enclosed volume is 0e0 m3, expected positive"],
+        ),
+        refusal(
+            |b| mesh(b, &[[A, C, B], [A, B, TOP], [B, C, TOP]]),
+            &["thing.stl: mesh is not a closed surface: 3 open edges"],
+        ),
+        refusal(
+            |b| mesh(b, &[[A, B, C], [A, TOP, B], [B, TOP, C], [C, TOP, A]]),
+            &["thing.stl: mesh is inside out"],
+        ),
+        refusal(
+            |b| obstacle(b, "name = \"post\""),
+            &[
+                "scenario.toml",
+                "`obstacle[0].box_mm` is missing",
+                "box_mm = [x, y, z], or mesh",
+            ],
+        ),
+        refusal(
+            |b| obstacle(b, "box_mm = [100, 0, 100]"),
+            &["`obstacle[0].box_mm[1]` is 0 mm, expected 0.01 to 100000 mm"],
+        ),
+    ]);
+    // The same tetrahedron, not flat, stands where it is in nobody's way.
+    let bench = Bench::new("plate_edge");
+    mesh(&bench, &[[A, C, B], [A, B, TOP], [B, C, TOP], [C, A, TOP]]);
+    let outcome = bench.idc(&["check", "scenario.toml"], &[]);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+}
+
+#[test]
+fn collision_shapes_of_a_robot() {
+    fn given(b: &Bench, link: &str, shape: &str) {
+        let link = format!("<link name=\"{link}\">");
+        let own = format!("{link}<collision><geometry>{shape}</geometry></collision>");
+        b.replace("arm.urdf", &link, &own);
+    }
+    check(&[refusal(
+        // Three joints lie between them.
+        |b| given(b, "wrist_2_link", "<sphere radius=\"1.0\"/>"),
+        &[
+            "scenario.toml: with all joints at zero",
+            "upper_arm and wrist_2_link reach ",
+            "collision.allowed_pairs = [[\"upper_arm\", \"wrist_2_link\"]]",
+        ],
+    )]);
+    // Meshes that are not there: what is drawn of the links counts in their place, and it is said once.
+    let bench = Bench::new("plate_edge");
+    for link in ["shoulder", "forearm"] {
+        given(&bench, link, "<mesh filename=\"none.stl\"/>");
+    }
+    let outcome = bench.run();
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let told = |file: &str| outcome.err.matches(file).count();
+    assert_eq!(told("there is no file none.stl"), 1, "{}", outcome.err);
+    let said = "links with collision meshes that cannot be used have the shape that is drawn of them: shoulder, forearm";
+    assert_eq!(told(said), 1, "{}", outcome.err);
+    let as_drawn = std::fs::read(bench.path("out/samples.parquet")).unwrap();
+    let bench = Bench::new("plate_edge");
+    assert_eq!(bench.run().code, 0);
+    assert!(as_drawn == std::fs::read(bench.path("out/samples.parquet")).unwrap());
+}
+
+#[test]
 fn edges_and_burrs() {
     fn burr_table(b: &Bench, rows: &str) {
         edit(

@@ -43,9 +43,10 @@ pub enum MeshFault {
         /// Triangle, counted from 0 after merging vertices.
         triangle: usize,
     },
-    /// The surface is closed, but its normals point into the part.
+    /// The surface is closed, but its normals point into the part, or it encloses nothing.
     #[error(
-        "is inside out: its enclosed volume is {volume:e} m3, expected positive (triangles counter-clockwise seen from outside)"
+        "{}: its enclosed volume is {volume:e} m3, expected positive (triangles counter-clockwise seen from outside)",
+        if volume.abs() < NO_VOLUME { "is flat" } else { "is inside out" }
     )]
     InsideOut {
         /// Signed volume [m^3].
@@ -63,6 +64,9 @@ pub enum MeshFault {
         scale: f64,
     },
 }
+
+/// Volume of rounding errors, far below that of anything whose largest side is a millimetre [m^3].
+pub(super) const NO_VOLUME: f64 = 1e-15;
 
 /// Units with which a part of a size in units of its file would be one that a robot can carry a tool along.
 fn units_that_fit(size: f64) -> String {

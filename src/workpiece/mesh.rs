@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::error::MeshFault;
+use super::error::{MeshFault, NO_VOLUME};
 use super::repair::{connect, extent};
 use super::topology::Topology;
 
@@ -47,7 +47,7 @@ impl TriangleMesh {
             topology,
         };
         let volume = mesh.volume();
-        if volume <= 0.0 {
+        if volume < NO_VOLUME {
             return Err(MeshFault::InsideOut { volume });
         }
         Ok(mesh)
