@@ -7,9 +7,9 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::scenario::KeyValue;
 
-/// Keys of a device or of its controller with the values that a candidate gives them, in each key's own unit.
+/// Keys of a device or of a table of the scenario with the values that a candidate gives them, in each key's own unit.
 ///
-/// A key without a dot is one of `[device.override]`; `controller.name` is the key `name` of `[controller]`.
+/// A key without a dot is one of `[device.override]`; `process.name` is the key `name` of `[process]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Design {
     entries: Vec<(String, f64)>,

@@ -26,7 +26,7 @@ pub(super) struct StudyFile {
     /// Limits kept in every scenario that gives the metric: metrics by name, and `force_n`, forces that the device must be able to give at rest [N].
     #[serde(default)]
     pub limits: BTreeMap<String, BoundKeys>,
-    /// Variables: keys of `[device.override]` or, in quotes, of a controller.
+    /// Variables: keys of `[device.override]` or, in quotes, of a table of the scenario.
     #[serde(default)]
     pub variables: BTreeMap<String, VariableKeys>,
 }

@@ -4,7 +4,12 @@ use crate::quantity::significant;
 use crate::scenario::units::{Unit, stem};
 
 /// Suffixes of metrics that no file key has.
-const OTHERS: [(&str, &str); 3] = [("_percent", "%"), ("_nl", "Nl"), ("_g", "g")];
+const OTHERS: [(&str, &str); 4] = [
+    ("_percent", "%"),
+    ("_nl", "Nl"),
+    ("_g", "g"),
+    ("_mm3", "mm3"),
+];
 
 fn parts(key: &str) -> (&str, &'static str) {
     OTHERS
@@ -37,7 +42,10 @@ pub(super) fn axis(key: &str) -> String {
 
 /// Powers of a unit as raised digits, for pictures.
 pub(super) fn raised(text: &str) -> String {
-    let text = text.replace("mm2", "mm\u{b2}").replace("cm3", "cm\u{b3}");
+    let text = text
+        .replace("mm2", "mm\u{b2}")
+        .replace("cm3", "cm\u{b3}")
+        .replace("mm3", "mm\u{b3}");
     text.replace("um", "µm")
 }
 

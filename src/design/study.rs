@@ -189,7 +189,7 @@ fn least_evaluations(variables: usize) -> usize {
 fn quote_dotted(error: ScenarioError) -> ScenarioError {
     match error {
         ScenarioError::UnknownKey { place, key, .. }
-            if key.starts_with("variables.controller.") =>
+            if key.matches('.').count() > 1 && !key.contains("device") =>
         {
             let name = key.trim_start_matches("variables.").to_owned();
             ScenarioError::UnknownKey {

@@ -15,7 +15,7 @@ const ROD: &str = "rod_mm";
 /// A key that the study varies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
-    /// The key, unit included: of `[device.override]`, or `controller.name`.
+    /// The key, unit included: of `[device.override]`, or `table.name` of the scenario.
     pub key: String,
     /// Values that it may take, in the key's unit.
     pub domain: Domain,

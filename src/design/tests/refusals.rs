@@ -28,7 +28,7 @@ fn variables() {
     refused(
         VOLUME,
         &VOLUME.replace("dead_volume_cm3", "dead_volume_l"),
-        "19:12: unknown key `variables.dead_volume_l`; a variable is a key of [device.override] or, in quotes, \"controller.key\"; the key is `dead_volume_cm3`, in cm3",
+        "19:12: unknown key `variables.dead_volume_l`; a variable is a key of [device.override] or, in quotes, \"table.key\" of controller, contact, process, removal or tool; the key is `dead_volume_cm3`, in cm3",
     );
     refused(
         VOLUME,

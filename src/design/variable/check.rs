@@ -3,7 +3,7 @@
 use crate::scenario::ScenarioError;
 use crate::scenario::check::Section;
 use crate::scenario::document::Document;
-use crate::scenario::sections::model_sections;
+use crate::scenario::sections::{model_sections, scenario_sections};
 use crate::scenario::suggestion::advice;
 
 use super::{BORE, CatalogueEntry, Domain, Variable};
@@ -34,18 +34,26 @@ pub(in crate::design) fn variable(
     })
 }
 
-/// Checks that it is a key of a device, or one of the controller. The latter depend on its kind and are checked when the scenario is made.
+/// Tables of a scenario whose numbers may be varied beside those of its device.
+const TABLES: [&str; 5] = ["controller", "contact", "process", "removal", "tool"];
+
+/// Checks that it is a key of a device, or a number of one of the scenario's tables. Those of a controller depend on its kind; all are checked when the
+/// scenario is made.
 fn check_key(document: &Document<'_>, key: &str) -> Result<(), ScenarioError> {
-    if key
-        .strip_prefix("controller.")
-        .is_some_and(|name| !name.is_empty() && !name.contains('.'))
-    {
-        return Ok(());
-    }
     let sections = model_sections();
-    let known = sections
-        .iter()
-        .any(|(section, keys)| *section == "device" && keys.contains(&key));
+    let (table, name) = key.split_once('.').unwrap_or(("device", key));
+    let known = match table {
+        "controller" => !name.is_empty() && !name.contains('.'),
+        "device" => sections
+            .iter()
+            .any(|(section, keys)| *section == "device" && keys.contains(&name)),
+        table => {
+            TABLES.contains(&table)
+                && scenario_sections()
+                    .iter()
+                    .any(|(section, keys)| *section == table && keys.contains(&name))
+        }
+    };
     if known {
         return Ok(());
     }
@@ -53,7 +61,7 @@ fn check_key(document: &Document<'_>, key: &str) -> Result<(), ScenarioError> {
         place: document.place(&format!("variables.{key}")),
         key: format!("variables.{key}"),
         advice: format!(
-            "a variable is a key of [device.override] or, in quotes, \"controller.key\"; {}",
+            "a variable is a key of [device.override] or, in quotes, \"table.key\" of controller, contact, process, removal or tool; {}",
             advice(&format!("device.{key}"), &sections)
         ),
     })
