@@ -33,6 +33,12 @@ enum Command {
     /// Run a scenario: simulate, record, print how uniform the contact force was.
     #[command(after_help = help::RUN)]
     Run(super::run::RunArguments),
+    /// Run a scenario with many other values of its keys: how its numbers are distributed, and which key drives which.
+    #[command(after_help = super::vary::EXAMPLES)]
+    Vary(super::vary::VaryArguments),
+    /// Do one task of a plan that `idc vary` or `idc fleet` wrote, as an engine asks for it.
+    #[command(after_help = super::task::EXAMPLES)]
+    Task(super::task::TaskArguments),
     /// Explain a file without running it: what it describes, what would be done, what is missing.
     #[command(after_help = super::check::EXAMPLES)]
     Check(super::check::CheckArguments),
@@ -117,6 +123,8 @@ struct DesignArguments {
 pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
         Command::Run(arguments) => super::run::run(arguments),
+        Command::Vary(arguments) => super::vary::run(arguments),
+        Command::Task(arguments) => super::task::run(arguments),
         Command::Check(arguments) => super::check::run(arguments),
         Command::Effects(arguments) => super::effects::run(arguments),
         Command::New(arguments) => super::new::run(arguments),

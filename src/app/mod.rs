@@ -11,6 +11,7 @@ mod design;
 mod diagnose;
 mod edges;
 mod effects;
+mod engine;
 mod error;
 mod estimate_figure;
 mod files;
@@ -30,6 +31,8 @@ mod report;
 mod run;
 mod schema;
 mod space;
+mod task;
+mod vary;
 mod view;
 mod viewer;
 

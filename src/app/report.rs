@@ -20,6 +20,7 @@ use super::files::{
     Sketches, Standing, is_same, prepare_file,
 };
 use super::output::say;
+use super::vary::{self, SWEEP};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
 use crate::page::html;
@@ -28,7 +29,8 @@ use crate::recording::parquet::read_parquet;
 use crate::recording::{Recording, RecordingError};
 
 pub(super) use charts::{lacking, most_of, variable};
-pub(super) use run::{Label, RunResult};
+pub(super) use provenance::sources;
+pub(super) use run::{Label, RunResult, labels};
 pub(super) use signals::{ROLES, chart_groups};
 
 /// For the help.
@@ -66,7 +68,8 @@ pub(super) struct ReportArguments {
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
     let inputs = [
-        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DRAWING, DESIGN, FRONT,
+        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DRAWING, DESIGN, FRONT, SWEEP,
+        vary::RUNS,
     ];
     if let Some(out) = &arguments.out
         && inputs.iter().any(|name| is_same(&folder.join(name), out))
@@ -83,6 +86,9 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         )
     } else if folder.join(SUMMARY).is_file() {
         ("run", of_run(&read_run(folder)?))
+    } else if folder.join(SWEEP).is_file() {
+        let swept = read_json(&folder.join(SWEEP))?;
+        ("sweep", vary::page_of(&swept, &folder.join(vary::RUNS))?)
     } else if folder.join(DESIGN).is_file() {
         let document = read_json(&folder.join(DESIGN))?;
         let front = std::fs::read_to_string(folder.join(FRONT)).ok();
