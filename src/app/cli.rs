@@ -78,9 +78,6 @@ enum Command {
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
     #[command(after_help = help::PROVE)]
     Prove(super::prove::ProveArguments),
-    /// Try the diagnosis on every effect, from its largest size down to where it is lost, and on devices with nothing missing.
-    #[command(after_help = help::SWEEP)]
-    Sweep(super::prove::SweepArguments),
     /// Write the cases that come with the project, with their sealed truth, as the laboratory makes them.
     #[command(after_help = help::LABORATORY)]
     Laboratory(super::prove::LaboratoryArguments),
@@ -137,8 +134,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
         Command::Report(arguments) => super::report::run(arguments),
         Command::Compare(arguments) => super::compare::run(arguments),
-        Command::Prove(arguments) => super::prove::run_prove(arguments),
-        Command::Sweep(arguments) => super::prove::run_sweep(arguments),
+        Command::Prove(arguments) => super::prove::run(arguments),
         Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),
         Command::Schema(arguments) => super::schema::run(arguments),
         Command::Completions(arguments) => super::manual::completions(arguments),
