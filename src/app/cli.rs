@@ -36,6 +36,9 @@ enum Command {
     /// Run a scenario with many other values of its keys: how its numbers are distributed, and which key drives which.
     #[command(after_help = super::vary::EXAMPLES)]
     Vary(super::vary::VaryArguments),
+    /// Diagnose all recordings of many devices by their days: which effects appear where, since when, and what drifts.
+    #[command(after_help = super::fleet::EXAMPLES)]
+    Fleet(super::fleet::FleetArguments),
     /// Do one task of a plan that `idc vary` or `idc fleet` wrote, as an engine asks for it.
     #[command(after_help = super::task::EXAMPLES)]
     Task(super::task::TaskArguments),
@@ -121,6 +124,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
         Command::Run(arguments) => super::run::run(arguments),
         Command::Vary(arguments) => super::vary::run(arguments),
+        Command::Fleet(arguments) => super::fleet::run(arguments),
         Command::Task(arguments) => super::task::run(arguments),
         Command::Check(arguments) => super::check::run(arguments),
         Command::Effects(arguments) => super::effects::run(arguments),

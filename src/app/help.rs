@@ -7,7 +7,8 @@ The usual order:
   look       idc run scenarios/plate_edge.toml, then report.html in a browser
              and recording.rrd in Rerun; idc compare sets runs side by side
   own cell   idc new cell, idc check, idc run, idc vary, idc design
-  own rig    idc new import, idc import, idc new rig, idc check, idc diagnose
+  own rig    idc new import, idc import, idc new rig, idc check, idc diagnose,
+             idc fleet
   proof      idc prove, idc prove --sweep
 Every command's --help ends with examples.
 

@@ -15,6 +15,7 @@ mod engine;
 mod error;
 mod estimate_figure;
 mod files;
+mod fleet;
 mod growing;
 mod help;
 mod import;

@@ -19,6 +19,7 @@ use super::files::{
     BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, FRONT, REPORT, SAMPLES, SUMMARY,
     Sketches, Standing, is_same, prepare_file,
 };
+use super::fleet::{self, FLEET};
 use super::output::say;
 use super::vary::{self, SWEEP};
 use crate::diagnosis::answer::Answer;
@@ -69,7 +70,7 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
     let inputs = [
         DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DRAWING, DESIGN, FRONT, SWEEP,
-        vary::RUNS,
+        vary::RUNS, FLEET,
     ];
     if let Some(out) = &arguments.out
         && inputs.iter().any(|name| is_same(&folder.join(name), out))
@@ -89,6 +90,9 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     } else if folder.join(SWEEP).is_file() {
         let swept = read_json(&folder.join(SWEEP))?;
         ("sweep", vary::page_of(&swept, &folder.join(vary::RUNS))?)
+    } else if folder.join(FLEET).is_file() {
+        let found = read_json(&folder.join(FLEET))?;
+        ("fleet", fleet::page_of(&found)?)
     } else if folder.join(DESIGN).is_file() {
         let document = read_json(&folder.join(DESIGN))?;
         let front = std::fs::read_to_string(folder.join(FRONT)).ok();

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::engine::full;
 use super::error::{AppError, ExitCode};
 use super::output::say;
-use super::vary;
+use super::{fleet, vary};
 use crate::recording::atomic::write_text;
 use crate::tasks::{Plan, Store, TaskError, snakefile};
 
@@ -67,10 +67,13 @@ pub(super) fn run(arguments: &TaskArguments) -> Result<ExitCode, AppError> {
     };
     let store = Store::of(&arguments.plan);
     store.make()?;
-    if store.stands(id) {
-        return vary::told(&store, id);
-    }
     let kind = plan.head.plan.clone();
+    if store.stands(id) {
+        return match kind.as_str() {
+            fleet::KIND => fleet::told(&store, id),
+            _ => vary::told(&store, id),
+        };
+    }
     let file = arguments.plan.display().to_string();
     let task = Plan::open(&arguments.plan)?.task(id)?;
     plan.check(&task.files)?;
@@ -78,6 +81,10 @@ pub(super) fn run(arguments: &TaskArguments) -> Result<ExitCode, AppError> {
         vary::KIND => {
             vary::Worker::new(&plan)?.perform(&task, &store)?;
             vary::told(&store, id)
+        }
+        fleet::KIND => {
+            fleet::Worker::new(&plan)?.perform(&task, &store)?;
+            fleet::told(&store, id)
         }
         other => Err(TaskError::NoPlan {
             file,

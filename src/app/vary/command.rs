@@ -34,10 +34,10 @@ nothing (the others are kept).
 Examples:
   # Five stiffnesses with three forces: every combination.
   idc vary scenarios/paper_step.toml --out runs/few \\
-      --set bench.duration_s=8..9:3 --set bench.seed=1..2
+      --set bench.duration_s=8..9:3 --set simulation.seed=1..2
   # The same, and more: what stands is not done again.
   idc vary scenarios/paper_step.toml --out runs/few --resume \\
-      --set bench.duration_s=8..9:3 --set bench.seed=1..4
+      --set bench.duration_s=8..9:3 --set simulation.seed=1..4
   # A Latin hypercube of 400 runs, by four workers of Dask. (takes minutes)
   idc vary scenarios/plate_edge.toml --out runs/latin --sample latin:400 \\
       --set contact.stiffness_n_per_m=1e5..3e5 --set process.force_n=100..200 \\
