@@ -231,11 +231,7 @@ fn run_sweep(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
         "--out"
     };
     plan.check()?;
-    prepare_file(
-        &file,
-        option,
-        Standing::of(arguments.force || asked.resume),
-    )?;
+    prepare_file(&file, option, Standing::of(arguments.force || asked.resume))?;
     let silent = asked.quiet || arguments.json;
     let bar = progress::bar("sweeping", silent);
     let interruptible = Interruptible::new({

@@ -69,8 +69,19 @@ pub(super) struct ReportArguments {
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let folder = &arguments.folder;
     let inputs = [
-        DIAGNOSIS, COMPARISON, BALANCE, SUMMARY, SAMPLES, CELL, EDGE, DRAWING, DESIGN, FRONT, SWEEP,
-        vary::RUNS, FLEET,
+        DIAGNOSIS,
+        COMPARISON,
+        BALANCE,
+        SUMMARY,
+        SAMPLES,
+        CELL,
+        EDGE,
+        DRAWING,
+        DESIGN,
+        FRONT,
+        SWEEP,
+        vary::RUNS,
+        FLEET,
     ];
     if let Some(out) = &arguments.out
         && inputs.iter().any(|name| is_same(&folder.join(name), out))

@@ -14,5 +14,5 @@ pub(super) use cell_run::{Listener, RunPart};
 pub(super) use command::{RunArguments, put_in, run};
 pub(super) use numbers::{Numbers, can_run, metric_names, numbers};
 pub(super) use settings::blamed;
-pub(super) use table::most_telling;
 pub(super) use source::Source;
+pub(super) use table::most_telling;

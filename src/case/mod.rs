@@ -130,7 +130,12 @@ impl Case {
             return Ok(None);
         };
         let prepared = prepare(input)?;
-        Ok(known_fit(input, &prepared.evidence, sets, &Settings::default()))
+        Ok(known_fit(
+            input,
+            &prepared.evidence,
+            sets,
+            &Settings::default(),
+        ))
     }
 
     /// Reads a folder with recordings of a cell: files, or folders of runs.

@@ -57,16 +57,30 @@ pub fn known_fit(
                 continue;
             }
             let usual = effect.usual(&search.believed);
-            let start = if values.len() == usual.len() { values } else { &usual };
+            let start = if values.len() == usual.len() {
+                values
+            } else {
+                &usual
+            };
             effects.push(effect);
             free.extend(free_of(effect, &search.believed, start));
         }
-        search.fitted(effects, (&search.believed, None), &free, STAGES, Limit::of(MOST))
+        search.fitted(
+            effects,
+            (&search.believed, None),
+            &free,
+            STAGES,
+            Limit::of(MOST),
+        )
     });
     let mut fitted: Vec<Hypothesis> = fitted.collect();
     // One that leaves more than noise is no answer, whatever the others are.
     let rank = |h: &Hypothesis| (!scale.is_adequate(h), search.score(h));
-    fitted.sort_by(|a, b| rank(a).partial_cmp(&rank(b)).unwrap_or(std::cmp::Ordering::Equal));
+    fitted.sort_by(|a, b| {
+        rank(a)
+            .partial_cmp(&rank(b))
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
     let hypothesis = fitted.into_iter().next()?;
     let leaves_noise = scale.is_adequate(&hypothesis);
     let ranked = [Ranked {

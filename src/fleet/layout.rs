@@ -152,20 +152,39 @@ fn day_of(name: &str) -> Option<f64> {
     let digits = |text: &str| -> Option<u32> {
         (!text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())).then(|| text.parse().ok())?
     };
-    let dashed = name.get(..10).filter(|text| text.as_bytes()[4] == b'-' && text.as_bytes()[7] == b'-');
+    let dashed = name
+        .get(..10)
+        .filter(|text| text.as_bytes()[4] == b'-' && text.as_bytes()[7] == b'-');
     let (year, month, day, rest) = match dashed {
-        Some(text) => (digits(&text[..4])?, digits(&text[5..7])?, digits(&text[8..])?, &name[10..]),
+        Some(text) => (
+            digits(&text[..4])?,
+            digits(&text[5..7])?,
+            digits(&text[8..])?,
+            &name[10..],
+        ),
         None => {
             let text = name.get(..8)?;
             digits(text)?;
-            (digits(&text[..4])?, digits(&text[4..6])?, digits(&text[6..])?, &name[8..])
+            (
+                digits(&text[..4])?,
+                digits(&text[4..6])?,
+                digits(&text[6..])?,
+                &name[8..],
+            )
         }
     };
     if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
         return None;
     }
-    let time: String = rest.strip_prefix(['T', 't', '_', ' '])
-        .map(|rest| rest.chars().filter(|c| !":-".contains(*c)).take_while(char::is_ascii_digit).take(4).collect())
+    let time: String = rest
+        .strip_prefix(['T', 't', '_', ' '])
+        .map(|rest| {
+            rest.chars()
+                .filter(|c| !":-".contains(*c))
+                .take_while(char::is_ascii_digit)
+                .take(4)
+                .collect()
+        })
         .unwrap_or_default();
     let minutes = match (time.get(..2), time.get(2..4)) {
         (Some(hours), Some(minutes)) => 60 * digits(hours)? + digits(minutes)?,
@@ -173,7 +192,10 @@ fn day_of(name: &str) -> Option<f64> {
         _ => 0,
     };
     let minutes = if minutes < 24 * 60 { minutes } else { 0 };
-    Some(days_from(i64::from(year), i64::from(month), i64::from(day)) as f64 + f64::from(minutes) / 1440.0)
+    Some(
+        days_from(i64::from(year), i64::from(month), i64::from(day)) as f64
+            + f64::from(minutes) / 1440.0,
+    )
 }
 
 /// Days since 1970-01-01 of a date of the Gregorian calendar.
@@ -209,7 +231,14 @@ mod tests {
         assert_eq!(day_of("2000-03-01.csv"), Some(11_017.0));
         assert_eq!(day_of("20240229T0600_early"), Some(19_782.25));
         assert_eq!(day_of("2024-02-29_18-30"), Some(19_782.0 + 18.5 / 24.0));
-        for none in ["", "notes", "2026-13-01", "2026-3-1", "202603", "über-2026-"] {
+        for none in [
+            "",
+            "notes",
+            "2026-13-01",
+            "2026-3-1",
+            "202603",
+            "über-2026-",
+        ] {
             assert_eq!(day_of(none), None, "{none}");
         }
         for day in [0.0, 11_016.0, 19_782.5, 20_513.0] {
@@ -227,13 +256,22 @@ mod tests {
         };
         assert!(matches!(scan(folder.path()), Err(FleetError::Empty { .. })));
         for path in [
-            "b/2026-03-02.csv", "b/2026-03-01/ride.csv", "b/2026-03-01/press.csv", "b/notes.txt",
-            "a/2026-03-01/run/samples.parquet", "a/2026-03-02/readme.md", "stray.csv",
+            "b/2026-03-02.csv",
+            "b/2026-03-01/ride.csv",
+            "b/2026-03-01/press.csv",
+            "b/notes.txt",
+            "a/2026-03-01/run/samples.parquet",
+            "a/2026-03-02/readme.md",
+            "stray.csv",
         ] {
             write(path);
         }
         let layout = scan(folder.path()).unwrap();
-        let names: Vec<&str> = layout.devices.iter().map(|device| device.name.as_str()).collect();
+        let names: Vec<&str> = layout
+            .devices
+            .iter()
+            .map(|device| device.name.as_str())
+            .collect();
         assert_eq!(names, ["a", "b"]);
         let dates: Vec<(&str, usize)> = (layout.devices[1].recordings.iter())
             .map(|dated| (dated.name.as_str(), dated.files.len()))

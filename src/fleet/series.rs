@@ -69,7 +69,11 @@ pub fn trend(days: &[f64], values: &[f64]) -> Option<Trend> {
     }
     let [day, value] = [mean(days), mean(values)];
     let square: f64 = days.iter().map(|d| (d - day).powi(2)).sum();
-    let product: f64 = days.iter().zip(values).map(|(d, v)| (d - day) * (v - value)).sum();
+    let product: f64 = days
+        .iter()
+        .zip(values)
+        .map(|(d, v)| (d - day) * (v - value))
+        .sum();
     let slope = product / square;
     let left: f64 = (days.iter().zip(values))
         .map(|(d, v)| (v - value - slope * (d - day)).powi(2))
@@ -128,7 +132,9 @@ pub fn change(days: &[f64], values: &[f64], seed: u64) -> Option<Change> {
         .map(|(shape, _)| shape.day)
         .collect();
     let shape = &shapes[best];
-    let product: f64 = (shape.unit.iter().zip(values)).map(|(s, v)| s * (v - centre)).sum();
+    let product: f64 = (shape.unit.iter().zip(values))
+        .map(|(s, v)| s * (v - centre))
+        .sum();
     let fitted = |place: usize| centre + product * shape.unit[place];
     Some(Change {
         kind: shape.kind,
@@ -157,13 +163,17 @@ fn shapes(days: &[f64]) -> Vec<Shape> {
         (ChangeKind::Step, days[from], values.collect::<Vec<f64>>())
     });
     // The first one is a line from the beginning.
-    let kinks = (0..=count - SIDE - 1).map(|from| {
+    let kinks = (0..count - SIDE).map(|from| {
         let values = days.iter().map(|day| (day - days[from]).max(0.0));
         (ChangeKind::Growth, days[from], values.collect())
     });
     let shape = |(kind, day, values): (ChangeKind, f64, Vec<f64>)| {
         let centre = mean(&values);
-        let size = values.iter().map(|v| (v - centre).powi(2)).sum::<f64>().sqrt();
+        let size = values
+            .iter()
+            .map(|v| (v - centre).powi(2))
+            .sum::<f64>()
+            .sqrt();
         let unit = values.iter().map(|v| (v - centre) / size).collect();
         (size > 0.0).then_some(Shape { kind, day, unit })
     };
@@ -212,7 +222,8 @@ mod tests {
             let growth = change(&days, &values, 1).unwrap();
             assert!(growth.probability <= 0.001);
             let [first, last] = growth.interval;
-            held[1] += usize::from(growth.kind == ChangeKind::Growth && first <= 17.0 && 17.0 <= last);
+            held[1] +=
+                usize::from(growth.kind == ChangeKind::Growth && first <= 17.0 && 17.0 <= last);
         }
         assert!(held.iter().all(|held| *held >= 88), "{held:?}");
     }

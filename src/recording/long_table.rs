@@ -6,8 +6,8 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-use ::parquet::arrow::{ArrowWriter, ProjectionMask};
 use ::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use ::parquet::arrow::{ArrowWriter, ProjectionMask};
 use ::parquet::basic::{Compression, Encoding};
 use ::parquet::errors::ParquetError;
 use ::parquet::file::properties::WriterProperties;
@@ -151,7 +151,9 @@ pub fn read_columns(
             match (columns.get_mut(place), read) {
                 (None, read) => columns.push((field.name().clone(), read)),
                 (Some((_, LongColumn::Names(all))), LongColumn::Names(more)) => all.extend(more),
-                (Some((_, LongColumn::Numbers(all))), LongColumn::Numbers(more)) => all.extend(more),
+                (Some((_, LongColumn::Numbers(all))), LongColumn::Numbers(more)) => {
+                    all.extend(more);
+                }
                 (Some(_), _) => return Err(fail(&"a column holds both names and numbers")),
             }
         }
@@ -163,11 +165,15 @@ fn long_column(array: &ArrayRef) -> Result<LongColumn, arrow::error::ArrowError>
     if array.data_type().is_numeric() {
         let numbers = cast(array, &DataType::Float64)?;
         let numbers = numbers.as_primitive::<Float64Type>().iter();
-        Ok(LongColumn::Numbers(numbers.map(|n| n.unwrap_or(f64::NAN)).collect()))
+        Ok(LongColumn::Numbers(
+            numbers.map(|n| n.unwrap_or(f64::NAN)).collect(),
+        ))
     } else {
         let names = cast(array, &DataType::Utf8)?;
         let names = names.as_string::<i32>().iter();
-        Ok(LongColumn::Names(names.map(|n| n.unwrap_or_default().to_owned()).collect()))
+        Ok(LongColumn::Names(
+            names.map(|n| n.unwrap_or_default().to_owned()).collect(),
+        ))
     }
 }
 
@@ -220,12 +226,17 @@ mod tests {
         write_groups(&path, &columns, || Ok::<_, RecordingError>(groups.next())).unwrap();
         let read = read_columns(&path, |name| name == "a.number").unwrap();
         let expected: Vec<f64> = (0..12).map(f64::from).collect();
-        assert_eq!(read, [("a.number".to_owned(), LongColumn::Numbers(expected))]);
+        assert_eq!(
+            read,
+            [("a.number".to_owned(), LongColumn::Numbers(expected))]
+        );
         let LongColumn::Names(names) = &read_long(&path).unwrap()[0].1 else {
             panic!("no names");
         };
         assert_eq!((names.len(), names[11].as_str()), (12, "run 11"));
-        let broken = write_groups(&path, &columns, || Err(RecordingError::write(&path, "full")));
+        let broken = write_groups(&path, &columns, || {
+            Err(RecordingError::write(&path, "full"))
+        });
         assert!(broken.unwrap_err().to_string().contains("full"));
         assert_eq!(read_long(&path).unwrap().len(), 2);
     }

@@ -78,11 +78,15 @@ pub fn dask(dask: &Dask, plan: &Path, of: usize, told: &dyn Fn(Told)) -> Result<
         drop(writeln!(stdin, "{}", order(dask, plan)));
     }
     let mut failed: Vec<String> = Vec::new();
-    let lines = stdout.into_iter().flat_map(|out| BufReader::new(out).lines());
+    let lines = stdout
+        .into_iter()
+        .flat_map(|out| BufReader::new(out).lines());
     for line in lines.map_while(Result::ok) {
         match serde_json::from_str(&line) {
             Ok(Line::Done(done)) => told(Told::Done(done)),
-            Ok(Line::Dashboard(address)) => told(Told::Words(format!("Dask's dashboard: {address}"))),
+            Ok(Line::Dashboard(address)) => {
+                told(Told::Words(format!("Dask's dashboard: {address}")));
+            }
             Ok(Line::Refused(reason)) => return Err(TaskError::Refused { reason }),
             Ok(Line::Python(reason)) => return Err(no_python(&reason)),
             Ok(Line::Failed { why, .. }) => failed.push(why),
@@ -109,10 +113,12 @@ pub fn dask(dask: &Dask, plan: &Path, of: usize, told: &dyn Fn(Told)) -> Result<
 /// The last line that is not blank.
 fn last_words(from: Option<impl Read>) -> String {
     let mut last = "it said nothing".to_owned();
-    let lines = from.into_iter().flat_map(|from| BufReader::new(from).lines());
+    let lines = from
+        .into_iter()
+        .flat_map(|from| BufReader::new(from).lines());
     for line in lines.map_while(Result::ok) {
         if !line.trim().is_empty() {
-            last = line.trim().to_owned();
+            line.trim().clone_into(&mut last);
         }
     }
     last

@@ -60,7 +60,10 @@ mod tests {
         assert_eq!(dask, Engine::Dask(address.to_owned()));
         for text in ["", "ray", "dask", "dask=local:0", "dask=here", "local:2"] {
             let refused = read(text).unwrap_err().to_string();
-            assert!(refused.contains("expected local, dask=local:N"), "{refused}");
+            assert!(
+                refused.contains("expected local, dask=local:N"),
+                "{refused}"
+            );
         }
     }
 }

@@ -4,10 +4,10 @@ use std::collections::{HashMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
+use super::TaskError;
 use super::engine::Told;
 use super::plan::{Plan, Task};
 use super::store::Store;
-use super::TaskError;
 
 /// Tasks that are waited for, and those that can be begun.
 struct Queue {
@@ -129,7 +129,10 @@ fn worker(
                 told(Told::Done(own.done));
             }
             Ok(Err(error)) => own.ended = Some(error),
-            Err(_) => own.fail(&task.id, "a fault of the program, see above; please report it"),
+            Err(_) => own.fail(
+                &task.id,
+                "a fault of the program, see above; please report it",
+            ),
         }
         changed.notify_all();
     }

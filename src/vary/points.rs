@@ -105,11 +105,16 @@ impl Points {
             file: path.display().to_string(),
             reason,
         };
-        let reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path);
+        let reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .from_path(path);
         let mut reader = reader.map_err(|e| refuse(e.to_string()))?;
         let keys = reader.headers().map_err(|e| refuse(e.to_string()))?.clone();
         once(keys.iter())?;
-        if keys.iter().any(|key| key.is_empty() || key.parse::<f64>().is_ok()) {
+        if keys
+            .iter()
+            .any(|key| key.is_empty() || key.parse::<f64>().is_ok())
+        {
             let first = keys.iter().collect::<Vec<_>>().join(",");
             return Err(refuse(format!(
                 "its first line is `{first}`, expected a key of the scenario by its dotted path for each column"
@@ -121,12 +126,16 @@ impl Points {
             let row: Vec<String> = record.iter().map(str::to_owned).collect();
             if let Some(place) = row.iter().position(String::is_empty) {
                 let (line, key) = (line + 2, &keys[place]);
-                return Err(refuse(format!("line {line} has no value for `{key}`, expected one for each key")));
+                return Err(refuse(format!(
+                    "line {line} has no value for `{key}`, expected one for each key"
+                )));
             }
             rows.push(row);
         }
         if rows.is_empty() {
-            return Err(refuse("it has no points, expected a line of values for each run".to_owned()));
+            return Err(refuse(
+                "it has no points, expected a line of values for each run".to_owned(),
+            ));
         }
         let variables = keys.iter().enumerate().map(|(place, key)| Variable {
             key: key.to_owned(),
@@ -269,7 +278,9 @@ mod tests {
     #[test]
     fn a_grid_has_each_combination_once_the_last_changing_first() {
         let grid = points(&["a=1,2", "b=1..3"], "grid");
-        let all: Vec<String> = (0..grid.count()).map(|run| grid.at(run).join(" ")).collect();
+        let all: Vec<String> = (0..grid.count())
+            .map(|run| grid.at(run).join(" "))
+            .collect();
         assert_eq!(all, ["1 1", "1 2", "1 3", "2 1", "2 2", "2 3"]);
     }
 
@@ -297,7 +308,10 @@ mod tests {
     fn more_random_runs_begin_with_the_same_ones() {
         let [few, many] = ["random:10", "random:1000"].map(|n| points(&["a=2.0..4.0"], n));
         assert!((0..10).all(|run| few.at(run) == many.at(run)));
-        let mean = (0..1000).map(|run| many.at(run)[0].parse::<f64>().unwrap()).sum::<f64>() / 1e3;
+        let mean = (0..1000)
+            .map(|run| many.at(run)[0].parse::<f64>().unwrap())
+            .sum::<f64>()
+            / 1e3;
         assert!((mean - 3.0).abs() < 0.08, "{mean}");
     }
 
@@ -310,7 +324,10 @@ mod tests {
             Points::table(&path)
         };
         let points = read("process.force_n, device.model\n30,a.toml\n60.5,b.toml\n").unwrap();
-        assert_eq!((points.count(), points.at(1)), (2, vec!["60.5".to_owned(), "b.toml".to_owned()]));
+        assert_eq!(
+            (points.count(), points.at(1)),
+            (2, vec!["60.5".to_owned(), "b.toml".to_owned()])
+        );
         assert_eq!(points.variables()[0].values, Values::Between([30.0, 60.5]));
         for (text, expected) in [
             ("a,b\n", "it has no points"),

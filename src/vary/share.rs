@@ -45,7 +45,8 @@ pub fn share_of_variance(x: &[f64], y: &[f64], seed: u64) -> Option<Share> {
     let count = groups.iter().max()? + 1;
     let y: Vec<f64> = known.iter().map(|pair| pair.1).collect();
     let scale = y.iter().fold(0.0f64, |most, y| most.max(y.abs()));
-    let spread = y.iter().copied().fold(f64::NEG_INFINITY, f64::max) - y.iter().copied().fold(f64::INFINITY, f64::min);
+    let spread = y.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+        - y.iter().copied().fold(f64::INFINITY, f64::min);
     if y.len() < LEAST || spread <= 1e-12 * scale {
         return None;
     }
@@ -55,7 +56,9 @@ pub fn share_of_variance(x: &[f64], y: &[f64], seed: u64) -> Option<Share> {
     let drawn = y.len().min(DRAWN);
     let mut turns: Vec<f64> = (0..TURNS)
         .filter_map(|_| {
-            let again: Vec<usize> = (0..drawn).map(|_| random.random_range(0..y.len())).collect();
+            let again: Vec<usize> = (0..drawn)
+                .map(|_| random.random_range(0..y.len()))
+                .collect();
             index(&again, &groups, &y, count)
         })
         .collect();
@@ -128,7 +131,8 @@ mod tests {
     /// Ishigami's function, whose indices are known: 0.3139, 0.4424, 0 for a = 7, b = 0.1 (I. M. Sobol' and Y. L. Levitan, 1999).
     fn ishigami(random: &mut ChaCha8Rng, count: usize) -> ([Vec<f64>; 3], Vec<f64>) {
         let pi = std::f64::consts::PI;
-        let mut draw = || -> Vec<f64> { (0..count).map(|_| random.random_range(-pi..pi)).collect() };
+        let mut draw =
+            || -> Vec<f64> { (0..count).map(|_| random.random_range(-pi..pi)).collect() };
         let x = [draw(), draw(), draw()];
         let y = (0..count).map(|i| {
             let [a, b, c] = [x[0][i], x[1][i], x[2][i]];

@@ -29,9 +29,11 @@ pub fn rank_correlation(one: &[f64], other: &[f64]) -> Option<f64> {
         ranks(&known.iter().map(|pair| pair.0).collect::<Vec<_>>()),
         ranks(&known.iter().map(|pair| pair.1).collect::<Vec<_>>()),
     ];
-    let mean = (known.len() as f64 + 1.0) / 2.0;
+    let mean = f64::midpoint(known.len() as f64, 1.0);
     let product = |x: &[f64], y: &[f64]| -> f64 {
-        (x.iter().zip(y)).map(|(x, y)| (x - mean) * (y - mean)).sum()
+        (x.iter().zip(y))
+            .map(|(x, y)| (x - mean) * (y - mean))
+            .sum()
     };
     let scale = (product(&a, &a) * product(&b, &b)).sqrt();
     (scale > 0.0).then(|| product(&a, &b) / scale)
@@ -44,7 +46,7 @@ fn ranks(values: &[f64]) -> Vec<f64> {
     let mut ranks = vec![0.0; values.len()];
     let mut before = 0;
     for equal in order.chunk_by(|a, b| values[*a] == values[*b]) {
-        let rank = before as f64 + (equal.len() as f64 + 1.0) / 2.0;
+        let rank = before as f64 + f64::midpoint(equal.len() as f64, 1.0);
         for place in equal {
             ranks[*place] = rank;
         }

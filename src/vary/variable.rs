@@ -185,20 +185,36 @@ fn range(text: &str) -> Option<Result<Values, String>> {
     let read = |text: &str| text.trim().parse::<f64>().ok().filter(|v| v.is_finite());
     let ends = [read(first)?, read(last)?];
     let whole = |text: &str| text.trim().parse::<i64>().ok();
-    let empty = || Err(format!("the range is empty, as {} is not below {}", first.trim(), last.trim()));
-    Some(match (count.map(|count| (count, count.trim().parse())), whole(first).zip(whole(last))) {
-        (Some((_, Ok(count @ 2..=MOST))), _) if ends[0] != ends[1] => Ok(Values::Even { ends, count }),
-        (Some((_, Ok(_))), _) if ends[0] == ends[1] => empty(),
-        (Some((count, _)), _) => Err(format!("`{count}` is no number of values, expected 2 to {MOST}")),
-        (None, Some((first, last))) if first < last && last.abs_diff(first) < MOST as u64 => {
-            Ok(Values::Whole([first, last]))
-        }
-        (None, Some((first, last))) if first < last => {
-            Err(format!("{} values are too many, expected at most {MOST}", last.abs_diff(first) + 1))
-        }
-        (None, None) if ends[0] < ends[1] => Ok(Values::Between(ends)),
-        (None, _) => empty(),
-    })
+    let empty = || {
+        Err(format!(
+            "the range is empty, as {} is not below {}",
+            first.trim(),
+            last.trim()
+        ))
+    };
+    Some(
+        match (
+            count.map(|count| (count, count.trim().parse())),
+            whole(first).zip(whole(last)),
+        ) {
+            (Some((_, Ok(count @ 2..=MOST))), _) if ends[0] != ends[1] => {
+                Ok(Values::Even { ends, count })
+            }
+            (Some((_, Ok(_))), _) if ends[0] == ends[1] => empty(),
+            (Some((count, _)), _) => Err(format!(
+                "`{count}` is no number of values, expected 2 to {MOST}"
+            )),
+            (None, Some((first, last))) if first < last && last.abs_diff(first) < MOST as u64 => {
+                Ok(Values::Whole([first, last]))
+            }
+            (None, Some((first, last))) if first < last => Err(format!(
+                "{} values are too many, expected at most {MOST}",
+                last.abs_diff(first) + 1
+            )),
+            (None, None) if ends[0] < ends[1] => Ok(Values::Between(ends)),
+            (None, _) => empty(),
+        },
+    )
 }
 
 /// Values that are named, each once.
@@ -220,22 +236,36 @@ mod tests {
 
     fn all(text: &str) -> Vec<String> {
         let variable = Variable::parse(text).unwrap();
-        (0..variable.count().unwrap()).map(|at| variable.at(at)).collect()
+        (0..variable.count().unwrap())
+            .map(|at| variable.at(at))
+            .collect()
     }
 
     #[test]
     fn values_are_what_is_typed() {
         assert_eq!(all("a.b=30,60"), ["30", "60"]);
-        assert_eq!(all("a=1e5..3e5:5"), ["100000", "150000", "200000", "250000", "300000"]);
+        assert_eq!(
+            all("a=1e5..3e5:5"),
+            ["100000", "150000", "200000", "250000", "300000"]
+        );
         assert_eq!(all("a=0..1:11")[3], "0.3");
         assert_eq!(all("a=3..1:3"), ["3", "2", "1"]);
         assert_eq!(all("a=1e-9..3e-9:3")[1], "0.000000002");
         assert_eq!(all("a=-1..2"), ["-1", "0", "1", "2"]);
-        assert_eq!(all("device.model=../a.toml,b.toml"), ["../a.toml", "b.toml"]);
+        assert_eq!(
+            all("device.model=../a.toml,b.toml"),
+            ["../a.toml", "b.toml"]
+        );
         let between = Variable::parse("a=1.5..2.5").unwrap();
-        assert_eq!((between.count(), between.at_share(0.25)), (None, "1.75".to_owned()));
+        assert_eq!(
+            (between.count(), between.at_share(0.25)),
+            (None, "1.75".to_owned())
+        );
         let whole = Variable::parse("a=1..4").unwrap();
-        assert_eq!([0.0, 0.49, 0.999].map(|share| whole.at_share(share)), ["1", "2", "4"]);
+        assert_eq!(
+            [0.0, 0.49, 0.999].map(|share| whole.at_share(share)),
+            ["1", "2", "4"]
+        );
     }
 
     #[test]

@@ -85,9 +85,15 @@ pub(in super::super) fn run(arguments: &FleetArguments) -> Result<ExitCode, AppE
     }
     write(&layout, &arguments.scenario, &plan)?;
     let quiet = arguments.quiet || arguments.json;
-    let new = Plan::open(&plan)?.filter_map(Result::ok).filter(|task| !store.stands(&task.id));
+    let new = Plan::open(&plan)?
+        .filter_map(Result::ok)
+        .filter(|task| !store.stands(&task.id));
     let new = new.count();
-    let count: usize = layout.devices.iter().map(|device| device.recordings.len()).sum();
+    let count: usize = layout
+        .devices
+        .iter()
+        .map(|device| device.recordings.len())
+        .sum();
     if !quiet {
         say(&format!(
             "{} of {}, {new} not diagnosed yet\n",
@@ -105,9 +111,13 @@ pub(in super::super) fn run(arguments: &FleetArguments) -> Result<ExitCode, AppE
         quiet,
         work: &work,
     };
-    arguments.engine.perform(&plan, &tasks("recording", "recordings are diagnosed"))?;
+    arguments
+        .engine
+        .perform(&plan, &tasks("recording", "recordings are diagnosed"))?;
     let places = write_fits(&plan, &fits)?;
-    arguments.engine.perform(&fits, &tasks("fit", "fits are done"))?;
+    arguments
+        .engine
+        .perform(&fits, &tasks("fit", "fits are done"))?;
     finish(arguments, &layout, (&plan, &places), &folder)
 }
 

@@ -68,7 +68,10 @@ pub(super) fn persistent(plan: &Path) -> Result<BTreeMap<String, Persistent>, Ap
     let all = recordings(plan, &none)?;
     let mut devices: BTreeMap<String, Vec<&Recording>> = BTreeMap::new();
     for recording in all.iter().filter(|recording| recording.result.code == 0) {
-        devices.entry(recording.device.clone()).or_default().push(recording);
+        devices
+            .entry(recording.device.clone())
+            .or_default()
+            .push(recording);
     }
     let of = |recordings: &Vec<&Recording>| {
         let mut effects: Vec<Started> = Vec::new();
@@ -87,13 +90,24 @@ pub(super) fn persistent(plan: &Path) -> Result<BTreeMap<String, Persistent>, Ap
         }
         let names: BTreeSet<&str> = effects.iter().map(|effect| effect.name.as_str()).collect();
         let otherwise = |recording: &&&Recording| {
-            let own = recording.result.effects.iter().map(|(name, _)| name.as_str());
+            let own = recording
+                .result
+                .effects
+                .iter()
+                .map(|(name, _)| name.as_str());
             own.collect::<BTreeSet<&str>>() != names
         };
-        let others = recordings.iter().filter(otherwise).map(|r| r.id.clone()).collect();
+        let others = recordings
+            .iter()
+            .filter(otherwise)
+            .map(|r| r.id.clone())
+            .collect();
         Persistent { effects, others }
     };
-    Ok(devices.iter().map(|(name, recordings)| (name.clone(), of(recordings))).collect())
+    Ok(devices
+        .iter()
+        .map(|(name, recordings)| (name.clone(), of(recordings)))
+        .collect())
 }
 
 /// All recordings of a plan, in its order, with the fits that tell their numbers.
@@ -232,8 +246,13 @@ impl Found {
             let own = recordings.iter().filter(|r| r.device == name);
             own.filter(|recording| recording.result.code == 0).collect()
         };
-        let names: Vec<&str> = layout.devices.iter().map(|device| device.name.as_str()).collect();
-        let series: Vec<Vec<NumberSeries>> = names.iter().map(|name| all_series(&of(name))).collect();
+        let names: Vec<&str> = layout
+            .devices
+            .iter()
+            .map(|device| device.name.as_str())
+            .collect();
+        let series: Vec<Vec<NumberSeries>> =
+            names.iter().map(|name| all_series(&of(name))).collect();
         let tested: usize = series.iter().map(Vec::len).sum();
         let alarm = (ALARM / tested.max(1) as f64).max(LEAST);
         let devices = names.iter().zip(series);
@@ -292,10 +311,17 @@ impl DeviceFound {
         let effects = self.effects.iter().map(|effect| {
             let since = match &effect.since {
                 Some(since) => since.words(),
-                None if effect.first_seen == self.first => "there from the first recording on".to_owned(),
+                None if effect.first_seen == self.first => {
+                    "there from the first recording on".to_owned()
+                }
                 None => format!("first seen {}", effect.first_seen),
             };
-            format!("{}: {since}; found in {} of {} recordings", words(&effect.name), effect.seen, effect.of)
+            format!(
+                "{}: {since}; found in {} of {} recordings",
+                words(&effect.name),
+                effect.seen,
+                effect.of
+            )
         });
         let changed = self.changed.iter().map(|changed| {
             let (name, unit) = spoken(&changed.number);
@@ -325,7 +351,8 @@ fn all_series(recordings: &[&Recording]) -> Vec<NumberSeries> {
     for recording in recordings {
         let result = recording.numbers();
         let effects = result.effects.iter();
-        let effects = effects.filter_map(|(effect, numbers)| Some((effect.as_str(), numbers.first()?)));
+        let effects =
+            effects.filter_map(|(effect, numbers)| Some((effect.as_str(), numbers.first()?)));
         let tolerated = result.tolerated.iter().map(|number| ("", number));
         for (effect, Told { name, value, .. }) in effects.chain(tolerated) {
             let own = found.entry((effect.to_owned(), name.clone())).or_default();
@@ -333,25 +360,44 @@ fn all_series(recordings: &[&Recording]) -> Vec<NumberSeries> {
             own.1.push(*value);
         }
     }
-    let series = found.into_iter().map(|((effect, number), (days, values))| NumberSeries {
-        effect,
-        number,
-        days,
-        values,
-    });
+    let series = found
+        .into_iter()
+        .map(|((effect, number), (days, values))| NumberSeries {
+            effect,
+            number,
+            days,
+            values,
+        });
     // What single recordings show has no course.
-    series.filter(|series| 2 * series.days.len() > recordings.len()).collect()
+    series
+        .filter(|series| 2 * series.days.len() > recordings.len())
+        .collect()
 }
 
-fn device(name: &str, recordings: &[&Recording], series: Vec<NumberSeries>, alarm: f64) -> DeviceFound {
-    let date = |recording: Option<&&Recording>| recording.map_or(String::new(), |r| date_of_day(r.day));
+fn device(
+    name: &str,
+    recordings: &[&Recording],
+    series: Vec<NumberSeries>,
+    alarm: f64,
+) -> DeviceFound {
+    let date =
+        |recording: Option<&&Recording>| recording.map_or(String::new(), |r| date_of_day(r.day));
     let changes: Vec<Option<Change>> = (series.iter().enumerate())
         .map(|(place, series)| change(&series.days, &series.values, place as u64))
         .map(|change| change.filter(|change| change.probability <= alarm))
         .collect();
-    let has = |recording: &Recording, effect: &str| recording.result.effects.iter().any(|(name, _)| name == effect);
+    let has = |recording: &Recording, effect: &str| {
+        recording
+            .result
+            .effects
+            .iter()
+            .any(|(name, _)| name == effect)
+    };
     let mut names: Vec<&str> = Vec::new();
-    for (name, _) in recordings.iter().flat_map(|recording| &recording.result.effects) {
+    for (name, _) in recordings
+        .iter()
+        .flat_map(|recording| &recording.result.effects)
+    {
         if !names.contains(&name.as_str()) {
             names.push(name);
         }
@@ -412,9 +458,16 @@ fn unlike(devices: &[DeviceFound]) -> Vec<(String, String)> {
                 found.push((device.name.clone(), what));
             }
         }
-        for series in device.series.iter().filter(|series| series.effect.is_empty()) {
+        for series in device
+            .series
+            .iter()
+            .filter(|series| series.effect.is_empty())
+        {
             let lately = |device: &DeviceFound| {
-                let own = device.series.iter().find(|s| s.effect.is_empty() && s.number == series.number)?;
+                let own = device
+                    .series
+                    .iter()
+                    .find(|s| s.effect.is_empty() && s.number == series.number)?;
                 let last = &own.values[own.values.len().saturating_sub(LATELY)..];
                 let middle = median(last)?;
                 let off: Vec<f64> = last.iter().map(|value| (value - middle).abs()).collect();
@@ -433,7 +486,11 @@ fn unlike(devices: &[DeviceFound]) -> Vec<(String, String)> {
             let spread = spread.max(median(&scatter).unwrap_or(0.0));
             if spread > 0.0 && (own - middle).abs() > UNLIKE * spread {
                 let (name, unit) = spoken(&series.number);
-                let what = format!("{name} {} {unit}, the others {}", number(own), number(middle));
+                let what = format!(
+                    "{name} {} {unit}, the others {}",
+                    number(own),
+                    number(middle)
+                );
                 found.push((device.name.clone(), what));
             }
         }

@@ -11,11 +11,18 @@ use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
 
 /// The page.
 pub(super) fn page(found: &Found) -> Result<Page<'static>, AppError> {
-    let something = found.devices.iter().any(|d| !d.effects.is_empty() || !d.changed.is_empty());
+    let something = found
+        .devices
+        .iter()
+        .any(|d| !d.effects.is_empty() || !d.changed.is_empty());
     let mut sections = vec![devices(found)];
     sections.extend(changed(found));
     sections.extend(courses(found)?);
-    sections.extend(listed("Unlike the others", ["device", "in what"], &found.unlike));
+    sections.extend(listed(
+        "Unlike the others",
+        ["device", "in what"],
+        &found.unlike,
+    ));
     sections.extend(listed("Not read", ["recording", "why"], &found.unread));
     sections.push(sources(&found.program, &found.files));
     let facts = [
@@ -23,7 +30,8 @@ pub(super) fn page(found: &Found) -> Result<Page<'static>, AppError> {
         (
             "searched",
             found.searched.to_string(),
-            "the others were predicted to the noise by the believed or the last improved model".to_owned(),
+            "the others were predicted to the noise by the believed or the last improved model"
+                .to_owned(),
         ),
     ];
     Ok(Page {
@@ -38,7 +46,9 @@ pub(super) fn page(found: &Found) -> Result<Page<'static>, AppError> {
             })
             .to_vec(),
         sections,
-        footer: format!("Made by idc fleet. {TABLE} beside this page has a row for each number of each recording."),
+        footer: format!(
+            "Made by idc fleet. {TABLE} beside this page has a row for each number of each recording."
+        ),
         ..Page::default()
     })
 }
@@ -46,7 +56,10 @@ pub(super) fn page(found: &Found) -> Result<Page<'static>, AppError> {
 fn devices(found: &Found) -> PageSection<'static> {
     let row = |device: &DeviceFound| {
         let effects: Vec<String> = device.lines();
-        let single = device.single.iter().map(|(name, count)| format!("{} ({count})", words(name)));
+        let single = device
+            .single
+            .iter()
+            .map(|(name, count)| format!("{} ({count})", words(name)));
         vec![
             TableCell::from(device.name.clone()),
             TableCell::from(format!("{} to {}", device.first, device.last)),
@@ -61,7 +74,13 @@ fn devices(found: &Found) -> PageSection<'static> {
             TableCell::from(single.collect::<Vec<_>>().join(", ")),
         ]
     };
-    let columns = ["device", "dates", "#recordings", "found", "in single recordings"];
+    let columns = [
+        "device",
+        "dates",
+        "#recordings",
+        "found",
+        "in single recordings",
+    ];
     let caption = "Found: in at least three recordings and in half of those since. What single recordings show is no alarm.";
     let table = PageTable::new(caption, &columns, found.devices.iter().map(row).collect());
     PageSection::new("Devices", vec![Block::PageTable(table)])
@@ -91,7 +110,17 @@ fn changed(found: &Found) -> Option<PageSection<'static>> {
         })
     });
     let rows: Vec<Vec<TableCell>> = rows.collect();
-    let columns = ["device", "effect", "number", "unit", "#before", "#at the end", "since (95 %)", "#trend a day (95 %)", "#chance [%]"];
+    let columns = [
+        "device",
+        "effect",
+        "number",
+        "unit",
+        "#before",
+        "#at the end",
+        "since (95 %)",
+        "#trend a day (95 %)",
+        "#chance [%]",
+    ];
     let words = "Chance: how often a number that does not change shows as much. All numbers of the fleet together give a false alarm in one of twenty reports.";
     (!rows.is_empty()).then(|| {
         let table = PageTable::new("", &columns, rows);
@@ -127,9 +156,15 @@ fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> 
     let first = *series.days.first()?;
     let days: Vec<f64> = series.days.iter().map(|day| day - first).collect();
     let last = *days.last()?;
-    let change = device.changed.iter().find(|c| c.effect == series.effect && c.number == series.number);
+    let change = device
+        .changed
+        .iter()
+        .find(|c| c.effect == series.effect && c.number == series.number);
     let at = change.and_then(|change| {
-        let place = series.days.iter().position(|day| date_of_day(*day) == change.since.date)?;
+        let place = series
+            .days
+            .iter()
+            .position(|day| date_of_day(*day) == change.since.date)?;
         Some((days[place], change.since.date.clone()))
     });
     let markers = at.filter(|(at, _)| (0.0..=last).contains(at));
@@ -142,14 +177,29 @@ fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> 
         title: words(&series.effect),
         vertical_label: label,
         horizontal: Horizontal::Quantity(format!("days since {}", date_of_day(first))),
-        series: vec![Series::new("", days, series.values.clone(), Role::Estimate, Stroke::Points)],
-        markers: markers.map(|(at, label)| Marker { label, at }).into_iter().collect(),
+        series: vec![Series::new(
+            "",
+            days,
+            series.values.clone(),
+            Role::Estimate,
+            Stroke::Points,
+        )],
+        markers: markers
+            .map(|(at, label)| Marker { label, at })
+            .into_iter()
+            .collect(),
         ..Panel::default()
     })
 }
 
-fn listed(title: &str, columns: [&str; 2], pairs: &[(String, String)]) -> Option<PageSection<'static>> {
-    let row = |(one, other): &(String, String)| vec![TableCell::from(one.clone()), TableCell::from(other.clone())];
+fn listed(
+    title: &str,
+    columns: [&str; 2],
+    pairs: &[(String, String)],
+) -> Option<PageSection<'static>> {
+    let row = |(one, other): &(String, String)| {
+        vec![TableCell::from(one.clone()), TableCell::from(other.clone())]
+    };
     (!pairs.is_empty()).then(|| {
         let table = PageTable::new("", &columns, pairs.iter().map(row).collect());
         PageSection::new(title, vec![Block::PageTable(table)])

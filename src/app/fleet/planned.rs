@@ -59,9 +59,17 @@ pub(super) fn write_fits(plan: &Path, fits: &Path) -> Result<Vec<Option<String>>
         let fit = own.filter(|own| !own.effects.is_empty() && own.lacks(&task.id));
         places.push(fit.map(|fit| {
             let names: Vec<&str> = fit.effects.iter().map(|e| e.name.as_str()).collect();
-            let numbers = fit.effects.iter().flat_map(|e| &e.values).map(f64::to_string);
+            let numbers = fit
+                .effects
+                .iter()
+                .flat_map(|e| &e.values)
+                .map(f64::to_string);
             let started = numbers.collect::<Vec<_>>().join(" ");
-            let id = name(&head, &task.files, &format!("fit {} from {started}", names.join(" ")));
+            let id = name(
+                &head,
+                &task.files,
+                &format!("fit {} from {started}", names.join(" ")),
+            );
             asked.fit = Some(fit.effects.clone());
             tasks.push((id.clone(), asked.clone(), task.files.clone()));
             id
@@ -124,7 +132,12 @@ fn asked(device: &str, dated: &Dated, folder: &Path, rig: bool) -> Asked {
         true => dated.path.as_path(),
         false => dated.path.parent().unwrap_or(Path::new("")),
     };
-    let within = |path: &Path| path.strip_prefix(base).unwrap_or(path).display().to_string();
+    let within = |path: &Path| {
+        path.strip_prefix(base)
+            .unwrap_or(path)
+            .display()
+            .to_string()
+    };
     Asked {
         device: device.to_owned(),
         name: dated.name.clone(),
@@ -146,11 +159,19 @@ fn name(head: &Head, files: &[SourceFile], begins: &str) -> String {
     let first = [KIND, head.program.as_str()].into_iter();
     let shared = shared.iter().map(String::as_str);
     let own = own.iter().map(String::as_str);
-    name_of(first.chain(shared).chain(["of"]).chain(own).chain(["from", begins]))
+    name_of(
+        first
+            .chain(shared)
+            .chain(["of"])
+            .chain(own)
+            .chain(["from", begins]),
+    )
 }
 
 /// Refuses a scenario that is among the recordings' files, or gone.
 pub(super) fn check(scenario: &Path) -> Result<(), AppError> {
     let found = std::fs::metadata(scenario);
-    Ok(found.map(drop).map_err(|e| RecordingError::read(scenario, e))?)
+    Ok(found
+        .map(drop)
+        .map_err(|e| RecordingError::read(scenario, e))?)
 }

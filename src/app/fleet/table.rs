@@ -49,7 +49,13 @@ fn group(recordings: &[Recording]) -> Vec<LongColumn> {
             })
             .collect();
         // What is believed within a tolerance is of no effect.
-        rows.extend(recording.result.tolerated.iter().map(|number| ("", Some(number))));
+        rows.extend(
+            recording
+                .result
+                .tolerated
+                .iter()
+                .map(|number| ("", Some(number))),
+        );
         if rows.is_empty() {
             rows.push(("", None));
         }

@@ -166,7 +166,10 @@ impl Worker {
         };
         if let Some(fit) = &asked.fit {
             let fitted = case.known_fit(&[known(&case, fit)])?;
-            return Ok((fitted.map(|fit| of_fit(&case, &fit)).unwrap_or_default(), None));
+            return Ok((
+                fitted.map(|fit| of_fit(&case, &fit)).unwrap_or_default(),
+                None,
+            ));
         }
         let mut sets = vec![Vec::new()];
         if !state.is_empty() {
@@ -210,7 +213,12 @@ fn word(verdict: Verdict) -> &'static str {
 /// Effects by their names, of those that the case may have.
 fn known(case: &Case, started: &[Started]) -> KnownEffects {
     let candidates = case.input().map(|input| &input.candidates);
-    let find = |name: &str| candidates?.iter().find(|effect| effect.name == name).copied();
+    let find = |name: &str| {
+        candidates?
+            .iter()
+            .find(|effect| effect.name == name)
+            .copied()
+    };
     let of = |one: &Started| Some((find(&one.name)?, one.values.clone()));
     started.iter().filter_map(of).collect()
 }
@@ -242,7 +250,9 @@ fn fill(
     };
     for (effect, numbers) in effects {
         let reported = numbers.iter().filter(|number| number.reported).map(told);
-        result.effects.push((effect.name.to_owned(), reported.collect()));
+        result
+            .effects
+            .push((effect.name.to_owned(), reported.collect()));
         let Some(input) = case.input() else { continue };
         let parameters = effect.parameters(&input.believed);
         let value = |name: &str| numbers.iter().find(|n| n.name == name).map(|n| n.value);

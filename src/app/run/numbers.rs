@@ -40,7 +40,9 @@ pub(in super::super) fn numbers(scenario: AnyScenario) -> Numbers {
         reason: error.to_string(),
         metrics: Vec::new(),
     };
-    Job::new(scenario).and_then(measured).unwrap_or_else(refused)
+    Job::new(scenario)
+        .and_then(measured)
+        .unwrap_or_else(refused)
 }
 
 fn measured(job: Job) -> Result<Numbers, AppError> {
@@ -60,7 +62,13 @@ fn measured(job: Job) -> Result<Numbers, AppError> {
             let scenario = &rig.scenario;
             let verdicts = metrics::check(BENCH_METRICS, &run.summary, &scenario.expect);
             let file = scenario.path.display().to_string();
-            of(BENCH_METRICS, &run.summary, run.stop.as_ref(), verdicts, file)
+            of(
+                BENCH_METRICS,
+                &run.summary,
+                run.stop.as_ref(),
+                verdicts,
+                file,
+            )
         }
     }
 }
@@ -78,6 +86,8 @@ fn of<S>(
     Ok(Numbers {
         code: code as u8,
         reason: told.join("; "),
-        metrics: values.map(|value| value.filter(|v| v.is_finite())).collect(),
+        metrics: values
+            .map(|value| value.filter(|v| v.is_finite()))
+            .collect(),
     })
 }

@@ -101,7 +101,11 @@ pub(in super::super) fn run(arguments: &VaryArguments) -> Result<ExitCode, AppEr
     let template = ScenarioTemplate::read(&arguments.scenario)?;
     let points = match &arguments.points {
         Some(file) => Points::table(file)?,
-        None => Points::new(arguments.variables.clone(), arguments.sample, arguments.seed)?,
+        None => Points::new(
+            arguments.variables.clone(),
+            arguments.sample,
+            arguments.seed,
+        )?,
     };
     let fixed = put_in(&arguments.effects, &template)?;
     let sweep = Sweep {

@@ -12,9 +12,9 @@ use super::planned::Sweep;
 use super::table::RUNS;
 use crate::page::html;
 use crate::quantity::{column, counted, number};
+use crate::recording::RecordingError;
 use crate::recording::long_table::{LongColumn, read_columns};
 use crate::recording::provenance::SourceFile;
-use crate::recording::RecordingError;
 use crate::tasks::Head;
 use crate::vary::{QUANTILES, quantiles, rank_correlation, share_of_variance};
 
@@ -83,7 +83,9 @@ pub(in super::super) struct Driver {
 impl MetricOfRuns {
     /// Drivers of which it is sure.
     pub(super) fn sure(&self) -> impl Iterator<Item = &Driver> {
-        self.drivers.iter().filter(|driver| driver.interval[0] > 0.0)
+        self.drivers
+            .iter()
+            .filter(|driver| driver.interval[0] > 0.0)
     }
 
     /// Whether it is another number in some run.
@@ -203,7 +205,13 @@ impl Swept {
                 .take(NAMED)
                 .map(|driver| {
                     let name = crate::design::spoken(short(&driver.key)).0;
-                    format!("{name} {} %", number(100.0 * driver.share.min(1.0), "").split('.').next().unwrap_or("0"))
+                    format!(
+                        "{name} {} %",
+                        number(100.0 * driver.share.min(1.0), "")
+                            .split('.')
+                            .next()
+                            .unwrap_or("0")
+                    )
                 })
                 .collect();
             let drivers = match drivers.is_empty() {
@@ -256,7 +264,11 @@ fn metric(name: &str, values: &[f64], variables: &[(&str, bool, Vec<f64>)]) -> M
                 key: (*key).to_owned(),
                 share: share.value,
                 interval: share.interval,
-                rank_correlation: if *names { None } else { rank_correlation(x, values) },
+                rank_correlation: if *names {
+                    None
+                } else {
+                    rank_correlation(x, values)
+                },
             })
         })
         .collect();

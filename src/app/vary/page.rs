@@ -72,28 +72,45 @@ fn drivers(swept: &Swept) -> PageSection<'static> {
     let percent = |share: f64| format!("{:.0}", 100.0 * share);
     let rows = differing(swept).into_iter().flat_map(|(label, metric)| {
         let name = named(&label);
-        metric.drivers.iter().enumerate().map(move |(place, driver)| {
-            let [low, high] = driver.interval;
-            let sure = low > 0.0;
-            vec![
-                TableCell::from(if place == 0 { name.clone() } else { String::new() }),
-                TableCell::from(spoken(short(&driver.key)).0),
-                TableCell::from(percent(driver.share)),
-                TableCell::from(format!("{} to {}", percent(low), percent(high))),
-                TableCell::Interval([0.0, low, driver.share, high, 1.0]),
-                TableCell::from(match driver.rank_correlation {
-                    Some(correlation) if sure => format!("{correlation:.2}"),
-                    _ => UNKNOWN.to_owned(),
-                }),
-            ]
-        })
+        metric
+            .drivers
+            .iter()
+            .enumerate()
+            .map(move |(place, driver)| {
+                let [low, high] = driver.interval;
+                let sure = low > 0.0;
+                vec![
+                    TableCell::from(if place == 0 {
+                        name.clone()
+                    } else {
+                        String::new()
+                    }),
+                    TableCell::from(spoken(short(&driver.key)).0),
+                    TableCell::from(percent(driver.share)),
+                    TableCell::from(format!("{} to {}", percent(low), percent(high))),
+                    TableCell::Interval([0.0, low, driver.share, high, 1.0]),
+                    TableCell::from(match driver.rank_correlation {
+                        Some(correlation) if sure => format!("{correlation:.2}"),
+                        _ => UNKNOWN.to_owned(),
+                    }),
+                ]
+            })
     });
     let rows: Vec<Vec<TableCell>> = rows.collect();
     let words = "Share of a number's variance over the runs that goes with one variable alone (first-order index), with its interval at 95 %; what is missing \
                  to 100 % is due to variables together, and to what is drawn at random. Rank correlation: 1 where the number only grows with the variable, -1 where it only falls.";
-    let columns = ["number", "driven by", "#share [%]", "#interval [%]", "", "#rank correlation"];
+    let columns = [
+        "number",
+        "driven by",
+        "#share [%]",
+        "#interval [%]",
+        "",
+        "#rank correlation",
+    ];
     let block = match rows.is_empty() {
-        true => Block::Paragraph("No number differs between the runs, or there are too few runs to say.".to_owned()),
+        true => Block::Paragraph(
+            "No number differs between the runs, or there are too few runs to say.".to_owned(),
+        ),
         false => Block::PageTable(PageTable::new("", &columns, rows)),
     };
     PageSection::new(
@@ -123,7 +140,10 @@ fn distribution(swept: &Swept) -> PageSection<'static> {
     columns.push("#runs");
     let caption = "Values below which these shares of the runs lie; runs that do not determine a number are left out.";
     let table = PageTable::new(caption, &columns, rows.collect());
-    PageSection::new("Distribution of every number", vec![Block::PageTable(table)])
+    PageSection::new(
+        "Distribution of every number",
+        vec![Block::PageTable(table)],
+    )
 }
 
 fn varied(swept: &Swept) -> PageSection<'static> {
@@ -132,9 +152,14 @@ fn varied(swept: &Swept) -> PageSection<'static> {
             format!("{} to {}", plain(low), plain(high))
         });
         let (_, unit) = spoken(short(&variable.key));
-        [variable.key.clone(), ends, unit, variable.values.to_string()]
-            .map(TableCell::from)
-            .to_vec()
+        [
+            variable.key.clone(),
+            ends,
+            unit,
+            variable.values.to_string(),
+        ]
+        .map(TableCell::from)
+        .to_vec()
     });
     let caption = format!("The points are {}.", swept.points);
     let columns = ["key", "#values", "unit", "#different"];
@@ -179,7 +204,11 @@ fn cloud(label: &Label, key: &str, x: &[f64], values: &[f64]) -> Panel<'static> 
         .step_by(each)
         .unzip();
     Panel {
-        title: if each > 1 { format!("every {}th run", number(each as f64, "")) } else { "each run".to_owned() },
+        title: if each > 1 {
+            format!("every {}th run", number(each as f64, ""))
+        } else {
+            "each run".to_owned()
+        },
         vertical_label: named(label),
         horizontal: Horizontal::Quantity(named_key(key)),
         series: vec![Series::new("", x, y, Role::Regulator, Stroke::Points)],
@@ -194,7 +223,13 @@ fn shares(label: &Label, values: &[f64]) -> Panel<'static> {
     Panel {
         vertical_label: "share of the runs [%]".to_owned(),
         horizontal: Horizontal::Quantity(named(label)),
-        series: vec![Series::new("", places, shares, Role::Regulator, Stroke::Plain)],
+        series: vec![Series::new(
+            "",
+            places,
+            shares,
+            Role::Regulator,
+            Stroke::Plain,
+        )],
         ..Panel::default()
     }
 }

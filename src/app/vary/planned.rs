@@ -12,7 +12,7 @@ use crate::scenario::{
     AnyScenario, KeyValue, ScenarioError, ScenarioTemplate, files_of_cell, led_to,
 };
 use crate::tasks::{Head, Plan, Task, name_of};
-use crate::vary::Points;
+use crate::vary::{Points, Variable};
 
 /// A sweep that can be planned.
 pub(super) struct Sweep {
@@ -26,7 +26,7 @@ impl Sweep {
     /// others at their first or last, as keys may only go together.
     pub(super) fn check(&self) -> Result<(), AppError> {
         let variables = self.points.variables();
-        let ends: Vec<Vec<String>> = variables.iter().map(|v| v.to_check()).collect();
+        let ends: Vec<Vec<String>> = variables.iter().map(Variable::to_check).collect();
         for (place, variable) in variables.iter().enumerate() {
             for value in &ends[place] {
                 let own = KeyValue::typed(&variable.key, value);
@@ -37,9 +37,8 @@ impl Sweep {
                 let together = |at: fn(&Vec<String>) -> Option<&String>| {
                     let others = variables.iter().zip(&ends).enumerate();
                     let others = others.filter(|(other, _)| *other != place);
-                    let others = others.filter_map(|(_, (v, ends))| {
-                        Some(KeyValue::typed(&v.key, at(ends)?))
-                    });
+                    let others = others
+                        .filter_map(|(_, (v, ends))| Some(KeyValue::typed(&v.key, at(ends)?)));
                     self.with(&others.chain([own.clone()]).collect::<Vec<_>>())
                 };
                 let others = [together(|ends| ends.first()), together(|ends| ends.last())];
@@ -97,7 +96,12 @@ impl Sweep {
         };
         // A number leads to no other file.
         let texts: Vec<usize> = (self.points.variables().iter().enumerate())
-            .filter(|(_, variable)| variable.to_check().iter().any(|v| v.parse::<f64>().is_err()))
+            .filter(|(_, variable)| {
+                variable
+                    .to_check()
+                    .iter()
+                    .any(|v| v.parse::<f64>().is_err())
+            })
             .map(|(place, _)| place)
             .collect();
         let mut known: BTreeMap<Vec<String>, Vec<SourceFile>> = BTreeMap::new();
@@ -133,7 +137,14 @@ fn name(head: &Head, work: &Shared, values: &[String], files: &[SourceFile]) -> 
     let own = own.flat_map(|(key, value)| [key.as_str(), value.as_str()]);
     let files = files.iter().map(|file| file.sha256.as_str());
     let first = [KIND, head.program.as_str()].into_iter();
-    name_of(first.chain(files).chain(["with"]).chain(fixed).chain(["set"]).chain(own))
+    name_of(
+        first
+            .chain(files)
+            .chain(["with"])
+            .chain(fixed)
+            .chain(["set"])
+            .chain(own),
+    )
 }
 
 /// Files that scenarios read, each hashed once.
@@ -159,8 +170,13 @@ impl Files {
         let paths: Vec<PathBuf> = match scenario {
             AnyScenario::Cell(cell) => {
                 let obstacles = &cell.collision.obstacles;
-                let own =
-                    files_of_cell(&cell.path, &cell.arm, &cell.device, &cell.workpiece, obstacles);
+                let own = files_of_cell(
+                    &cell.path,
+                    &cell.arm,
+                    &cell.device,
+                    &cell.workpiece,
+                    obstacles,
+                );
                 let meshes = crate::arm::mesh_files(&cell.arm.urdf, &arm_options(&cell.arm));
                 let meshes = meshes.map_err(crate::cell::CellError::from)?;
                 own.into_iter().cloned().chain(meshes).collect()

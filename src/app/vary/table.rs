@@ -11,7 +11,12 @@ use crate::tasks::{Plan, Store};
 /// The table.
 pub(in super::super) const RUNS: &str = "runs.parquet";
 /// Columns before the keys.
-const OWN: [(&str, bool); 4] = [("run", false), ("id", true), ("code", false), ("reason", true)];
+const OWN: [(&str, bool); 4] = [
+    ("run", false),
+    ("id", true),
+    ("code", false),
+    ("reason", true),
+];
 /// Runs of a group: what is held at a time.
 const GROUP: usize = 4096;
 
@@ -22,7 +27,11 @@ pub(super) fn write_table(plan: &Path, is_bench: bool, table: &Path) -> Result<(
     let shared: Shared = serde_json::from_value(opened.head.work.clone())?;
     let store = Store::of(plan);
     let metrics = metric_names(is_bench);
-    let keys = shared.keys.iter().map(String::as_str).zip(texts.iter().copied());
+    let keys = shared
+        .keys
+        .iter()
+        .map(String::as_str)
+        .zip(texts.iter().copied());
     let numbers = metrics.iter().map(|name| (*name, false));
     let columns: Vec<(&str, bool)> = OWN.into_iter().chain(keys).chain(numbers).collect();
     let mut tasks = opened;

@@ -26,7 +26,8 @@ impl Shared {
     pub(super) fn edits(&self, values: &[String]) -> Vec<KeyValue> {
         let fixed = self.fixed.iter().map(|(key, value)| (key, value));
         let all = fixed.chain(self.keys.iter().zip(values));
-        all.map(|(key, value)| KeyValue::typed(key, value)).collect()
+        all.map(|(key, value)| KeyValue::typed(key, value))
+            .collect()
     }
 }
 
