@@ -29,6 +29,9 @@
 //! - [`diagnosis`]: the physics in recordings that the believed model leaves out
 //! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
+//! - [`vary`]: sweeps of a scenario: the values of each run, and what drives its numbers
+//! - [`tasks`]: runs and diagnoses as tasks named by content, and the engines that do them
+//! - [`fleet`]: many recordings of many devices, and what their numbers say over time
 //! - [`figure`]: signals as SVG pictures
 //! - [`drawing`]: a scene as an SVG picture
 //! - [`page`]: one HTML file for a browser, with everything in it
@@ -53,6 +56,8 @@ pub mod effects;
 pub mod estimation;
 #[cfg(feature = "cli")]
 pub mod figure;
+#[cfg(feature = "cli")]
+pub mod fleet;
 #[cfg(feature = "import")]
 pub mod import;
 #[cfg(feature = "cli")]
@@ -77,6 +82,10 @@ pub mod rig;
 pub mod scenario;
 pub mod sensing;
 pub mod simulation;
+#[cfg(feature = "cli")]
+pub mod tasks;
+#[cfg(feature = "cli")]
+pub mod vary;
 pub mod workpiece;
 
 pub use case::{Case, Diagnosed, diagnose};

@@ -188,7 +188,8 @@ fn every_command_with_results_has_them_as_json() {
         (vec!["laboratory", "--out", "lab"], "cases"),
         (
             vec![
-                "sweep",
+                "prove",
+                "--sweep",
                 "--out",
                 "s",
                 "--effects",

@@ -193,7 +193,7 @@ fn what_is_read_is_not_written_and_what_is_refused_leaves_nothing() {
             "nowhere: there are no results in it",
         ),
         (
-            vec!["sweep", "--effects", "frictoin", "--out", "new"],
+            vec!["prove", "--sweep", "--effects", "frictoin", "--out", "new"],
             "frictoin",
         ),
         (

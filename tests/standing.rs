@@ -56,7 +56,7 @@ const COMMANDS: [(&str, &str); 10] = [
     ("diagnose cases/case-03 --quiet", "out/diagnosis.json"),
     ("prove --cases cases --json", "out/case-03/diagnosis.json"),
     (
-        "sweep --effects force_sensor_gain_error --sizes 1 --seeds 1 --empty 0 --duration-s 2 --quiet",
+        "prove --sweep --effects force_sensor_gain_error --sizes 1 --seeds 1 --empty 0 --duration-s 2 --quiet",
         "out/CONFUSION.md",
     ),
     ("new rig --quiet", "out"),

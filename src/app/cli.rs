@@ -33,6 +33,15 @@ enum Command {
     /// Run a scenario: simulate, record, print how uniform the contact force was.
     #[command(after_help = help::RUN)]
     Run(super::run::RunArguments),
+    /// Run a scenario with many other values of its keys: how its numbers are distributed, and which key drives which.
+    #[command(after_help = super::vary::EXAMPLES)]
+    Vary(super::vary::VaryArguments),
+    /// Diagnose all recordings of many devices by their days: which effects appear where, since when, and what drifts.
+    #[command(after_help = super::fleet::EXAMPLES)]
+    Fleet(super::fleet::FleetArguments),
+    /// Do one task of a plan that `idc vary` or `idc fleet` wrote, as an engine asks for it.
+    #[command(after_help = super::task::EXAMPLES)]
+    Task(super::task::TaskArguments),
     /// Explain a file without running it: what it describes, what would be done, what is missing.
     #[command(after_help = super::check::EXAMPLES)]
     Check(super::check::CheckArguments),
@@ -72,9 +81,6 @@ enum Command {
     /// Prove the diagnosis: diagnose cases whose truth is sealed, then open it and print the score.
     #[command(after_help = help::PROVE)]
     Prove(super::prove::ProveArguments),
-    /// Try the diagnosis on every effect, from its largest size down to where it is lost, and on devices with nothing missing.
-    #[command(after_help = help::SWEEP)]
-    Sweep(super::prove::SweepArguments),
     /// Write the cases that come with the project, with their sealed truth, as the laboratory makes them.
     #[command(after_help = help::LABORATORY)]
     Laboratory(super::prove::LaboratoryArguments),
@@ -117,6 +123,9 @@ struct DesignArguments {
 pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
     match &cli.command {
         Command::Run(arguments) => super::run::run(arguments),
+        Command::Vary(arguments) => super::vary::run(arguments),
+        Command::Fleet(arguments) => super::fleet::run(arguments),
+        Command::Task(arguments) => super::task::run(arguments),
         Command::Check(arguments) => super::check::run(arguments),
         Command::Effects(arguments) => super::effects::run(arguments),
         Command::New(arguments) => super::new::run(arguments),
@@ -129,8 +138,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
         Command::Report(arguments) => super::report::run(arguments),
         Command::Compare(arguments) => super::compare::run(arguments),
-        Command::Prove(arguments) => super::prove::run_prove(arguments),
-        Command::Sweep(arguments) => super::prove::run_sweep(arguments),
+        Command::Prove(arguments) => super::prove::run(arguments),
         Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),
         Command::Schema(arguments) => super::schema::run(arguments),
         Command::Completions(arguments) => super::manual::completions(arguments),

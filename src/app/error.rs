@@ -45,7 +45,7 @@ pub enum AppError {
     Workpiece(#[from] WorkpieceError),
     /// A folder without results.
     #[error(
-        "{folder}: there are no results in it, expected the folder of a run (summary.json), a diagnosis (diagnosis.json) or a study (design.json)"
+        "{folder}: there are no results in it, expected the folder of a run (summary.json), a diagnosis (diagnosis.json), a sweep (vary.json), a fleet (fleet.json) or a study (design.json)"
     )]
     NoResults {
         /// The folder.
@@ -332,6 +332,15 @@ pub enum AppError {
         /// The file.
         file: String,
     },
+    /// A sweep that cannot be.
+    #[error(transparent)]
+    Vary(#[from] crate::vary::VaryError),
+    /// A folder of a fleet.
+    #[error(transparent)]
+    Fleet(#[from] crate::fleet::FleetError),
+    /// A plan, its tasks or the engine.
+    #[error(transparent)]
+    Tasks(#[from] crate::tasks::TaskError),
     /// A proof.
     #[error(transparent)]
     Proof(#[from] crate::proof::ProofError),

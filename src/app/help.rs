@@ -6,9 +6,10 @@ pub(super) const PROGRAM: &str = "\
 The usual order:
   look       idc run scenarios/plate_edge.toml, then report.html in a browser
              and recording.rrd in Rerun; idc compare sets runs side by side
-  own cell   idc new cell, idc check, idc run, idc design
-  own rig    idc new import, idc import, idc new rig, idc check, idc diagnose
-  proof      idc prove, idc sweep
+  own cell   idc new cell, idc check, idc run, idc vary, idc design
+  own rig    idc new import, idc import, idc new rig, idc check, idc diagnose,
+             idc fleet
+  proof      idc prove, idc prove --sweep
 Every command's --help ends with examples.
 
 With --json, results go to standard output and an error to standard error, as
@@ -129,22 +130,18 @@ Examples:
   # One of the cases that come with the project.
   idc prove --only case-03 --out runs/proof-3
   # All of them. (takes minutes)
-  idc prove";
-
-/// `idc sweep`.
-pub(super) const SWEEP: &str = "\
-Exit codes: 0 done, 2 bad input.
-
-Examples:
-  # One device with one effect, one with nothing missing.
-  idc sweep --out runs/few --effects hose_volume --sizes 1 --seeds 1 --empty 1
+  idc prove
+  # A sweep over effects and sizes: here one device with one effect, and one with
+  # nothing missing.
+  idc prove --sweep --out runs/few --effects hose_volume --sizes 1 --seeds 1 \\
+      --empty 1
   # Go on where it was stopped; here all is done, and the tables are written.
-  idc sweep --out runs/few --effects hose_volume --sizes 1 --seeds 1 --empty 1 \\
-      --resume --quiet
+  idc prove --sweep --out runs/few --effects hose_volume --sizes 1 --seeds 1 \\
+      --empty 1 --resume --quiet
   # Everything. (takes hours)
-  idc sweep --out runs/sweep --page docs/CONFUSION.md --force
+  idc prove --sweep --out runs/sweep --page docs/CONFUSION.md --force
   # Sixty devices with a law each that no list holds. (takes hours)
-  idc sweep --laws 60 --out runs/laws";
+  idc prove --sweep --laws 60 --out runs/laws";
 
 /// `idc laboratory`.
 pub(super) const LABORATORY: &str = "\

@@ -39,6 +39,16 @@ pub(super) fn cases(count: usize, hidden: bool) -> ProgressBar {
     bar
 }
 
+/// A bar of so many tasks of a kind, a word that takes an s. What stood at the start is not counted for the time that is left.
+pub(super) fn tasks(count: usize, word: &str, hidden: bool) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());
+    let template = format!("{{pos}} of {{len}} {word}s {{wide_bar}} {{eta}} left");
+    let style = ProgressStyle::with_template(&template);
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    show_later(&bar, hidden);
+    bar
+}
+
 /// A bar of so many places.
 pub(super) fn places(count: usize, hidden: bool) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());

@@ -1,4 +1,4 @@
-//! `idc prove`, `idc sweep` and `idc laboratory`: the diagnosis on cases of which the truth is known, but not to it.
+//! `idc prove`, with --sweep too, and `idc laboratory`: the diagnosis on cases of which the truth is known, but not to it.
 
 use std::path::{Path, PathBuf};
 
@@ -33,13 +33,18 @@ pub(super) struct ProveArguments {
     /// Names of the cases to take [default: all].
     #[arg(long, num_args = 1.., value_name = "NAME")]
     only: Vec<String>,
-    /// Folder for the answers.
-    #[arg(long, default_value = "runs/proof", help_heading = "Output")]
-    out: PathBuf,
+    /// Instead, try the diagnosis on every effect, from its largest size down to where it is lost, and on devices with nothing missing; outcomes, one file for each, and tables.
+    #[arg(long, conflicts_with_all = ["cases", "sealed", "only"])]
+    sweep: bool,
+    #[command(flatten)]
+    plan: SweepArguments,
+    /// Folder for the answers, or outcomes [default: runs/proof, with --sweep runs/proof-sweep].
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
     /// Cases at a time [default: as many as there are processors].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Print the score as JSON.
+    /// Print the score, or the outcomes, as JSON.
     #[arg(long, help_heading = "Output")]
     json: bool,
     /// Put new results in place of old ones.
@@ -47,53 +52,54 @@ pub(super) struct ProveArguments {
     force: bool,
 }
 
+/// What --sweep takes.
 #[derive(Debug, Args)]
-pub(super) struct SweepArguments {
-    /// Folder for the outcomes, one file for each case.
-    #[arg(long, help_heading = "Output")]
-    out: PathBuf,
+#[command(next_help_heading = "With --sweep")]
+struct SweepArguments {
     /// Effects by name, divided by commas [default: all of the vocabulary].
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, requires = "sweep", value_delimiter = ',')]
     effects: Vec<String>,
     /// Instead of effects, this many devices with a law each that no list holds, drawn at random; a table in laws.md.
-    #[arg(long, conflicts_with_all = ["effects", "seeds", "sizes", "empty"], value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, requires = "sweep", conflicts_with_all = ["effects", "seeds", "sizes", "empty"], value_parser = clap::value_parser!(u64).range(1..=1000))]
     laws: Option<u64>,
     /// Devices for each size of each effect.
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(0..=1000))]
+    #[arg(long, requires = "sweep", default_value_t = 5, value_parser = clap::value_parser!(u64).range(0..=1000))]
     seeds: u64,
     /// Sizes of each effect.
-    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=16))]
+    #[arg(long, requires = "sweep", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=16))]
     sizes: u16,
     /// Devices with nothing missing.
-    #[arg(long, default_value_t = 150)]
+    #[arg(long, requires = "sweep", default_value_t = 150)]
     empty: u64,
     /// Which devices are drawn: another number, others.
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..1_000_000))]
+    #[arg(long, requires = "sweep", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..1_000_000))]
     draw: u64,
     /// Length of each recording [s].
-    #[arg(long, default_value_t = 4.0, value_parser = duration)]
+    #[arg(long, requires = "sweep", default_value_t = 4.0, value_parser = duration)]
     duration_s: f64,
     /// Conditions under which the devices are recorded.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, requires = "sweep", value_enum, default_value_t)]
     conditions: CaseConditions,
-    /// Cases at a time [default: as many as there are processors].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    jobs: Option<u16>,
     /// Go on where it was stopped.
-    #[arg(long)]
+    #[arg(long, requires = "sweep", conflicts_with = "force")]
     resume: bool,
     /// File for the tables [default: CONFUSION.md in the output folder, laws.md with --laws].
-    #[arg(long, help_heading = "Output")]
+    #[arg(long, requires = "sweep")]
     page: Option<PathBuf>,
-    /// Put new results in place of old ones.
-    #[arg(long, conflicts_with = "resume", help_heading = "Output")]
-    force: bool,
     /// Print nothing but errors.
-    #[arg(long, help_heading = "Output")]
+    #[arg(long, requires = "sweep", conflicts_with = "json")]
     quiet: bool,
-    /// Print the outcomes as JSON.
-    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
-    json: bool,
+}
+
+impl ProveArguments {
+    /// Where its results go.
+    fn folder(&self) -> PathBuf {
+        let usual = match self.sweep {
+            true => "runs/proof-sweep",
+            false => "runs/proof",
+        };
+        self.out.clone().unwrap_or_else(|| usual.into())
+    }
 }
 
 /// Length of a recording [s].
@@ -112,7 +118,7 @@ pub(super) struct LaboratoryArguments {
     /// Folder for `cases` and `sealed`.
     #[arg(long, help_heading = "Output")]
     out: PathBuf,
-    /// Instead, the cases of `idc sweep --laws` of this many: devices with a law each that no list holds.
+    /// Instead, the cases of `idc prove --sweep --laws` of this many: devices with a law each that no list holds.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1000))]
     laws: Option<u64>,
     /// Which devices are drawn: another number, others.
@@ -142,10 +148,17 @@ fn jobs(asked: Option<u16>) -> usize {
     asked.map_or_else(processors, usize::from)
 }
 
-/// Proves and prints the score.
-pub(super) fn run_prove(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
+/// Proves and prints the score, or sweeps.
+pub(super) fn run(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
+    match arguments.sweep {
+        true => run_sweep(arguments),
+        false => run_prove(arguments),
+    }
+}
+
+fn run_prove(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
     let jobs = jobs(arguments.jobs);
-    let out = &arguments.out;
+    let out = &arguments.folder();
     let cases = prepare_proof(arguments)?;
     let beside = || cases.parent().unwrap_or(Path::new("")).join("sealed");
     let sealed = arguments.sealed.clone().unwrap_or_else(beside);
@@ -190,42 +203,39 @@ pub(super) fn run_prove(arguments: &ProveArguments) -> Result<ExitCode, AppError
 }
 
 /// Sweeps and writes the tables.
-pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError> {
+fn run_sweep(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
+    let (asked, out) = (&arguments.plan, arguments.folder());
     let plan = SweepPlan {
-        effects: arguments.effects.clone(),
-        seeds: arguments.seeds,
-        draw: arguments.draw,
-        sizes: usize::from(arguments.sizes),
-        empty: arguments.empty,
-        duration: arguments.duration_s,
-        conditions: arguments.conditions,
+        effects: asked.effects.clone(),
+        seeds: asked.seeds,
+        draw: asked.draw,
+        sizes: usize::from(asked.sizes),
+        empty: asked.empty,
+        duration: asked.duration_s,
+        conditions: asked.conditions,
         jobs: jobs(arguments.jobs),
-        resume: arguments.resume,
+        resume: asked.resume,
         replace: arguments.force,
     };
-    let table = if arguments.laws.is_some() {
+    let table = if asked.laws.is_some() {
         "laws.md"
     } else {
         "CONFUSION.md"
     };
-    let usual = || arguments.out.join(table);
-    let file = arguments.page.clone().unwrap_or_else(usual);
+    let usual = || out.join(table);
+    let file = asked.page.clone().unwrap_or_else(usual);
     // The tables of a sweep that goes on take the place of its own earlier ones.
-    let option = if arguments.page.is_some() {
+    let option = if asked.page.is_some() {
         "--page"
     } else {
         "--out"
     };
     plan.check()?;
-    prepare_file(
-        &file,
-        option,
-        Standing::of(arguments.force || arguments.resume),
-    )?;
-    let silent = arguments.quiet || arguments.json;
+    prepare_file(&file, option, Standing::of(arguments.force || asked.resume))?;
+    let silent = asked.quiet || arguments.json;
     let bar = progress::bar("sweeping", silent);
     let interruptible = Interruptible::new({
-        let out = arguments.out.display().to_string();
+        let out = out.display().to_string();
         move |done| {
             format!(
                 "{} kept in {out}; the same command with --resume goes on",
@@ -243,14 +253,14 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
             bar.println(format!("{done} of {total}: {line}"));
         }
     };
-    let found = swept(arguments, &plan, &tell);
+    let found = swept(asked, &plan, &out, &tell);
     bar.finish_and_clear();
     let (count, text, json) = found?;
     write_text(&file, &text)?;
     if arguments.json {
         say(&(json + "\n"))?;
-    } else if !arguments.quiet {
-        if arguments.laws.is_some() {
+    } else if !asked.quiet {
+        if asked.laws.is_some() {
             say(&text)?;
         }
         say(&format!(
@@ -264,22 +274,23 @@ pub(super) fn run_sweep(arguments: &SweepArguments) -> Result<ExitCode, AppError
 
 /// Outcomes of a sweep over effects or laws: how many there are, their tables, and as JSON.
 fn swept(
-    arguments: &SweepArguments,
+    asked: &SweepArguments,
     plan: &SweepPlan,
+    out: &Path,
     tell: &(dyn Fn(usize, usize, &str) + Sync),
 ) -> Result<(usize, String, String), AppError> {
-    let Some(count) = arguments.laws else {
-        let outcomes = sweep(plan, &arguments.out, &*diagnose(), tell)?;
+    let Some(count) = asked.laws else {
+        let outcomes = sweep(plan, out, &*diagnose(), tell)?;
         let json = serde_json::to_string_pretty(&outcomes)?;
         return Ok((outcomes.len(), page(&outcomes), json));
     };
     let course = Course {
-        out: &arguments.out,
+        out,
         jobs: plan.jobs,
         resume: plan.resume,
         replace: plan.replace,
     };
-    let outcomes = laws(&law_plan(count, arguments), &course, &*diagnose(), tell)?;
+    let outcomes = laws(&law_plan(count, asked), &course, &*diagnose(), tell)?;
     let json = serde_json::to_string_pretty(&outcomes)?;
     Ok((outcomes.len(), laws_page(&outcomes), json))
 }
@@ -413,18 +424,18 @@ fn prepare_proof(arguments: &ProveArguments) -> Result<PathBuf, AppError> {
     };
     for name in names.iter().filter(|_| !arguments.force) {
         let answer = Path::new(name).join("diagnosis.json");
-        if arguments.out.join(&answer).exists() {
+        if arguments.folder().join(&answer).exists() {
             return Err(AppError::FolderStands {
-                folder: arguments.out.display().to_string(),
+                folder: arguments.folder().display().to_string(),
                 name: answer.display().to_string(),
             });
         }
     }
-    OutputFolder::prepare(&arguments.out, &[], Standing::Replace)?;
+    OutputFolder::prepare(&arguments.folder(), &[], Standing::Replace)?;
     if let Some(cases) = there {
         return Ok(cases);
     }
-    let made = arguments.out.join("laboratory");
+    let made = arguments.folder().join("laboratory");
     if !arguments.json {
         eprintln!(
             "note: there is no {CASES} here, so the laboratory makes the same cases, into {}",

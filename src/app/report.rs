@@ -20,7 +20,9 @@ use super::files::{
     BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, LEAN, REPORT,
     SAMPLES, SUMMARY, Sketches, Standing, is_same, prepare_file,
 };
+use super::fleet::{self, FLEET};
 use super::output::say;
+use super::vary::{self, SWEEP};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
 use crate::page::html;
@@ -29,7 +31,8 @@ use crate::recording::parquet::read_parquet;
 use crate::recording::{EdgeProfile, Recording, RecordingError};
 
 pub(super) use charts::{lacking, most_of, variable};
-pub(super) use run::{Label, RunResult};
+pub(super) use provenance::sources;
+pub(super) use run::{Label, RunResult, labels};
 pub(super) use signals::{ROLES, chart_groups};
 
 /// For the help.
@@ -79,6 +82,9 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         DRAWING,
         DESIGN,
         FRONT,
+        SWEEP,
+        vary::RUNS,
+        FLEET,
     ];
     if let Some(out) = &arguments.out
         && inputs.iter().any(|name| is_same(&folder.join(name), out))
@@ -95,6 +101,12 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         )
     } else if folder.join(SUMMARY).is_file() {
         ("run", of_run(&read_run(folder)?))
+    } else if folder.join(SWEEP).is_file() {
+        let swept = read_json(&folder.join(SWEEP))?;
+        ("sweep", vary::page_of(&swept, &folder.join(vary::RUNS))?)
+    } else if folder.join(FLEET).is_file() {
+        let found = read_json(&folder.join(FLEET))?;
+        ("fleet", fleet::page_of(&found)?)
     } else if folder.join(DESIGN).is_file() {
         let document = read_json(&folder.join(DESIGN))?;
         let front = std::fs::read_to_string(folder.join(FRONT)).ok();

@@ -14,5 +14,5 @@ pub(crate) mod test_chains;
 pub use chain::{BodyInertia, Joint, JointKind, KinematicChain, MAX_JOINTS};
 pub use urdf::{
     Arm, ArmError, ArmOptions, CollisionShape, LimitOverride, Visual, VisualShape, likely_flange,
-    load_arm,
+    load_arm, mesh_files,
 };

@@ -55,6 +55,19 @@ pub fn load_arm(path: &Path, options: &ArmOptions) -> Result<Arm, ArmError> {
     })
 }
 
+/// The mesh files that a URDF file leads to; those that are not found are left out, as they are of the arm.
+///
+/// # Errors
+/// The URDF file cannot be read.
+pub fn mesh_files(path: &Path, options: &ArmOptions) -> Result<Vec<std::path::PathBuf>, ArmError> {
+    let robot = urdf_rs::read_file(path).map_err(|source| ArmError::Malformed {
+        file: path.to_path_buf(),
+        source,
+    })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Ok(mesh::files(&robot, folder, options))
+}
+
 /// The link of a URDF file that a device would be mounted on: of those by which an arm can be loaded one with a usual name, else the last.
 ///
 /// # Errors

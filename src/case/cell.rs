@@ -53,6 +53,9 @@ pub fn is_cell_case(folder: &Path) -> bool {
 }
 
 fn recordings(folder: &Path) -> Vec<PathBuf> {
+    if folder.is_file() {
+        return vec![folder.to_owned()];
+    }
     let own = folder.join(SAMPLES);
     if own.is_file() {
         return vec![own];

@@ -24,6 +24,7 @@ use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
 use crate::diagnosis::flange_answer::FlangeDiagnosis;
 use crate::diagnosis::input::{DiagnosisInput, prepare};
+use crate::diagnosis::known::{KnownEffects, KnownFit, known_fit};
 use crate::diagnosis::progress::Observer;
 use crate::diagnosis::servo::Axes;
 use crate::diagnosis::settings::Settings;
@@ -101,6 +102,42 @@ impl Case {
         Ok(Self::new(folder, Kind::Rig { rig, input }))
     }
 
+    /// Reads recordings of a rig that stand anywhere, whatever its file names.
+    ///
+    /// # Errors
+    /// What is wrong with one of them, or a rig whose recordings are not fitted together.
+    pub fn of_rig(rig: &RigFile, folder: &Path, names: &[String]) -> Result<Self, CaseError> {
+        let mut rig = rig.clone();
+        if rig.plant.chain == Chain::ContactFlange {
+            return Err(CaseError::TriedOnFlange {
+                folder: folder.display().to_string(),
+            });
+        }
+        rig.fit = names.to_vec();
+        rig.predict = None;
+        let rig = Box::new(rig);
+        let input = Box::new(rig::input_of(&rig, folder)?);
+        prepare(&input)?;
+        Ok(Self::new(folder, Kind::Rig { rig, input }))
+    }
+
+    /// Fits effects that are known to the recordings, without a search; none where only a search can.
+    ///
+    /// # Errors
+    /// A recording that cannot be made fit.
+    pub fn known_fit(&self, sets: &[KnownEffects]) -> Result<Option<KnownFit>, CaseError> {
+        let Some(input) = self.input().filter(|i| i.believed.chain == Chain::Whole) else {
+            return Ok(None);
+        };
+        let prepared = prepare(input)?;
+        Ok(known_fit(
+            input,
+            &prepared.evidence,
+            sets,
+            &Settings::default(),
+        ))
+    }
+
     /// Reads a folder with recordings of a cell: files, or folders of runs.
     ///
     /// # Errors
@@ -174,6 +211,13 @@ impl Case {
         }
     }
 
+    fn rig_source(&self) -> (String, PathBuf) {
+        match &self.kind {
+            Kind::Rig { rig, .. } | Kind::Flange { rig, .. } => (RIG.to_owned(), rig.path.clone()),
+            Kind::Cell { .. } => (RIG.to_owned(), self.folder.join(RIG)),
+        }
+    }
+
     /// Files that it was read from, by their names for people.
     fn sources(&self) -> Vec<(String, PathBuf)> {
         let within = |name: &str| (name.to_owned(), self.folder.join(name));
@@ -182,7 +226,7 @@ impl Case {
                 .into_iter()
                 .map(|path| (path.display().to_string(), path.clone()))
                 .collect(),
-            None => vec![within(RIG)],
+            None => vec![self.rig_source()],
         };
         if let Kind::Flange { runs, unseen, .. } = &self.kind {
             let all = runs.iter().chain(unseen.as_deref());

@@ -197,7 +197,11 @@ fn against(
 }
 
 /// The search in some evidence of a case.
-fn search_of<'a>(case: &DiagnosisInput, evidence: &'a Evidence, settings: &Settings) -> Search<'a> {
+pub(super) fn search_of<'a>(
+    case: &DiagnosisInput,
+    evidence: &'a Evidence,
+    settings: &Settings,
+) -> Search<'a> {
     // A single link is simulated in no time.
     let (look, most_effects) = match case.believed.chain {
         Chain::Whole => (3, settings.most_effects),

@@ -25,6 +25,7 @@ pub mod free;
 pub mod hypothesis;
 pub mod input;
 pub mod joint_friction;
+pub mod known;
 pub mod latent;
 pub mod links;
 pub mod localise;

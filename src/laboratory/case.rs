@@ -46,6 +46,17 @@ pub struct LaboratoryCase {
     pub sealed: SealedCase,
 }
 
+/// A device recorded once, as of many times.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Session {
+    /// The device as believed: that of the type.
+    pub believed: Believed,
+    /// Programmes carried out.
+    pub programmes: Vec<Programme>,
+    /// Readings in each, in the order of [`CHANNELS`].
+    pub measured: Vec<[Vec<f64>; 4]>,
+}
+
 /// The device without what is concealed in it, and with it.
 struct Pair {
     bare: LaboratoryRig,
@@ -123,7 +134,7 @@ impl Recipe {
         } = setting;
         let sheet = believed.rig.noise;
         let noise = sheet.map(|sheet| self.conditions.noise * sheet);
-        let measured = self.measure(noise, &real);
+        let measured = self.measure(noise, &real, 0);
         let mut rig = pair.real;
         let names = TOLERANCES.iter().map(|(name, _)| (*name).to_owned());
         let values = toleranced(&mut rig).map(|value| *value);
@@ -142,6 +153,26 @@ impl Recipe {
             believed,
             programmes,
             measured,
+        })
+    }
+
+    /// A device of the type, by its number, recorded once more: with noise of its own, by the turn. What it has to be predicted is left out.
+    ///
+    /// # Errors
+    /// The integrator cannot go on.
+    ///
+    /// # Panics
+    /// An effect that does not exist.
+    pub fn session(&self, device: u64, turn: u64) -> Result<Session, LaboratoryError> {
+        let mut setting = self.setting_of(device)?;
+        let seen = setting.programmes.len() - 1;
+        let real = setting.run(seen)?;
+        let noise = (setting.believed.rig.noise).map(|sheet| self.conditions.noise * sheet);
+        setting.programmes.truncate(seen);
+        Ok(Session {
+            measured: self.measure(noise, &real, turn),
+            believed: setting.believed,
+            programmes: setting.programmes,
         })
     }
 
@@ -213,9 +244,14 @@ impl Recipe {
     }
 
     fn setting(&self) -> Result<Setting, LaboratoryError> {
+        self.setting_of(0)
+    }
+
+    /// The same of another device of the type: its numbers lie elsewhere within their tolerances.
+    fn setting_of(&self, device: u64) -> Result<Setting, LaboratoryError> {
         let mut believed = Believed::draw(self.seed);
         self.conditions.on_believed(&mut believed);
-        let drawn = believed.real(self.seed);
+        let drawn = believed.real(self.seed + device);
         let mut programmes = believed.programmes(self.seed, self.duration).to_vec();
         if let Some(dirt) = &self.conditions.dirt {
             let rng = &mut stream(self.seed, 4);
@@ -323,8 +359,20 @@ impl Recipe {
         &self,
         noise: [f64; CHANNELS.len()],
         trajectories: &[LaboratoryTrajectory],
+        turn: u64,
     ) -> Vec<[Vec<f64>; 4]> {
-        let (random, spoil) = (&mut stream(self.seed, 6), &mut stream(self.seed, 7));
+        // Purposes beyond those of a recipe, two for each turn.
+        let purpose = |own: u64| {
+            if turn == 0 {
+                own
+            } else {
+                100 + 2 * turn + own % 2
+            }
+        };
+        let (random, spoil) = (
+            &mut stream(self.seed, purpose(6)),
+            &mut stream(self.seed, purpose(7)),
+        );
         let last = trajectories.len() - 1;
         let of = |(index, trajectory): (usize, &LaboratoryTrajectory)| {
             [0, 1, 2, 3].map(|channel| {

@@ -28,7 +28,7 @@ mod trajectory;
 mod visibility;
 mod write;
 
-pub use case::{LaboratoryCase, Recipe};
+pub use case::{LaboratoryCase, Recipe, Session};
 pub use concealed::{Concealed, Seals, Swing};
 pub use conditions::Conditions;
 pub use dirt::Dirt;
@@ -41,7 +41,7 @@ pub use recipes::{LOST, shipped, sizes};
 pub use rig::{AIR, Gas, LaboratoryRig};
 pub use sealed::{Known, SealedCase, SealedEffect, SealedInterval};
 pub use trajectory::{LaboratoryError, LaboratoryTrajectory, run};
-pub use write::write_case;
+pub use write::{write_case, write_session};
 
 /// Columns of the measured channels, in the order of all arrays of four here.
 pub const CHANNELS: [&str; 4] = [

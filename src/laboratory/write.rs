@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use super::CHANNELS;
-use super::case::LaboratoryCase;
+use super::case::{LaboratoryCase, Session};
 use super::draw::Believed;
 use super::programme::Programme;
 use crate::recording::RecordingError;
@@ -38,16 +38,7 @@ pub fn write_case(
         &rig_text(&case.believed, &names, &unseen.name),
     )?;
     for (programme, values) in seen.iter().zip(&case.measured) {
-        let inputs = inputs(programme);
-        let mut columns = named(&inputs);
-        columns.extend(
-            CHANNELS
-                .iter()
-                .zip(values)
-                .map(|(name, v)| (*name, v.as_slice())),
-        );
-        let path = folder.join(format!("{}.csv", programme.name));
-        write_csv(&path, &programme.times, &columns)?;
+        write_measured(programme, values, folder)?;
     }
     let path = folder.join(format!("{}.csv", unseen.name));
     write_csv(&path, &unseen.times, &named(&inputs(unseen)))?;
@@ -69,6 +60,38 @@ pub fn write_case(
         &unseen.times,
         &columns,
     )
+}
+
+/// Writes the recordings of a session into a folder, and the rig file of its type where a file is named.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write_session(
+    session: &Session,
+    folder: &Path,
+    rig: Option<&Path>,
+) -> Result<(), RecordingError> {
+    fs::create_dir_all(folder).map_err(|cause| RecordingError::write(folder, cause))?;
+    for (programme, values) in session.programmes.iter().zip(&session.measured) {
+        write_measured(programme, values, folder)?;
+    }
+    let names: Vec<&str> = session.programmes.iter().map(|p| p.name.as_str()).collect();
+    match rig {
+        Some(file) => write_text(file, &rig_text(&session.believed, &names, "predict")),
+        None => Ok(()),
+    }
+}
+
+fn write_measured(
+    programme: &Programme,
+    values: &[Vec<f64>; 4],
+    folder: &Path,
+) -> Result<(), RecordingError> {
+    let inputs = inputs(programme);
+    let mut columns = named(&inputs);
+    columns.extend((CHANNELS.iter().zip(values)).map(|(name, v)| (*name, v.as_slice())));
+    let path = folder.join(format!("{}.csv", programme.name));
+    write_csv(&path, &programme.times, &columns)
 }
 
 fn inputs(programme: &Programme) -> [Vec<f64>; 3] {

@@ -18,7 +18,7 @@ pub fn page(outcomes: &[Outcome]) -> String {
     let mut text = String::from("# What is taken for what\n\n");
     let _ = writeln!(
         text,
-        "Written by `idc sweep` from {} outcomes. Each case is a device drawn at random by the laboratory (`src/laboratory/`: equations of its own, another\n\
+        "Written by `idc prove --sweep` from {} outcomes. Each case is a device drawn at random by the laboratory (`src/laboratory/`: equations of its own, another\n\
 integrator), recorded in three programmes and diagnosed from them; a fourth is predicted.\n\n\
 An effect comes in sizes. Size 0 is the largest that is plausible; the last one is that at which, in these recordings, it shows with {LOST} standard\n\
 deviations beside all that the rig file tolerates: it is meant to be lost. Those between are in equal ratios. *Shows* is that measure: its square is what\n\

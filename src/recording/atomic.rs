@@ -145,7 +145,15 @@ impl UnfinishedFolder {
     /// [`RecordingError::Write`] if `target` cannot be written.
     pub fn within(target: &Path) -> Result<Self, RecordingError> {
         let mut begun = begun();
-        let temporary = Builder::new().prefix(UNFINISHED).tempdir_in(target);
+        let mut builder = Builder::new();
+        builder.prefix(UNFINISHED);
+        // As of files: it may become a result itself.
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt as _;
+            builder.permissions(std::fs::Permissions::from_mode(0o777));
+        }
+        let temporary = builder.tempdir_in(target);
         let temporary = temporary.map_err(|e| RecordingError::write(target, e))?;
         Ok(Self {
             _begun: Begun::note(&mut begun, temporary.path()),
@@ -172,6 +180,17 @@ impl UnfinishedFolder {
                 .map_err(|e| RecordingError::write(&target, e))?;
         }
         Ok(())
+    }
+}
+
+impl UnfinishedFolder {
+    /// Lets it be the folder of this path, with all that is in it; an empty one may stand there.
+    ///
+    /// # Errors
+    /// [`RecordingError::Write`] if it cannot be put there.
+    pub fn become_folder(self, target: &Path) -> Result<(), RecordingError> {
+        let _unbroken = begun();
+        std::fs::rename(self.path(), target).map_err(|e| RecordingError::write(target, e))
     }
 }
 

@@ -6,19 +6,18 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-use ::parquet::arrow::ArrowWriter;
 use ::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use ::parquet::arrow::{ArrowWriter, ProjectionMask};
 use ::parquet::basic::{Compression, Encoding};
 use ::parquet::errors::ParquetError;
 use ::parquet::file::properties::WriterProperties;
 use ::parquet::schema::types::ColumnPath;
-use arrow::array::{ArrayRef, AsArray, DictionaryArray, Float64Array, RecordBatch};
+use arrow::array::{Array, ArrayRef, AsArray, DictionaryArray, Float64Array, RecordBatch};
 use arrow::compute::cast;
-use arrow::datatypes::{DataType, Float64Type, Int32Type};
+use arrow::datatypes::{DataType, Field, Float64Type, Int32Type, Schema};
 
 use super::RecordingError;
 use super::atomic::write_atomic;
-use super::parquet::whole;
 
 /// A column.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,68 +33,148 @@ pub enum LongColumn {
 /// # Errors
 /// [`RecordingError::Write`] if the file cannot be written; nothing is left then.
 pub fn write_long(path: &Path, columns: &[(String, LongColumn)]) -> Result<(), RecordingError> {
-    let fields = columns.iter().map(|(name, column)| {
-        let array: ArrayRef = match column {
-            LongColumn::Names(names) => {
-                let names = names.iter().map(|name| Some(name.as_str()));
-                Arc::new(names.collect::<DictionaryArray<Int32Type>>())
-            }
-            LongColumn::Numbers(numbers) => {
-                let numbers = numbers.iter().map(|n| (!n.is_nan()).then_some(*n));
-                Arc::new(numbers.collect::<Float64Array>())
-            }
+    let kinds: Vec<(&str, bool)> = (columns.iter())
+        .map(|(name, column)| (name.as_str(), matches!(column, LongColumn::Names(_))))
+        .collect();
+    let mut group = Some(columns.iter().map(|(_, column)| column.clone()).collect());
+    write_groups(path, &kinds, || Ok::<_, RecordingError>(group.take()))
+}
+
+/// Writes a table group of rows by group of rows, so that no more than a group is held: columns by name, and whether they hold names; `next` gives the values
+/// of the next group in the same order, or none after the last.
+///
+/// # Errors
+/// [`RecordingError::Write`] if the file cannot be written, or what `next` fails with; nothing is left then.
+pub fn write_groups<E: From<RecordingError>>(
+    path: &Path,
+    columns: &[(&str, bool)],
+    mut next: impl FnMut() -> Result<Option<Vec<LongColumn>>, E>,
+) -> Result<(), E> {
+    let fields = columns.iter().map(|(name, names)| {
+        let kind = match names {
+            true => DataType::Dictionary(Box::new(DataType::Int32), Box::new(DataType::Utf8)),
+            false => DataType::Float64,
         };
-        (name.as_str(), array, true)
+        Field::new(*name, kind, true)
     });
-    let batch = RecordBatch::try_from_iter_with_nullable(fields)
-        .map_err(|e| RecordingError::write(path, e))?;
+    let schema = Arc::new(Schema::new(fields.collect::<Vec<_>>()));
+    let properties = properties(columns);
+    let mut fault = None;
+    let written = write_atomic(path, |file| -> Result<(), ParquetError> {
+        let mut writer = ArrowWriter::try_new(file, Arc::clone(&schema), Some(properties))?;
+        loop {
+            let group = match next() {
+                Ok(Some(group)) => group,
+                Ok(None) => break,
+                Err(error) => {
+                    fault = Some(error);
+                    return Err(ParquetError::General("not finished".to_owned()));
+                }
+            };
+            let arrays = group.iter().map(array).collect();
+            writer.write(&RecordBatch::try_new(Arc::clone(&schema), arrays)?)?;
+            writer.flush()?;
+        }
+        writer.close()?;
+        Ok(())
+    });
+    match fault {
+        Some(error) => Err(error),
+        None => Ok(written?),
+    }
+}
+
+fn array(column: &LongColumn) -> ArrayRef {
+    match column {
+        LongColumn::Names(names) => {
+            let names = names.iter().map(|name| Some(name.as_str()));
+            Arc::new(names.collect::<DictionaryArray<Int32Type>>())
+        }
+        LongColumn::Numbers(numbers) => {
+            let numbers = numbers.iter().map(|n| (!n.is_nan()).then_some(*n));
+            Arc::new(numbers.collect::<Float64Array>())
+        }
+    }
+}
+
+fn properties(columns: &[(&str, bool)]) -> WriterProperties {
     let mut properties = WriterProperties::builder()
         .set_created_by(concat!("idc-cell ", env!("CARGO_PKG_VERSION")).to_owned())
         .set_compression(Compression::SNAPPY)
         // As in samples.parquet: neighbours share their high bytes.
         .set_dictionary_enabled(false)
         .set_encoding(Encoding::BYTE_STREAM_SPLIT);
-    for (name, column) in columns {
-        if matches!(column, LongColumn::Names(_)) {
-            let name = ColumnPath::from(name.as_str());
+    for (name, names) in columns {
+        if *names {
+            // A dot in a name is no level of it.
+            let name = ColumnPath::new(vec![(*name).to_owned()]);
             properties = properties
                 .set_column_dictionary_enabled(name.clone(), true)
                 .set_column_encoding(name, Encoding::PLAIN);
         }
     }
-    let properties = properties.build();
-    write_atomic(path, |file| -> Result<(), ParquetError> {
-        let mut writer = ArrowWriter::try_new(file, batch.schema(), Some(properties))?;
-        writer.write(&batch)?;
-        writer.close()?;
-        Ok(())
-    })
+    properties.build()
 }
 
-/// Reads a table that [`write_long`] wrote: its columns by name, in order.
+/// Reads a table that [`write_long`] or [`write_groups`] wrote: its columns by name, in order.
 ///
 /// # Errors
 /// [`RecordingError::Read`] if the file is absent, cut short or no such table.
 pub fn read_long(path: &Path) -> Result<Vec<(String, LongColumn)>, RecordingError> {
+    read_columns(path, |_| true)
+}
+
+/// As [`read_long`], of those columns alone whose names are wanted.
+///
+/// # Errors
+/// As [`read_long`].
+pub fn read_columns(
+    path: &Path,
+    wanted: impl Fn(&str) -> bool,
+) -> Result<Vec<(String, LongColumn)>, RecordingError> {
     let fail = |cause: &dyn std::fmt::Display| RecordingError::read(path, cause);
     let file = File::open(path).map_err(|e| fail(&e))?;
     let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fail(&e))?;
-    let schema = builder.schema().clone();
-    let table = whole(path, builder)?;
-    let column = |(index, field): (usize, &Arc<arrow::datatypes::Field>)| {
-        let array = table.column(index);
-        let column = if field.data_type().is_numeric() {
-            let numbers = cast(array, &DataType::Float64).map_err(|e| fail(&e))?;
-            let numbers = numbers.as_primitive::<Float64Type>().iter();
-            LongColumn::Numbers(numbers.map(|n| n.unwrap_or(f64::NAN)).collect())
-        } else {
-            let names = cast(array, &DataType::Utf8).map_err(|e| fail(&e))?;
-            let names = names.as_string::<i32>().iter();
-            LongColumn::Names(names.map(|n| n.unwrap_or_default().to_owned()).collect())
-        };
-        Ok((field.name().clone(), column))
-    };
-    schema.fields().iter().enumerate().map(column).collect()
+    let fields = builder.schema().fields().iter().enumerate();
+    let places: Vec<usize> = fields
+        .filter(|(_, field)| wanted(field.name()))
+        .map(|(place, _)| place)
+        .collect();
+    let mask = ProjectionMask::roots(builder.parquet_schema(), places);
+    let reader = builder.with_projection(mask).build();
+    let mut columns: Vec<(String, LongColumn)> = Vec::new();
+    for batch in reader.map_err(|e| fail(&e))? {
+        let batch = batch.map_err(|e| fail(&e))?;
+        let schema = batch.schema();
+        for (place, (field, column)) in schema.fields().iter().zip(batch.columns()).enumerate() {
+            let read = long_column(column).map_err(|e| fail(&e))?;
+            match (columns.get_mut(place), read) {
+                (None, read) => columns.push((field.name().clone(), read)),
+                (Some((_, LongColumn::Names(all))), LongColumn::Names(more)) => all.extend(more),
+                (Some((_, LongColumn::Numbers(all))), LongColumn::Numbers(more)) => {
+                    all.extend(more);
+                }
+                (Some(_), _) => return Err(fail(&"a column holds both names and numbers")),
+            }
+        }
+    }
+    Ok(columns)
+}
+
+fn long_column(array: &ArrayRef) -> Result<LongColumn, arrow::error::ArrowError> {
+    if array.data_type().is_numeric() {
+        let numbers = cast(array, &DataType::Float64)?;
+        let numbers = numbers.as_primitive::<Float64Type>().iter();
+        Ok(LongColumn::Numbers(
+            numbers.map(|n| n.unwrap_or(f64::NAN)).collect(),
+        ))
+    } else {
+        let names = cast(array, &DataType::Utf8)?;
+        let names = names.as_string::<i32>().iter();
+        Ok(LongColumn::Names(
+            names.map(|n| n.unwrap_or_default().to_owned()).collect(),
+        ))
+    }
 }
 
 #[cfg(test)]
@@ -130,5 +209,35 @@ mod tests {
         std::fs::write(&paths[0], &bytes[..bytes.len() / 2]).unwrap();
         let message = read_long(&paths[0]).unwrap_err().to_string();
         assert!(message.contains("one"), "{message}");
+    }
+
+    #[test]
+    fn a_table_written_in_groups_reads_back_by_column() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("runs.parquet");
+        let mut groups = (0..3).map(|group| {
+            let rows = (0..4).map(|row| group * 4 + row);
+            vec![
+                LongColumn::Names(rows.clone().map(|row| format!("run {row}")).collect()),
+                LongColumn::Numbers(rows.map(f64::from).collect()),
+            ]
+        });
+        let columns = [("a.name", true), ("a.number", false)];
+        write_groups(&path, &columns, || Ok::<_, RecordingError>(groups.next())).unwrap();
+        let read = read_columns(&path, |name| name == "a.number").unwrap();
+        let expected: Vec<f64> = (0..12).map(f64::from).collect();
+        assert_eq!(
+            read,
+            [("a.number".to_owned(), LongColumn::Numbers(expected))]
+        );
+        let LongColumn::Names(names) = &read_long(&path).unwrap()[0].1 else {
+            panic!("no names");
+        };
+        assert_eq!((names.len(), names[11].as_str()), (12, "run 11"));
+        let broken = write_groups(&path, &columns, || {
+            Err(RecordingError::write(&path, "full"))
+        });
+        assert!(broken.unwrap_err().to_string().contains("full"));
+        assert_eq!(read_long(&path).unwrap().len(), 2);
     }
 }

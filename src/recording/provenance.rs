@@ -11,6 +11,15 @@ use super::RecordingError;
 /// Libraries whose version decides about numbers, as Cargo.toml pins them.
 const LIBRARIES: [(&str, &str); 2] = [("rapier3d-f64", "0.36.1"), ("rerun", "0.36.3")];
 
+/// The program with its version.
+const PROGRAM: &str = concat!("idc ", env!("CARGO_PKG_VERSION"));
+
+fn libraries() -> Vec<String> {
+    LIBRARIES
+        .map(|(name, version)| format!("{name} {version}"))
+        .to_vec()
+}
+
 /// Where a result comes from.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
@@ -47,10 +56,8 @@ impl Provenance {
     ) -> Result<Self, RecordingError> {
         let files = files.into_iter().map(|(name, path)| source(name, path));
         Ok(Self {
-            program: concat!("idc ", env!("CARGO_PKG_VERSION")).to_owned(),
-            libraries: LIBRARIES
-                .map(|(name, version)| format!("{name} {version}"))
-                .to_vec(),
+            program: PROGRAM.to_owned(),
+            libraries: libraries(),
             files: files.collect::<Result<_, _>>()?,
             seed,
         })
@@ -58,6 +65,12 @@ impl Provenance {
 }
 
 impl Provenance {
+    /// This program with the libraries that decide about numbers, as their versions say.
+    #[must_use]
+    pub fn this_program() -> String {
+        format!("{PROGRAM} with {}", libraries().join(", "))
+    }
+
     /// Its sources, however the files were called and wherever they stood.
     #[must_use]
     pub fn content(&self) -> String {
@@ -86,6 +99,16 @@ impl SourceFile {
             bytes: bytes.len() as u64,
             sha256,
         }
+    }
+}
+
+impl SourceFile {
+    /// A file that is there, by its name for people.
+    ///
+    /// # Errors
+    /// [`RecordingError::Read`] if it is gone.
+    pub fn of(name: &str, path: &Path) -> Result<Self, RecordingError> {
+        source(name, path)
     }
 }
 

@@ -45,4 +45,4 @@ pub use effect_request::EffectRequest;
 pub use error::ScenarioError;
 pub use recorded_cell::{RecordedCell, load_recorded_cell};
 pub use sensing::largest_set_pressure;
-pub use variation::{KeyValue, ScenarioTemplate, listed};
+pub use variation::{KeyValue, ScenarioTemplate, led_to, listed};

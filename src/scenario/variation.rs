@@ -52,6 +52,24 @@ impl ScenarioTemplate {
         })
     }
 
+    /// Its file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The file's text, as it was read.
+    #[must_use]
+    pub fn own_text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it is of a bench, not of a cell.
+    #[must_use]
+    pub fn is_bench(&self) -> bool {
+        self.is_bench
+    }
+
     /// Its name for people.
     #[must_use]
     pub fn title(&self) -> &str {
@@ -143,8 +161,9 @@ impl ScenarioTemplate {
     }
 }
 
-/// The path to a file or folder from another folder that is there: relative where they share more than the root.
-fn led_to(path: &Path, folder: &Path) -> String {
+/// The path to a file or folder from another folder, both there: relative where they share more than the root.
+#[must_use]
+pub fn led_to(path: &Path, folder: &Path) -> String {
     let (Ok(full), Ok(folder)) = (path.canonicalize(), folder.canonicalize()) else {
         return path.display().to_string();
     };

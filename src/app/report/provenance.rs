@@ -1,12 +1,21 @@
 //! The part of a page that says where all comes from.
 
 use crate::page::{Block, PageSection, PageTable, TableCell};
-use crate::recording::provenance::Provenance;
+use crate::recording::provenance::{Provenance, SourceFile};
 
 /// Where a document says that it comes from.
 pub(super) fn provenance_of(document: &serde_json::Value) -> PageSection<'static> {
     let known = serde_json::from_value(document["provenance"].clone());
     provenance(&known.unwrap_or_default())
+}
+
+/// The same of a program, libraries included, and files.
+pub(in super::super) fn sources(program: &str, files: &[SourceFile]) -> PageSection<'static> {
+    provenance(&Provenance {
+        program: program.to_owned(),
+        files: files.to_vec(),
+        ..Provenance::default()
+    })
 }
 
 /// The part of a page that says where all comes from.

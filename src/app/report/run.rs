@@ -55,7 +55,7 @@ fn labelled<S>(metrics: &[Metric<S>]) -> Vec<Label> {
 }
 
 /// The metrics of benches, or of cells.
-pub(super) fn labels(of_bench: bool) -> Vec<Label> {
+pub(in super::super) fn labels(of_bench: bool) -> Vec<Label> {
     if of_bench {
         labelled(BENCH_METRICS)
     } else {

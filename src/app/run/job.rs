@@ -266,7 +266,7 @@ fn unmeasured(path: &Path, source: MetricsError) -> AppError {
 }
 
 /// Why a run stopped early, if it did, or else which results lie outside their bounds.
-fn judged(
+pub(super) fn judged(
     stop: Option<&impl std::fmt::Display>,
     verdicts: &[BoundCheck],
 ) -> (ExitCode, Vec<String>) {

@@ -144,7 +144,7 @@ fn safe(name: &str) -> String {
 }
 
 /// Names the flag that a refusal is about: that of the key, or all where it is about none.
-pub(super) fn blamed(
+pub(in super::super) fn blamed(
     error: ScenarioError,
     edits: &[KeyValue],
     template: &ScenarioTemplate,

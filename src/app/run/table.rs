@@ -16,7 +16,7 @@ const WIDTH: usize = 80;
 const NARROW: usize = 9;
 const LONGEST: usize = 24;
 /// Numbers of a cell and of a bench, what matters most first; those that no run determines, and those for which there is no room, are left out.
-const OF_CELL: [&str; 7] = [
+static OF_CELL: [&str; 7] = [
     "force_mean_n",
     "coefficient_of_variation_percent",
     "largest_deviation_n",
@@ -25,7 +25,7 @@ const OF_CELL: [&str; 7] = [
     "settling_time_s",
     "path_error_rms_um",
 ];
-const OF_BENCH: [&str; 7] = [
+static OF_BENCH: [&str; 7] = [
     "force_mean_n",
     "coefficient_of_variation_percent",
     "force_rms_error_percent",
@@ -34,6 +34,11 @@ const OF_BENCH: [&str; 7] = [
     "stroke_margin_mm",
     "regulator_delay_s",
 ];
+
+/// Metrics of a cell or a bench that matter most, the first ones most.
+pub(in super::super) fn most_telling(is_bench: bool) -> &'static [&'static str] {
+    if is_bench { &OF_BENCH } else { &OF_CELL }
+}
 
 /// A variant that has been run.
 pub(super) struct Done {

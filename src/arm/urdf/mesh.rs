@@ -112,6 +112,24 @@ fn is_turned_collada(file: &Path, bytes: &[u8]) -> bool {
     }
 }
 
+/// The files that a robot's meshes lead to, each once.
+pub(super) fn files(robot: &urdf_rs::Robot, folder: &Path, options: &ArmOptions) -> Vec<PathBuf> {
+    let shapes = robot.links.iter().flat_map(|link| {
+        let seen = link.visual.iter().map(|visual| &visual.geometry);
+        seen.chain(link.collision.iter().map(|body| &body.geometry))
+    });
+    let mut found = Vec::new();
+    for shape in shapes {
+        if let urdf_rs::Geometry::Mesh { filename, .. } = shape
+            && let Ok(file) = resolve(filename, folder, options)
+            && !found.contains(&file)
+        {
+            found.push(file);
+        }
+    }
+    found
+}
+
 /// The file that a URDF `filename` means.
 pub(super) fn resolve(name: &str, folder: &Path, options: &ArmOptions) -> Result<PathBuf, String> {
     let file = if let Some(in_package) = name.strip_prefix("package://") {

@@ -1,0 +1,104 @@
+//! `--engine`: who does the tasks of a plan, and how far they are.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::error::AppError;
+use super::interrupt::Interruptible;
+use super::progress;
+use crate::tasks::{Dask, Engine, Plan, Store, Task, TaskError, Told, dask, local};
+
+/// The plan of a sweep or a fleet, in its folder.
+pub(super) const PLAN: &str = "plan.jsonl";
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Engine")]
+pub(super) struct EngineArguments {
+    /// Who does the tasks: `local`, threads of this program; `dask=local:N`, as many workers of Dask on this machine; `dask=ADDRESS`, those of a scheduler, as in dask=tcp://10.0.0.1:8786.
+    #[arg(long, default_value = "local", value_parser = engine)]
+    engine: Engine,
+    /// Tasks at a time of `local` [default: as many as there are processors].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Python with Dask.
+    #[arg(long, default_value = "python3")]
+    python: PathBuf,
+    /// This program as workers find it [default: where it is here].
+    #[arg(long)]
+    program: Option<PathBuf>,
+    /// Send files and results through Dask, where workers share no folder.
+    #[arg(long)]
+    carry: bool,
+}
+
+fn engine(text: &str) -> Result<Engine, String> {
+    text.parse().map_err(|error: TaskError| error.to_string())
+}
+
+/// What the tasks are called, and who does one.
+pub(super) struct Tasks<'a> {
+    /// A word that takes an s: `run`.
+    pub word: &'static str,
+    /// Words of what is kept: `runs are done`.
+    pub are: &'static str,
+    /// Whether nothing but errors is told.
+    pub quiet: bool,
+    /// Does a task and puts its result into the store.
+    pub work: &'a (dyn Fn(&Task) -> Result<(), TaskError> + Sync),
+}
+
+impl EngineArguments {
+    /// Does all tasks of a plan that do not stand.
+    pub(super) fn perform(&self, plan: &Path, tasks: &Tasks<'_>) -> Result<(), AppError> {
+        let opened = Plan::open(plan)?;
+        let count = opened.head.tasks;
+        let store = Store::of(plan);
+        store.make()?;
+        let bar = progress::tasks(count, tasks.word, tasks.quiet);
+        let out = plan.parent().unwrap_or(Path::new("."));
+        let interruptible = Interruptible::of_many(count, tasks.are, out);
+        let told = |told: Told| match told {
+            Told::Done(done) => {
+                interruptible.at(done);
+                bar.set_position(done as u64);
+            }
+            Told::Words(words) if tasks.quiet => drop(words),
+            Told::Words(words) if bar.is_hidden() => eprintln!("{words}"),
+            Told::Words(words) => bar.println(words),
+        };
+        let done = match &self.engine {
+            Engine::Local => {
+                let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+                let jobs = self.jobs.map_or_else(processors, usize::from);
+                local(opened, &store, jobs, tasks.work, &told)
+            }
+            engine => dask(&self.dask(engine)?, &full(plan)?, count, &told),
+        };
+        bar.finish_and_clear();
+        Ok(done?)
+    }
+
+    fn dask(&self, engine: &Engine) -> Result<Dask, AppError> {
+        let here = || std::env::current_exe().map_err(|e| cannot_find(&e));
+        Ok(Dask {
+            engine: engine.clone(),
+            python: self.python.clone(),
+            program: self.program.clone().map_or_else(here, Ok)?,
+            version: concat!("idc ", env!("CARGO_PKG_VERSION")).to_owned(),
+            carry: self.carry,
+        })
+    }
+}
+
+fn cannot_find(error: &std::io::Error) -> TaskError {
+    TaskError::Refused {
+        reason: format!("this program is not found: {error}; expected its path (--program)"),
+    }
+}
+
+/// A path as a worker in another folder finds it.
+pub(super) fn full(path: &Path) -> Result<PathBuf, AppError> {
+    let full = path.canonicalize();
+    Ok(full.map_err(|e| crate::recording::RecordingError::read(path, e))?)
+}

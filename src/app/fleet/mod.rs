@@ -1,0 +1,12 @@
+//! `idc fleet`: all recordings of many devices diagnosed in the order of their days, and what a maintenance engineer asks of them.
+
+mod command;
+mod found;
+mod page;
+mod planned;
+mod table;
+mod work;
+
+pub(super) use command::{EXAMPLES, FleetArguments, run};
+pub(super) use found::{FLEET, page_of};
+pub(super) use work::{KIND, Worker, told};

@@ -1,0 +1,207 @@
+//! The page of a fleet.
+
+use super::super::error::AppError;
+use super::super::report::sources;
+use super::found::{DeviceFound, Found, NumberChanged, NumberSeries, words};
+use super::table::TABLE;
+use crate::design::{number, spoken};
+use crate::figure::{Figure, Horizontal, Marker, Panel, Role, Series, Stroke, svg};
+use crate::fleet::date_of_day;
+use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
+
+/// The page.
+pub(super) fn page(found: &Found) -> Result<Page<'static>, AppError> {
+    let something = found
+        .devices
+        .iter()
+        .any(|d| !d.effects.is_empty() || !d.changed.is_empty());
+    let mut sections = vec![devices(found)];
+    sections.extend(changed(found));
+    sections.extend(courses(found)?);
+    sections.extend(listed(
+        "Unlike the others",
+        ["device", "in what"],
+        &found.unlike,
+    ));
+    sections.extend(listed("Not read", ["recording", "why"], &found.unread));
+    sections.push(sources(&found.program, &found.files));
+    let facts = [
+        ("recordings", found.recordings.to_string(), String::new()),
+        (
+            "searched",
+            found.searched.to_string(),
+            "the others were predicted to the noise by the believed or the last improved model"
+                .to_owned(),
+        ),
+    ];
+    Ok(Page {
+        title: "Fleet".to_owned(),
+        verdict: found.verdict(),
+        tone: if something { Tone::Found } else { Tone::Good },
+        facts: facts
+            .map(|(name, value, remark)| Fact {
+                name: name.to_owned(),
+                value,
+                remark,
+            })
+            .to_vec(),
+        sections,
+        footer: format!(
+            "Made by idc fleet. {TABLE} beside this page has a row for each number of each recording."
+        ),
+        ..Page::default()
+    })
+}
+
+fn devices(found: &Found) -> PageSection<'static> {
+    let row = |device: &DeviceFound| {
+        let effects: Vec<String> = device.lines();
+        let single = device
+            .single
+            .iter()
+            .map(|(name, count)| format!("{} ({count})", words(name)));
+        vec![
+            TableCell::from(device.name.clone()),
+            TableCell::from(format!("{} to {}", device.first, device.last)),
+            TableCell::from(device.recordings.to_string()),
+            TableCell::Judged(
+                match effects.is_empty() {
+                    true => "nothing".to_owned(),
+                    false => effects.join("; "),
+                },
+                effects.is_empty(),
+            ),
+            TableCell::from(single.collect::<Vec<_>>().join(", ")),
+        ]
+    };
+    let columns = [
+        "device",
+        "dates",
+        "#recordings",
+        "found",
+        "in single recordings",
+    ];
+    let caption = "Found: in at least three recordings and in half of those since. What single recordings show is no alarm.";
+    let table = PageTable::new(caption, &columns, found.devices.iter().map(row).collect());
+    PageSection::new("Devices", vec![Block::PageTable(table)])
+}
+
+fn changed(found: &Found) -> Option<PageSection<'static>> {
+    let rows = found.devices.iter().flat_map(|device| {
+        device.changed.iter().map(move |changed: &NumberChanged| {
+            let (name, unit) = spoken(&changed.number);
+            let per_day = changed.per_day.map_or(String::new(), |[slope, low, high]| {
+                format!("{} ({} to {})", number(slope), number(low), number(high))
+            });
+            let chance = 100.0 * changed.since.probability;
+            [
+                device.name.clone(),
+                words(&changed.effect),
+                name,
+                unit,
+                number(changed.before),
+                number(changed.after),
+                changed.since.words(),
+                per_day,
+                format!("{chance:.2}"),
+            ]
+            .map(TableCell::from)
+            .to_vec()
+        })
+    });
+    let rows: Vec<Vec<TableCell>> = rows.collect();
+    let columns = [
+        "device",
+        "effect",
+        "number",
+        "unit",
+        "#before",
+        "#at the end",
+        "since (95 %)",
+        "#trend a day (95 %)",
+        "#chance [%]",
+    ];
+    let words = "Chance: how often a number that does not change shows as much. All numbers of the fleet together give a false alarm in one of twenty reports.";
+    (!rows.is_empty()).then(|| {
+        let table = PageTable::new("", &columns, rows);
+        PageSection::new(
+            "Numbers that changed",
+            vec![Block::Hint(words.to_owned()), Block::PageTable(table)],
+        )
+    })
+}
+
+/// Numbers of effects, and those that changed, over the days.
+fn courses(found: &Found) -> Result<Option<PageSection<'static>>, AppError> {
+    let mut blocks = Vec::new();
+    for device in &found.devices {
+        let of = |series: &&NumberSeries| {
+            let same = |c: &&NumberChanged| c.effect == series.effect && c.number == series.number;
+            !series.effect.is_empty() || device.changed.iter().any(|c| same(&c))
+        };
+        let panels: Vec<Panel<'static>> = (device.series.iter().filter(of))
+            .filter_map(|series| panel(device, series))
+            .collect();
+        if panels.is_empty() {
+            continue;
+        }
+        blocks.push(Block::Heading(device.name.clone()));
+        let title = String::new();
+        blocks.push(Block::Picture(svg(&Figure { title, panels })?));
+    }
+    Ok((!blocks.is_empty()).then(|| PageSection::new("Over the days", blocks)))
+}
+
+fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> {
+    let first = *series.days.first()?;
+    let days: Vec<f64> = series.days.iter().map(|day| day - first).collect();
+    let last = *days.last()?;
+    let change = device
+        .changed
+        .iter()
+        .find(|c| c.effect == series.effect && c.number == series.number);
+    let at = change.and_then(|change| {
+        let place = series
+            .days
+            .iter()
+            .position(|day| date_of_day(*day) == change.since.date)?;
+        Some((days[place], change.since.date.clone()))
+    });
+    let markers = at.filter(|(at, _)| (0.0..=last).contains(at));
+    let (name, unit) = spoken(&series.number);
+    let label = match unit.as_str() {
+        "" => name,
+        unit => format!("{name} [{unit}]"),
+    };
+    Some(Panel {
+        title: words(&series.effect),
+        vertical_label: label,
+        horizontal: Horizontal::Quantity(format!("days since {}", date_of_day(first))),
+        series: vec![Series::new(
+            "",
+            days,
+            series.values.clone(),
+            Role::Estimate,
+            Stroke::Points,
+        )],
+        markers: markers
+            .map(|(at, label)| Marker { label, at })
+            .into_iter()
+            .collect(),
+        ..Panel::default()
+    })
+}
+
+fn listed(
+    title: &str,
+    columns: [&str; 2],
+    pairs: &[(String, String)],
+) -> Option<PageSection<'static>> {
+    let row = |(one, other): &(String, String)| {
+        vec![TableCell::from(one.clone()), TableCell::from(other.clone())]
+    };
+    (!pairs.is_empty()).then(|| {
+        let table = PageTable::new("", &columns, pairs.iter().map(row).collect());
+        PageSection::new(title, vec![Block::PageTable(table)])
+    })
+}

@@ -1,0 +1,188 @@
+//! Arguments of `idc vary`, and the way from them to a table and a page.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::super::engine::{EngineArguments, PLAN, Tasks};
+use super::super::error::{AppError, ExitCode};
+use super::super::files::{OutputFolder, REPORT, Standing, output_folder};
+use super::super::output::say;
+use super::super::run::put_in;
+use super::drivers::{self, SWEEP, Swept};
+use super::planned::Sweep;
+use super::table::{RUNS, write_table};
+use super::work::Worker;
+use crate::quantity::counted;
+use crate::scenario::{EffectRequest, ScenarioTemplate};
+use crate::tasks::{Plan, Store};
+use crate::vary::{Points, Sampling, Variable, VaryError};
+
+/// For the help.
+pub(in super::super) const EXAMPLES: &str = "\
+VALUES are 30,60 or 1e5..3e5:5 (so many, evenly) or 1..200 (whole numbers) or
+1.5..2.5 (any number between; for samples). Each is checked by its key before
+anything is run. A combination that cannot be run is a result as well: the table
+says why. What stands is known by its content (program, files, values): --resume
+does what is missing, also after the sweep has grown or the engine has died.
+How much of a number goes with one variable is its first-order (Sobol) index,
+estimated from the runs in groups, with a bootstrap interval at 95 %.
+
+Exit codes: 0 done, whatever the runs came to; 2 bad input, or runs that came to
+nothing (the others are kept).
+
+Examples:
+  # Five stiffnesses with three forces: every combination.
+  idc vary scenarios/paper_step.toml --out runs/few \\
+      --set bench.duration_s=8..9:3 --set simulation.seed=1..2
+  # The same, and more: what stands is not done again.
+  idc vary scenarios/paper_step.toml --out runs/few --resume \\
+      --set bench.duration_s=8..9:3 --set simulation.seed=1..4
+  # A Latin hypercube of 400 runs, by four workers of Dask. (takes minutes)
+  idc vary scenarios/plate_edge.toml --out runs/latin --sample latin:400 \\
+      --set contact.stiffness_n_per_m=1e5..3e5 --set process.force_n=100..200 \\
+      --engine dask=local:4";
+
+#[derive(Debug, Args)]
+pub(in super::super) struct VaryArguments {
+    /// Scenario file, of a cell or a bench.
+    scenario: PathBuf,
+    /// Values of a key of the scenario by its dotted path, as in process.force_n=30,60 or contact.stiffness_n_per_m=1e5..3e5:5 or workpiece.burr.seed=1..200; may be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUES", value_parser = variable)]
+    variables: Vec<Variable>,
+    /// An effect of the catalogue to put into all runs, as of idc run.
+    #[arg(long = "with", value_name = "EFFECT[:KEY=VALUE,..]", value_parser = EffectRequest::parse)]
+    effects: Vec<EffectRequest>,
+    /// How the points lie: `grid`, every combination; `random:N`, each drawn for itself; `latin:N`, a Latin hypercube.
+    #[arg(long, default_value = "grid", value_parser = sampling)]
+    sample: Sampling,
+    /// Seed of what is drawn.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Points of a table in place of --set: a CSV file with a column for each key, a row for each run.
+    #[arg(long, value_name = "CSV", conflicts_with_all = ["variables", "sample"], required_unless_present = "variables")]
+    points: Option<PathBuf>,
+    #[command(flatten)]
+    engine: EngineArguments,
+    /// Folder for runs.parquet, vary.json and report.html [default: runs/<scenario name>].
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Leave runs as they are that stand, as of a sweep that was interrupted or has grown.
+    #[arg(long, conflicts_with = "force")]
+    resume: bool,
+    /// Write the plan alone: an engine of your own does it (idc task), and this with --resume the tables.
+    #[arg(long)]
+    plan: bool,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print what vary.json holds.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
+
+fn variable(text: &str) -> Result<Variable, String> {
+    Variable::parse(text).map_err(|error| match error {
+        // Clap names the text itself.
+        VaryError::Setting { reason, .. } => reason,
+        other => other.to_string(),
+    })
+}
+
+fn sampling(text: &str) -> Result<Sampling, String> {
+    text.parse().map_err(|error: VaryError| error.to_string())
+}
+
+/// Plans, runs, and writes what came of it.
+pub(in super::super) fn run(arguments: &VaryArguments) -> Result<ExitCode, AppError> {
+    let template = ScenarioTemplate::read(&arguments.scenario)?;
+    let points = match &arguments.points {
+        Some(file) => Points::table(file)?,
+        None => Points::new(
+            arguments.variables.clone(),
+            arguments.sample,
+            arguments.seed,
+        )?,
+    };
+    let fixed = put_in(&arguments.effects, &template)?;
+    let sweep = Sweep {
+        template,
+        fixed,
+        points,
+    };
+    sweep.check()?;
+    let out = output_folder(arguments.out.as_ref(), &arguments.scenario);
+    let plan = prepare(arguments, &sweep, &out)?;
+    if arguments.plan {
+        return planned(arguments, &plan, sweep.points.count());
+    }
+    let worker = Worker::new(&Plan::open(&plan)?)?;
+    let store = Store::of(&plan);
+    let work = |task: &_| worker.perform(task, &store);
+    let tasks = Tasks {
+        word: "run",
+        are: "runs are done",
+        quiet: arguments.quiet || arguments.json,
+        work: &work,
+    };
+    arguments.engine.perform(&plan, &tasks)?;
+    finish(arguments, &sweep, &plan, &out)
+}
+
+/// The folder, with the plan in it.
+fn prepare(arguments: &VaryArguments, sweep: &Sweep, out: &Path) -> Result<PathBuf, AppError> {
+    let standing = match arguments.resume {
+        true => Standing::Keep,
+        false => Standing::of(arguments.force),
+    };
+    let names = [PLAN, RUNS, SWEEP, REPORT];
+    let folder = OutputFolder::prepare(out, &names, standing)?;
+    for name in [RUNS, SWEEP, REPORT] {
+        // Of a sweep that is being done anew, or has grown.
+        folder.discard(name)?;
+    }
+    let plan = out.join(PLAN);
+    if standing == Standing::Replace {
+        Store::of(&plan).clear()?;
+    }
+    sweep.write(&plan)?;
+    Ok(plan)
+}
+
+fn planned(arguments: &VaryArguments, plan: &Path, count: usize) -> Result<ExitCode, AppError> {
+    let file = plan.display();
+    if arguments.json {
+        let document = serde_json::json!({ "plan": file.to_string(), "tasks": count });
+        say(&format!("{document}\n"))?;
+    } else if !arguments.quiet {
+        say(&format!("{} planned in {file}\n", counted(count, "run")))?;
+    }
+    Ok(ExitCode::Done)
+}
+
+/// Writes the table, and what it says.
+fn finish(
+    arguments: &VaryArguments,
+    sweep: &Sweep,
+    plan: &Path,
+    out: &Path,
+) -> Result<ExitCode, AppError> {
+    let table = out.join(RUNS);
+    write_table(plan, sweep.template.is_bench(), &table)?;
+    let swept = Swept::of(sweep, &Plan::open(plan)?.head, &table)?;
+    let document = serde_json::to_string_pretty(&swept)?;
+    let page = drivers::page_of(&swept, &table)?;
+    let folder = OutputFolder::prepare(out, &[], Standing::Keep)?;
+    folder.write_texts(&[(REPORT, &page), (SWEEP, &document)])?;
+    if arguments.json {
+        say(&format!("{document}\n"))?;
+    } else if !arguments.quiet {
+        say(&swept.text())?;
+        let folder = out.display();
+        say(&format!("written to {folder}: {RUNS}, {SWEEP}, {REPORT}\n"))?;
+    }
+    Ok(ExitCode::Done)
+}

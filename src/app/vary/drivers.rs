@@ -1,0 +1,309 @@
+//! vary.json: how the numbers of a sweep are distributed, and which variable drives which.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::super::error::AppError;
+use super::super::report::Label;
+use super::page::page;
+use super::planned::Sweep;
+use super::table::RUNS;
+use crate::page::html;
+use crate::quantity::{column, counted, number};
+use crate::recording::RecordingError;
+use crate::recording::long_table::{LongColumn, read_columns};
+use crate::recording::provenance::SourceFile;
+use crate::tasks::Head;
+use crate::vary::{QUANTILES, quantiles, rank_correlation, share_of_variance};
+
+/// The document.
+pub(in super::super) const SWEEP: &str = "vary.json";
+/// Refusals that are told with their run.
+const TOLD: usize = 3;
+/// Drivers of a terminal's line.
+const NAMED: usize = 2;
+
+/// A sweep that has been run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(in super::super) struct Swept {
+    pub schema: u32,
+    /// The scenario's file and title.
+    pub scenario: String,
+    pub title: String,
+    pub is_bench: bool,
+    /// How the points lie.
+    pub points: String,
+    pub runs: usize,
+    /// Number of runs by exit code.
+    pub codes: BTreeMap<u8, usize>,
+    /// The first runs that were refused or stopped: their numbers, and why.
+    pub stopped: Vec<(usize, String)>,
+    /// Keys that vary, with the ends of their values.
+    pub variables: Vec<VariedKey>,
+    pub metrics: Vec<MetricOfRuns>,
+    pub program: String,
+    pub files: Vec<SourceFile>,
+}
+
+/// A key that varies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(in super::super) struct VariedKey {
+    pub key: String,
+    /// Number of different values.
+    pub values: usize,
+    /// Least and greatest, of numbers.
+    pub ends: Option<[f64; 2]>,
+}
+
+/// A metric over all runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(in super::super) struct MetricOfRuns {
+    pub name: String,
+    /// Runs that determine it.
+    pub runs: usize,
+    /// Its quantiles, by the share [1] of the runs below.
+    pub quantiles: Vec<(f64, f64)>,
+    /// What drives it, the largest share first; empty where it stands still.
+    pub drivers: Vec<Driver>,
+}
+
+/// How a metric goes with a variable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(in super::super) struct Driver {
+    pub key: String,
+    /// First-order share of the metric's variance [1], with its interval at 95 %.
+    pub share: f64,
+    pub interval: [f64; 2],
+    /// Correlation of ranks, from -1 to 1; none of names.
+    pub rank_correlation: Option<f64>,
+}
+
+impl MetricOfRuns {
+    /// Drivers of which it is sure.
+    pub(super) fn sure(&self) -> impl Iterator<Item = &Driver> {
+        self.drivers
+            .iter()
+            .filter(|driver| driver.interval[0] > 0.0)
+    }
+
+    /// Whether it is another number in some run.
+    pub(super) fn varies(&self) -> bool {
+        !self.drivers.is_empty()
+    }
+
+    pub(super) fn quantile(&self, share: f64) -> Option<f64> {
+        let found = self.quantiles.iter().find(|(of, _)| *of == share);
+        found.map(|(_, value)| *value)
+    }
+}
+
+/// Columns of a table by their names.
+pub(super) fn columns(
+    table: &Path,
+    wanted: &[&str],
+) -> Result<BTreeMap<String, LongColumn>, RecordingError> {
+    let read = read_columns(table, |name| wanted.contains(&name))?;
+    Ok(read.into_iter().collect())
+}
+
+/// Values of a column as numbers: names by their order in the alphabet.
+fn as_numbers(column: &LongColumn) -> Vec<f64> {
+    match column {
+        LongColumn::Numbers(numbers) => numbers.clone(),
+        LongColumn::Names(names) => {
+            let mut each: Vec<&String> = names.iter().collect();
+            each.sort();
+            each.dedup();
+            let place = |name: &String| each.binary_search(&name).unwrap_or(0) as f64;
+            names.iter().map(place).collect()
+        }
+    }
+}
+
+fn varied(key: &str, column: &LongColumn) -> VariedKey {
+    let mut values = as_numbers(column);
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let ends = values.first().zip(values.last());
+    let ends = ends.map(|(low, high)| [*low, *high]);
+    VariedKey {
+        key: key.to_owned(),
+        values: values.len(),
+        ends: ends.filter(|_| matches!(column, LongColumn::Numbers(_))),
+    }
+}
+
+impl Swept {
+    /// What a table says: it is read a metric at a time, as it may be long.
+    pub(super) fn of(sweep: &Sweep, head: &Head, table: &Path) -> Result<Self, AppError> {
+        let keys = sweep.points.variables().iter();
+        let keys: Vec<&str> = keys.map(|variable| variable.key.as_str()).collect();
+        let variables = columns(table, &keys)?;
+        let numbers: Vec<(&str, bool, Vec<f64>)> = (keys.iter())
+            .filter_map(|key| {
+                let column = variables.get(*key)?;
+                let names = matches!(column, LongColumn::Names(_));
+                Some((*key, names, as_numbers(column)))
+            })
+            .collect();
+        let metrics = super::super::run::metric_names(sweep.template.is_bench());
+        let metrics = metrics.into_iter().map(|name| {
+            let read = columns(table, &[name])?;
+            let values = read.get(name).map(as_numbers).unwrap_or_default();
+            Ok(metric(name, &values, &numbers))
+        });
+        let metrics: Vec<MetricOfRuns> = metrics.collect::<Result<_, RecordingError>>()?;
+        let (codes, stopped) = ends(table)?;
+        Ok(Self {
+            schema: 1,
+            scenario: sweep.template.path().display().to_string(),
+            title: sweep.template.title().to_owned(),
+            is_bench: sweep.template.is_bench(),
+            points: sweep.points.words(),
+            runs: head.tasks,
+            codes,
+            stopped,
+            variables: (keys.iter())
+                .filter_map(|key| Some(varied(key, variables.get(*key)?)))
+                .collect(),
+            metrics: metrics.into_iter().filter(|m| m.runs > 0).collect(),
+            program: head.program.clone(),
+            files: head.files.clone(),
+        })
+    }
+
+    /// How the runs ended, in a sentence.
+    pub(super) fn verdict(&self) -> String {
+        let mut text = counted(self.runs, "run");
+        let words = [
+            (1, "outside the bounds"),
+            (2, "refused"),
+            (3, "stopped by the physics"),
+        ];
+        let told: Vec<String> = words
+            .into_iter()
+            .filter_map(|(code, words)| Some(format!("{} {words}", self.codes.get(&code)?)))
+            .collect();
+        text += &match told.is_empty() {
+            true => ", all to their end and within the bounds".to_owned(),
+            false => format!(": {}", told.join(", ")),
+        };
+        text + "."
+    }
+
+    /// For a terminal: the numbers that differ, and what drives them.
+    pub(super) fn text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.title, self.verdict());
+        let labels = self.labels();
+        for (label, metric) in self.told() {
+            let ends = [0.05, 0.5, 0.95].map(|share| metric.quantile(share));
+            let cells = column(&ends, label.unit);
+            let drivers: Vec<String> = metric
+                .sure()
+                .take(NAMED)
+                .map(|driver| {
+                    let name = crate::design::spoken(short(&driver.key)).0;
+                    format!(
+                        "{name} {} %",
+                        number(100.0 * driver.share.min(1.0), "")
+                            .split('.')
+                            .next()
+                            .unwrap_or("0")
+                    )
+                })
+                .collect();
+            let drivers = match drivers.is_empty() {
+                true => "nothing for sure".to_owned(),
+                false => drivers.join(", "),
+            };
+            let unit = match label.unit {
+                "" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            text += &format!(
+                "{}: {} to {}{unit} in 90 % of the runs, median {}; driven by {drivers}\n",
+                label.name, cells[0], cells[2], cells[1]
+            );
+        }
+        if labels.is_empty() || self.told().next().is_none() {
+            text += "no number differs between the runs\n";
+        }
+        text
+    }
+
+    /// Metrics that differ and matter most.
+    pub(super) fn told(&self) -> impl Iterator<Item = (Label, &MetricOfRuns)> {
+        let labels = self.labels();
+        let names = super::super::run::most_telling(self.is_bench);
+        names.iter().filter_map(move |name| {
+            let metric = self.metrics.iter().find(|metric| metric.name == *name)?;
+            let label = labels.iter().find(|label| label.key == *name)?;
+            metric.varies().then(|| (label.clone(), metric))
+        })
+    }
+
+    /// Its metrics for people.
+    pub(super) fn labels(&self) -> Vec<Label> {
+        super::super::report::labels(self.is_bench)
+    }
+}
+
+/// The last part of a key.
+pub(super) fn short(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+fn metric(name: &str, values: &[f64], variables: &[(&str, bool, Vec<f64>)]) -> MetricOfRuns {
+    let found = quantiles(values, &QUANTILES).unwrap_or_default();
+    let mut drivers: Vec<Driver> = (variables.iter().enumerate())
+        .filter_map(|(place, (key, names, x))| {
+            let share = share_of_variance(x, values, place as u64)?;
+            Some(Driver {
+                key: (*key).to_owned(),
+                share: share.value,
+                interval: share.interval,
+                rank_correlation: if *names {
+                    None
+                } else {
+                    rank_correlation(x, values)
+                },
+            })
+        })
+        .collect();
+    drivers.sort_by(|a, b| b.share.total_cmp(&a.share));
+    MetricOfRuns {
+        name: name.to_owned(),
+        runs: values.iter().filter(|value| !value.is_nan()).count(),
+        quantiles: QUANTILES.into_iter().zip(found).collect(),
+        drivers,
+    }
+}
+
+/// Runs by exit code, and the first that were refused or stopped.
+type Ends = (BTreeMap<u8, usize>, Vec<(usize, String)>);
+
+fn ends(table: &Path) -> Result<Ends, RecordingError> {
+    let read = columns(table, &["code", "reason"])?;
+    let (Some(LongColumn::Numbers(codes)), Some(LongColumn::Names(reasons))) =
+        (read.get("code"), read.get("reason"))
+    else {
+        return Err(RecordingError::read(table, "it is no table of runs"));
+    };
+    let mut counts = BTreeMap::new();
+    let mut told = Vec::new();
+    for (run, (code, reason)) in codes.iter().zip(reasons).enumerate() {
+        *counts.entry(*code as u8).or_insert(0) += 1;
+        if *code >= 2.0 && told.len() < TOLD {
+            told.push((run + 1, reason.clone()));
+        }
+    }
+    Ok((counts, told))
+}
+
+/// The page of a sweep, of its document and the table beside it.
+pub(in super::super) fn page_of(swept: &Swept, table: &Path) -> Result<String, AppError> {
+    debug_assert!(table.ends_with(RUNS));
+    Ok(html(&page(swept, table)?))
+}

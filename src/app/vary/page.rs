@@ -1,0 +1,235 @@
+//! The page of a sweep.
+
+use std::path::Path;
+
+use super::super::error::AppError;
+use super::super::report::{Label, sources};
+use super::drivers::{MetricOfRuns, Swept, columns, short};
+use super::table::RUNS;
+use crate::design::{number as plain, spoken};
+use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+use crate::page::{Block, Page, PageSection, PageTable, TableCell, Tone};
+use crate::quantity::{UNKNOWN, column, number};
+use crate::recording::long_table::LongColumn;
+use crate::vary::{QUANTILES, quantiles};
+
+/// Metrics that are drawn.
+const DRAWN: usize = 4;
+/// Points of a cloud at most, every so many of all runs.
+const POINTS: usize = 2000;
+/// Steps of a curve of shares.
+const STEPS: usize = 100;
+
+/// The page.
+pub(super) fn page(swept: &Swept, table: &Path) -> Result<Page<'static>, AppError> {
+    let clean = !swept.codes.keys().any(|code| *code > 0);
+    let stopped = swept.stopped.iter();
+    let stopped = stopped.map(|(run, reason)| format!("Run {run}: {reason}"));
+    let mut sections = vec![drivers(swept)];
+    sections.extend(pictures(swept, table)?);
+    sections.push(distribution(swept));
+    sections.push(varied(swept));
+    sections.push(sources(&swept.program, &swept.files));
+    Ok(Page {
+        title: format!("Sweep of {}", swept.title),
+        verdict: swept.verdict(),
+        tone: if clean { Tone::Good } else { Tone::Found },
+        lead: stopped.collect(),
+        sections,
+        footer: format!(
+            "Made by idc vary. {RUNS} beside this page has a row for each run; a run is done again in full by idc run with its values (--set)."
+        ),
+        ..Page::default()
+    })
+}
+
+fn named(label: &Label) -> String {
+    match label.unit {
+        "" => label.name.clone(),
+        unit => format!("{} [{unit}]", label.name),
+    }
+}
+
+fn named_key(key: &str) -> String {
+    match spoken(short(key)) {
+        (name, unit) if unit.is_empty() => name,
+        (name, unit) => format!("{name} [{unit}]"),
+    }
+}
+
+/// Each metric that differs, with its label.
+fn differing(swept: &Swept) -> Vec<(Label, &MetricOfRuns)> {
+    let labels = swept.labels().into_iter();
+    labels
+        .filter_map(|label| {
+            let metric = swept.metrics.iter().find(|m| m.name == label.key)?;
+            metric.varies().then_some((label, metric))
+        })
+        .collect()
+}
+
+fn drivers(swept: &Swept) -> PageSection<'static> {
+    let percent = |share: f64| format!("{:.0}", 100.0 * share);
+    let rows = differing(swept).into_iter().flat_map(|(label, metric)| {
+        let name = named(&label);
+        metric
+            .drivers
+            .iter()
+            .enumerate()
+            .map(move |(place, driver)| {
+                let [low, high] = driver.interval;
+                let sure = low > 0.0;
+                vec![
+                    TableCell::from(if place == 0 {
+                        name.clone()
+                    } else {
+                        String::new()
+                    }),
+                    TableCell::from(spoken(short(&driver.key)).0),
+                    TableCell::from(percent(driver.share)),
+                    TableCell::from(format!("{} to {}", percent(low), percent(high))),
+                    TableCell::Interval([0.0, low, driver.share, high, 1.0]),
+                    TableCell::from(match driver.rank_correlation {
+                        Some(correlation) if sure => format!("{correlation:.2}"),
+                        _ => UNKNOWN.to_owned(),
+                    }),
+                ]
+            })
+    });
+    let rows: Vec<Vec<TableCell>> = rows.collect();
+    let words = "Share of a number's variance over the runs that goes with one variable alone (first-order index), with its interval at 95 %; what is missing \
+                 to 100 % is due to variables together, and to what is drawn at random. Rank correlation: 1 where the number only grows with the variable, -1 where it only falls.";
+    let columns = [
+        "number",
+        "driven by",
+        "#share [%]",
+        "#interval [%]",
+        "",
+        "#rank correlation",
+    ];
+    let block = match rows.is_empty() {
+        true => Block::Paragraph(
+            "No number differs between the runs, or there are too few runs to say.".to_owned(),
+        ),
+        false => Block::PageTable(PageTable::new("", &columns, rows)),
+    };
+    PageSection::new(
+        "Which variable drives which number",
+        vec![Block::Hint(words.to_owned()), block],
+    )
+}
+
+fn distribution(swept: &Swept) -> PageSection<'static> {
+    let labels = swept.labels();
+    let rows = swept.metrics.iter().filter_map(|metric| {
+        let label = labels.iter().find(|label| label.key == metric.name)?;
+        let values: Vec<Option<f64>> = QUANTILES.map(|share| metric.quantile(share)).to_vec();
+        let first = [TableCell::from(named(label))].into_iter();
+        let cells = column(&values, label.unit).into_iter().map(TableCell::from);
+        let runs = TableCell::from(metric.runs.to_string());
+        Some(first.chain(cells).chain([runs]).collect())
+    });
+    let heads = QUANTILES.map(|share| match share {
+        0.0 => "#least".to_owned(),
+        1.0 => "#greatest".to_owned(),
+        0.5 => "#median".to_owned(),
+        share => format!("#{:.0} %", 100.0 * share),
+    });
+    let mut columns = vec!["number"];
+    columns.extend(heads.iter().map(String::as_str));
+    columns.push("#runs");
+    let caption = "Values below which these shares of the runs lie; runs that do not determine a number are left out.";
+    let table = PageTable::new(caption, &columns, rows.collect());
+    PageSection::new(
+        "Distribution of every number",
+        vec![Block::PageTable(table)],
+    )
+}
+
+fn varied(swept: &Swept) -> PageSection<'static> {
+    let rows = swept.variables.iter().map(|variable| {
+        let ends = variable.ends.map_or(UNKNOWN.to_owned(), |[low, high]| {
+            format!("{} to {}", plain(low), plain(high))
+        });
+        let (_, unit) = spoken(short(&variable.key));
+        [
+            variable.key.clone(),
+            ends,
+            unit,
+            variable.values.to_string(),
+        ]
+        .map(TableCell::from)
+        .to_vec()
+    });
+    let caption = format!("The points are {}.", swept.points);
+    let columns = ["key", "#values", "unit", "#different"];
+    let table = PageTable::new(&caption, &columns, rows.collect());
+    PageSection::new("What was varied", vec![Block::PageTable(table)])
+}
+
+/// Numbers over what drives them most, and how they are distributed.
+fn pictures(swept: &Swept, table: &Path) -> Result<Option<PageSection<'static>>, AppError> {
+    let mut blocks = Vec::new();
+    for (label, metric) in swept.told().take(DRAWN) {
+        let key = metric.drivers.first().map(|driver| driver.key.clone());
+        let wanted: Vec<&str> = key.iter().map(String::as_str).chain([label.key]).collect();
+        let mut read = columns(table, &wanted)?;
+        let Some(LongColumn::Numbers(values)) = read.remove(label.key) else {
+            continue;
+        };
+        let mut panels = vec![shares(&label, &values)];
+        let driver = key.and_then(|key| Some((read.remove(&key)?, key)));
+        if let Some((LongColumn::Numbers(x), key)) = driver {
+            panels.insert(0, cloud(&label, &key, &x, &values));
+        }
+        let figure = Figure {
+            title: String::new(),
+            panels,
+        };
+        blocks.push(Block::Heading(label.name.clone()));
+        blocks.push(Block::Picture(svg(&figure)?));
+    }
+    let words = "Above, each run over the variable that drives the number most; below, the share of the runs in which it is no larger.";
+    Ok((!blocks.is_empty()).then(|| {
+        blocks.insert(0, Block::Hint(words.to_owned()));
+        PageSection::new("Pictures", blocks)
+    }))
+}
+
+fn cloud(label: &Label, key: &str, x: &[f64], values: &[f64]) -> Panel<'static> {
+    let each = values.len().div_ceil(POINTS).max(1);
+    let (x, y): (Vec<f64>, Vec<f64>) = (x.iter().zip(values))
+        .filter(|(x, y)| !x.is_nan() && y.is_finite())
+        .map(|(x, y)| (*x, *y))
+        .step_by(each)
+        .unzip();
+    Panel {
+        title: if each > 1 {
+            format!("every {}th run", number(each as f64, ""))
+        } else {
+            "each run".to_owned()
+        },
+        vertical_label: named(label),
+        horizontal: Horizontal::Quantity(named_key(key)),
+        series: vec![Series::new("", x, y, Role::Regulator, Stroke::Points)],
+        ..Panel::default()
+    }
+}
+
+fn shares(label: &Label, values: &[f64]) -> Panel<'static> {
+    let shares: Vec<f64> = (0..=STEPS).map(|step| step as f64 / STEPS as f64).collect();
+    let places = quantiles(values, &shares).unwrap_or_default();
+    let shares: Vec<f64> = shares.iter().map(|share| 100.0 * share).collect();
+    Panel {
+        vertical_label: "share of the runs [%]".to_owned(),
+        horizontal: Horizontal::Quantity(named(label)),
+        series: vec![Series::new(
+            "",
+            places,
+            shares,
+            Role::Regulator,
+            Stroke::Plain,
+        )],
+        ..Panel::default()
+    }
+}

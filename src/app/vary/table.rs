@@ -1,0 +1,91 @@
+//! runs.parquet: a row for each run, in the order of the plan, whoever did them.
+
+use std::path::Path;
+
+use super::super::error::AppError;
+use super::super::run::{Numbers, metric_names};
+use super::work::Shared;
+use crate::recording::long_table::{LongColumn, write_groups};
+use crate::tasks::{Plan, Store};
+
+/// The table.
+pub(in super::super) const RUNS: &str = "runs.parquet";
+/// Columns before the keys.
+const OWN: [(&str, bool); 4] = [
+    ("run", false),
+    ("id", true),
+    ("code", false),
+    ("reason", true),
+];
+/// Runs of a group: what is held at a time.
+const GROUP: usize = 4096;
+
+/// Writes the table of a plan of which all runs stand.
+pub(super) fn write_table(plan: &Path, is_bench: bool, table: &Path) -> Result<(), AppError> {
+    let texts = texts(plan)?;
+    let opened = Plan::open(plan)?;
+    let shared: Shared = serde_json::from_value(opened.head.work.clone())?;
+    let store = Store::of(plan);
+    let metrics = metric_names(is_bench);
+    let keys = shared
+        .keys
+        .iter()
+        .map(String::as_str)
+        .zip(texts.iter().copied());
+    let numbers = metrics.iter().map(|name| (*name, false));
+    let columns: Vec<(&str, bool)> = OWN.into_iter().chain(keys).chain(numbers).collect();
+    let mut tasks = opened;
+    let mut run = 0;
+    write_groups(table, &columns, || {
+        let mut group: Vec<LongColumn> = (columns.iter())
+            .map(|(_, names)| match names {
+                true => LongColumn::Names(Vec::new()),
+                false => LongColumn::Numbers(Vec::new()),
+            })
+            .collect();
+        let mut rows = 0;
+        while rows < GROUP
+            && let Some(task) = tasks.next()
+        {
+            let task = task?;
+            run += 1;
+            rows += 1;
+            let values: Vec<String> = serde_json::from_value(task.work)?;
+            let result: Numbers = store.read(&task.id)?;
+            let own = [
+                run.to_string(),
+                task.id,
+                result.code.to_string(),
+                result.reason,
+            ];
+            let texts = own.into_iter().chain(values);
+            let mut places = group.iter_mut();
+            for (text, column) in texts.zip(&mut places) {
+                match column {
+                    LongColumn::Names(names) => names.push(text),
+                    LongColumn::Numbers(numbers) => numbers.push(text.parse().unwrap_or(f64::NAN)),
+                }
+            }
+            for (at, column) in places.enumerate() {
+                let value = result.metrics.get(at).copied().flatten();
+                if let LongColumn::Numbers(numbers) = column {
+                    numbers.push(value.unwrap_or(f64::NAN));
+                }
+            }
+        }
+        Ok((rows > 0).then_some(group))
+    })
+}
+
+/// Which of the keys have values that are no numbers.
+fn texts(plan: &Path) -> Result<Vec<bool>, AppError> {
+    let mut found: Vec<bool> = Vec::new();
+    for task in Plan::open(plan)? {
+        let values: Vec<String> = serde_json::from_value(task?.work)?;
+        found.resize(values.len(), false);
+        for (text, value) in found.iter_mut().zip(&values) {
+            *text |= value.parse::<f64>().is_err();
+        }
+    }
+    Ok(found)
+}

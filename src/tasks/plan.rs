@@ -1,0 +1,277 @@
+//! A plan: a head, then a task a line.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::TaskError;
+use crate::recording::RecordingError;
+use crate::recording::atomic::write_atomic;
+use crate::recording::provenance::{Provenance, SourceFile};
+
+/// What all tasks share.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Head {
+    /// What the tasks are: `vary` or `fleet`.
+    pub plan: String,
+    /// The program and the libraries that decide about numbers.
+    pub program: String,
+    /// Number of tasks.
+    pub tasks: usize,
+    /// What the command that made it needs to do a task.
+    pub work: Value,
+    /// Files that every task reads, from the plan's folder or from the root.
+    pub files: Vec<SourceFile>,
+}
+
+/// A task.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Task {
+    /// Its name: the hash (SHA-256) of all that its result depends on.
+    pub id: String,
+    /// The task whose result it begins with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<String>,
+    /// What it does.
+    pub work: Value,
+    /// Files that it alone reads, besides those of the head.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<SourceFile>,
+}
+
+/// A plan that is being read.
+#[derive(Debug)]
+pub struct Plan {
+    path: PathBuf,
+    /// What all tasks share.
+    pub head: Head,
+    lines: BufReader<File>,
+    line: usize,
+}
+
+/// A name made of parts, none of which can be taken for two.
+#[must_use]
+pub fn name_of<'a>(parts: impl IntoIterator<Item = &'a str>) -> String {
+    let mut bytes = Vec::new();
+    for part in parts {
+        bytes.extend((part.len() as u64).to_le_bytes());
+        bytes.extend(part.as_bytes());
+    }
+    SourceFile::holding("", &bytes).sha256
+}
+
+impl Head {
+    /// The program as it stands in heads and names.
+    #[must_use]
+    pub fn this_program() -> String {
+        Provenance::this_program()
+    }
+}
+
+impl Plan {
+    /// Writes a plan, its tasks one at a time.
+    ///
+    /// # Errors
+    /// The file cannot be written, or a task cannot be made; no plan is left then.
+    pub fn write<E: From<TaskError>>(
+        path: &Path,
+        head: &Head,
+        tasks: impl IntoIterator<Item = Result<Task, E>>,
+    ) -> Result<(), E> {
+        let mut fault = None;
+        let written = write_atomic(path, |file| -> std::io::Result<()> {
+            serde_json::to_writer(&mut *file, head)?;
+            file.write_all(b"\n")?;
+            for task in tasks {
+                match task {
+                    Ok(task) => serde_json::to_writer(&mut *file, &task)?,
+                    Err(error) => {
+                        fault = Some(error);
+                        return Err(std::io::Error::other("not planned"));
+                    }
+                }
+                file.write_all(b"\n")?;
+            }
+            Ok(())
+        });
+        match fault {
+            Some(error) => Err(error),
+            None => written.map_err(|error| TaskError::from(error).into()),
+        }
+    }
+
+    /// Opens one; its tasks follow as they are asked for.
+    ///
+    /// # Errors
+    /// It cannot be read, is no plan, or is one of another version.
+    pub fn open(path: &Path) -> Result<Self, TaskError> {
+        let file = File::open(path).map_err(|e| RecordingError::read(path, e))?;
+        let mut lines = BufReader::new(file);
+        let mut text = String::new();
+        (lines.read_line(&mut text)).map_err(|e| RecordingError::read(path, e))?;
+        let head: Head = serde_json::from_str(&text).map_err(|e| TaskError::NoPlan {
+            file: path.display().to_string(),
+            line: 1,
+            reason: e.to_string(),
+        })?;
+        let this = Head::this_program();
+        if head.program != this {
+            return Err(TaskError::OtherVersion {
+                file: path.display().to_string(),
+                made: head.program,
+                this,
+            });
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            head,
+            lines,
+            line: 1,
+        })
+    }
+
+    /// Its file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Its folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new(""))
+    }
+
+    /// The task of a name. Lines of others are passed over unread.
+    ///
+    /// # Errors
+    /// There is none, or the plan cannot be read.
+    pub fn task(mut self, id: &str) -> Result<Task, TaskError> {
+        let start = format!("{{\"id\":\"{id}\"");
+        let mut text = String::new();
+        loop {
+            text.clear();
+            self.line += 1;
+            let read = self.lines.read_line(&mut text);
+            if read.map_err(|e| RecordingError::read(&self.path, e))? == 0 {
+                return Err(TaskError::NoTask {
+                    file: self.path.display().to_string(),
+                    id: id.to_owned(),
+                });
+            }
+            if text.starts_with(&start) {
+                return self.parsed(&text);
+            }
+        }
+    }
+
+    /// Sees whether the files of the head, and of a task, are what they were when it was named.
+    ///
+    /// # Errors
+    /// One has changed, or is gone.
+    pub fn check(&self, others: &[SourceFile]) -> Result<(), TaskError> {
+        for file in self.head.files.iter().chain(others) {
+            let path = self.folder().join(&file.file);
+            let bytes = std::fs::read(&path).map_err(|e| RecordingError::read(&path, e))?;
+            if SourceFile::holding("", &bytes).sha256 != file.sha256 {
+                return Err(TaskError::Changed {
+                    file: path.display().to_string(),
+                    plan: self.path.display().to_string(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn parsed(&self, text: &str) -> Result<Task, TaskError> {
+        serde_json::from_str(text).map_err(|e| TaskError::NoPlan {
+            file: self.path.display().to_string(),
+            line: self.line,
+            reason: e.to_string(),
+        })
+    }
+}
+
+impl Iterator for Plan {
+    type Item = Result<Task, TaskError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let mut text = String::new();
+        self.line += 1;
+        match self.lines.read_line(&mut text) {
+            Ok(0) => None,
+            Ok(_) => Some(self.parsed(&text)),
+            Err(error) => Some(Err(RecordingError::read(&self.path, error).into())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn head(tasks: usize) -> Head {
+        Head {
+            plan: "vary".to_owned(),
+            program: Head::this_program(),
+            tasks,
+            work: Value::Null,
+            files: Vec::new(),
+        }
+    }
+
+    fn task(id: &str) -> Task {
+        Task {
+            id: id.to_owned(),
+            after: None,
+            work: serde_json::json!({ "n": id }),
+            files: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_plan_reads_back_and_a_task_is_found_by_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.jsonl");
+        let tasks = ["aa", "bb", "cc"].map(task);
+        let given = tasks.clone().map(Ok::<_, TaskError>);
+        Plan::write(&path, &head(3), given).unwrap();
+        let read: Result<Vec<Task>, _> = Plan::open(&path).unwrap().collect();
+        assert_eq!(read.unwrap(), tasks);
+        let found = Plan::open(&path).unwrap().task("bb").unwrap();
+        assert_eq!(found, tasks[1]);
+        let none = Plan::open(&path).unwrap().task("b").unwrap_err();
+        assert!(none.to_string().contains("has no task b"), "{none}");
+    }
+
+    #[test]
+    fn a_plan_of_another_version_or_of_none_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.jsonl");
+        let mut other = head(0);
+        other.program = "idc 0.0.1".to_owned();
+        Plan::write::<TaskError>(&path, &other, []).unwrap();
+        let refused = Plan::open(&path).unwrap_err().to_string();
+        assert!(refused.contains("was made by idc 0.0.1"), "{refused}");
+        std::fs::write(&path, "[1]\n").unwrap();
+        let refused = Plan::open(&path).unwrap_err().to_string();
+        assert!(refused.contains("plan.jsonl:1"), "{refused}");
+    }
+
+    #[test]
+    fn names_of_other_parts_are_other_names() {
+        let names = [
+            name_of(["ab", "c"]),
+            name_of(["a", "bc"]),
+            name_of(["abc"]),
+            name_of(["ab", "c", ""]),
+        ];
+        for (place, one) in names.iter().enumerate() {
+            assert!(!names[place + 1..].contains(one));
+        }
+        assert_eq!(names[0], name_of(["ab", "c"]));
+    }
+}

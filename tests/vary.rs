@@ -1,0 +1,384 @@
+//! `idc vary` and `idc task`: the same table whoever does the runs, nothing done twice, what cannot be is refused before anything is written.
+
+use std::collections::BTreeMap;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::PathBuf;
+use std::process::Command;
+
+use idc_cell::recording::long_table::{LongColumn, read_long};
+use serde_json::Value;
+
+use crate::common::skipped;
+use crate::program::Bench;
+
+/// A short stretch of the plate's edge.
+fn plate() -> Bench {
+    let bench = Bench::new("plate_edge");
+    bench.replace("scenario.toml", "end_mm = 290", "end_mm = 30");
+    bench
+}
+
+const FORCES: &str = "process.force_n=100,150";
+const FEEDS: &str = "process.feed_mm_per_s=20..30:3";
+
+fn vary(bench: &Bench, out: &str, more: &[&str]) -> crate::program::Outcome {
+    let set = [
+        "vary",
+        "scenario.toml",
+        "--set",
+        FORCES,
+        "--set",
+        FEEDS,
+        "--out",
+        out,
+    ];
+    bench.idc(&[&set[..], more].concat(), &[])
+}
+
+fn columns(bench: &Bench, file: &str) -> BTreeMap<String, LongColumn> {
+    read_long(&bench.path(file)).unwrap().into_iter().collect()
+}
+
+fn numbers(columns: &BTreeMap<String, LongColumn>, name: &str) -> Vec<f64> {
+    match &columns[name] {
+        LongColumn::Numbers(numbers) => numbers.clone(),
+        LongColumn::Names(_) => panic!("{name} are names"),
+    }
+}
+
+/// Inode of each result: another one was written anew.
+fn results(bench: &Bench, out: &str) -> BTreeMap<PathBuf, u64> {
+    let entries = std::fs::read_dir(bench.path(&format!("{out}/tasks"))).unwrap();
+    let result = |entry: std::io::Result<std::fs::DirEntry>| {
+        let path = entry.unwrap().path().join("result.json");
+        let inode = std::fs::metadata(&path).unwrap().ino();
+        (path, inode)
+    };
+    entries.map(result).collect()
+}
+
+#[test]
+fn each_row_is_the_run_that_idc_run_makes_with_its_values() {
+    let bench = plate();
+    let outcome = vary(&bench, "out", &["--quiet"]);
+    assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
+    let table = columns(&bench, "out/runs.parquet");
+    assert_eq!(
+        numbers(&table, "process.force_n"),
+        [100.0, 100.0, 100.0, 150.0, 150.0, 150.0]
+    );
+    assert_eq!(
+        numbers(&table, "process.feed_mm_per_s")[..3],
+        [20.0, 25.0, 30.0]
+    );
+    // Outside the bounds of the scenario's mean force, as 100 N are.
+    assert_eq!(numbers(&table, "code"), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+    let set = [
+        "--set",
+        "process.force_n=150",
+        "--set",
+        "process.feed_mm_per_s=25",
+    ];
+    let run = [
+        &[
+            "run",
+            "scenario.toml",
+            "--out",
+            "run",
+            "--quiet",
+            "--no-recording",
+        ][..],
+        &set,
+    ]
+    .concat();
+    assert_eq!(bench.idc(&run, &[]).code, 0);
+    let text = std::fs::read_to_string(bench.path("run/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&text).unwrap();
+    let mut compared = 0;
+    for (name, column) in &table {
+        if let (LongColumn::Numbers(numbers), Some(value)) =
+            (column, summary["summary"][name].as_f64())
+        {
+            assert_eq!(numbers[4], value, "{name}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 20, "{compared}");
+    // The mean force goes with the force alone.
+    let text = std::fs::read_to_string(bench.path("out/vary.json")).unwrap();
+    let document: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(document["codes"]["1"], 3);
+    let page = bench.idc(&["report", "out"], &[]);
+    assert!(
+        page.out.contains("page of the sweep"),
+        "{}{}",
+        page.out,
+        page.err
+    );
+}
+
+#[test]
+fn what_stands_is_not_done_again_and_a_sweep_may_grow() {
+    let bench = plate();
+    assert_eq!(vary(&bench, "out", &["--quiet"]).code, 0);
+    let before = results(&bench, "out");
+    let table = std::fs::read(bench.path("out/runs.parquet")).unwrap();
+    let again = vary(&bench, "out", &["--quiet"]);
+    assert!(
+        again.only_line("error").contains("--force"),
+        "{}",
+        again.err
+    );
+    // Two are lost, as of an engine that died.
+    let lost: Vec<&PathBuf> = before.keys().take(2).collect();
+    for path in &lost {
+        std::fs::remove_dir_all(path.parent().unwrap()).unwrap();
+    }
+    assert_eq!(vary(&bench, "out", &["--quiet", "--resume"]).code, 0);
+    let after = results(&bench, "out");
+    assert!(
+        before
+            .iter()
+            .all(|(path, inode)| lost.contains(&path) || after[path] == *inode)
+    );
+    assert!(std::fs::read(bench.path("out/runs.parquet")).unwrap() == table);
+    let more = [
+        "vary",
+        "scenario.toml",
+        "--set",
+        "process.force_n=100,150,200",
+        "--set",
+        FEEDS,
+    ];
+    let more = [&more[..], &["--out", "out", "--resume", "--quiet"]].concat();
+    assert_eq!(bench.idc(&more, &[]).code, 0);
+    let grown = results(&bench, "out");
+    assert_eq!(grown.len(), 9);
+    assert!(after.iter().all(|(path, inode)| grown[path] == *inode));
+    // A scenario that says something else is another content: all are done anew.
+    bench.replace("scenario.toml", "end_mm = 30", "end_mm = 31");
+    assert_eq!(vary(&bench, "out", &["--quiet", "--resume"]).code, 0);
+    assert_eq!(results(&bench, "out").len(), 15);
+}
+
+#[test]
+fn a_task_is_a_run_by_its_name_and_its_exit_code_is_a_result() {
+    let bench = plate();
+    let plan = vary(&bench, "out", &["--plan"]);
+    assert_eq!(plan.out, "6 runs planned in out/plan.jsonl\n");
+    let text = std::fs::read_to_string(bench.path("out/plan.jsonl")).unwrap();
+    let ids: Vec<String> = (text.lines().skip(1))
+        .map(|line| {
+            serde_json::from_str::<Value>(line).unwrap()["id"]
+                .as_str()
+                .unwrap()
+                .to_owned()
+        })
+        .collect();
+    let codes: Vec<i32> = (ids.iter())
+        .map(|id| bench.idc(&["task", "out/plan.jsonl", id], &[]).code)
+        .collect();
+    assert_eq!(codes, [1, 1, 1, 0, 0, 0]);
+    let inodes = results(&bench, "out");
+    assert_eq!(vary(&bench, "out", &["--resume", "--quiet"]).code, 0);
+    assert_eq!(results(&bench, "out"), inodes);
+    assert_eq!(vary(&bench, "other", &["--quiet", "--jobs", "1"]).code, 0);
+    let table = |out: &str| std::fs::read(bench.path(&format!("{out}/runs.parquet"))).unwrap();
+    assert!(table("out") == table("other"));
+    let none = bench.idc(&["task", "out/plan.jsonl", "abc"], &[]);
+    assert!(
+        none.only_line("error").contains("has no task abc"),
+        "{}",
+        none.err
+    );
+    let device = std::fs::read_to_string(bench.path("device.toml")).unwrap();
+    bench.write("device.toml", device + "\n# changed\n");
+    std::fs::remove_dir_all(bench.path(&format!("out/tasks/{}", ids[0]))).unwrap();
+    let changed = bench.idc(&["task", "out/plan.jsonl", &ids[0]], &[]);
+    assert!(
+        changed
+            .only_line("error")
+            .contains("has changed since the plan"),
+        "{}",
+        changed.err
+    );
+    let file = bench.idc(&["task", "out/plan.jsonl", "--export", "snakemake"], &[]);
+    assert!(
+        file.out.contains("rule task:") && file.out.contains("plan.jsonl"),
+        "{}",
+        file.out
+    );
+}
+
+#[test]
+fn what_cannot_be_is_refused_before_anything_is_written() {
+    let bench = plate();
+    bench.write("points.csv", "process.force_n\n".to_owned());
+    for (arguments, expected) in [
+        (
+            vec!["--set", "process.force=1,2"],
+            "did you mean `force_n`?",
+        ),
+        (
+            vec!["--set", "process.force_n=100..99999:3"],
+            "process.force_n",
+        ),
+        (vec!["--set", "process.force_n=9..1"], "the range is empty"),
+        (vec!["--set", "process.force_n=100.5..110.5"], "a..b:COUNT"),
+        (vec!["--points", "points.csv"], "it has no points"),
+        (
+            vec!["--set", FORCES, "--engine", "ray"],
+            "expected local, dask=local:N",
+        ),
+        (
+            vec!["--set", FORCES, "--sample", "sobol:4"],
+            "grid, random:N or latin:N",
+        ),
+        (vec!["--set", "device.model=gone.toml"], "gone.toml"),
+    ] {
+        let all = [&["vary", "scenario.toml", "--out", "out"][..], &arguments].concat();
+        let outcome = bench.idc(&all, &[]);
+        assert_eq!(outcome.code, 2, "{arguments:?}");
+        assert!(
+            outcome.err.contains(expected),
+            "{arguments:?}: {}",
+            outcome.err
+        );
+        assert!(!bench.path("out").exists(), "{arguments:?}");
+    }
+    // Keys that only go together, and a combination that cannot be run: a result.
+    let edge = [
+        "--set",
+        "workpiece.edge.start_mm=10,40",
+        "--set",
+        "workpiece.edge.end_mm=30,60",
+    ];
+    let all = [
+        &["vary", "scenario.toml", "--out", "out", "--quiet"][..],
+        &edge,
+    ]
+    .concat();
+    let outcome = bench.idc(&all, &[]);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let table = columns(&bench, "out/runs.parquet");
+    assert_eq!(numbers(&table, "code"), [0.0, 0.0, 2.0, 0.0]);
+}
+
+/// A Python with Dask: that of IDC_DASK_PYTHON, or the one that is there.
+fn python_with(module: &str) -> Option<PathBuf> {
+    let named = std::env::var_os("IDC_DASK_PYTHON").map(PathBuf::from);
+    let python = named.unwrap_or_else(|| "python3".into());
+    let there = Command::new(&python)
+        .args(["-c", &format!("import {module}")])
+        .output();
+    let there = there.is_ok_and(|output| output.status.success());
+    if !there {
+        skipped(&format!(
+            "no {module} for {} (IDC_DASK_PYTHON names another)",
+            python.display()
+        ));
+    }
+    there.then_some(python)
+}
+
+#[test]
+fn dask_and_snakemake_make_the_same_table_with_and_without_a_shared_folder() {
+    let bench = plate();
+    assert_eq!(vary(&bench, "local", &["--quiet"]).code, 0);
+    let table = |out: &str| std::fs::read(bench.path(&format!("{out}/runs.parquet"))).unwrap();
+    if let Some(python) = python_with("distributed") {
+        let python = python.display().to_string();
+        let dask = ["--quiet", "--engine", "dask=local:2", "--python", &python];
+        for (out, more) in [("dask", &[][..]), ("carried", &["--carry"][..])] {
+            let outcome = vary(&bench, out, &[&dask[..], more].concat());
+            assert_eq!((outcome.code, outcome.err.as_str()), (0, ""), "{out}");
+            assert!(table(out) == table("local"), "{out}");
+        }
+        let gone = vary(
+            &bench,
+            "gone",
+            &[&dask[..], &["--program", "/no/such/idc"]].concat(),
+        );
+        assert!(
+            gone.only_line("error").contains("cannot run /no/such/idc"),
+            "{}",
+            gone.err
+        );
+        let old = bench.path("old");
+        std::fs::write(&old, "#!/bin/sh\necho idc 0.0.1\n").unwrap();
+        Command::new("chmod").arg("+x").arg(&old).status().unwrap();
+        let other = vary(
+            &bench,
+            "old_out",
+            &[&dask[..], &["--program", &old.display().to_string()]].concat(),
+        );
+        assert!(
+            other
+                .only_line("error")
+                .contains("has `idc 0.0.1`, expected idc"),
+            "{}",
+            other.err
+        );
+    }
+    if let Some(python) = python_with("snakemake") {
+        assert_eq!(vary(&bench, "snake", &["--plan", "--quiet"]).code, 0);
+        let export = [
+            "task",
+            "snake/plan.jsonl",
+            "--export",
+            "snakemake",
+            "--out",
+            "Snakefile",
+        ];
+        assert_eq!(bench.idc(&export, &[]).code, 0);
+        let run = [
+            "-m",
+            "snakemake",
+            "--snakefile",
+            "Snakefile",
+            "--cores",
+            "2",
+            "--quiet",
+            "all",
+        ];
+        let done = Command::new(python)
+            .args(run)
+            .current_dir(bench.path(""))
+            .output()
+            .unwrap();
+        assert!(
+            done.status.success(),
+            "{}",
+            String::from_utf8_lossy(&done.stderr)
+        );
+        let before = results(&bench, "snake");
+        assert_eq!(vary(&bench, "snake", &["--resume", "--quiet"]).code, 0);
+        assert_eq!(results(&bench, "snake"), before);
+        assert!(table("snake") == table("local"));
+    }
+}
+
+/// Paths of what is read stay what they are: the plan leads to them from its own folder.
+#[test]
+fn a_plan_that_stands_elsewhere_leads_to_the_same_files() {
+    let bench = plate();
+    let out = [
+        "vary",
+        "scenario.toml",
+        "--set",
+        FORCES,
+        "--plan",
+        "--quiet",
+        "--out",
+        "deep/below/out",
+    ];
+    assert_eq!(bench.idc(&out, &[]).code, 0);
+    let text = std::fs::read_to_string(bench.path("deep/below/out/plan.jsonl")).unwrap();
+    let head: Value = serde_json::from_str(text.lines().next().unwrap()).unwrap();
+    for file in head["files"].as_array().unwrap() {
+        let path = bench
+            .path("deep/below/out")
+            .join(file["file"].as_str().unwrap());
+        assert!(path.is_file(), "{}", path.display());
+    }
+}
