@@ -243,14 +243,8 @@ fn set_aside(
 /// Every set of deviations fitted: forms of the force's law times all others.
 fn models(rows: &[TableRow], believed: &TableLaw, candidates: &[Deviation]) -> Vec<Fit> {
     use Deviation::{Force, Sag, Threshold};
-    let forms: [&[Deviation]; 6] = [
-        &[],
-        &[Force],
-        &[Threshold],
-        &[Sag],
-        &[Force, Threshold],
-        &[Threshold, Sag],
-    ];
+    // A threshold beside a sag is hardly told from an exponent in any table.
+    let forms: [&[Deviation]; 5] = [&[], &[Force], &[Threshold], &[Sag], &[Force, Threshold]];
     let of_force = [Force, Threshold, Sag];
     let others: Vec<Deviation> = candidates
         .iter()
