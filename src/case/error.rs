@@ -99,6 +99,40 @@ pub enum CaseError {
         /// Rig file.
         file: String,
     },
+    /// A table of runs with a value that cannot be.
+    #[error("{file}: line {line}: `{column}` is {value}, expected {expected}")]
+    Row {
+        /// The table.
+        file: String,
+        /// Its line, from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// The value as written.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// A table of runs that is too short to judge a law by.
+    #[error(
+        "{file}: {rows} of its rows can be used to fit the law, expected at least {least}: with every setting known and something taken off"
+    )]
+    FewRows {
+        /// The file of the case.
+        file: String,
+        /// Rows that can be used.
+        rows: usize,
+        /// Least number.
+        least: usize,
+    },
+    /// A law of removal that cannot predict.
+    #[error(
+        "{file}: `believed.reference_volume_mm3` is missing, expected it to be given where a table is to be predicted (improved.toml of a diagnosis has it)"
+    )]
+    NoCoefficient {
+        /// The file.
+        file: String,
+    },
     /// A rig whose motion cannot be followed.
     #[error(
         "{rig}: the rig goes astray at {time} s of {inputs}: its {column} is {value}; expected a rig that stays finite"

@@ -6,6 +6,7 @@ mod cell_account;
 mod error;
 mod improved;
 mod recordings;
+mod removal_table;
 mod rig;
 
 use std::path::{Path, PathBuf};
@@ -15,6 +16,7 @@ use std::time::Instant;
 pub use cell::is_cell_case;
 pub use error::CaseError;
 pub use recordings::{check_finite, read_rig, shown_columns};
+pub use removal_table::{RemovalCase, RemovalDiagnosed, predict_table};
 pub use rig::{RIG, rig_of, to_fit};
 
 use crate::diagnosis::answer::Answer;

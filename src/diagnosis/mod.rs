@@ -37,6 +37,7 @@ pub mod ranking;
 pub mod recorded;
 pub mod regime;
 pub mod remaining;
+pub mod removal;
 pub mod ruled_out;
 mod scale;
 pub mod search;

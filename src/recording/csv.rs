@@ -12,6 +12,7 @@ use columns::{COLUMNS, Column, TIME};
 mod cell;
 mod columns;
 mod edge_profile;
+mod named;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -19,6 +20,7 @@ mod tests;
 pub use cell::{CellRecording, read_cell_csv};
 pub use columns::{median_step, plausible_range};
 pub use edge_profile::EdgeProfile;
+pub use named::{NamedColumns, read_named};
 
 /// A recording with what its file holds besides.
 #[derive(Debug, Clone, PartialEq)]

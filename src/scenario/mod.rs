@@ -17,6 +17,7 @@ mod estimator;
 mod file;
 mod load;
 pub mod recorded_cell;
+pub mod removal_table;
 mod rig_device;
 pub mod rig_file;
 pub mod schema;

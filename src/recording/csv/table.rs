@@ -74,7 +74,7 @@ pub(super) fn read(path: &Path, columns: &[Column]) -> Result<ParsedTable, Recor
     Ok(table)
 }
 
-fn fault(path: &Path, error: &csv::Error) -> RecordingError {
+pub(super) fn fault(path: &Path, error: &csv::Error) -> RecordingError {
     let line = error.position().map_or(1, csv::Position::line);
     match error.kind() {
         csv::ErrorKind::UnequalLengths {

@@ -1,0 +1,335 @@
+//! Which deviations from the believed law a table shows, which it rules out, and which it cannot tell.
+
+use super::fit::{Fit, fit, rms};
+use super::law::{Deviation, TableLaw, TableRow};
+use super::student::t_exceeded;
+
+/// Chance that a table of a believed law that is right names anything at all.
+pub(super) const FALSE_ALARM: f64 = 0.05;
+/// Chance that the largest of all rows' scatter has it set aside.
+const SET_ASIDE: f64 = 0.01;
+/// Share of the rows set aside at most.
+const SET_ASIDE_MOST: f64 = 0.1;
+/// Relative span of a setting from which an exponent of it is looked for.
+const LEAST_SPAN: f64 = 0.02;
+
+/// A deviation with its value and interval.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Told {
+    /// Which.
+    pub deviation: Deviation,
+    /// Value, and the ends of its 95 % interval [SI].
+    pub value: [f64; 3],
+    /// Probability that it is at work [1].
+    pub confidence: f64,
+}
+
+/// Another form of the law, fitted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rival {
+    /// Its deviations.
+    pub deviations: Vec<Deviation>,
+    /// Its law.
+    pub law: TableLaw,
+    /// Odds of it against that found [1].
+    pub odds: f64,
+    /// Root mean square of the logarithm that it leaves [1].
+    pub rms: f64,
+}
+
+/// Errors of a law on rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Left {
+    /// Root mean square of the natural logarithm of measured over predicted [1].
+    pub log: f64,
+    /// Root mean square of measured over predicted less one [1].
+    pub share: f64,
+    /// Rows.
+    pub rows: usize,
+    /// Rows of which it predicts that nothing comes off; they are not in the others.
+    pub nothing: usize,
+}
+
+impl Left {
+    /// Of a law on rows.
+    #[must_use]
+    pub fn of(law: &TableLaw, rows: &[TableRow]) -> Self {
+        let ratios: Vec<f64> = rows
+            .iter()
+            .map(|row| row.volume / law.volume_of(row))
+            .collect();
+        let finite = || ratios.iter().copied().filter(|ratio| ratio.is_finite());
+        Self {
+            log: rms(finite().map(f64::ln)),
+            share: rms(finite().map(|ratio| ratio - 1.0)),
+            rows: finite().count(),
+            nothing: ratios.len() - finite().count(),
+        }
+    }
+}
+
+/// Diagnosis of a table.
+#[derive(Debug, Clone)]
+pub struct RemovalDiagnosis {
+    /// The believed law, its coefficient fitted where it states none.
+    pub believed: TableLaw,
+    /// The law with what was found.
+    pub found: TableLaw,
+    /// Deviations found.
+    pub effects: Vec<Told>,
+    /// Deviations that were looked for and are not needed, with the values that they would have beside those found.
+    pub not_needed: Vec<Told>,
+    /// Deviations that the table cannot tell: a setting that does not vary, or varies with another.
+    pub untold: Vec<Deviation>,
+    /// Other forms that explain it nearly as well.
+    pub rivals: Vec<Rival>,
+    /// Errors before, after, and of an exponent of the force alone.
+    pub before: Left,
+    /// After.
+    pub after: Left,
+    /// With each row predicted by a fit to the others, root mean square of the logarithm [1].
+    pub left_out: f64,
+    /// Rows of the fit.
+    pub rows: Vec<TableRow>,
+    /// Rows set aside, for they lie further off than chance puts any.
+    pub aside: Vec<TableRow>,
+    /// Rows left out as a setting of theirs that the law needs is not known, and those where nothing came off.
+    pub incomplete: Vec<TableRow>,
+}
+
+/// Diagnoses a table; none if it has too few rows to fit the believed law and judge it.
+#[must_use]
+pub fn diagnose_table(
+    table: &[TableRow],
+    believed: &TableLaw,
+    measured_speed: bool,
+) -> Option<RemovalDiagnosis> {
+    let settings = |row: &TableRow| [row.force, row.time, row.speed, row.area, row.wear];
+    // A setting without a column is not known of any row.
+    let has: [bool; 5] =
+        std::array::from_fn(|i| table.iter().any(|row| settings(row)[i].is_finite()));
+    let complete = |row: &&TableRow| {
+        row.volume > 0.0
+            && settings(row)
+                .iter()
+                .zip(has)
+                .all(|(v, has)| !has || v.is_finite())
+    };
+    let (mut rows, incomplete): (Vec<TableRow>, Vec<TableRow>) =
+        table.iter().cloned().partition(|row| complete(&row));
+    let (candidates, mut untold) = candidates(&rows, believed, measured_speed);
+    let aside = set_aside(&mut rows, believed, &candidates);
+    let models = models(&rows, believed, &candidates);
+    let count = candidates.len().max(1);
+    let best = models
+        .iter()
+        .min_by(|a, b| score(a, count).total_cmp(&score(b, count)))?;
+    let start = fit(&rows, believed, &[])?;
+    let evidence: Vec<f64> = models
+        .iter()
+        .map(|m| criterion(m) - criterion(best))
+        .collect();
+    let whole: f64 = evidence.iter().map(|e| (-0.5 * e).exp()).sum();
+    let confidence = |of: Deviation| {
+        let with = models
+            .iter()
+            .zip(&evidence)
+            .filter(|(m, _)| m.free.contains(&of));
+        with.map(|(_, e)| (-0.5 * e).exp()).sum::<f64>() / whole
+    };
+    let told = |fitted: &Fit, of: Deviation| Told {
+        deviation: of,
+        value: interval(fitted, of),
+        confidence: confidence(of).min(1.0),
+    };
+    let mut not_needed = Vec::new();
+    for of in candidates.iter().filter(|of| !best.free.contains(of)) {
+        let mut free = best.free.clone();
+        free.push(*of);
+        match fit(&rows, believed, &free) {
+            Some(fitted) => not_needed.push(told(&fitted, *of)),
+            None => untold.push(*of),
+        }
+    }
+    let mut every = rows.clone();
+    every.extend(aside.iter().cloned());
+    Some(RemovalDiagnosis {
+        believed: start.law,
+        found: best.law,
+        effects: best.free.iter().map(|of| told(best, *of)).collect(),
+        not_needed,
+        untold,
+        rivals: rivals(&models, best),
+        before: Left::of(&start.law, &every),
+        after: Left::of(&best.law, &every),
+        left_out: best.left_out_rms(),
+        rows,
+        aside,
+        incomplete,
+    })
+}
+
+/// Deviations that rows can tell by themselves, and those that they cannot.
+fn candidates(
+    rows: &[TableRow],
+    believed: &TableLaw,
+    measured_speed: bool,
+) -> (Vec<Deviation>, Vec<Deviation>) {
+    let spread = |of: &dyn Fn(&TableRow) -> f64| {
+        let values = || rows.iter().map(of);
+        let (low, high) = (
+            values().fold(f64::INFINITY, f64::min),
+            values().fold(0.0, f64::max),
+        );
+        high > 0.0 && (high - low) / high > LEAST_SPAN
+    };
+    let force = spread(&|row| row.force);
+    let looked = |of: &Deviation| match of {
+        Deviation::Coefficient => believed.volume.is_some(),
+        // A speed that was measured under load has lost already what it loses.
+        Deviation::Sag => force && !measured_speed,
+        Deviation::Force | Deviation::Threshold => force,
+        Deviation::Wear => spread(&|row| row.wear),
+        Deviation::Speed => spread(&|row| row.speed),
+        Deviation::Time => spread(&|row| row.time),
+        Deviation::Area => spread(&|row| row.area),
+    };
+    let moot = |of: &Deviation| match of {
+        Deviation::Coefficient => believed.volume.is_none(),
+        Deviation::Sag => measured_speed,
+        _ => false,
+    };
+    let (told, others): (Vec<_>, Vec<_>) = Deviation::ALL.into_iter().partition(looked);
+    (told, others.into_iter().filter(|of| !moot(of)).collect())
+}
+
+/// Takes out rows that lie further from all that the law may be than chance puts any of so many.
+fn set_aside(
+    rows: &mut Vec<TableRow>,
+    believed: &TableLaw,
+    candidates: &[Deviation],
+) -> Vec<TableRow> {
+    let curved = [Deviation::Threshold, Deviation::Sag];
+    let free: Vec<Deviation> = candidates
+        .iter()
+        .copied()
+        .filter(|of| !curved.contains(of))
+        .collect();
+    let most = (SET_ASIDE_MOST * rows.len() as f64) as usize;
+    let mut aside = Vec::new();
+    while aside.len() < most {
+        let Some(fitted) = fit(rows, believed, &free).filter(|f| f.freedom() > 3) else {
+            break;
+        };
+        let (freedom, squares) = (fitted.freedom() as f64, fitted.squares);
+        let size = |index: usize| {
+            let own = rows[index].weight * fitted.residuals[index].powi(2)
+                / (1.0 - fitted.leverage[index]).max(1e-9);
+            // Over the scatter of the others.
+            (own * (freedom - 1.0) / (squares - own).max(1e-12 * squares)).sqrt()
+        };
+        let Some(worst) = (0..rows.len()).max_by(|a, b| size(*a).total_cmp(&size(*b))) else {
+            break;
+        };
+        let limit = t_exceeded(SET_ASIDE / (2.0 * rows.len() as f64), fitted.freedom() - 1);
+        if size(worst) <= limit {
+            break;
+        }
+        aside.push(rows.remove(worst));
+    }
+    aside
+}
+
+/// Every set of deviations fitted: forms of the force's law times all others.
+fn models(rows: &[TableRow], believed: &TableLaw, candidates: &[Deviation]) -> Vec<Fit> {
+    use Deviation::{Force, Sag, Threshold};
+    // A threshold beside a sag is hardly told from an exponent in any table.
+    let forms: [&[Deviation]; 5] = [&[], &[Force], &[Threshold], &[Sag], &[Force, Threshold]];
+    let of_force = [Force, Threshold, Sag];
+    let others: Vec<Deviation> = candidates
+        .iter()
+        .copied()
+        .filter(|of| !of_force.contains(of))
+        .collect();
+    let mut fits = Vec::new();
+    for form in forms
+        .iter()
+        .filter(|form| form.iter().all(|of| candidates.contains(of)))
+    {
+        for chosen in 0..1_usize << others.len() {
+            let with = others
+                .iter()
+                .enumerate()
+                .filter(|(bit, _)| chosen >> bit & 1 == 1);
+            let free: Vec<Deviation> = form
+                .iter()
+                .copied()
+                .chain(with.map(|(_, of)| *of))
+                .collect();
+            fits.extend(fit(rows, believed, &free).filter(possible));
+        }
+    }
+    fits
+}
+
+/// Whether a fit is one of physics: a tool that wears does not take off more.
+fn possible(fitted: &Fit) -> bool {
+    let law = &fitted.law;
+    let is_free = |of: Deviation| fitted.free.contains(&of);
+    (!is_free(Deviation::Wear) || law.wear >= 0.0)
+        && (!is_free(Deviation::Threshold) || law.threshold > 0.0)
+        && (!is_free(Deviation::Sag) || law.sag > 0.0)
+}
+
+/// What is least of the model to be named: each further number must better the fit by what chance does in one table of twenty, shared among the candidates.
+fn score(fitted: &Fit, candidates: usize) -> f64 {
+    let rows = fitted.measurements;
+    let hidden = fitted.numbers - fitted.free.len();
+    let price: f64 = (1..=fitted.free.len())
+        .map(|number| {
+            let freedom = (rows as usize).saturating_sub(hidden + number).max(1);
+            let t = t_exceeded(FALSE_ALARM / (2.0 * candidates as f64), freedom);
+            rows * (t * t / freedom as f64).ln_1p()
+        })
+        .sum();
+    rows * fitted.squares.ln() + price
+}
+
+/// Bayesian information criterion.
+fn criterion(fitted: &Fit) -> f64 {
+    let rows = fitted.measurements;
+    rows * fitted.squares.ln() + fitted.numbers as f64 * rows.ln()
+}
+
+/// Value and 95 % interval by Student's t with robust errors [SI].
+fn interval(fitted: &Fit, of: Deviation) -> [f64; 3] {
+    let value = fitted.law.number(of);
+    let place = fitted.free.iter().position(|free| *free == of);
+    let error = place.map_or(0.0, |place| fitted.errors[place]);
+    let reach = t_exceeded(0.025, fitted.freedom()) * error;
+    match of {
+        Deviation::Coefficient => [value, value * (-reach).exp(), value * reach.exp()],
+        Deviation::Threshold | Deviation::Sag => [value, (value - reach).max(0.0), value + reach],
+        _ => [value, value - reach, value + reach],
+    }
+}
+
+/// Forms of other deviations, as many or fewer and one more at most, that stay within odds of 1 to 1000.
+fn rivals(models: &[Fit], best: &Fit) -> Vec<Rival> {
+    let holds = |whole: &Fit, part: &Fit| part.free.iter().all(|of| whole.free.contains(of));
+    // Less would be a form without an effect that was found, more one with what is not needed: neither is a rival.
+    let mut rivals: Vec<Rival> = models
+        .iter()
+        .filter(|m| m.numbers <= best.numbers && !holds(m, best) && !holds(best, m))
+        .map(|m| Rival {
+            deviations: m.free.clone(),
+            law: m.law,
+            odds: (0.5 * (criterion(best) - criterion(m))).exp(),
+            rms: m.rms(),
+        })
+        .filter(|rival| rival.odds > 1e-3)
+        .collect();
+    rivals.sort_by(|a, b| b.odds.total_cmp(&a.odds));
+    rivals.truncate(4);
+    rivals
+}
