@@ -299,7 +299,7 @@ mod tests {
         // Variables are shuffled each for itself.
         let same = (0..50).filter(|run| {
             let values = latin.at(*run);
-            (values[0].parse::<f64>().unwrap() * 50.0) as usize + 1 == values[1].parse().unwrap()
+            (values[0].parse::<f64>().unwrap() * 50.0) as usize + 1 == values[1].parse::<usize>().unwrap()
         });
         assert!(same.count() < 10);
     }
