@@ -18,7 +18,7 @@ use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
     BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, LEAN, REPORT,
-    SAMPLES, SUMMARY, Sketches, Standing, is_same, prepare_file,
+    SAMPLES, SUMMARY, Standing, is_same, prepare_file,
 };
 use super::fleet::{self, FLEET};
 use super::output::say;
@@ -26,13 +26,14 @@ use super::vary::{self, SWEEP};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
 use crate::page::html;
+use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
+use crate::recording::csv::EdgeProfile;
 use crate::recording::parquet::read_parquet;
-use crate::recording::{EdgeProfile, Recording, RecordingError};
 
 pub(super) use charts::{lacking, most_of, variable};
 pub(super) use provenance::sources;
-pub(super) use run::{Label, RunResult, labels};
+pub(super) use run::{Label, RunResult, labels, of_run, page_of_run};
 pub(super) use signals::{ROLES, chart_groups};
 
 /// For the help.
@@ -138,29 +139,6 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
 /// The page of a diagnosis.
 pub(super) fn of_diagnosis(answer: &Answer, comparison: &Comparison) -> String {
     html(&diagnosis::page(answer, comparison))
-}
-
-/// The page of a run.
-pub(super) fn of_run(run: &RunResult<'_>) -> String {
-    html(&run::page(run))
-}
-
-/// The page of a run that has just ended: summary.json, its signals and its pictures.
-pub(super) fn page_of_run(
-    document: &str,
-    recording: &Recording,
-    profile: Option<&EdgeProfile>,
-    sketches: &Sketches,
-) -> Result<String, AppError> {
-    Ok(of_run(&RunResult {
-        document: serde_json::from_str(document)?,
-        recording: Cow::Borrowed(recording),
-        cell: Some(Cow::Borrowed(&sketches.cell)),
-        edge: sketches.edge.as_deref().map(Cow::Borrowed),
-        lean: sketches.lean.as_deref().map(Cow::Borrowed),
-        space: sketches.space.as_ref().map(Cow::Borrowed),
-        profile: profile.map(Cow::Borrowed),
-    }))
 }
 
 /// The page of a design study: design.json, and front.svg where there is one.

@@ -1,9 +1,10 @@
 //! Whether the tool, as it stands on the edge, can cut at all.
 
 use super::error::CellError;
-use crate::path::ToolPath;
+use super::setup::passes;
+use crate::path::{Pass, ToolPath};
 use crate::removal::ToolShape;
-use crate::scenario::{PassScenario, Scenario};
+use crate::scenario::Scenario;
 
 /// Share of a tool's largest speed below which it rubs and does not cut [1]: within 3 degrees of a ball's pole.
 const LEAST_SPEED_SHARE: f64 = 0.05;
@@ -42,7 +43,7 @@ pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<(), Cel
     }
     let radius = tool.tool.contact_radius(axis, station.normal);
     let speed = tool.spindle.free_speed * radius;
-    for (index, &PassScenario { force, .. }) in scenario.passes.iter().enumerate() {
+    for (index, Pass { force, .. }) in passes(scenario).into_iter().enumerate() {
         let (cutting, rate) = match &scenario.removal {
             Some(removal) => {
                 let area = removal.contact_area;

@@ -29,7 +29,7 @@ use crate::collision::{CollisionModel, Meeting};
 use crate::control::force::ForceController;
 use crate::control::transmission::TransmissionParameters;
 use crate::device::Device;
-use crate::path::Plan;
+use crate::path::{Pass, Plan};
 use crate::physics::push_only::PushOnly;
 use crate::plant::{EdgeStation, PlantParameters, Relief};
 use crate::scenario::{Scenario, ScenarioError, load};
@@ -58,6 +58,8 @@ pub struct Cell {
     pub part: Part,
     /// What must not meet, the part where it is believed to be.
     pub collision: CollisionModel,
+    /// Passes along the edge, at least one.
+    pub passes: Vec<Pass>,
     /// The job.
     pub plan: Plan,
     /// Cosine between the tool's axis and the contact normal in the middle of the edge: the share of the contact force that the device sees there [1].
@@ -118,8 +120,8 @@ impl Cell {
             plant,
             part,
             collision,
+            passes,
             mut notes,
-            ..
         } = setup;
         notes.extend(plan.notes.iter().cloned());
         let middle = station(
@@ -139,6 +141,7 @@ impl Cell {
             controller,
             part,
             collision,
+            passes,
             plan,
             axial_share,
             gravity_on_edge,

@@ -72,12 +72,8 @@ impl Setup {
         let part = Part::load(&scenario)?;
         let mut notes = std::mem::take(&mut arm.notes);
         let collision = collision::model(&scenario, &arm, &arm_with_slide, &part, &mut notes)?;
-        let pass = |pass: &PassScenario| Pass {
-            force: pass.force,
-            feed: pass.feed,
-        };
         Ok(Self {
-            passes: scenario.passes.iter().map(pass).collect(),
+            passes: passes(&scenario),
             scenario,
             arm,
             arm_with_slide,
@@ -199,6 +195,19 @@ impl Setup {
             briefly: false,
             seed: scenario.simulation.seed,
         }
+    }
+}
+
+/// The passes of a scenario, at least one.
+pub(super) fn passes(scenario: &Scenario) -> Vec<Pass> {
+    let process = &scenario.process;
+    let pass = |pass: &PassScenario| Pass {
+        force: pass.force.unwrap_or(process.force),
+        feed: pass.feed.unwrap_or(process.feed),
+    };
+    match scenario.passes.as_slice() {
+        [] => vec![pass(&PassScenario::default())],
+        listed => listed.iter().map(pass).collect(),
     }
 }
 

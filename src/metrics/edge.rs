@@ -3,7 +3,8 @@
 use super::statistics::{extent, largest};
 use super::window::Window;
 use super::{MetricsError, Summary};
-use crate::recording::{EdgeProfile, Unit, schema};
+use crate::recording::csv::EdgeProfile;
+use crate::recording::{Unit, schema};
 
 /// What an edge is measured against.
 #[derive(Debug, Clone, Copy, PartialEq)]

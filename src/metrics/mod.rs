@@ -31,7 +31,8 @@ pub use expect::{BoundCheck, check, validate};
 pub use limits::{FOLLOW_PHASE, NARROW_BAND, SummaryLimits, TOUCH_SHARE, WIDE_BAND};
 pub use summary::{ForceTenth, JointTorqueShare, Summary, Timing};
 
-use crate::recording::{EdgeProfile, Recording};
+use crate::recording::Recording;
+use crate::recording::csv::EdgeProfile;
 use window::Window;
 
 /// Measures a recording. `timing` is left empty; the caller knows the wall clock.

@@ -24,7 +24,6 @@ pub mod table;
 pub mod thousandfold;
 pub mod unit;
 
-pub use csv::EdgeProfile;
 pub use error::RecordingError;
 pub use unit::Unit;
 

@@ -31,7 +31,7 @@ pub struct Scenario {
     pub contact: ContactScenario,
     /// Process of the cell.
     pub process: ProcessScenario,
-    /// Passes along the edge, at least one.
+    /// Passes along the edge as they differ from the process; empty for one that does not.
     pub passes: Vec<PassScenario>,
     /// Tool on a spindle, if it turns.
     pub tool: Option<ToolScenario>,
@@ -277,13 +277,13 @@ pub struct ProcessScenario {
     pub settle_time: f64,
 }
 
-/// A pass along the edge.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A pass along the edge; what it does not say is the process's.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PassScenario {
     /// Desired contact force along the contact normal [N].
-    pub force: f64,
+    pub force: Option<f64>,
     /// Feed along the edge [m/s].
-    pub feed: f64,
+    pub feed: Option<f64>,
 }
 
 /// Feed lowered by what is measured: to the share limit over measured value, within bounds, first order.

@@ -277,30 +277,20 @@ fn process(
     Ok(process)
 }
 
-/// The passes in their order; one as the process says where none is listed.
+/// The passes in their order.
 fn passes(
     document: &Document<'_>,
     file: &ScenarioFile,
 ) -> Result<Vec<PassScenario>, ScenarioError> {
-    let process = &file.process;
     let pass = |(index, keys): (usize, &file::PassKeys)| {
         let section = Section::new(document, format!("pass[{index}]"));
-        let (force, feed) = (keys.force_n, keys.feed_mm_per_s);
+        let force = |value| section.number("force_n", value, 0.1..=5000.0);
+        let feed = |value| section.number("feed_mm_per_s", value, 0.1..=1000.0);
         Ok(PassScenario {
-            force: section.number("force_n", force.unwrap_or(process.force_n), 0.1..=5000.0)?,
-            feed: section.number(
-                "feed_mm_per_s",
-                feed.unwrap_or(process.feed_mm_per_s),
-                0.1..=1000.0,
-            )?,
+            force: keys.force_n.map(force).transpose()?,
+            feed: keys.feed_mm_per_s.map(feed).transpose()?,
         })
     };
-    if file.pass.is_empty() {
-        return Ok(vec![PassScenario {
-            force: process.force_n,
-            feed: process.feed_mm_per_s * 1e-3,
-        }]);
-    }
     file.pass.iter().enumerate().map(pass).collect()
 }
 

@@ -2,7 +2,8 @@
 
 use super::{FrameLog, Simulation, SimulationError};
 use crate::cell::Cell;
-use crate::recording::{EdgeProfile, Recording, RecordingError};
+use crate::recording::csv::EdgeProfile;
+use crate::recording::{Recording, RecordingError};
 use crate::removal::{EdgeState, EdgeStationState};
 
 /// A run that has ended.

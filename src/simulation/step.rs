@@ -104,7 +104,7 @@ impl<'a> Simulation<'a> {
         let mut world = World::new(&WorldDescription::of(cell));
         let reference = cell.plan.reference(0.0);
         let gravity = cell.gravity_along(reference.axis);
-        let desired = scenario.passes[0].force * reference.share;
+        let desired = cell.passes[0].force * reference.share;
         let set_pressure =
             PressureMap::new(&scenario.device.parameters).set_pressure(desired, gravity);
         let parameters = &scenario.device.parameters;
@@ -133,15 +133,7 @@ impl<'a> Simulation<'a> {
         let inertias: Vec<f64> = (0..count - 1).map(|i| masses[(i, i)]).collect();
         let motors = motors(cell, &inertias, &mut positions);
         world.set_positions(&positions);
-        let servo = Servo::new(
-            &cell.arm.chain,
-            &inertias,
-            &ServoParameters {
-                natural_frequency: scenario.arm.servo.natural_frequency * std::f64::consts::TAU,
-                damping_ratio: scenario.arm.servo.damping_ratio,
-                integral_time: scenario.arm.servo.integral_time,
-            },
-        );
+        let servo = servo(cell, &inertias);
         let mut sensors = SensorChain::new(&scenario.sensing, scenario.simulation.seed);
         sensors.settle(set_pressure);
         let total_steps = (cell.plan.duration() / scenario.simulation.step).ceil() as usize;
@@ -260,7 +252,7 @@ impl<'a> Simulation<'a> {
 
     /// Contact force that the pass asks for [N].
     fn desired(&self, reference: &Reference) -> f64 {
-        self.cell.scenario.passes[reference.pass].force
+        self.cell.passes[reference.pass].force
     }
 
     /// The reference at the end of a step that starts at a time [s]: later by what a feed that follows force or power has lost.
@@ -641,34 +633,36 @@ impl<'a> Simulation<'a> {
         ];
         let joints = self.joint_signals(reference);
         self.check_finite(&signals, &joints[..n], reference.phase, time)?;
-        let place = (reference.phase, reference.pass);
-        match &self.cutting {
-            None => self.log.push(time, place, &signals, &joints[..n]),
-            Some(cutting) => {
-                let mut all = [0.0; SIGNALS_OF_TURNING];
-                all[..signals.len()].copy_from_slice(&signals);
-                all[signals.len()..].copy_from_slice(&cutting.signals());
-                self.log.push(time, place, &all, &joints[..n]);
-            }
-        }
+        self.record(reference, time, &signals, &joints[..n]);
         if time >= self.next_frame {
             self.frame(time, reference, force_on_part, normal);
             self.next_frame += FRAME_INTERVAL;
             self.check_clearance(reference, time)?;
         }
-        let radius = cell.scenario.device.tool_radius;
-        if reference.phase == Phase::Follow && across.length() > radius {
-            return Err(SimulationError::SlippedOff {
-                time,
-                edge_length: reference.edge_length,
-                off: across.length(),
-                radius,
-                force: normal_force,
-            });
-        }
+        self.check_on_edge(reference, across.length(), normal_force, time)?;
         self.check_spindle(reference, time)?;
         self.check_axes(&joints[..n], reference.phase, time)?;
         self.check_stroke(reference, stroke, time)
+    }
+
+    /// Adds a sample, of a tool that turns with what it did.
+    fn record(
+        &mut self,
+        reference: &Reference,
+        time: f64,
+        signals: &[f64],
+        joints: &[[f64; JointSignal::ALL.len()]],
+    ) {
+        let place = (reference.phase, reference.pass);
+        match &self.cutting {
+            None => self.log.push(time, place, signals, joints),
+            Some(cutting) => {
+                let mut all = [0.0; SIGNALS_OF_TURNING];
+                all[..signals.len()].copy_from_slice(signals);
+                all[signals.len()..].copy_from_slice(&cutting.signals());
+                self.log.push(time, place, &all, joints);
+            }
+        }
     }
 
     fn read_encoders(&mut self) {
@@ -695,6 +689,20 @@ impl<'a> Simulation<'a> {
             .push(self.world.tool_centre() - normal * radius);
         self.frames.contact_forces.push(force);
     }
+}
+
+/// The servo of all axes, each about its own inertia [kg m2].
+fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
+    let parameters = &cell.scenario.arm.servo;
+    Servo::new(
+        &cell.arm.chain,
+        inertias,
+        &ServoParameters {
+            natural_frequency: parameters.natural_frequency * std::f64::consts::TAU,
+            damping_ratio: parameters.damping_ratio,
+            integral_time: parameters.integral_time,
+        },
+    )
 }
 
 /// A watch over what must not meet, the part where it really is.

@@ -299,7 +299,8 @@ mod tests {
         // Variables are shuffled each for itself.
         let same = (0..50).filter(|run| {
             let values = latin.at(*run);
-            (values[0].parse::<f64>().unwrap() * 50.0) as usize + 1 == values[1].parse::<usize>().unwrap()
+            (values[0].parse::<f64>().unwrap() * 50.0) as usize + 1
+                == values[1].parse::<usize>().unwrap()
         });
         assert!(same.count() < 10);
     }
@@ -332,7 +333,7 @@ mod tests {
         for (text, expected) in [
             ("a,b\n", "it has no points"),
             ("1,2\n3,4\n", "its first line is `1,2`"),
-            ("a,b\n1\n", "equal length"),
+            ("a,b\n1\n", "found record with 1 fields"),
             ("a,b\n1,\n", "line 2 has no value for `b`"),
             ("a,a\n1,2\n", "a is given twice"),
         ] {

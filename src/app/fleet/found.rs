@@ -6,11 +6,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::super::error::AppError;
-use super::page::page;
 use super::work::{Asked, Diagnosed, Started, Told};
 use crate::design::{number, spoken};
 use crate::fleet::{Change, ChangeKind, Layout, change, date_of_day, median, trend};
-use crate::page::html;
 use crate::quantity::counted;
 use crate::recording::provenance::SourceFile;
 use crate::tasks::{Head, Plan, Store};
@@ -496,9 +494,4 @@ fn unlike(devices: &[DeviceFound]) -> Vec<(String, String)> {
         }
     }
     found
-}
-
-/// The page of a fleet.
-pub(in super::super) fn page_of(found: &Found) -> Result<String, AppError> {
-    Ok(html(&page(found)?))
 }

@@ -8,5 +8,6 @@ mod table;
 mod work;
 
 pub(super) use command::{EXAMPLES, FleetArguments, run};
-pub(super) use found::{FLEET, page_of};
+pub(super) use found::FLEET;
+pub(super) use page::page_of;
 pub(super) use work::{KIND, Worker, told};

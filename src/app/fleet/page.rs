@@ -7,10 +7,15 @@ use super::table::TABLE;
 use crate::design::{number, spoken};
 use crate::figure::{Figure, Horizontal, Marker, Panel, Role, Series, Stroke, svg};
 use crate::fleet::date_of_day;
-use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
+use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone, html};
+
+/// The page of a fleet.
+pub(in super::super) fn page_of(found: &Found) -> Result<String, AppError> {
+    Ok(html(&page(found)?))
+}
 
 /// The page.
-pub(super) fn page(found: &Found) -> Result<Page<'static>, AppError> {
+fn page(found: &Found) -> Result<Page<'static>, AppError> {
     let something = found
         .devices
         .iter()

@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 
-use super::run::RunResult;
+use serde_json::Value;
+
 use crate::figure::{Band, Horizontal, Panel, Role, Series, Stroke};
 use crate::page::{Block, Chart, PageSection};
-use crate::recording::EdgeProfile;
+use crate::recording::csv::EdgeProfile;
 
 /// Chamfer's leg with its tolerance, and the burr before and after, along the edge.
-pub(super) fn finished_edge<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
-    let profile: &EdgeProfile = run.profile.as_ref()?;
+pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> PageSection<'a> {
     let millimetres = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| 1e3 * v).collect() };
     let places = millimetres(&profile.place);
     let series = |label: &str, values: &[f64], role, stroke| Series {
@@ -34,7 +34,7 @@ pub(super) fn finished_edge<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a
             ..Chart::default()
         })
     };
-    let chamfer = &run.document["chamfer"];
+    let chamfer = &document["chamfer"];
     let bound = |key: &str| chamfer[key].as_f64();
     let band = bound("leg_max_mm").map(|high| Band {
         label: "tolerance".to_owned(),
@@ -67,5 +67,5 @@ pub(super) fn finished_edge<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a
     }
     let told = "The burr comes off first, from its tip, then the edge is chamfered. A secondary burr, pushed over by the tool, is not modelled.";
     blocks.push(Block::Hint(told.to_owned()));
-    Some(PageSection::new("Finished edge", blocks))
+    PageSection::new("Finished edge", blocks)
 }

@@ -4,13 +4,16 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
+use super::super::error::AppError;
+use super::super::files::Sketches;
 use super::finished_edge::finished_edge;
 use super::provenance::provenance_of;
 use super::signals::{along_the_path, joints, signals};
 use crate::metrics::{BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, WIDE_BAND};
-use crate::page::{Block, Drawing, Fact, Page, PageSection, PageTable, TableCell, Tone};
+use crate::page::{Block, Drawing, Fact, Page, PageSection, PageTable, TableCell, Tone, html};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
-use crate::recording::{EdgeProfile, Recording};
+use crate::recording::Recording;
+use crate::recording::csv::EdgeProfile;
 use crate::report::{LEVELS, LevelColumn, far_from_desired, shown};
 
 /// A run as its folder has it.
@@ -85,8 +88,31 @@ impl RunResult<'_> {
     }
 }
 
+/// The page of a run.
+pub(in super::super) fn of_run(run: &RunResult<'_>) -> String {
+    html(&page(run))
+}
+
+/// The page of a run that has just ended: summary.json, its signals and its pictures.
+pub(in super::super) fn page_of_run(
+    document: &str,
+    recording: &Recording,
+    profile: Option<&EdgeProfile>,
+    sketches: &Sketches,
+) -> Result<String, AppError> {
+    Ok(of_run(&RunResult {
+        document: serde_json::from_str(document)?,
+        recording: Cow::Borrowed(recording),
+        cell: Some(Cow::Borrowed(&sketches.cell)),
+        edge: sketches.edge.as_deref().map(Cow::Borrowed),
+        lean: sketches.lean.as_deref().map(Cow::Borrowed),
+        space: sketches.space.as_ref().map(Cow::Borrowed),
+        profile: profile.map(Cow::Borrowed),
+    }))
+}
+
 /// The page.
-pub(super) fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
+fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
     let (verdict, tone) = verdict(run);
     let notes = run.document["notes"].as_array().into_iter().flatten();
     let notes = notes.filter_map(Value::as_str);
@@ -95,7 +121,7 @@ pub(super) fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
     let far = far(run).filter(said).map(|far| format!("{far}."));
     let sections = [
         pictures(run),
-        finished_edge(run),
+        (run.profile.as_ref()).map(|profile| finished_edge(profile, &run.document)),
         signals(run),
         along_the_path(run),
         joints(run),

@@ -10,9 +10,10 @@ use crate::cell::Cell;
 use crate::metrics::{
     BoundCheck, EdgeLimits, Summary, SummaryLimits, Timing, summarise, summarise_edge,
 };
+use crate::recording::csv::EdgeProfile;
 use crate::recording::provenance::Provenance;
 use crate::recording::scene::Scene;
-use crate::recording::{EdgeProfile, Recording, RecordingError};
+use crate::recording::{Recording, RecordingError};
 use crate::scenario::ChamferScenario;
 use crate::simulation::{CellRun, FrameLog, SampleLog, SimulationError};
 
@@ -183,7 +184,7 @@ impl<'a> Listener<'a> {
 fn limits(cell: &Cell) -> SummaryLimits {
     let joints = &cell.arm.chain.joints;
     SummaryLimits {
-        desired_force: cell.scenario.passes[0].force,
+        desired_force: cell.passes[0].force,
         stroke_limits: (0.0, cell.scenario.device.parameters.full_stroke),
         joint_efforts: joints.iter().map(|joint| joint.effort).collect(),
         joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),

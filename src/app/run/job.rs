@@ -16,7 +16,7 @@ use super::cell_run::{Listener, SummaryDocument, run_heard};
 use super::source::Source;
 use crate::cell::Cell;
 use crate::metrics::{self, BoundCheck, MetricsError};
-use crate::recording::EdgeProfile;
+use crate::recording::csv::EdgeProfile;
 use crate::recording::provenance::Provenance;
 use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::recording::scene::Scene;

@@ -92,6 +92,20 @@ fn beside(key: &str) -> String {
         ("arm.drives", "backlash_deg") => {
             "[[arm.drives]]\njoint = 'a'\nstiffness_n_m_per_rad = 1e6".into()
         }
+        ("pass", _) => "[[pass]]\nforce_n = 9\nfeed_mm_per_s = 9".into(),
+        ("tool", name) if name.starts_with("cone_") => {
+            "[tool]\nshape = 'cone'\nspindle_speed_rpm = 9000\ncone_angle_deg = 60\ncone_length_mm = 200"
+                .into()
+        }
+        ("tool", "wheel_radius_mm") => {
+            "[tool]\nshape = 'belt'\nspindle_speed_rpm = 9000\nwheel_radius_mm = 20".into()
+        }
+        ("tool", _) => "[tool]\nshape = 'ball'\nspindle_speed_rpm = 9000".into(),
+        ("process.feed_follows", name) => {
+            let other = if name == "power_w" { "power_w" } else { "force_n" };
+            format!("[process.feed_follows]\n{other} = 9")
+        }
+        ("removal", name) => removal(name),
         ("obstacle", _) => "[[obstacle]]\nbox_mm = [1, 1, 1]".into(),
         ("arm.drives", _) => "[[arm.drives]]\njoint = 'a'".into(),
         ("estimator", _) => "[estimator]\n".into(),
@@ -126,6 +140,27 @@ fn beside(key: &str) -> String {
         }
         _ => String::new(),
     }
+}
+
+/// A law of removal that has a key.
+fn removal(key: &str) -> String {
+    let law = match key {
+        "threshold_force_n" => {
+            "law = 'threshold'\ncoefficient_mm3_per_j = 1\nthreshold_force_n = 1"
+        }
+        "rate_mm3_per_s"
+        | "reference_force_n"
+        | "reference_speed_m_per_s"
+        | "force_exponent"
+        | "speed_exponent"
+        | "reference_area_mm2"
+        | "area_exponent"
+        | "contact_area_mm2" => {
+            "law = 'power'\nrate_mm3_per_s = 1\nreference_force_n = 9\nreference_speed_m_per_s = 9\nforce_exponent = 2"
+        }
+        _ => "law = 'preston'\ncoefficient_mm3_per_j = 1",
+    };
+    format!("[tool]\nshape = 'ball'\nspindle_speed_rpm = 9000\n[removal]\n{law}")
 }
 
 /// The minimal scenario of a format with what a key needs.
@@ -247,6 +282,7 @@ fn every_default_is_what_leaving_the_key_out_does() {
                         "10 bits",
                         "tuned",
                         "the device's",
+                        "that of",
                         "sample",
                     ]
                     .iter()

@@ -264,7 +264,7 @@ fn a_burr_has_the_keys_of_its_kind_and_no_others() {
         (
             "kind = \"constant\"\nheight_mm = 1\nwidth_mm = 2",
             "17:1",
-            "`workpiece.burr.width_mm` cannot stand here: kind = \"constant\" has height_mm",
+            "`workpiece.burr.width_mm` cannot stand here: kind = \"constant\" has height_mm, root_mm",
         ),
         (
             "kind = \"none\"\nseed = 2",

@@ -10,6 +10,27 @@ use crate::simulation::error::SimulationError;
 const LOST: f64 = 0.05;
 
 impl Simulation<'_> {
+    /// The ball must stay on the edge: `off` is its distance from its path across the tool's axis [m].
+    pub(super) fn check_on_edge(
+        &self,
+        reference: &Reference,
+        off: f64,
+        force: f64,
+        time: f64,
+    ) -> Result<(), SimulationError> {
+        let radius = self.cell.scenario.device.tool_radius;
+        if reference.phase == Phase::Follow && off > radius {
+            return Err(SimulationError::SlippedOff {
+                time,
+                edge_length: reference.edge_length,
+                off,
+                radius,
+                force,
+            });
+        }
+        Ok(())
+    }
+
     /// The spindle must turn its tool.
     pub(super) fn check_spindle(
         &self,
