@@ -31,8 +31,8 @@ fn files(bench: &Bench, threads: Option<&str>) -> Vec<(String, Vec<u8>)> {
 }
 
 fn assert_equal(name: &str, expected: &[(String, Vec<u8>)], found: &[(String, Vec<u8>)]) {
-    // A bench has its figures where a cell has two files of its edge.
-    assert!(expected.len() + 1 >= FILES.len() && expected.len() == found.len());
+    // A bench has its figures where a cell has three files of its edge.
+    assert!(expected.len() + 2 >= FILES.len() && expected.len() == found.len());
     for ((file, expected), (same, found)) in expected.iter().zip(found) {
         assert_eq!(file, same);
         assert!(expected == found, "{name}: {file} differs");
@@ -75,6 +75,7 @@ fn another_burr_gives_other_bytes() {
     let first = files(&bench, None);
     bench.replace("scenario.toml", "seed = 1", "seed = 2");
     for ((file, one), (_, other)) in first.iter().zip(&files(&bench, None)) {
-        assert!(one != other, "{file}");
+        // How the tool stands does not depend on the burr.
+        assert!(one != other || file == "lean.svg", "{file}");
     }
 }

@@ -471,7 +471,16 @@ class Job:
         self.checked.sentence(f"{where}: words", told["words"], [f"The mean force error of each of {{pieces}} pieces of the edge while following. {words}" for words in SPACE], {"pieces": len(errors)})
 
     def chart(self, told):
-        """All that a chart draws is in the samples."""
+        """All that a chart draws is in the samples, or of a finished edge in edge_profile.csv."""
+        if told["y"] in ("leg [mm]", "height [mm]"):
+            known = np.sort(pd.read_csv(self.folder / "edge_profile.csv").to_numpy().ravel())
+            for series in told["series"]:
+                drawn = floats(series["values"])
+                drawn = drawn[np.isfinite(drawn)].astype(float)
+                after = np.clip(np.searchsorted(known, drawn), 1, len(known) - 1)
+                off = np.minimum(np.abs(drawn - known[after]), np.abs(drawn - known[after - 1])) > 1e-6 * np.maximum(1.0, drawn)
+                self.checked.fact(f"chart {told['y']}: {series['label']}: values that no station has", int(off.sum()), 0)
+            return
         factor = {"force [N]": 1.0, "stroke [mm]": 1e3, "pressure [bar absolute]": 1e-5, "error [µm]": 1e6, "torque [N m]": 1.0}.get(told["y"])
         if factor is None:
             self.checked.uncovered("chart", told["y"])
