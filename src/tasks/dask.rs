@@ -110,14 +110,15 @@ pub fn dask(dask: &Dask, plan: &Path, of: usize, told: &dyn Fn(Told)) -> Result<
     }
 }
 
-/// The last line that is not blank.
+/// The last line that tells an error, as Python ends with one.
 fn last_words(from: Option<impl Read>) -> String {
-    let mut last = "it said nothing".to_owned();
+    let mut last = "it said nothing of why".to_owned();
     let lines = from
         .into_iter()
         .flat_map(|from| BufReader::new(from).lines());
     for line in lines.map_while(Result::ok) {
-        if !line.trim().is_empty() {
+        let is_error = |word: &str| word.trim_end_matches(':').ends_with("Error");
+        if line.split(' ').next().is_some_and(is_error) {
             line.trim().clone_into(&mut last);
         }
     }

@@ -74,6 +74,7 @@ class Work:
         self.lines = open(self.plan)
         self.head = next(self.lines)
         self.waiting = {}
+        self.lost = set()
         self.ready = deque()
         self.done = 0
         self.shared = None
@@ -94,6 +95,8 @@ class Work:
             if self.stands(task["id"]):
                 self.done += 1
                 say(done=self.done)
+            elif task.get("after") in self.lost:
+                self.fail(task["id"], f"the task that it begins with failed: {task['after']}")
             elif "after" in task and not self.stands(task["after"]):
                 self.waiting.setdefault(task["after"], []).append((task, line))
             else:
@@ -131,6 +134,7 @@ class Work:
 
     def fail(self, name, why):
         say(failed=name, why=why)
+        self.lost.add(name)
         for task, _ in self.waiting.pop(name, []):
             self.fail(task["id"], why)
 

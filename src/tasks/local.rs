@@ -1,6 +1,6 @@
 //! Threads of this program.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -18,6 +18,8 @@ struct Queue {
     running: usize,
     done: usize,
     failed: Vec<String>,
+    /// Names of those that failed: what begins with one fails too, also where it is read later.
+    lost: HashSet<String>,
     ended: Option<TaskError>,
 }
 
@@ -35,6 +37,10 @@ impl Queue {
                 Err(error) => self.ended = Some(error),
                 Ok(task) if store.stands(&task.id) => self.done += 1,
                 Ok(task) => match &task.after {
+                    Some(after) if self.lost.contains(after) => {
+                        let reason = format!("the task that it begins with failed: {after}");
+                        self.fail(&task.id, &reason);
+                    }
                     Some(after) if !store.stands(after) => {
                         self.waiting.entry(after.clone()).or_default().push(task);
                     }
@@ -47,6 +53,7 @@ impl Queue {
     /// Tasks that wait for one that failed fail as well.
     fn fail(&mut self, id: &str, reason: &str) {
         self.failed.push(reason.to_owned());
+        self.lost.insert(id.to_owned());
         for task in self.waiting.remove(id).unwrap_or_default() {
             self.fail(&task.id, reason);
         }
@@ -73,6 +80,7 @@ pub fn local(
         running: 0,
         done: 0,
         failed: Vec::new(),
+        lost: HashSet::new(),
         ended: None,
     });
     let changed = Condvar::new();

@@ -32,7 +32,7 @@ Exit codes: 0 done, whatever the runs came to; 2 bad input, or runs that came to
 nothing (the others are kept).
 
 Examples:
-  # Five stiffnesses with three forces: every combination.
+  # Three durations with two seeds: every combination.
   idc vary scenarios/paper_step.toml --out runs/few \\
       --set bench.duration_s=8..9:3 --set simulation.seed=1..2
   # The same, and more: what stands is not done again.
