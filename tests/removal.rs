@@ -121,7 +121,7 @@ fn what_the_edge_lost_is_the_integral_of_the_removal_rate() {
 
 #[test]
 fn chamfer_burr_and_passes_follow_the_closed_forms() {
-    // Section that Preston's law takes at the force and speed that were, over the middle of a pass.
+    // Section that comes off at the removal rate that was, over the middle of a pass; the rate is Preston's at the force and speed that were.
     let taken = |run: &Done, phase: &str| {
         let span = run.recording.phase(phase).unwrap();
         let samples = run.recording.samples_in(span);
@@ -129,8 +129,13 @@ fn chamfer_burr_and_passes_follow_the_closed_forms() {
         let middle = samples.start + quarter..samples.end - quarter;
         let (force, speed) = (run.of(schema::CONTACT_FORCE), run.of(schema::CUTTING_SPEED));
         let count = middle.len() as f64;
-        let work: f64 = middle.map(|i| force[i] * speed[i]).sum();
-        COEFFICIENT * work / count / 40e-3
+        let work: f64 = middle.clone().map(|i| force[i] * speed[i]).sum();
+        let rate: f64 = middle.map(|i| run.of(schema::REMOVAL_RATE)[i]).sum();
+        assert!(
+            (COEFFICIENT * work / rate - 1.0).abs() < 5e-3,
+            "{work} {rate}"
+        );
+        rate / count / 40e-3
     };
     let plain = done(belt());
     let at = plain.middle();
