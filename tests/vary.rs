@@ -8,7 +8,7 @@ use std::process::Command;
 use idc_cell::recording::long_table::{LongColumn, read_long};
 use serde_json::Value;
 
-use crate::common::skipped;
+use crate::common::{project, skipped};
 use crate::program::Bench;
 
 /// A short stretch of the plate's edge.
@@ -264,10 +264,12 @@ fn what_cannot_be_is_refused_before_anything_is_written() {
     assert_eq!(numbers(&table, "code"), [0.0, 0.0, 2.0, 0.0]);
 }
 
-/// A Python with Dask: that of IDC_DASK_PYTHON, or the one that is there.
+/// A Python with Dask and Snakemake: that of IDC_DASK_PYTHON, that which `.ci/install_references` has installed, or the one that is there.
 fn python_with(module: &str) -> Option<PathBuf> {
     let named = std::env::var_os("IDC_DASK_PYTHON").map(PathBuf::from);
-    let python = named.unwrap_or_else(|| "python3".into());
+    let installed = project("build/references/engines/bin/python");
+    let installed = installed.exists().then_some(installed);
+    let python = named.or(installed).unwrap_or_else(|| "python3".into());
     let there = Command::new(&python)
         .args(["-c", &format!("import {module}")])
         .output();
