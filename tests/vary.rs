@@ -217,7 +217,7 @@ fn what_cannot_be_is_refused_before_anything_is_written() {
     for (arguments, expected) in [
         (
             vec!["--set", "process.force=1,2"],
-            "did you mean `force_n`?",
+            "did you mean `process.force_n`?",
         ),
         (
             vec!["--set", "process.force_n=100..99999:3"],
