@@ -439,9 +439,9 @@ class Job:
         frames = np.unique(np.searchsorted(times, np.arange(0, times[-1] + 0.02, 0.02) - 1e-9))
         frames = frames[frames < len(times)]
         nearest = frames[np.argmin(np.abs(times[frames] - self.run.moment()))]
-        force, friction = self.run.column("contact_force_n"), self.run.column("friction_force_n")
-        across = 0.0 if friction is None or self.is_bench else friction[nearest]
-        return float(np.hypot(force[nearest], across))
+        if self.is_bench:
+            return float(self.run.column("contact_force_n")[nearest])
+        return float(np.linalg.norm([self.run.column(f"contact_force_{axis}_n")[nearest] for axis in "xyz"]))
 
     def space(self, told):
         """The drawing in space: each piece of the edge has the mean force error of its samples, its legend their scale, its arrow the force."""
