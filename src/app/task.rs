@@ -13,8 +13,8 @@ use crate::tasks::{Plan, Store, TaskError, snakefile};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
-A task's result goes to its own folder in `tasks` beside the plan, which is named
-when it is whole; a task that stands is not done again. An engine takes what
+A task's result goes to its own folder in `tasks` beside the plan, named when it
+is whole; a task that stands is not done again. An engine takes what
 stands for the answer, and exit codes 1, 2 and 3 of it for results.
 
 Exit codes: that of the run; 2 as well where the task cannot be done.
