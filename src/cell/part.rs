@@ -52,15 +52,14 @@ impl Part {
             .collect();
         let mesh_in_world = TriangleMesh::new(vertices, mesh.triangles().to_vec())
             .expect("a rigid motion keeps a mesh closed and outward");
-        let ride =
-            ride(&workpiece.burr, scenario.device.tool_radius, edge.length).map_err(|source| {
-                CellError::Burr {
-                    file: scenario.path.clone(),
-                    source,
-                }
-            })?;
-        let profile = burr(&workpiece.burr).ok().flatten();
-        let edge_state = EdgeState::new(&edge, profile.as_ref(), workpiece.burr_root);
+        let fault = |source| CellError::Burr {
+            file: scenario.path.clone(),
+            source,
+        };
+        let burr = burr(&workpiece.burr).map_err(fault)?;
+        let ridden = |burr| ride(burr, scenario.device.tool_radius, edge.length);
+        let ride = burr.as_ref().map(ridden).transpose().map_err(fault)?;
+        let edge_state = EdgeState::new(&edge, burr.as_ref(), workpiece.burr_root);
         Ok(Self {
             mesh,
             mesh_in_world,
@@ -176,19 +175,14 @@ fn real_pose(workpiece: &WorkpieceScenario, edge: &EdgeCurve) -> DPose3 {
         * believed
 }
 
-/// Lift of the ball's centre along an edge of a length [m].
+/// Lift of the ball's centre by a burr along an edge of a length [m].
 fn ride(
-    scenario: &BurrScenario,
+    burr: &BurrProfile,
     ball_radius: f64,
     length: f64,
-) -> Result<Option<RiddenProfile>, WorkpieceError> {
-    let Some(profile) = burr(scenario)? else {
-        return Ok(None);
-    };
-    profile.require_cover(length)?;
-    profile
-        .ridden_by_ball(ball_radius, length, RIDE_STEP)
-        .map(Some)
+) -> Result<RiddenProfile, WorkpieceError> {
+    burr.require_cover(length)?;
+    burr.ridden_by_ball(ball_radius, length, RIDE_STEP)
 }
 
 fn burr(scenario: &BurrScenario) -> Result<Option<BurrProfile>, WorkpieceError> {

@@ -34,8 +34,8 @@ pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2
                     mass: device.moving_mass,
                     most_mass: axial / gravity,
                     tilt: cosine(gravity),
-                    least_opposing: device.opposing_pressure
-                        - needed * map.opposing_per_set_pressure(),
+                    least_opposing: (device.moving_mass * gravity - axial)
+                        / device.areas().retracting,
                     least_tilt: cosine(axial / device.moving_mass),
                 });
             }

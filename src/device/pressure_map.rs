@@ -18,8 +18,6 @@ pub struct PressureMap {
     supply: f64,
     /// Force of the opposing pressure [N].
     opposing: f64,
-    /// Opposing pressure that a set pressure balances, over it [1].
-    opposing_per_set_pressure: f64,
 }
 
 impl PressureMap {
@@ -29,15 +27,8 @@ impl PressureMap {
             moving_mass: parameters.moving_mass,
             force_per_pressure: parameters.regulator.gain * parameters.areas().extending,
             supply: parameters.regulator.supply,
-            opposing_per_set_pressure: parameters.regulator.gain * parameters.areas().extending
-                / parameters.areas().retracting,
             opposing: parameters.opposing_pressure * parameters.areas().retracting,
         }
-    }
-
-    /// Opposing pressure that a set pressure balances, over it [1].
-    pub fn opposing_per_set_pressure(&self) -> f64 {
-        self.opposing_per_set_pressure
     }
 
     /// Set pressure before any limit [Pa gauge]; may be negative or beyond the supply.
