@@ -165,32 +165,12 @@ impl EdgeState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::workpiece::{EdgeSearch, TriangleMesh, list_edges};
-    use glam::DVec3;
+    use crate::workpiece::test_parts::cube;
+    use crate::workpiece::{EdgeSearch, list_edges};
 
     /// An edge of a cube of 0.1 m.
     fn edge() -> EdgeCurve {
-        let corner = |i: usize| {
-            DVec3::new(
-                0.1 * (i & 1) as f64,
-                0.1 * (i >> 1 & 1) as f64,
-                0.1 * (i >> 2 & 1) as f64,
-            )
-        };
-        let quads = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        let triangles = quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect();
-        let cube = TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap();
-        let list = list_edges(&cube, &EdgeSearch::default());
+        let list = list_edges(&cube(), &EdgeSearch::default());
         list.edges.get(1).unwrap().clone()
     }
 

@@ -3,6 +3,18 @@
 use crate::metrics::{BoundCheck, Metric, NARROW_BAND, Summary, WIDE_BAND, metric};
 use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
+/// Metrics that only a run with a tool that turns has.
+const OF_A_TURNING_TOOL: [&str; 8] = [
+    "chamfer_leg_mean_mm",
+    "chamfer_leg_standard_deviation_mm",
+    "residual_burr_max_mm",
+    "out_of_tolerance_share_percent",
+    "section_variation_percent",
+    "removed_volume_mm3",
+    "spindle_power_max_w",
+    "tool_wear_kj",
+];
+
 /// Parts of a report and the metrics in each, by key.
 const PARTS: [(&str, &[&str]); 7] = [
     (
@@ -33,19 +45,7 @@ const PARTS: [(&str, &[&str]); 7] = [
         "Path",
         &["path_length_mm", "path_error_rms_um", "path_error_max_um"],
     ),
-    (
-        "Edge",
-        &[
-            "chamfer_leg_mean_mm",
-            "chamfer_leg_standard_deviation_mm",
-            "residual_burr_max_mm",
-            "out_of_tolerance_share_percent",
-            "section_variation_percent",
-            "removed_volume_mm3",
-            "spindle_power_max_w",
-            "tool_wear_kj",
-        ],
-    ),
+    ("Edge", &OF_A_TURNING_TOOL),
     (
         "Run",
         &[
@@ -118,8 +118,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<ReportRow> {
         if name == "real_time_factor" && summary.timing.is_none() {
             return None;
         }
-        // Of a tool that turns.
-        if part == "Edge" && summary.tool_wear_kj.is_none() {
+        if OF_A_TURNING_TOOL.contains(&name) && summary.tool_wear_kj.is_none() {
             return None;
         }
         let metric = metric(name)?;

@@ -22,6 +22,8 @@ pub mod mesh;
 pub mod mesh_file;
 pub mod ride;
 pub mod surface;
+#[cfg(test)]
+pub(crate) mod test_parts;
 
 pub use burr::BurrProfile;
 pub use curve::{Convexity, CurveKind, EdgeCurve, EdgePoint};
