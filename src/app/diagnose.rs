@@ -7,6 +7,7 @@ mod comparison_files;
 mod fit_picture;
 mod one;
 mod outputs;
+mod removal_picture;
 mod stages;
 mod unlisted_picture;
 

@@ -34,6 +34,12 @@ impl From<ExitCode> for std::process::ExitCode {
 /// Bad input, or a file that cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
+    /// A law to be tried beside a table of runs.
+    #[error("{folder} holds a table of runs: --try takes a law of a rig or a cell, expected none")]
+    NoLawOfTable {
+        /// The folder.
+        folder: String,
+    },
     /// The scenario file.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),

@@ -10,13 +10,15 @@ use super::error::{AppError, ExitCode};
 use super::files::{Standing, is_same, prepare_file};
 use super::output::say;
 use super::progress;
-use crate::case::{check_finite, read_rig, shown_columns};
+use crate::case::{check_finite, predict_table, read_rig, shown_columns};
 use crate::diagnosis::clean::clean;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::diagnosis::words::of_column;
 use crate::plant::simulate;
-use crate::quantity::significant;
+use crate::quantity::{counted, significant};
+use crate::recording::atomic::write_text;
 use crate::recording::csv::write_csv;
+use crate::scenario::removal_table::is_removal_table;
 use crate::scenario::rig_file::load_rig;
 
 #[derive(Debug, Args)]
@@ -41,18 +43,14 @@ pub(super) struct PredictArguments {
 
 /// Predicts and writes.
 pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError> {
+    if is_removal_table(&arguments.rig) {
+        return of_table(arguments);
+    }
     let rig = load_rig(&arguments.rig)?;
     let file = arguments.inputs.display().to_string();
     let recording = read_rig(rig.plant.chain, &arguments.inputs)?;
     let mut taken = recorded_of(rig.plant.chain, &file, &recording)?.of_sensors(rig.sensors());
-    for input in [&arguments.rig, &arguments.inputs] {
-        if is_same(input, &arguments.out) {
-            return Err(AppError::Overwrites {
-                file: arguments.out.display().to_string(),
-            });
-        }
-    }
-    prepare_file(&arguments.out, "--out", Standing::of(arguments.force))?;
+    prepare(arguments)?;
     let time = &taken.inputs.time;
     let spinner = progress::spinner("simulating", arguments.quiet || arguments.json);
     let predicted = simulate(&rig.plant, &taken.inputs).readings;
@@ -83,6 +81,45 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     } else {
         text(arguments, time.len(), &notes, &off)
     })?;
+    Ok(ExitCode::Done)
+}
+
+/// Makes sure that the prediction goes where it does no harm.
+fn prepare(arguments: &PredictArguments) -> Result<(), AppError> {
+    for input in [&arguments.rig, &arguments.inputs] {
+        if is_same(input, &arguments.out) {
+            return Err(AppError::Overwrites {
+                file: arguments.out.display().to_string(),
+            });
+        }
+    }
+    prepare_file(&arguments.out, "--out", Standing::of(arguments.force))
+}
+
+/// Predicts what comes off in the runs of a table.
+fn of_table(arguments: &PredictArguments) -> Result<ExitCode, AppError> {
+    let (rows, left) = predict_table(&arguments.rig, &arguments.inputs)?;
+    prepare(arguments)?;
+    write_text(&arguments.out, &rows)?;
+    let out = arguments.out.display();
+    if arguments.json {
+        let document = serde_json::json!({
+            "rig": arguments.rig.display().to_string(),
+            "inputs": arguments.inputs.display().to_string(),
+            "prediction": out.to_string(),
+            "rows": left.rows,
+            "rows_without_prediction": left.nothing,
+            "rms_of_log_volume": left.log,
+        });
+        say(&format!("{document:#}\n"))?;
+    } else if !arguments.quiet {
+        say(&format!(
+            "removed volume: RMS {} of ln(measured / predicted), {} % of the predicted volume, in {}\nwritten to {out}\n",
+            significant(left.log, 2),
+            significant(100.0 * left.share, 2),
+            counted(left.rows, "row")
+        ))?;
+    }
     Ok(ExitCode::Done)
 }
 

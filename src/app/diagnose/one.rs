@@ -7,20 +7,31 @@ use super::super::files::{DIAGNOSIS, OutputFolder, Standing, is_same};
 use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
 use super::outputs::{Finished, NAMES, Outputs, stands_complete};
+use super::removal_picture;
 use super::unlisted_picture::picture;
-use crate::case::{Case, Diagnosed, IMPROVED, RIG, diagnose};
+use crate::case::{Case, Diagnosed, IMPROVED, RIG, RemovalCase, RemovalDiagnosed, diagnose};
 use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::Answer;
+use crate::diagnosis::comparison::Comparison;
 use crate::diagnosis::details::DETAILS_SCHEMA;
 use crate::diagnosis::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::plant::LawText;
 use crate::recording::scene::Scene;
 use crate::replay::LoadedCell;
+use crate::scenario::removal_table::is_removal_table;
+
+/// What can be diagnosed.
+enum Subject {
+    /// Recordings of a rig or a cell.
+    Recordings(Box<Case>),
+    /// A table of runs.
+    Table(Box<RemovalCase>),
+}
 
 /// A case that can be diagnosed, and a folder that its files can go to.
 pub(super) struct Prepared {
-    case: Case,
+    subject: Subject,
     folder: OutputFolder,
 }
 
@@ -44,13 +55,23 @@ impl Prepared {
         out: &Path,
         standing: Standing,
     ) -> Result<Self, AppError> {
-        let mut case = match cell {
-            Some(cell) => Case::of_cell(folder, cell)?,
-            None => Case::from_folder(folder)?,
+        let subject = if cell.is_none() && is_removal_table(&folder.join(RIG)) {
+            if tried.is_some() {
+                return Err(AppError::NoLawOfTable {
+                    folder: folder.display().to_string(),
+                });
+            }
+            Subject::Table(Box::new(RemovalCase::from_folder(folder)?))
+        } else {
+            let mut case = match cell {
+                Some(cell) => Case::of_cell(folder, cell)?,
+                None => Case::from_folder(folder)?,
+            };
+            if let Some(law) = tried {
+                case.try_law(law)?;
+            }
+            Subject::Recordings(Box::new(case))
         };
-        if let Some(law) = tried {
-            case.try_law(law)?;
-        }
         if standing == Standing::Refuse && out.join(DIAGNOSIS).exists() {
             return Err(AppError::Diagnosed {
                 folder: out.display().to_string(),
@@ -62,15 +83,53 @@ impl Prepared {
             });
         }
         Ok(Self {
-            case,
+            subject,
             folder: OutputFolder::prepare(out, &NAMES, standing)?,
         })
     }
 
     /// Diagnoses it and writes its files; `observer` is told of its progress.
     pub(super) fn run(self, observer: &mut Observer<'_>) -> Result<Finished, AppError> {
-        let diagnosed = diagnose(&self.case, &Settings::default(), observer)?;
-        let scene = scene(&self.case, &diagnosed)?;
+        match &self.subject {
+            Subject::Recordings(case) => self.of_recordings(case, observer),
+            Subject::Table(case) => self.of_table(case),
+        }
+    }
+
+    fn of_table(&self, case: &RemovalCase) -> Result<Finished, AppError> {
+        let RemovalDiagnosed {
+            mut answer,
+            diagnosis,
+            improved,
+            prediction,
+        } = case.diagnose()?;
+        if !diagnosis.effects.is_empty() {
+            let file = self.folder.path().join(IMPROVED).display().to_string();
+            let how = format!(
+                "`idc predict {file} TABLE.csv` predicts the runs of another table with what was found."
+            );
+            answer.details.account.add(SectionKind::HowToRun, vec![how]);
+        }
+        let picture = removal_picture::picture(&diagnosis, case.file.is_feed)?;
+        let outputs = Outputs {
+            answer,
+            improved: &improved,
+            prediction: prediction.as_deref(),
+            picture: None,
+            fit_picture: Some(&picture),
+            scene: None,
+            comparison: &Comparison::default(),
+        };
+        outputs.write(&self.folder)
+    }
+
+    fn of_recordings(
+        &self,
+        case: &Case,
+        observer: &mut Observer<'_>,
+    ) -> Result<Finished, AppError> {
+        let diagnosed = diagnose(case, &Settings::default(), observer)?;
+        let scene = scene(case, &diagnosed)?;
         let Diagnosed {
             mut answer,
             improved,
@@ -85,7 +144,7 @@ impl Prepared {
             fit = fit_picture::picture(diagnosis)?;
             if !diagnosis.best().finds_nothing() {
                 let file = self.folder.path().join(IMPROVED).display().to_string();
-                let how = how_to_run(self.case.cell(), &file);
+                let how = how_to_run(case.cell(), &file);
                 answer.details.account.add(SectionKind::HowToRun, vec![how]);
             }
         }
