@@ -41,6 +41,7 @@ mod program;
 mod real_robots;
 mod recorded_cell;
 mod removal;
+mod removal_table;
 mod report;
 mod rig_file;
 mod schemas;

@@ -350,11 +350,11 @@ fn believed(
     let section = Section::new(document, "believed");
     let needed: &[(&str, bool)] = match keys.law.as_str() {
         "preston" => &[],
-        "hahn" => &[("threshold_force_n", keys.threshold_force_n.is_some())],
+        "threshold" => &[("threshold_force_n", keys.threshold_force_n.is_some())],
         "power" => &[("force_exponent", keys.force_exponent.is_some())],
         other => {
             let expected =
-                "\"preston\", \"hahn\" (with a threshold force) or \"power\" (with exponents)";
+                "\"preston\", \"threshold\" (with a threshold force) or \"power\" (with exponents)";
             return Err(section.refuse("law", format!("{other:?}"), expected.into()));
         }
     };

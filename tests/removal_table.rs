@@ -1,0 +1,159 @@
+//! A table of runs is a case: what it should name is planted by formulas of the test's own.
+
+use std::fmt::Write as _;
+
+use serde_json::Value;
+
+use crate::program::Bench;
+
+const FILE: &str = r#"schema = 1
+kind = "removal_table"
+title = "Belt on an edge"
+
+[tables]
+fit = ["runs.csv"]
+
+[columns]
+force = { name = "force_n", unit = "N" }
+feed = { name = "feed_mm_s", unit = "mm/s" }
+wear = { name = "wear" }
+volume = { name = "removed_mm3", unit = "mm3" }
+
+[believed]
+law = "preston"
+"#;
+
+/// A table of a law, its volumes scattered by 5 %.
+fn table(seed: u64, law: impl Fn(f64, f64, f64) -> f64) -> String {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut uniform = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut text = String::from("force_n,feed_mm_s,wear,removed_mm3\n");
+    for i in 0..40 {
+        let force = 3.0 + 4.0 * uniform();
+        let feed = [10.0, 20.0, 40.0][i % 3];
+        let wear = 3.0 * uniform();
+        // The sum of twelve is as good as normal.
+        let normal: f64 = (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
+        let volume = law(force, feed, wear) * (0.05 * normal).exp();
+        let _ = writeln!(text, "{force:.4},{feed},{wear:.4},{volume:.5}");
+    }
+    text
+}
+
+fn diagnosed(bench: &Bench, folder: &str) -> Value {
+    let outcome = bench.idc(
+        &["diagnose", folder, "--out", "found", "--force", "--quiet"],
+        &[],
+    );
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let text = std::fs::read_to_string(bench.path("found/diagnosis.json")).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+fn bench(rows: &str) -> Bench {
+    let bench = Bench::new("plate_edge");
+    std::fs::create_dir_all(bench.path("case")).unwrap();
+    bench.write("case/rig.toml", FILE);
+    bench.write("case/runs.csv", rows);
+    bench
+}
+
+fn names(answer: &Value) -> Vec<&str> {
+    let effects = answer["effects"].as_array().unwrap().iter();
+    effects
+        .map(|effect| effect["name"].as_str().unwrap())
+        .collect()
+}
+
+#[test]
+fn exponent_and_wear_are_named_and_the_improved_law_predicts_another_table() {
+    let law =
+        |force: f64, feed: f64, wear: f64| 2.8 * force.powf(2.05) / feed * (-0.23 * wear).exp();
+    let bench = bench(&table(1, law));
+    let answer = diagnosed(&bench, "case");
+    let mut found = names(&answer);
+    found.sort_unstable();
+    assert_eq!(found, ["removal_force_exponent", "tool_wear"]);
+    let exponent = &answer["effects"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|e| e["name"] == "removal_force_exponent")
+        .unwrap()["parameters"]["force_exponent"];
+    let [value, low, high] = ["value", "low", "high"].map(|key| exponent[key].as_f64().unwrap());
+    assert!(
+        (value - 2.05).abs() < 0.15 && low < 2.05 && 2.05 < high,
+        "{exponent}"
+    );
+    // The improved file predicts rows that it has not seen to their scatter, the believed one does not.
+    bench.write("other.csv", table(2, law));
+    let off = |file: &str| -> f64 {
+        let outcome = bench.idc(
+            &[
+                "predict",
+                file,
+                "other.csv",
+                "--out",
+                "p.csv",
+                "--force",
+                "--json",
+            ],
+            &[],
+        );
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+        let told: Value = serde_json::from_str(&outcome.out).unwrap();
+        told["rms_of_log_volume"].as_f64().unwrap()
+    };
+    let improved = off("found/improved.toml");
+    assert!(improved < 0.075, "{improved}");
+    // Taken as believed, nothing is missing any more.
+    std::fs::create_dir_all(bench.path("again")).unwrap();
+    let text = std::fs::read_to_string(bench.path("found/improved.toml")).unwrap();
+    bench.write("again/rig.toml", text);
+    bench.write("again/runs.csv", table(3, law));
+    assert_eq!(diagnosed(&bench, "again")["verdict"], "nothing_missing");
+}
+
+#[test]
+fn nothing_is_named_where_preston_holds() {
+    let bench = bench(&table(4, |force, feed, _| 5.0 * force / feed));
+    let answer = diagnosed(&bench, "case");
+    assert_eq!(answer["verdict"], "nothing_missing");
+    for file in ["account.txt", "improved.toml", "fit.svg", "report.html"] {
+        assert!(bench.path("found").join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn tables_that_cannot_be_are_refused_with_one_line_and_nothing_is_written() {
+    let rows = table(5, |force, feed, _| 5.0 * force / feed);
+    let refused = |file: &str, rows: &str, expected: &[&str]| {
+        let bench = bench(rows);
+        bench.write("case/rig.toml", file);
+        let outcome = bench.idc(&["diagnose", "case", "--out", "found"], &[]);
+        assert_eq!(outcome.code, 2, "{}", outcome.err);
+        let line = outcome.only_line("error");
+        for word in expected {
+            assert!(line.contains(word), "{word}: {line}");
+        }
+        assert!(!bench.path("found").exists());
+    };
+    refused(
+        FILE,
+        &rows.replace("removed_mm3", "taken_mm3"),
+        &["runs.csv", "removed_mm3"],
+    );
+    let negative = rows.lines().next().unwrap().to_owned() + "\n-3,10,0,1\n";
+    refused(FILE, &negative, &["runs.csv", "line 2", "force_n", "-3"]);
+    let one: Vec<&str> = rows.lines().take(2).collect();
+    refused(FILE, &(one.join("\n") + "\n"), &["at least 5"]);
+    let threshold = FILE.replace("\"preston\"", "\"threshold\"");
+    refused(&threshold, &rows, &["threshold_force_n"]);
+    let furlong = FILE.replace("unit = \"N\"", "unit = \"lbf\"");
+    refused(&furlong, &rows, &["force.unit", "lbf", "N, kN"]);
+}
