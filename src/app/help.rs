@@ -131,8 +131,8 @@ Examples:
   idc prove --only case-03 --out runs/proof-3
   # All of them. (takes minutes)
   idc prove
-  # A sweep over effects and sizes: here one device with one effect, and one with
-  # nothing missing.
+  # A sweep over effects and sizes: here one device with one effect, and one
+  # with nothing missing.
   idc prove --sweep --out runs/few --effects hose_volume --sizes 1 --seeds 1 \\
       --empty 1
   # Go on where it was stopped; here all is done, and the tables are written.
