@@ -164,12 +164,13 @@ impl Cell {
         )
     }
 
-    /// The same of an edge on which the ball rides with a lift [m] and its slope [1].
-    pub fn relief_ridden(&self, place: f64, ridden: Option<(f64, f64)>) -> Relief {
+    /// The same of an edge on which the ball rides with a lift [m], its slope [1] and its rate where it is [m/s].
+    pub fn relief_ridden(&self, place: f64, ridden: Option<(f64, f64, f64)>) -> Relief {
         let world_from_part = self.scenario.workpiece.world_from_part;
         let here = station(&self.part.edge, world_from_part, place);
         let mut relief = self.plant.cell.relief(&self.middle, &here);
-        if let Some((lift, slope)) = ridden {
+        if let Some((lift, slope, rate)) = ridden {
+            relief.rate += rate;
             relief.height += lift;
             relief.gradient += here.tangent * slope;
         }

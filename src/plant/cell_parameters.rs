@@ -45,6 +45,8 @@ pub struct Relief {
     pub height: f64,
     /// Gradient of that along the part [m/m].
     pub gradient: DVec3,
+    /// Rate at which it grows where it is, as a tool that cuts lowers it [m/s].
+    pub rate: f64,
 }
 
 /// A smooth bump on an edge: h exp(-((s - p)/w)^2 / 2).
@@ -94,6 +96,7 @@ impl CellParameters {
             aside: self.aside(middle, station.point),
             height: self.burr.at(station.station),
             gradient: station.tangent * self.burr.slope(station.station),
+            rate: 0.0,
         }
     }
 

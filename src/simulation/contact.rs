@@ -125,7 +125,7 @@ impl PartContact {
             Touch {
                 normal,
                 penetration: -above * normal.dot(contact.normal),
-                rate: -normal.dot(velocity),
+                rate: -normal.dot(velocity) + relief.rate * normal.dot(contact.normal),
                 share: -normal.dot(axis),
             }
         }));

@@ -12,7 +12,7 @@ use glam::DVec3;
 use crate::cell::Cell;
 use crate::path::{Phase, Reference};
 use crate::physics::cutting_force::CuttingForce;
-use crate::removal::EdgeState;
+use crate::removal::{EdgeState, Ride};
 use crate::scenario::{FeedMeasure, RemovalScenario, ToolScenario};
 
 /// The tool over the last step.
@@ -38,8 +38,9 @@ pub struct Cutting {
     cutting: CuttingForce,
     edge: EdgeState,
     ball_radius: f64,
-    /// Place of the ball along the edge [m].
+    /// Place of the ball along the edge [m], and how it rides there.
     place: f64,
+    ride: Ride,
     /// Work of force and speed so far [J].
     wear: f64,
     reading: CuttingReading,
@@ -60,17 +61,21 @@ impl Cutting {
             cutting: scenario.removal.map_or(rubbing, |removal| removal.cutting),
             edge: cell.part.edge_state.clone(),
             ball_radius: scenario.device.tool_radius,
-            place: f64::NEG_INFINITY,
+            place: 0.0,
+            ride: cell.part.edge_state.ride(0.0, scenario.device.tool_radius),
             wear: 0.0,
             reading: CuttingReading::default(),
         })
     }
 
-    /// Lift [m] and slope [1] with which the ball rides at a place of the edge [m].
-    pub fn ride(&mut self, place: f64) -> (f64, f64) {
+    /// How the ball rides at a place of the edge [m] after a step of `dt` [s]: lift [m], its slope [1], and the rate at which the cut lowered it [m/s]. Without the last
+    /// a ball that climbs from what is cut to what is not would press too hard in each step, by half of what it climbs.
+    pub fn ride(&mut self, place: f64, dt: f64) -> (f64, f64, f64) {
         let ride = self.edge.ride(place, self.ball_radius);
-        self.place = place;
-        (ride.lift, ride.slope)
+        let climbed = 0.5 * (ride.slope + self.ride.slope) * (place - self.place);
+        let rate = (ride.lift - self.ride.lift - climbed) / dt;
+        (self.place, self.ride) = (place, ride);
+        (ride.lift, ride.slope, rate)
     }
 
     /// Takes off what a step of `dt` [s] does, the tool pressed with mean forces [N] along normals; returns the force on the tool [N] and a normal to apply it at.

@@ -514,7 +514,10 @@ impl<'a> Simulation<'a> {
         let place = reference.edge_length + along;
         let relief = match &mut self.cutting {
             None => self.cell.relief(place),
-            Some(cutting) => self.cell.relief_ridden(place, Some(cutting.ride(place))),
+            Some(cutting) => {
+                let dt = self.cell.scenario.simulation.step;
+                (self.cell).relief_ridden(place, Some(cutting.ride(place, dt)))
+            }
         };
         self.world.touches(&relief, &mut self.touches);
     }
