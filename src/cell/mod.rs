@@ -160,7 +160,7 @@ impl Cell {
         let ride = self.part.ride.as_ref();
         self.relief_ridden(
             place,
-            ride.map(|ride| (ride.lift(place), ride.slope(place))),
+            ride.map(|ride| (ride.lift(place), ride.slope(place), 0.0)),
         )
     }
 
