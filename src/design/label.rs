@@ -4,12 +4,7 @@ use crate::quantity::significant;
 use crate::scenario::units::{Unit, stem};
 
 /// Suffixes of metrics that no file key has.
-const OTHERS: [(&str, &str); 4] = [
-    ("_percent", "%"),
-    ("_nl", "Nl"),
-    ("_g", "g"),
-    ("_mm3", "mm3"),
-];
+const OTHERS: [(&str, &str); 3] = [("_percent", "%"), ("_nl", "Nl"), ("_g", "g")];
 
 fn parts(key: &str) -> (&str, &'static str) {
     OTHERS

@@ -24,10 +24,11 @@ enum Conversion {
 use Conversion::{Divide, Multiply};
 
 /// Longer suffixes before those that they end with.
-const UNITS: [Unit; 50] = [
+const UNITS: [Unit; 51] = [
     unit("_mm3_per_s", "mm3/s", Divide(1e9)),
     unit("_mm3_per_j", "mm3/J", Divide(1e9)),
     unit("_j_per_mm3", "J/mm3", Multiply(1e9)),
+    unit("_mm3", "mm3", Divide(1e9)),
     unit("_n_mm", "N mm", Divide(1e3)),
     unit("_rpm", "1/min", Multiply(PI / 30.0)),
     unit("_kj", "kJ", Multiply(1e3)),

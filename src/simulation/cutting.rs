@@ -68,14 +68,14 @@ impl Cutting {
         })
     }
 
-    /// How the ball rides at a place of the edge [m] after a step of `dt` [s]: lift [m], its slope [1], and the rate at which the cut lowered it [m/s]. Without the last
-    /// a ball that climbs from what is cut to what is not would press too hard in each step, by half of what it climbs.
+    /// How the ball rides at a place of the edge [m] after a step of `dt` [s]: lift [m], its slope [1], and the rate at which the cut lowers it [m/s], as far as the ball
+    /// climbs from what is cut to what is not. Without that it would press too hard in each step, by half of what it climbs.
     pub fn ride(&mut self, place: f64, dt: f64) -> (f64, f64, f64) {
         let ride = self.edge.ride(place, self.ball_radius);
         let climbed = 0.5 * (ride.slope + self.ride.slope) * (place - self.place);
-        let rate = (ride.lift - self.ride.lift - climbed) / dt;
+        let lowered = (climbed - (ride.lift - self.ride.lift)).clamp(0.0, climbed.max(0.0));
         (self.place, self.ride) = (place, ride);
-        (ride.lift, ride.slope, rate)
+        (ride.lift, ride.slope, -lowered / dt)
     }
 
     /// Takes off what a step of `dt` [s] does, the tool pressed with mean forces [N] along normals; returns the force on the tool [N] and a normal to apply it at.

@@ -1,6 +1,8 @@
 //! One step of the coupled cell, read from top to bottom.
 
 mod checks;
+mod record;
+mod start;
 
 use std::time::{Duration, Instant};
 
@@ -21,15 +23,14 @@ use crate::collision::ClearanceWatch;
 use crate::control::command_lag::CommandLag;
 use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::JointLaw;
-use crate::control::servo::{AxisCommand, Servo, ServoParameters};
+use crate::control::servo::{AxisCommand, Servo};
 use crate::control::transmission::Motor;
 use crate::device::{DeviceState, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
-use crate::plant::{ForceTerms, Moment, Port, RunningSensors, SensorReadings, StepContact};
-use crate::recording::schema::JointSignal;
+use crate::plant::{ForceTerms, Moment, Port, RunningSensors, StepContact};
 use crate::removal::EdgeState;
 use crate::sensing::noise::{Noise, Stream};
-use crate::sensing::{Readings, SensorChain, Truth};
+use crate::sensing::{Readings, SensorChain};
 
 /// Signals of a sample of a cell whose tool turns, those of its joints apart.
 const SIGNALS_OF_TURNING: usize = 30;
@@ -131,9 +132,9 @@ impl<'a> Simulation<'a> {
         let mut masses = nalgebra::DMatrix::zeros(count, count);
         mass_matrix(&cell.arm_with_slide, &positions, &mut masses);
         let inertias: Vec<f64> = (0..count - 1).map(|i| masses[(i, i)]).collect();
-        let motors = motors(cell, &inertias, &mut positions);
+        let motors = start::motors(cell, &inertias, &mut positions);
         world.set_positions(&positions);
-        let servo = servo(cell, &inertias);
+        let servo = start::servo(cell, &inertias);
         let mut sensors = SensorChain::new(&scenario.sensing, scenario.simulation.seed);
         sensors.settle(set_pressure);
         let total_steps = (cell.plan.duration() / scenario.simulation.step).ceil() as usize;
@@ -168,7 +169,7 @@ impl<'a> Simulation<'a> {
             log: SampleLog::new(count - 1, scenario.tool.is_some(), total_steps),
             frames: FrameLog::default(),
             next_frame: 0.0,
-            clearance: clearance(cell, &positions),
+            clearance: start::clearance(cell, &positions),
             cutting: Cutting::new(cell),
             behind: 0.0,
             pace: 1.0,
@@ -521,229 +522,4 @@ impl<'a> Simulation<'a> {
         };
         self.world.touches(&relief, &mut self.touches);
     }
-
-    /// Positions, references, speeds, drive torques and encoder readings of the axes.
-    fn joint_signals(&self, reference: &Reference) -> [[f64; JointSignal::ALL.len()]; MAX_JOINTS] {
-        let mut joints = [[0.0; JointSignal::ALL.len()]; MAX_JOINTS];
-        for (axis, joint) in joints.iter_mut().enumerate().take(self.slide()) {
-            let velocity = self.world.velocities()[axis];
-            let (applied, at_drive) = match &self.motors[axis] {
-                None => self.world.applied(axis),
-                Some((motor, drive)) => {
-                    let (angle, speed) = motor.middle;
-                    (drive.at(angle, speed), speed)
-                }
-            };
-            *joint = [
-                self.world.positions()[axis],
-                reference.position[axis],
-                velocity,
-                self.servo.drive_torque(axis, applied, at_drive),
-                self.encoders[axis],
-            ];
-        }
-        joints
-    }
-
-    /// Reads the sensors.
-    fn read_sensors(&mut self, time: f64, there: &SensorReadings, acceleration: f64) {
-        let mut read = self.errors.read(time, there, acceleration);
-        if self.cell.plant.has_terms() {
-            let moment = self.moment(&self.carrier(time));
-            read.add(self.cell.plant.reading_terms(&moment));
-        }
-        self.readings = self.sensors.measure(
-            time,
-            &Truth {
-                force: read.force,
-                stroke: read.stroke,
-                acceleration,
-                regulator_pressure: read.regulator_pressure,
-            },
-        );
-        if self.sensors.sampled() {
-            self.read_encoders();
-        }
-    }
-
-    /// Sum of the contact's normal forces [N], as a vector [N], and along the stroke [N].
-    fn pressing(&self, carrier: &SlideCarrier<'_>, motion: PistonMotion) -> (f64, DVec3, f64) {
-        let none = (0.0, DVec3::ZERO, 0.0);
-        (self.touches.iter()).fold(none, |(sum, vector, load), touch| {
-            let force = carrier.normal_force(touch, 0.0, motion);
-            (
-                sum + force,
-                vector + touch.normal * force,
-                load + touch.share * force,
-            )
-        })
-    }
-
-    fn sample(&mut self, reference: &Reference, set_pressure: f64) -> Result<(), SimulationError> {
-        let (cell, n) = (self.cell, self.slide());
-        let time = self.steps as f64 * cell.scenario.simulation.step;
-        let motion = self.motion();
-        let stroke = motion.stroke;
-        let carrier = self.with_terms(self.carrier(time), 0.0);
-        let further = carrier.terms.force(time, motion);
-        let added_outlet = self.added_outlet(&carrier);
-        let (normal_force, normal, load) = self.pressing(&carrier, motion);
-        let cut = self.cutting.as_ref().map(|cutting| cutting.reading().force);
-        let friction = self.world.contact().friction + cut.unwrap_or_default();
-        let force_on_part = -(normal + friction);
-        let normal = normal.normalize_or_zero();
-        let gas = &cell.scenario.device.parameters.gas;
-        let pressures = cell.device.pressures(&self.device, stroke);
-        let mass = cell.device.parameters().moving_mass;
-        if !cell.scenario.device.locked {
-            self.slide_force = cell.device.piston_force(&self.device, motion) + further;
-        }
-        let acceleration = (self.slide_force - load) / mass + self.carried;
-        let there = SensorReadings {
-            force: force_on_part.dot(reference.axis),
-            stroke,
-            regulator_pressure: self.device.regulator.outlet + added_outlet,
-        };
-        self.read_sensors(time, &there, acceleration);
-        let off = self.world.tool_centre() - reference.centre;
-        let across = off - reference.axis * off.dot(reference.axis);
-        let signals = [
-            reference.edge_length,
-            normal_force,
-            self.desired(reference),
-            force_on_part.x,
-            force_on_part.y,
-            force_on_part.z,
-            friction.length(),
-            self.slide_force,
-            stroke,
-            motion.speed,
-            pressures[0],
-            pressures[1],
-            gas.atmosphere + self.device.regulator.outlet,
-            gas.atmosphere + set_pressure,
-            self.device.air.masses[0],
-            self.device.air.masses[1],
-            self.device.air.line_mass(),
-            self.device.air.entered,
-            self.device.air.left,
-            across.length(),
-            off.dot(reference.axis) - (stroke - cell.scenario.process.working_stroke),
-            reference.feed,
-            gas.atmosphere + self.readings.regulator_pressure,
-            self.readings.stroke,
-            self.readings.force,
-        ];
-        let joints = self.joint_signals(reference);
-        self.check_finite(&signals, &joints[..n], reference.phase, time)?;
-        self.record(reference, time, &signals, &joints[..n]);
-        if time >= self.next_frame {
-            self.frame(time, reference, force_on_part, normal);
-            self.next_frame += FRAME_INTERVAL;
-            self.check_clearance(reference, time)?;
-        }
-        self.check_on_edge(reference, across.length(), normal_force, time)?;
-        self.check_spindle(reference, time)?;
-        self.check_axes(&joints[..n], reference.phase, time)?;
-        self.check_stroke(reference, stroke, time)
-    }
-
-    /// Adds a sample, of a tool that turns with what it did.
-    fn record(
-        &mut self,
-        reference: &Reference,
-        time: f64,
-        signals: &[f64],
-        joints: &[[f64; JointSignal::ALL.len()]],
-    ) {
-        let place = (reference.phase, reference.pass);
-        match &self.cutting {
-            None => self.log.push(time, place, signals, joints),
-            Some(cutting) => {
-                let mut all = [0.0; SIGNALS_OF_TURNING];
-                all[..signals.len()].copy_from_slice(signals);
-                all[signals.len()..].copy_from_slice(&cutting.signals());
-                self.log.push(time, place, &all, joints);
-            }
-        }
-    }
-
-    fn read_encoders(&mut self) {
-        let noise = self.cell.scenario.arm.servo.encoder_noise;
-        for axis in 0..self.slide() {
-            let angle = match &self.motors[axis] {
-                None => self.world.positions()[axis],
-                Some((motor, _)) => motor.angle,
-            };
-            let offset = self.cell.plant.cell.encoder_offset[axis];
-            self.encoders[axis] = angle + offset + noise * self.encoder_noise.normal();
-        }
-    }
-
-    fn frame(&mut self, time: f64, reference: &Reference, force: DVec3, normal: DVec3) {
-        self.frames.times.push(time);
-        self.frames.path_lengths.push(reference.edge_length);
-        let mut links = vec![DPose3::IDENTITY; self.laws.len()];
-        self.world.link_poses(&mut links);
-        self.frames.links.push(links);
-        let radius = self.cell.scenario.device.tool_radius;
-        self.frames
-            .contact_points
-            .push(self.world.tool_centre() - normal * radius);
-        self.frames.contact_forces.push(force);
-    }
-}
-
-/// The servo of all axes, each about its own inertia [kg m2].
-fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
-    let parameters = &cell.scenario.arm.servo;
-    Servo::new(
-        &cell.arm.chain,
-        inertias,
-        &ServoParameters {
-            natural_frequency: parameters.natural_frequency * std::f64::consts::TAU,
-            damping_ratio: parameters.damping_ratio,
-            integral_time: parameters.integral_time,
-        },
-    )
-}
-
-/// A watch over what must not meet, the part where it really is.
-fn clearance(cell: &Cell, positions: &[f64]) -> ClearanceWatch {
-    let standing = cell.collision.with_part_at(cell.part.world_from_part);
-    ClearanceWatch::new(standing, &to_array(positions))
-}
-
-/// Positions of as many joints as there are, and zeros.
-fn to_array(positions: &[f64]) -> [f64; MAX_JOINTS] {
-    let mut array = [0.0; MAX_JOINTS];
-    array[..positions.len()].copy_from_slice(positions);
-    array
-}
-
-/// Share of a joint's own inertia that its rotor has, seen from the joint [1]: gears of robots make it of the same order.
-const ROTOR_SHARE: f64 = 0.5;
-
-/// Motors at rest where the plan starts; moves the links of `positions` to where they hang on them.
-fn motors(cell: &Cell, inertias: &[f64], positions: &mut [f64]) -> Vec<Option<(Motor, JointLaw)>> {
-    let still = vec![0.0; positions.len()];
-    let mut torques = still.clone();
-    let scenario = &cell.scenario;
-    inverse_dynamics(
-        &cell.arm_with_slide,
-        scenario.arm.world_from_base.rotation,
-        scenario.simulation.gravity,
-        positions,
-        &still,
-        &still,
-        &mut torques,
-    );
-    let motor = |(axis, parameters): (usize, &Option<_>)| {
-        let inertia = ROTOR_SHARE * inertias[axis];
-        let parameters = (*parameters)?;
-        let (motor, link) = Motor::at_rest(parameters, inertia, positions[axis], torques[axis]);
-        positions[axis] = link;
-        Some((motor, JointLaw::default()))
-    };
-    cell.transmissions.iter().enumerate().map(motor).collect()
 }

@@ -111,7 +111,7 @@ impl Simulation<'_> {
         reference: &Reference,
         time: f64,
     ) -> Result<(), SimulationError> {
-        let positions = super::to_array(self.world.positions());
+        let positions = super::start::to_array(self.world.positions());
         match self.clearance.meets(&positions) {
             None => Ok(()),
             Some((names, depth)) => Err(SimulationError::Collision {

@@ -1,0 +1,191 @@
+//! What a step reads and records: sensors, a sample, and a frame of the picture.
+
+use glam::DVec3;
+use glamx::DPose3;
+
+use super::{FRAME_INTERVAL, SIGNALS_OF_TURNING, Simulation};
+use crate::arm::chain::MAX_JOINTS;
+use crate::device::PistonMotion;
+use crate::path::{Phase, Reference};
+use crate::plant::SensorReadings;
+use crate::recording::schema::JointSignal;
+use crate::sensing::Truth;
+use crate::simulation::error::SimulationError;
+use crate::simulation::slide::SlideCarrier;
+
+impl Simulation<'_> {
+    /// Positions, references, speeds, drive torques and encoder readings of the axes.
+    fn joint_signals(&self, reference: &Reference) -> [[f64; JointSignal::ALL.len()]; MAX_JOINTS] {
+        let mut joints = [[0.0; JointSignal::ALL.len()]; MAX_JOINTS];
+        for (axis, joint) in joints.iter_mut().enumerate().take(self.slide()) {
+            let velocity = self.world.velocities()[axis];
+            let (applied, at_drive) = match &self.motors[axis] {
+                None => self.world.applied(axis),
+                Some((motor, drive)) => {
+                    let (angle, speed) = motor.middle;
+                    (drive.at(angle, speed), speed)
+                }
+            };
+            *joint = [
+                self.world.positions()[axis],
+                reference.position[axis],
+                velocity,
+                self.servo.drive_torque(axis, applied, at_drive),
+                self.encoders[axis],
+            ];
+        }
+        joints
+    }
+
+    /// Reads the sensors.
+    fn read_sensors(&mut self, time: f64, there: &SensorReadings, acceleration: f64) {
+        let mut read = self.errors.read(time, there, acceleration);
+        if self.cell.plant.has_terms() {
+            let moment = self.moment(&self.carrier(time));
+            read.add(self.cell.plant.reading_terms(&moment));
+        }
+        self.readings = self.sensors.measure(
+            time,
+            &Truth {
+                force: read.force,
+                stroke: read.stroke,
+                acceleration,
+                regulator_pressure: read.regulator_pressure,
+            },
+        );
+        if self.sensors.sampled() {
+            self.read_encoders();
+        }
+    }
+
+    /// Sum of the contact's normal forces [N], as a vector [N], and along the stroke [N].
+    fn pressing(&self, carrier: &SlideCarrier<'_>, motion: PistonMotion) -> (f64, DVec3, f64) {
+        let none = (0.0, DVec3::ZERO, 0.0);
+        (self.touches.iter()).fold(none, |(sum, vector, load), touch| {
+            let force = carrier.normal_force(touch, 0.0, motion);
+            (
+                sum + force,
+                vector + touch.normal * force,
+                load + touch.share * force,
+            )
+        })
+    }
+
+    pub(super) fn sample(
+        &mut self,
+        reference: &Reference,
+        set_pressure: f64,
+    ) -> Result<(), SimulationError> {
+        let (cell, n) = (self.cell, self.slide());
+        let time = self.steps as f64 * cell.scenario.simulation.step;
+        let motion = self.motion();
+        let stroke = motion.stroke;
+        let carrier = self.with_terms(self.carrier(time), 0.0);
+        let further = carrier.terms.force(time, motion);
+        let added_outlet = self.added_outlet(&carrier);
+        let (normal_force, normal, load) = self.pressing(&carrier, motion);
+        let cut = self.cutting.as_ref().map(|cutting| cutting.reading().force);
+        let friction = self.world.contact().friction + cut.unwrap_or_default();
+        let force_on_part = -(normal + friction);
+        let normal = normal.normalize_or_zero();
+        let gas = &cell.scenario.device.parameters.gas;
+        let pressures = cell.device.pressures(&self.device, stroke);
+        let mass = cell.device.parameters().moving_mass;
+        if !cell.scenario.device.locked {
+            self.slide_force = cell.device.piston_force(&self.device, motion) + further;
+        }
+        let acceleration = (self.slide_force - load) / mass + self.carried;
+        let there = SensorReadings {
+            force: force_on_part.dot(reference.axis),
+            stroke,
+            regulator_pressure: self.device.regulator.outlet + added_outlet,
+        };
+        self.read_sensors(time, &there, acceleration);
+        let off = self.world.tool_centre() - reference.centre;
+        let across = off - reference.axis * off.dot(reference.axis);
+        let signals = [
+            reference.edge_length,
+            normal_force,
+            self.desired(reference),
+            force_on_part.x,
+            force_on_part.y,
+            force_on_part.z,
+            friction.length(),
+            self.slide_force,
+            stroke,
+            motion.speed,
+            pressures[0],
+            pressures[1],
+            gas.atmosphere + self.device.regulator.outlet,
+            gas.atmosphere + set_pressure,
+            self.device.air.masses[0],
+            self.device.air.masses[1],
+            self.device.air.line_mass(),
+            self.device.air.entered,
+            self.device.air.left,
+            across.length(),
+            off.dot(reference.axis) - (stroke - cell.scenario.process.working_stroke),
+            reference.feed,
+            gas.atmosphere + self.readings.regulator_pressure,
+            self.readings.stroke,
+            self.readings.force,
+        ];
+        let joints = self.joint_signals(reference);
+        self.check_finite(&signals, &joints[..n], reference.phase, time)?;
+        self.record(reference, time, &signals, &joints[..n]);
+        if time >= self.next_frame {
+            self.frame(time, reference, force_on_part, normal);
+            self.next_frame += FRAME_INTERVAL;
+            self.check_clearance(reference, time)?;
+        }
+        self.check_on_edge(reference, across.length(), normal_force, time)?;
+        self.check_spindle(reference, time)?;
+        self.check_axes(&joints[..n], reference.phase, time)?;
+        self.check_stroke(reference, stroke, time)
+    }
+
+    /// Adds a sample, of a tool that turns with what it did.
+    fn record(
+        &mut self,
+        reference: &Reference,
+        time: f64,
+        signals: &[f64],
+        joints: &[[f64; JointSignal::ALL.len()]],
+    ) {
+        let place = (reference.phase, reference.pass);
+        match &self.cutting {
+            None => self.log.push(time, place, signals, joints),
+            Some(cutting) => {
+                let mut all = [0.0; SIGNALS_OF_TURNING];
+                all[..signals.len()].copy_from_slice(signals);
+                all[signals.len()..].copy_from_slice(&cutting.signals());
+                self.log.push(time, place, &all, joints);
+            }
+        }
+    }
+
+    fn read_encoders(&mut self) {
+        let noise = self.cell.scenario.arm.servo.encoder_noise;
+        for axis in 0..self.slide() {
+            let angle = match &self.motors[axis] {
+                None => self.world.positions()[axis],
+                Some((motor, _)) => motor.angle,
+            };
+            let offset = self.cell.plant.cell.encoder_offset[axis];
+            self.encoders[axis] = angle + offset + noise * self.encoder_noise.normal();
+        }
+    }
+
+    fn frame(&mut self, time: f64, reference: &Reference, force: DVec3, normal: DVec3) {
+        self.frames.times.push(time);
+        self.frames.path_lengths.push(reference.edge_length);
+        let mut links = vec![DPose3::IDENTITY; self.laws.len()];
+        self.world.link_poses(&mut links);
+        self.frames.links.push(links);
+        let radius = self.cell.scenario.device.tool_radius;
+        self.frames
+            .contact_points
+            .push(self.world.tool_centre() - normal * radius);
+        self.frames.contact_forces.push(force);
+    }
+}

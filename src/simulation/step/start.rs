@@ -1,0 +1,67 @@
+//! The parts of a simulation as they stand at the start of a job.
+
+use crate::arm::chain::MAX_JOINTS;
+use crate::arm::dynamics::inverse_dynamics;
+use crate::cell::Cell;
+use crate::collision::ClearanceWatch;
+use crate::control::law::JointLaw;
+use crate::control::servo::{Servo, ServoParameters};
+use crate::control::transmission::Motor;
+
+/// The servo of all axes, each about its own inertia [kg m2].
+pub(super) fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
+    let parameters = &cell.scenario.arm.servo;
+    Servo::new(
+        &cell.arm.chain,
+        inertias,
+        &ServoParameters {
+            natural_frequency: parameters.natural_frequency * std::f64::consts::TAU,
+            damping_ratio: parameters.damping_ratio,
+            integral_time: parameters.integral_time,
+        },
+    )
+}
+
+/// A watch over what must not meet, the part where it really is.
+pub(super) fn clearance(cell: &Cell, positions: &[f64]) -> ClearanceWatch {
+    let standing = cell.collision.with_part_at(cell.part.world_from_part);
+    ClearanceWatch::new(standing, &to_array(positions))
+}
+
+/// Positions of as many joints as there are, and zeros.
+pub(super) fn to_array(positions: &[f64]) -> [f64; MAX_JOINTS] {
+    let mut array = [0.0; MAX_JOINTS];
+    array[..positions.len()].copy_from_slice(positions);
+    array
+}
+
+/// Share of a joint's own inertia that its rotor has, seen from the joint [1]: gears of robots make it of the same order.
+const ROTOR_SHARE: f64 = 0.5;
+
+/// Motors at rest where the plan starts; moves the links of `positions` to where they hang on them.
+pub(super) fn motors(
+    cell: &Cell,
+    inertias: &[f64],
+    positions: &mut [f64],
+) -> Vec<Option<(Motor, JointLaw)>> {
+    let still = vec![0.0; positions.len()];
+    let mut torques = still.clone();
+    let scenario = &cell.scenario;
+    inverse_dynamics(
+        &cell.arm_with_slide,
+        scenario.arm.world_from_base.rotation,
+        scenario.simulation.gravity,
+        positions,
+        &still,
+        &still,
+        &mut torques,
+    );
+    let motor = |(axis, parameters): (usize, &Option<_>)| {
+        let inertia = ROTOR_SHARE * inertias[axis];
+        let parameters = (*parameters)?;
+        let (motor, link) = Motor::at_rest(parameters, inertia, positions[axis], torques[axis]);
+        positions[axis] = link;
+        Some((motor, JointLaw::default()))
+    };
+    cell.transmissions.iter().enumerate().map(motor).collect()
+}
