@@ -6,7 +6,7 @@ use glamx::DPose3;
 use super::{FRAME_INTERVAL, SIGNALS_OF_TURNING, Simulation};
 use crate::arm::chain::MAX_JOINTS;
 use crate::device::PistonMotion;
-use crate::path::{Phase, Reference};
+use crate::path::Reference;
 use crate::plant::SensorReadings;
 use crate::recording::schema::JointSignal;
 use crate::sensing::Truth;
