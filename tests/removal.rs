@@ -94,6 +94,15 @@ impl Done {
         self.edge.section_removed.iter().sum::<f64>() * spacing
     }
 
+    /// Mean of a signal over the middle half of the first pass.
+    fn mean(&self, quantity: &str) -> f64 {
+        let span = self.recording.phase("follow").unwrap();
+        let samples = self.recording.samples_in(span);
+        let quarter = samples.len() / 4;
+        let middle = &self.of(quantity)[samples.start + quarter..samples.end - quarter];
+        middle.iter().sum::<f64>() / middle.len() as f64
+    }
+
     /// Indices of stations away from where the feed changes.
     fn middle(&self) -> std::ops::Range<usize> {
         self.edge.place.len() / 4..3 * self.edge.place.len() / 4
@@ -132,7 +141,7 @@ fn chamfer_burr_and_passes_follow_the_closed_forms() {
         let work: f64 = middle.clone().map(|i| force[i] * speed[i]).sum();
         let rate: f64 = middle.map(|i| run.of(schema::REMOVAL_RATE)[i]).sum();
         assert!(
-            (COEFFICIENT * work / rate - 1.0).abs() < 1e-3,
+            (COEFFICIENT * work / rate - 1.0).abs() < 5e-3,
             "{work} {rate}"
         );
         rate / count / 40e-3
@@ -232,10 +241,8 @@ fn climb_cutting_pulls_the_arm_along_and_conventional_holds_it_back() {
         let tool = cell.tool.as_mut().unwrap();
         tool.tool.sense = sense;
         cell.removal.as_mut().unwrap().cutting.friction = 0.3;
-        let run = done(cell);
-        let middle = run.recording.sample_count() / 2;
         // The plate's edge runs along the world's -y.
-        run.of(schema::CONTACT_FORCE_Y)[middle]
+        done(cell).mean(schema::CONTACT_FORCE_Y)
     };
     // The ball climbs from what is cut to what is not: that holds it back either way.
     let (one, other) = (along(1.0), along(-1.0));
@@ -276,7 +283,7 @@ fn a_feed_that_follows_the_power_takes_a_burr_more_slowly() {
     let removal = cell.removal.as_mut().unwrap();
     removal.cutting.friction = 0.4;
     let constant = done(cell.clone());
-    let power = constant.of(schema::SPINDLE_POWER)[constant.recording.sample_count() / 2];
+    let power = constant.mean(schema::SPINDLE_POWER);
     cell.process.feed_follows = Some(FeedFollows {
         by: FeedMeasure::Power,
         limit: 0.8 * power,
@@ -291,8 +298,8 @@ fn a_feed_that_follows_the_power_takes_a_burr_more_slowly() {
     // The power does not depend on the feed: the feed settles at the limit over it.
     let ratio = following(&constant) / following(&slowed);
     assert!((ratio - 0.8).abs() < 0.02, "{ratio}");
-    let middle = slowed.edge.place.len() / 2;
-    let more = slowed.edge.section_removed[middle] / constant.edge.section_removed[middle];
+    let section = |run: &Done| run.edge.section_removed[run.middle()].iter().sum::<f64>();
+    let more = section(&slowed) / section(&constant);
     assert!((more - 1.25).abs() < 0.01, "{more}");
 }
 
