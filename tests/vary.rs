@@ -213,7 +213,7 @@ fn a_task_is_a_run_by_its_name_and_its_exit_code_is_a_result() {
 #[test]
 fn what_cannot_be_is_refused_before_anything_is_written() {
     let bench = plate();
-    bench.write("points.csv", "process.force_n\n".to_owned());
+    bench.write("points.csv", "process.force_n\n");
     for (arguments, expected) in [
         (
             vec!["--set", "process.force=1,2"],

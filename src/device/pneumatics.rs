@@ -345,12 +345,7 @@ impl Device {
         let supply = self.supply_conductance(disturbance);
         let exhaust = self.exhaust_conductance(disturbance);
         flows[supplied] = (self.flow).mass_flow(supply, before, pressures[supplied]);
-        // A second regulator stands behind chamber 2, if one does.
-        let behind = match valve {
-            ValvePosition::Extend => gas.atmosphere + parameters.opposing_pressure,
-            ValvePosition::Retract => gas.atmosphere,
-        };
-        flows[vented] = (self.flow).mass_flow(exhaust, behind, pressures[vented]);
+        flows[vented] = (self.flow).mass_flow(exhaust, self.behind(valve), pressures[vented]);
         let disturbance_flows = disturbance.mass_flows;
         let leaks = if parameters.leakage.is_none() && disturbance.leaks == [0.0; 2] {
             LeakFlows::default()
@@ -428,6 +423,15 @@ impl Device {
             air: rates,
             ledger,
             pressures,
+        }
+    }
+
+    /// Absolute pressure behind the exhaust orifice [Pa]: of a second regulator behind chamber 2, if there is one.
+    fn behind(&self, valve: ValvePosition) -> f64 {
+        let atmosphere = self.parameters.gas.atmosphere;
+        match valve {
+            ValvePosition::Extend => atmosphere + self.parameters.opposing_pressure,
+            ValvePosition::Retract => atmosphere,
         }
     }
 

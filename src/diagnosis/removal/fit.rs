@@ -238,10 +238,10 @@ fn finish(
     let inverse = (scaled.transpose() * &scaled).try_inverse()?;
     let spread = &scaled * &inverse;
     let mut meat = DMatrix::zeros(numbers, numbers);
-    for row in 0..rows.len() {
+    for (row, of) in rows.iter().enumerate() {
         let leverage = scaled.row(row).dot(&spread.row(row)).clamp(0.0, 1.0 - 1e-9);
         fit.leverage[row] = leverage;
-        let residual = rows[row].weight.sqrt() * fit.residuals[row] / (1.0 - leverage);
+        let residual = of.weight.sqrt() * fit.residuals[row] / (1.0 - leverage);
         meat += scaled.row(row).transpose() * scaled.row(row) * residual * residual;
     }
     let covariance = &inverse * meat * &inverse;

@@ -258,7 +258,7 @@ fn collision_shapes_ride_on_their_bodies_and_are_hidden_at_first() {
         let mut found = own.iter();
         let mut found = found.by_ref().flat_map(|chunk| {
             let rows = chunk.iter_slices::<[f32; 3]>(corners);
-            rows.map(|row| row.to_vec()).collect::<Vec<_>>()
+            rows.map(<[[f32; 3]]>::to_vec).collect::<Vec<_>>()
         });
         assert_eq!(found.next().unwrap()[0], first, "{entity}");
     }
