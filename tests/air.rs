@@ -43,7 +43,7 @@ fn tampered(recording: &Recording, name: &str, change: fn(f64) -> f64) -> Record
 
 #[test]
 fn air_balances_at_every_sample_of_a_run() {
-    for name in ["plate_edge", "burred_edge"] {
+    for name in ["plate_edge_ideal", "burred_edge"] {
         let finished = run(scenario(name));
         let recording = &finished.recording;
         let found = gap(recording);
@@ -86,7 +86,7 @@ fn air_balances_at_every_sample_of_a_run() {
 
 #[test]
 fn recorded_masses_are_those_of_the_recorded_pressures_and_stroke() {
-    let job = scenario("plate_edge");
+    let job = scenario("plate_edge_ideal");
     let parameters = job.device.parameters.clone();
     let recording = run(job).recording;
     let values = |name| recording.values(name).unwrap();

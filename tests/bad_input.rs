@@ -20,7 +20,7 @@ fn edit(bench: &Bench, from: &str, to: &str) {
 }
 
 fn check(refusals: &[Refusal]) {
-    check_of("plate_edge", refusals);
+    check_of("plate_edge_ideal", refusals);
 }
 
 fn check_of(scenario: &str, refusals: &[Refusal]) {
@@ -42,12 +42,12 @@ fn check_of(scenario: &str, refusals: &[Refusal]) {
 
 #[test]
 fn the_job_that_the_refusals_spoil_is_done() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let outcome = bench.run();
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert_eq!(bench.names_in("out"), FILES);
     assert!(
-        outcome.out.contains("Plate edge, nominal"),
+        outcome.out.contains("Plate edge, ideal device"),
         "{}",
         outcome.out
     );
@@ -278,7 +278,7 @@ fn obstacles() {
         ),
     ]);
     // The same tetrahedron, not flat, stands where it is in nobody's way.
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     mesh(&bench, &[[A, C, B], [A, B, TOP], [B, C, TOP], [C, A, TOP]]);
     let outcome = bench.idc(&["check", "scenario.toml"], &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
@@ -301,7 +301,7 @@ fn collision_shapes_of_a_robot() {
         ],
     )]);
     // Meshes that are not there: what is drawn of the links counts in their place, and it is said once.
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     for link in ["shoulder", "forearm"] {
         given(&bench, link, "<mesh filename=\"none.stl\"/>");
     }
@@ -312,7 +312,7 @@ fn collision_shapes_of_a_robot() {
     let said = "links with collision meshes that cannot be used have the shape that is drawn of them: shoulder, forearm";
     assert_eq!(told(said), 1, "{}", outcome.err);
     let as_drawn = std::fs::read(bench.path("out/samples.parquet")).unwrap();
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     assert_eq!(bench.run().code, 0);
     assert!(as_drawn == std::fs::read(bench.path("out/samples.parquet")).unwrap());
 }
@@ -624,7 +624,7 @@ fn output_folders_that_cannot_be_written() {
 
 #[test]
 fn a_refused_run_leaves_the_files_of_the_last_one() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     assert_eq!(bench.run().code, 0);
     edit(&bench, "force_n = 150", "force_n = 2000");
     let before = bench.contents();

@@ -64,7 +64,7 @@ fn moved_as_advised(scenario: Scenario, advice: &Advice) {
 #[test]
 fn a_part_in_the_robot_s_base_is_refused_and_told_where_to_go() {
     // A position in metres where millimetres are asked for, but for the height.
-    let mut typed = scenario("plate_edge");
+    let mut typed = scenario("plate_edge_ideal");
     typed.workpiece.world_from_part.translation = DVec3::new(0.75e-3, 0.0, 0.05);
     let error = refusal(typed.clone());
     let CellError::Standing {
@@ -85,7 +85,7 @@ fn a_part_in_the_robot_s_base_is_refused_and_told_where_to_go() {
 
 /// How far the part must be moved away from the robot to be out of reach [m], to 0.6 mm.
 fn just_out_of_reach() -> f64 {
-    let possible = |far: f64| Cell::new(at(scenario("plate_edge"), DVec3::X * far)).is_ok();
+    let possible = |far: f64| Cell::new(at(scenario("plate_edge_ideal"), DVec3::X * far)).is_ok();
     let (mut near, mut far) = (0.3, 1.5);
     while far - near > 6e-4 {
         let middle = 0.5 * (near + far);
@@ -102,7 +102,7 @@ fn just_out_of_reach() -> f64 {
 fn unreachable_by_little_and_by_much_the_offset_that_is_told_helps() {
     let edge = just_out_of_reach();
     for beyond in [0.0, 0.293] {
-        let scenario = at(scenario("plate_edge"), DVec3::X * (edge + beyond));
+        let scenario = at(scenario("plate_edge_ideal"), DVec3::X * (edge + beyond));
         let error = refusal(scenario.clone());
         let CellError::Plan { source, advice, .. } = &error else {
             panic!("{error}");
@@ -120,14 +120,14 @@ fn unreachable_by_little_and_by_much_the_offset_that_is_told_helps() {
 
 #[test]
 fn no_axis_within_its_limit_is_blamed_for_what_is_too_far_away() {
-    let error = refusal(at(scenario("plate_edge"), DVec3::X * 1.2)).to_string();
+    let error = refusal(at(scenario("plate_edge_ideal"), DVec3::X * 1.2)).to_string();
     assert!(error.contains("out of reach by"), "{error}");
     assert!(!error.contains("its limit is"), "{error}");
 }
 
 #[test]
 fn a_wire_across_the_way_between_two_waypoints_is_found() {
-    let job = || scenario("plate_edge");
+    let job = || scenario("plate_edge_ideal");
     let cell = Cell::new(job()).unwrap();
     // Half way along the edge and half way between two waypoints, 1 mm of wire across the tool's shank.
     let reference = cell.plan.reference(0.5 * cell.plan.duration() + 0.025);
@@ -146,7 +146,7 @@ fn a_wire_across_the_way_between_two_waypoints_is_found() {
 fn a_wall_beside_the_arm_is_avoided_or_refused_by_name() {
     // Between base and part, as high as the shoulder: no posture passes it.
     let wall = with_obstacle(
-        scenario("plate_edge"),
+        scenario("plate_edge_ideal"),
         "wall",
         DVec3::new(0.02, 3.0, 1.6),
         DVec3::new(0.4, 0.0, 0.8),
@@ -166,7 +166,7 @@ fn what_may_meet_by_the_scenario_does_not_count() {
     let place = DVec3::new(0.75, 0.0, 0.6);
     let blocked = || {
         with_obstacle(
-            scenario("plate_edge"),
+            scenario("plate_edge_ideal"),
             "bar",
             DVec3::new(2.0, 0.05, 0.05),
             place,
@@ -189,11 +189,11 @@ fn what_may_meet_by_the_scenario_does_not_count() {
 
 #[test]
 fn a_run_in_which_bodies_meet_stops_and_keeps_what_was_recorded() {
-    let mut cell = Cell::new(scenario("plate_edge")).unwrap();
+    let mut cell = Cell::new(scenario("plate_edge_ideal")).unwrap();
     let middle = cell.plan.reference(0.5 * cell.plan.duration());
     // Planned without the post; it stands where the spindle comes by in the middle of the edge.
     let place = middle.centre - middle.axis * 0.1;
-    let mut with_post = scenario("plate_edge");
+    let mut with_post = scenario("plate_edge_ideal");
     with_post.collision.allowed_pairs = Vec::new();
     let far = with_obstacle(
         with_post,
@@ -219,7 +219,7 @@ fn a_run_in_which_bodies_meet_stops_and_keeps_what_was_recorded() {
 #[test]
 fn the_weight_of_the_tool_is_told_with_what_to_change() {
     let down = |force: f64, mass: Option<f64>| {
-        let mut scenario = scenario("plate_edge");
+        let mut scenario = scenario("plate_edge_ideal");
         scenario.process.tool_axis = Some(DVec3::NEG_Z);
         scenario.process.force = force;
         if let Some(mass) = mass {
@@ -252,9 +252,9 @@ fn the_weight_of_the_tool_is_told_with_what_to_change() {
 
 #[test]
 fn a_tool_axis_along_the_bisector_is_the_job_without_a_lean() {
-    let plain = Cell::new(scenario("plate_edge")).unwrap();
+    let plain = Cell::new(scenario("plate_edge_ideal")).unwrap();
     let axis = plain.plan.reference(0.5 * plain.plan.duration()).axis;
-    let mut given = scenario("plate_edge");
+    let mut given = scenario("plate_edge_ideal");
     given.process.tool_axis = Some(axis);
     let given = Cell::new(given).unwrap();
     assert!((given.axial_share - 1.0).abs() < 1e-12);
@@ -263,7 +263,7 @@ fn a_tool_axis_along_the_bisector_is_the_job_without_a_lean() {
         assert!((a - b).abs() < 1e-6, "{a} {b}");
     }
     // Into the part's face it is no tool axis.
-    let mut aside = scenario("plate_edge");
+    let mut aside = scenario("plate_edge_ideal");
     aside.process.tool_axis = Some(DVec3::Z);
     let error = refusal(aside);
     assert!(
@@ -274,7 +274,7 @@ fn a_tool_axis_along_the_bisector_is_the_job_without_a_lean() {
 
 #[test]
 fn the_best_place_of_a_grid_is_confirmed_by_a_run_and_the_map_by_planning() {
-    let job = scenario("plate_edge");
+    let job = scenario("plate_edge_ideal");
     let setup = idc_cell::cell::Setup::load(job.clone()).unwrap();
     let grid = PlaceGrid {
         x: vec![0.1, 0.45, 0.7, 0.95, 1.4],

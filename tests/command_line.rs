@@ -7,7 +7,7 @@ use crate::program::{Bench, FILES};
 
 #[test]
 fn a_result_outside_its_bounds_is_named_and_kept() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.replace(
         "scenario.toml",
         "force_mean_n = { min = 148.5, max = 151.5 }",
@@ -36,7 +36,7 @@ fn a_result_outside_its_bounds_is_named_and_kept() {
 
 #[test]
 fn json_is_what_the_summary_file_holds_and_quiet_is_quiet() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let outcome = bench.idc(&["run", "scenario.toml", "--out", "out", "--json"], &[]);
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
     assert_eq!(
@@ -53,7 +53,7 @@ fn json_is_what_the_summary_file_holds_and_quiet_is_quiet() {
 
 #[test]
 fn the_edges_of_the_plate_are_listed() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let outcome = bench.idc(
         &["edges", project("assets/plate.stl").to_str().unwrap()],
         &[],
@@ -74,7 +74,7 @@ fn the_edges_of_the_plate_are_listed() {
 
 #[test]
 fn what_cannot_be_listed_is_refused() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     for (arguments, words) in [
         (&["edges", "nowhere.stl"][..], "cannot read nowhere.stl"),
         (
@@ -106,7 +106,7 @@ fn what_cannot_be_listed_is_refused() {
 
 #[test]
 fn a_proof_needs_nothing_of_the_project() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let outcome = bench.idc(&["prove", "--only", "case-01", "--out", "proof"], &[]);
     assert_eq!(outcome.code, 0, "{}{}", outcome.out, outcome.err);
     outcome.only_line("note: there is no assets/proof/cases here");

@@ -18,7 +18,7 @@ fn summaries(name: &str) -> [Summary; 2] {
 
 #[test]
 fn halving_both_steps_moves_nothing_that_matters() {
-    for name in ["plate_edge", "misplaced_part", "burred_edge"] {
+    for name in ["plate_edge_ideal", "misplaced_part", "burred_edge"] {
         let [coarse, fine] = summaries(name);
         let change = |of: fn(&Summary) -> Option<f64>| {
             let [coarse, fine] = [of(&coarse), of(&fine)].map(Option::unwrap);

@@ -11,6 +11,7 @@ const SHAKEN: &str = r#"schema = 1
 kind = "bench"
 title = "shaken"
 [device]
+ideal = true
 model = "device.toml"
 [device.override]
 supply_orifice_mm2 = 0.1
@@ -45,7 +46,7 @@ const MASS: &str = "[variables.moving_mass_kg]\nmin = 1\nmax = 6\nstart = 4\n";
 
 /// A folder with `study.toml` and the scenario that it names.
 fn folder(study: &str) -> Bench {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.write("shaken.toml", SHAKEN);
     bench.write("study.toml", study);
     bench

@@ -52,7 +52,7 @@ fn assert_offset_found(answer: &Value) -> [f64; 3] {
 
 #[test]
 fn a_planted_force_is_found_told_of_and_kept() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", OFFSET, Dirt::None);
     let outcome = diagnose(&bench, &["case", "--out", "out"]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
@@ -159,7 +159,7 @@ fn a_planted_force_is_found_told_of_and_kept() {
 
 #[test]
 fn nothing_is_found_where_nothing_was_planted() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", "", Dirt::None);
     let outcome = diagnose(&bench, &["case", "--out", "out", "--json"]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
@@ -180,7 +180,7 @@ fn nothing_is_found_where_nothing_was_planted() {
 
 #[test]
 fn dirt_is_told_of_and_does_no_harm() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", OFFSET, Dirt::Much);
     let outcome = diagnose(&bench, &["case", "--out", "out"]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
@@ -199,7 +199,7 @@ fn dirt_is_told_of_and_does_no_harm() {
 
 #[test]
 fn all_goes_on_past_a_bad_case_and_resumes() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "cases/case-2", OFFSET, Dirt::None);
     case(&bench, "cases/case-10", "", Dirt::None);
     case(&bench, "cases/case-3", "", Dirt::None);
@@ -345,7 +345,7 @@ fn bad_input_is_one_line_and_writes_nothing() {
         ),
     ];
     for (spoil, says) in refusals {
-        let bench = Bench::new("plate_edge");
+        let bench = Bench::new("plate_edge_ideal");
         case(&bench, "case", "", Dirt::None);
         spoil(&bench);
         let before = bench.contents();
@@ -359,7 +359,7 @@ fn bad_input_is_one_line_and_writes_nothing() {
 
 #[test]
 fn folders_that_will_not_do_are_refused() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", "", Dirt::None);
     std::fs::create_dir(bench.path("empty")).unwrap();
     bench.write("file", "");
@@ -390,7 +390,7 @@ fn folders_that_will_not_do_are_refused() {
 
 #[test]
 fn a_rig_file_that_says_all_of_it_misses_nothing() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", OFFSET, Dirt::None);
     let rig = std::fs::read_to_string(bench.path("case/rig.toml")).unwrap();
     assert!(rig.starts_with(&RIG[..20]));
@@ -417,7 +417,7 @@ fn the_effect_that_explains_the_most_is_told_first_in_every_file() {
         (gain(1.4) + &delay(0.01), of_gain),
         (gain(1.02) + &delay(0.12), of_delay),
     ] {
-        let bench = Bench::new("plate_edge");
+        let bench = Bench::new("plate_edge_ideal");
         case(&bench, "case", &effects, Dirt::None);
         let outcome = diagnose(&bench, &["case", "--out", "out", "--quiet"]);
         assert_eq!(outcome.code, 0, "{}", outcome.err);
@@ -444,7 +444,7 @@ fn a_practice_case_with_nothing_concealed_is_answered_so() {
     let Some(folder) = shared("concealed/practice/cases/case-01") else {
         return;
     };
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let outcome = diagnose(
         &bench,
         &[folder.to_str().unwrap(), "--out", "out", "--quiet"],
@@ -464,7 +464,7 @@ fn an_effect_once_taken_out_does_not_come_back() {
     let Some(folder) = shared("concealed/practice/cases/case-17") else {
         return;
     };
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let outcome = diagnose(
         &bench,
         &[folder.to_str().unwrap(), "--out", "out", "--quiet"],

@@ -57,7 +57,7 @@ fn distance(point: DVec3, corners: &[DVec3]) -> f64 {
 // Catches: a rotation that is written transposed or with the wrong sign, of links, slide or their shapes.
 #[test]
 fn the_ball_that_is_drawn_rides_on_the_edge_and_links_hang_on_their_joints() {
-    let mut job = scenario("plate_edge");
+    let mut job = scenario("plate_edge_ideal");
     job.workpiece.edge.start = 0.1;
     job.workpiece.edge.end = Some(0.13);
     let cell = Cell::new(job).unwrap();
@@ -134,7 +134,7 @@ fn from_cylinder(point: DVec3, radius: f64, length: f64) -> f64 {
 // Catches: a hull in the frame of another link, an obstacle off its place, a recording that grows with the shapes.
 #[test]
 fn what_is_checked_for_collisions_is_where_the_links_and_obstacles_are() {
-    let mut job = scenario("plate_edge");
+    let mut job = scenario("plate_edge_ideal");
     job.workpiece.edge.start = 0.1;
     job.workpiece.edge.end = Some(0.13);
     let (size, turned) = (

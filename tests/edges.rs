@@ -69,7 +69,7 @@ fn angle_bracket() -> String {
 
 #[test]
 fn the_page_of_a_part_has_the_numbers_of_its_list() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let bracket = project("assets/bracket.stl");
     let bracket = bracket.to_str().unwrap();
     for (mesh, angle, edges) in [(bracket, "60", 8), ("part.stl", "30", 12)] {
@@ -122,7 +122,7 @@ fn the_page_of_a_part_has_the_numbers_of_its_list() {
 
 #[test]
 fn an_inside_edge_is_told_and_has_no_lines_to_paste() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.write("bracket.stl", angle_bracket());
     let outcome = bench.idc(&["edges", "bracket.stl", "--out", "page.html"], &[]);
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
@@ -149,7 +149,7 @@ fn an_inside_edge_is_told_and_has_no_lines_to_paste() {
 
 #[test]
 fn a_page_goes_where_nothing_stands() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let words = ["edges", "part.stl", "--out", "page.html"];
     assert_eq!(bench.idc(&words, &[]).code, 0);
     let before = bench.contents();
@@ -173,7 +173,7 @@ fn a_page_goes_where_nothing_stands() {
 
 #[test]
 fn the_edge_of_a_run_is_drawn_in_the_errors_of_its_recording() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     // A force that changes along the edge: a burr.
     let text = fs::read_to_string(bench.path("scenario.toml")).unwrap();
     let burr = "[workpiece.burr]\nkind = \"bump\"\nposition_mm = 140\nheight_mm = 1\nwidth_mm = 40\n\n[process]";

@@ -66,7 +66,7 @@ fn written(bench: &Bench) -> BTreeMap<String, SystemTime> {
 
 #[test]
 fn what_sets_in_is_found_where_and_since_when_and_a_new_day_does_its_own_work_alone() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let folder = bench.path("");
     for day in 0..12 {
         record(&folder, 1, day, 0.0);
@@ -128,7 +128,7 @@ fn what_sets_in_is_found_where_and_since_when_and_a_new_day_does_its_own_work_al
 #[test]
 #[ignore = "takes half an hour: tests/studies/fleet.sh"]
 fn two_hundred_recordings_of_five_devices_over_forty_days() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let folder = bench.path("");
     let planted = |device: u64, day: u64| match (device, day) {
         (2, 15..) => Some(("coulomb_viscous_friction", 0.3)),
@@ -183,7 +183,7 @@ fn two_hundred_recordings_of_five_devices_over_forty_days() {
 
 #[test]
 fn a_folder_without_dates_and_a_scenario_that_is_gone_are_refused() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let refused = |arguments: &[&str], expected: &str| {
         let outcome = bench.idc(arguments, &[]);
         assert_eq!(outcome.code, 2, "{arguments:?}");

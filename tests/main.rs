@@ -8,6 +8,7 @@ mod collision;
 mod command_line;
 mod common;
 mod contact;
+mod contact_flange;
 mod controllers;
 mod convergence;
 mod coverage;

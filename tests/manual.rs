@@ -33,7 +33,7 @@ fn fed(program: &str, arguments: &[&str], text: &str) -> Option<(bool, String)> 
 
 #[test]
 fn shells_take_the_completions() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let names: Vec<String> = (Cli::command().get_subcommands())
         .map(|command| command.get_name().to_owned())
         .collect();
@@ -70,7 +70,7 @@ fn shells_take_the_completions() {
 
 #[test]
 fn every_command_has_a_page_that_man_renders() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let outcome = bench.idc(&["man", "--out", "pages"], &[]);
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
     let count = Cli::command()
@@ -101,7 +101,7 @@ fn every_command_has_a_page_that_man_renders() {
 #[test]
 fn a_check_says_what_would_be_done() {
     let check = |file: &str| {
-        let bench = Bench::new("plate_edge");
+        let bench = Bench::new("plate_edge_ideal");
         let file = project(file).display().to_string();
         let outcome = bench.idc(&["check", &file, "--json"], &[]);
         assert_eq!((outcome.code, outcome.err.as_str()), (0, ""), "{file}");
@@ -119,7 +119,7 @@ fn a_check_says_what_would_be_done() {
     near("force_n", 150.0);
     near("feed_mm_per_s", 20.0);
     // What it says of a run is what the run does.
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.run();
     assert_eq!(
         numbers["samples"].as_f64(),

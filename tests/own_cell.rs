@@ -167,7 +167,7 @@ struct Job {
 }
 
 const PLATE: Job = Job {
-    name: "plate_edge",
+    name: "plate_edge_ideal",
     part: "plate.stl",
     cuts: &[
         ("start_mm = 10\n", "start_mm = 100\n"),
@@ -254,7 +254,7 @@ fn scenario(job: &Job, program: &Program, planted: &Planted) -> String {
 
 /// Runs the programs of each and diagnoses them.
 fn diagnosed(job: &Job, all: &[Planted]) -> Bench {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let asset = project(&format!("assets/{}", job.part));
     std::fs::copy(asset, bench.path(job.part)).unwrap();
     bench.write("believed.toml", scenario(job, &PROGRAMS[0], &NOTHING));
@@ -374,7 +374,7 @@ pub fn columns<const N: usize>(file: &Path, recording: &str, names: [&str; N]) -
 /// friction: it stood 1.2 N off from the first touch on, and a soft joint was found in a cell that had none.
 #[test]
 fn rapier_and_the_plant_of_the_diagnosis_agree_on_a_leaned_tool_with_seals() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let asset = project(&format!("assets/{}", PLATE.part));
     std::fs::copy(asset, bench.path(PLATE.part)).unwrap();
     let done = |words: &[&str]| {

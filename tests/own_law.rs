@@ -36,7 +36,7 @@ fn seek(bench: &Bench, folder: &str) {
 
 #[test]
 fn a_law_is_found_with_its_number_and_predicts_what_was_kept_back() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     std::fs::create_dir(bench.path("case")).unwrap();
     case_files(
         &bench,
@@ -70,7 +70,7 @@ fn a_law_is_found_with_its_number_and_predicts_what_was_kept_back() {
 
 #[test]
 fn where_it_was_not_planted_nothing_of_it_is_found() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     std::fs::create_dir(bench.path("case")).unwrap();
     case_files(&bench, "case", "", Dirt::None);
     seek(&bench, "case");
@@ -91,7 +91,7 @@ fn a_law_of_a_foreign_device_is_found_with_its_number() {
     let Some(cases) = shared("concealed/beyond/practice/cases") else {
         return;
     };
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     std::fs::create_dir(bench.path("case")).unwrap();
     for file in std::fs::read_dir(cases.join("case-12")).unwrap() {
         let file = file.unwrap();
@@ -138,7 +138,7 @@ fn difference(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
 
 #[test]
 fn in_a_running_cell_a_law_does_what_the_effect_does_that_says_the_same() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.replace("scenario.toml", "end_mm = 290", "end_mm = 40");
     let text = std::fs::read_to_string(bench.path("scenario.toml")).unwrap();
     bench.write("scenario.toml", text.split("[expect]").next().unwrap());

@@ -4,7 +4,7 @@ use crate::common::skipped;
 use crate::program::{Bench, Outcome};
 
 fn spoiled(from: &str, to: &str) -> Outcome {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.replace("scenario.toml", from, to);
     bench.run()
 }
@@ -69,7 +69,7 @@ fn what_is_wrong_is_shown_in_its_line() {
 
 #[test]
 fn a_rig_file_a_map_and_a_study_are_shown_as_well() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     for (kind, from, to, line) in [
         ("rig", "bore_m = 0.0211", "bore_m = 21.1", "bore_m = 21.1"),
         ("rig", "rod_m", "rodd_m", "rodd_m"),
@@ -91,7 +91,7 @@ fn a_rig_file_a_map_and_a_study_are_shown_as_well() {
 
 #[test]
 fn an_error_is_json_where_json_is_asked_for() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.replace("scenario.toml", "force_n = 150", "force_n = -150");
     let outcome = bench.idc(&["run", "scenario.toml", "--json"], &[]);
     assert_eq!((outcome.code, outcome.out.as_str()), (2, ""));
@@ -112,7 +112,7 @@ fn an_error_is_json_where_json_is_asked_for() {
 
 #[test]
 fn colours_are_for_terminals_and_for_those_who_ask() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let escapes = |arguments: &[&str], environment: &[(&str, &str)]| {
         let outcome = bench.idc(arguments, environment);
         outcome.out.contains('\u{1b}') || outcome.err.contains('\u{1b}')

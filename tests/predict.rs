@@ -57,7 +57,7 @@ fn inputs() -> String {
 
 /// A folder with a rig and its inputs.
 fn folder() -> Bench {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.write("rig.toml", RIG);
     bench.write("inputs.csv", inputs());
     bench

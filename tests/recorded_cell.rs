@@ -31,6 +31,7 @@ servo_bandwidth_hz = 25
 stiffness_n_m_per_rad = [2e6, 2e6, 2e6, 2e5, 2e5, 2e4]
 
 [device]
+ideal = true
 model = "device.toml"
 
 [workpiece]
@@ -109,7 +110,7 @@ fn job(mut nominal: Scenario, program: &Program) -> Scenario {
 
 /// The project's own plan of a program.
 fn commands(program: &Program) -> Commands {
-    let cell = Cell::new(job(scenario("plate_edge"), program)).unwrap();
+    let cell = Cell::new(job(scenario("plate_edge_ideal"), program)).unwrap();
     let axes = cell.arm.chain.len();
     let count = (cell.plan.duration() * RATE) as usize;
     let mut made = Commands {
@@ -264,7 +265,7 @@ const PLANTED: [Planted; 7] = [
 
 #[test]
 fn what_is_planted_in_a_cell_is_found_placed_and_predicted_with() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.write("cell.toml", CELL);
     let device = std::fs::read_to_string(bench.path("device.toml")).unwrap();
     assert!(device.contains("regulator_dead_time_ms"));
@@ -350,7 +351,7 @@ fn surface(
 #[test]
 fn a_joint_whose_encoder_reads_too_much_stands_short_of_its_command() {
     const OFFSET: f64 = 1e-3;
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.write("cell.toml", CELL);
     let cell = LoadedCell::load(&bench.path("cell.toml")).unwrap();
     let made = commands(&PROGRAMS[1]);
@@ -389,7 +390,7 @@ fn a_joint_whose_encoder_reads_too_much_stands_short_of_its_command() {
 /// Catches: the same in the cell that is simulated, or in one of the two alone: Rapier's arm and the replayed one move the slide alike.
 #[test]
 fn an_encoder_s_offset_moves_the_simulated_slide_as_the_replayed_one() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.write("cell.toml", CELL);
     let replayed = LoadedCell::load(&bench.path("cell.toml")).unwrap();
     let program = &PROGRAMS[0];
@@ -432,7 +433,7 @@ fn a_burr_is_met_where_it_stands_to_a_fraction_of_a_sample() {
         position: 0.06,
         width: 4e-3,
     };
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.write("cell.toml", CELL);
     let cell = LoadedCell::load(&bench.path("cell.toml")).unwrap();
     for program in &PROGRAMS {
@@ -504,7 +505,7 @@ fn predicts(file: &Path, truth: &[Vec<f64>], name: &str) {
 
 #[test]
 fn a_recorded_cell_is_nothing_to_run_and_its_file_says_what_is_believed_alone() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.write("cell.toml", CELL);
     let message = load_any(&bench.path("cell.toml")).unwrap_err().to_string();
     assert!(message.contains("recorded_cell"), "{message}");
@@ -558,7 +559,7 @@ fn the_laboratory_s_nothing_is_nothing() {
     let bisector = glam::DVec3::new(-1.0, 0.0, 1.0).normalize();
     assert!((middle.bisector - bisector).length() < 1e-7);
     // The sixth case is a control.
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let case = shared.join("practice/cases/case-06");
     let of = |path: &Path| path.display().to_string();
     let outcome = bench.idc(

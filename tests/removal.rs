@@ -23,7 +23,7 @@ const SPEED: f64 = 8.0;
 
 /// The nominal cell with a belt that takes off by Preston's law, without friction or cutting force unless asked for.
 fn belt() -> Scenario {
-    let mut cell = scenario("plate_edge");
+    let mut cell = scenario("plate_edge_ideal");
     cell.process.force = 60.0;
     cell.process.settle_time = 0.5;
     cell.passes = vec![pass(60.0, 40e-3)];
@@ -334,7 +334,7 @@ fn a_tool_that_lies_along_the_normal_does_not_cut_and_is_refused() {
 #[test]
 fn five_newtons_are_held_at_any_inclination_with_an_opposing_pressure() {
     use idc_cell::scenario::load;
-    let path = crate::common::project("scenarios/plate_edge.toml");
+    let path = crate::common::project("scenarios/plate_edge_ideal.toml");
     // The plate turned about its edge, so that the tool stands from nearly upright to level and beyond.
     for turn in [-40.0f64, 0.0, 45.0] {
         let mut cell = load(&path).unwrap();

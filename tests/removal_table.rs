@@ -56,7 +56,7 @@ fn diagnosed(bench: &Bench, folder: &str) -> Value {
 }
 
 fn bench(rows: &str) -> Bench {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     std::fs::create_dir_all(bench.path("case")).unwrap();
     bench.write("case/rig.toml", FILE);
     bench.write("case/runs.csv", rows);

@@ -7,7 +7,7 @@ use rerun::{ChunkStore, ChunkStoreConfig, StoreKind};
 use crate::program::{Bench, FILES, Outcome};
 
 fn misplaced(shift_mm: f64) -> Bench {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let table = format!("[workpiece.misplacement]\nshift_mm = {shift_mm}\n[process]");
     bench.replace("scenario.toml", "[process]", &table);
     bench
@@ -15,7 +15,7 @@ fn misplaced(shift_mm: f64) -> Bench {
 
 /// Air that leaves a chamber in microseconds.
 fn leaky(dead_volume_cm3: f64, orifice_mm2: f64) -> Bench {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let keys = format!(
         "dead_volume_cm3 = {dead_volume_cm3}\nsupply_orifice_mm2 = {orifice_mm2}\nexhaust_orifice_mm2 = {orifice_mm2}"
     );

@@ -13,7 +13,7 @@ use crate::program::Bench;
 
 /// A short stretch of the plate's edge.
 fn plate() -> Bench {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     bench.replace("scenario.toml", "end_mm = 290", "end_mm = 30");
     bench
 }

@@ -42,7 +42,7 @@ impl Drop for Running {
 
 /// A short run, its recording in `runs/first`.
 fn recorded() -> Bench {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     let (code, _, errors) =
         ran(idc(&bench.path("")).args(["run", "scenario.toml", "--out", "first", "--quiet"]));
     assert_eq!(code, 0, "{errors}");

@@ -215,6 +215,7 @@ fn rows_of(
             wear: if file.cumulate_wear { worn } else { wear },
             volume,
             weight,
+            scatter: file.scatter,
         };
         worn += force * time * if speed.is_finite() { speed } else { 1.0 };
         if held { kept.push(row) } else { fit.push(row) }

@@ -12,7 +12,7 @@ use super::effects::{EffectKeys, effects};
 use super::error::ScenarioError;
 use super::estimator::{EstimatorBase, estimator as set_up_estimator};
 use super::load::expectations;
-use super::rig_device::{BenchDevice, USUAL_CONTACT, bench_device};
+use super::rig_device::{BenchDevice, bench_device, usual_contact};
 use super::rig_file::blank;
 use super::sections::{bench_sections, keys as keys_of};
 use super::sensing::{check_set_pressure, sensing};
@@ -134,7 +134,7 @@ impl BenchScenario {
     #[must_use]
     pub fn believed(&self) -> PlantParameters {
         let contact = match self.load {
-            LoadScenario::Free => USUAL_CONTACT,
+            LoadScenario::Free => usual_contact(self.device.ideal),
             LoadScenario::Contact { contact, .. } => contact,
         };
         PlantParameters {

@@ -124,6 +124,8 @@ pub struct DeviceScenario {
     pub model: PathBuf,
     /// Pneumatics.
     pub parameters: DeviceParameters,
+    /// Whether it is the source paper's in what its scenario leaves open: without friction of its seals, at constant temperature.
+    pub ideal: bool,
     /// Whether the slide is clamped at the working stroke.
     pub locked: bool,
     /// Centre of the moving mass from the flange at zero stroke, along the axis [m].

@@ -22,13 +22,14 @@ pub(super) use keys::ModelKeys;
 /// # Errors
 /// The file cannot be read, or a key is unknown, absent or out of its range.
 pub fn load_device(path: &Path) -> Result<DeviceScenario, ScenarioError> {
-    load_with_overrides(path, None)
+    load_with_overrides(path, None, false)
 }
 
-/// Reads a device model file; keys of the other table, if any, take precedence.
+/// Reads a device model file; keys of the other table, if any, take precedence, and below them what makes a device ideal, if it is to be.
 pub(super) fn load_with_overrides(
     path: &Path,
     overrides: Option<(Section<'_>, &ModelKeys)>,
+    ideal: bool,
 ) -> Result<DeviceScenario, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, SCHEMA)?;
@@ -38,6 +39,7 @@ pub(super) fn load_with_overrides(
             .into_iter()
             .chain([(Section::new(&document, "device"), &file.device)])
             .collect(),
+        ideal,
     };
     let mut plant = blank();
     let is_part = |number: &Number| registry::PARTS.iter().any(|part| part.name == number.name);
@@ -52,6 +54,7 @@ pub(super) fn load_with_overrides(
         model: path.to_path_buf(),
         parameters: plant.device,
         locked: false,
+        ideal,
         moving_centre_of_mass: model.number(&registry::MOVING_CENTRE)?,
         moving_radius_of_gyration: model.number(&registry::MOVING_GYRATION)?,
         tool_centre: model.number(&registry::TOOL_CENTRE)?,
@@ -64,6 +67,8 @@ pub(super) fn load_with_overrides(
 /// Tables that give the same keys, the first to give one being right.
 struct Layers<'a> {
     layers: Vec<(Section<'a>, &'a ModelKeys)>,
+    /// Whether what makes a device ideal stands before the last of them, the model file.
+    ideal: bool,
 }
 
 impl<'a> Layers<'a> {
@@ -96,13 +101,35 @@ impl<'a> Layers<'a> {
         if number.name == registry::OPPOSING_PRESSURE.name && self.given(number).is_err() {
             return Ok(0.0);
         }
+        if let Some(value) = self.idealised(number) {
+            return Ok(value);
+        }
         let (section, key, value) = self.given(number)?;
         section.known(number, key, value)
     }
 
+    /// Value of a number by which the device is ideal [SI], unless the scenario gives it.
+    fn idealised(&self, number: &Number) -> Option<f64> {
+        let key = number.device_key.unwrap_or(number.name);
+        let ideal = number.ideal().filter(|_| self.ideal)?;
+        self.of_scenario(|keys| keys.numbers.get(key).copied())
+            .is_none()
+            .then_some(ideal)
+    }
+
+    /// What the scenario itself gives.
+    fn of_scenario<T>(&self, pick: impl Fn(&ModelKeys) -> Option<T>) -> Option<T> {
+        let (_, above) = self.layers.split_last()?;
+        above.iter().find_map(|(_, keys)| pick(keys))
+    }
+
     /// Refusal of a number as it was given.
     fn refusal(&self, number: &Number, expected: &str) -> ScenarioError {
+        let (nearest, _) = &self.layers[0];
         match self.given(number) {
+            _ if self.idealised(number).is_some() => {
+                nearest.missing(number.device_key.unwrap_or(number.name), expected)
+            }
             Ok((section, key, value)) => section.refuse_number(key, value, expected.to_owned()),
             Err(missing) => missing,
         }

@@ -137,6 +137,7 @@ pub(super) struct ServoKeys {
 #[serde(deny_unknown_fields)]
 pub(super) struct DeviceKeys {
     pub model: PathBuf,
+    pub ideal: Option<bool>,
     pub locked: Option<bool>,
     #[serde(default, rename = "override")]
     pub overrides: ModelKeys,

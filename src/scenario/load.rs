@@ -34,7 +34,7 @@ pub(super) fn from_document(
     let file: ScenarioFile = document.parse(&scenario_sections())?;
     let section = |table: &str| Section::new(document, table);
     let device = device(&section("device"), &file.device)?;
-    let contact = contact(&section("contact"), &file.contact)?;
+    let contact = contact(&section("contact"), &file.contact, device.ideal)?;
     check_lock(&section("contact"), &file.contact, &device, &contact)?;
     let simulation = simulation(&section("simulation"), &file.simulation)?;
     let sensing = sensing(document, &file.sensing, simulation.step)?;
@@ -211,16 +211,17 @@ pub(super) fn device(
         let expected = "a device model file; a scenario of kind = \"bench\" takes a rig file";
         return Err(section.refuse("model", found, expected.to_owned()));
     }
-    let mut device = load_with_overrides(&model, Some((overrides, &keys.overrides)))?;
+    let ideal = keys.ideal.unwrap_or(false);
+    let mut device = load_with_overrides(&model, Some((overrides, &keys.overrides)), ideal)?;
     device.locked = keys.locked.unwrap_or(false);
     Ok(device)
 }
 
 #[rustfmt::skip] // A table: one key a line.
-pub(super) fn contact(section: &Section<'_>, keys: &file::ContactKeys) -> Result<ContactScenario, ScenarioError> {
+pub(super) fn contact(section: &Section<'_>, keys: &file::ContactKeys, ideal: bool) -> Result<ContactScenario, ScenarioError> {
     Ok(ContactScenario {
-        stiffness: section.known_or_default(&registry::CONTACT_STIFFNESS, "stiffness_n_per_m", keys.stiffness_n_per_m)?,
-        damping: section.known_or_default(&registry::CONTACT_DAMPING, "damping_n_s_per_m", keys.damping_n_s_per_m)?,
+        stiffness: section.known_or(&registry::CONTACT_STIFFNESS, "stiffness_n_per_m", keys.stiffness_n_per_m, registry::CONTACT_STIFFNESS.default_of(ideal))?,
+        damping: section.known_or(&registry::CONTACT_DAMPING, "damping_n_s_per_m", keys.damping_n_s_per_m, registry::CONTACT_DAMPING.default_of(ideal))?,
         friction: section.known_or_default(&registry::EDGE_FRICTION, "friction_coefficient", keys.friction_coefficient)?,
         spindle_frequency: section.known_or_default(&registry::SPINDLE_FREQUENCY, "spindle_frequency_hz", keys.spindle_frequency_hz)?,
         runout_amplitude: section.number("runout_um", keys.runout_um.unwrap_or(0.0), 0.0..=1000.0)?,

@@ -95,7 +95,7 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         return Err(section("device").misplaced("locked", reason));
     }
     let part = workpiece(&section("workpiece"), &file.workpiece)?;
-    let contact = load::contact(&section("contact"), &file.contact)?;
+    let contact = load::contact(&section("contact"), &file.contact, device.ideal)?;
     refuse_what_is_sought(&document, &part)?;
     refuse_what_commands_say(&document)?;
     let (joints, sensors, belief) = (section("joints"), section("sensors"), section("belief"));

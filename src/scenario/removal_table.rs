@@ -37,7 +37,7 @@ const SECTIONS: &Sections = &[
             "weight",
         ],
     ),
-    ("columns.*", &["name", "unit", "where_0"]),
+    ("columns.*", &["name", "unit", "where_0", "scatter_percent"]),
     (
         "believed",
         &[
@@ -120,6 +120,7 @@ struct ColumnsKeys {
 struct ColumnKeys {
     name: String,
     unit: Option<String>,
+    scatter_percent: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -215,6 +216,8 @@ pub struct RemovalTableFile {
     pub cumulate_wear: bool,
     /// Volume.
     pub volume: TableColumn,
+    /// Standard deviation of a volume over it that is known of how it is measured [1].
+    pub scatter: f64,
     /// Column that is 0 of rows of less weight, and that weight.
     pub weight: Option<(String, f64)>,
     /// The law.
@@ -289,6 +292,11 @@ pub fn load_removal_table(path: &Path) -> Result<RemovalTableFile, ScenarioError
         area: optional("area", &keys.columns.area, &AREAS)?,
         wear: optional("wear", &keys.columns.wear, &[])?,
         cumulate_wear: keys.columns.cumulate_wear,
+        scatter: Section::new(&document, "columns.volume").number(
+            "scatter_percent",
+            keys.columns.volume.scatter_percent.unwrap_or(0.0),
+            0.0..=100.0,
+        )? / 100.0,
         volume: column(&columns, "volume", &keys.columns.volume, &VOLUMES)?,
         weight,
         believed,
@@ -317,6 +325,10 @@ fn column(
     units: &[(&str, f64)],
 ) -> Result<TableColumn, ScenarioError> {
     columns.text(&format!("{key}.name"), &keys.name)?;
+    if keys.scatter_percent.is_some() && key != "volume" {
+        let reason = "the scatter that counts is that of the volume".to_owned();
+        return Err(columns.misplaced(&format!("{key}.scatter_percent"), reason));
+    }
     let unit = keys.unit.clone().unwrap_or_default();
     let factor = match units {
         [] => 1.0,

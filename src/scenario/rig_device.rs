@@ -26,10 +26,12 @@ pub(super) struct BenchDevice {
 }
 
 /// The contact of a load that says nothing of it.
-pub(super) static USUAL_CONTACT: ContactParameters = ContactParameters::linear(
-    registry::CONTACT_STIFFNESS.default,
-    registry::CONTACT_DAMPING.default,
-);
+pub(super) fn usual_contact(ideal: bool) -> ContactParameters {
+    ContactParameters::linear(
+        registry::CONTACT_STIFFNESS.default_of(ideal),
+        registry::CONTACT_DAMPING.default_of(ideal),
+    )
+}
 
 /// Whether it is a rig file. Whatever is wrong with it is said when it is read as what it is.
 pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {
@@ -45,10 +47,11 @@ pub(super) fn bench_device(
 ) -> Result<BenchDevice, ScenarioError> {
     let model = section.file("model", &keys.model)?;
     if !is_rig(&model)? {
+        let device = device(section, keys)?;
         return Ok(BenchDevice {
-            device: device(section, keys)?,
+            contact: usual_contact(device.ideal),
+            device,
             gravity_along_extension: 0.0,
-            contact: USUAL_CONTACT,
             sensor_errors: SensorErrors::NONE,
             latent: None,
             own: Vec::new(),
@@ -59,6 +62,10 @@ pub(super) fn bench_device(
         let reason = "device.model is a rig file, whose own keys say what it is".to_owned();
         return Err(overrides.misplaced(key, reason));
     }
+    if keys.ideal.is_some() {
+        let reason = "device.model is a rig file, whose own keys say what it is".to_owned();
+        return Err(section.misplaced("ideal", reason));
+    }
     let rig = load_rig(&model)?;
     refuse_without_counterpart(section, &rig.plant)?;
     Ok(BenchDevice {
@@ -66,6 +73,7 @@ pub(super) fn bench_device(
             model,
             parameters: rig.plant.device,
             locked: keys.locked.unwrap_or(false),
+            ideal: false,
             // Of its tool a rig file says nothing; it is drawn as that of models/device.toml.
             moving_centre_of_mass: 0.1,
             moving_radius_of_gyration: 0.05,

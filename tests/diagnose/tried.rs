@@ -12,7 +12,7 @@ fn words(text: &str) -> String {
 
 #[test]
 fn a_right_guess_is_the_answer_and_a_wrong_one_is_told_its_odds() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", ONE_WAY, Dirt::None);
     let law = "piston_force: -c * max(v, 0); c = 100..1000 N s/m";
     let outcome = diagnose(&bench, &["case", "--try", law, "--out", "out"]);
@@ -59,7 +59,7 @@ fn a_right_guess_is_the_answer_and_a_wrong_one_is_told_its_odds() {
 
 #[test]
 fn a_guess_that_is_none_is_refused_with_its_place_and_writes_nothing() {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", OFFSET, Dirt::None);
     for (law, said) in [
         (

@@ -19,7 +19,7 @@ value_n = [0.0, -4.0, -14.0, -30.0, -14.0, -4.0, 0.0]
 
 /// Plants a term and diagnoses it; the answer must be that it has no name.
 fn unlisted(term: &str) -> (Bench, Value) {
-    let bench = Bench::new("plate_edge");
+    let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", term, Dirt::None);
     let outcome = diagnose(&bench, &["case", "--out", "out"]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);

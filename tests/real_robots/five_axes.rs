@@ -37,7 +37,7 @@ fn urdf(last: &str, friction: f64) -> String {
 fn five_axis_scenario(folder: &tempfile::TempDir, last: &str, friction: f64) -> Scenario {
     let file = folder.path().join("five.urdf");
     std::fs::write(&file, urdf(last, friction)).unwrap();
-    let mut scenario = scenario("plate_edge");
+    let mut scenario = scenario("plate_edge_ideal");
     scenario.arm.urdf = file;
     scenario.arm.flange_link = "flange".into();
     (scenario.workpiece.edge.start, scenario.workpiece.edge.end) = (0.09, Some(0.21));

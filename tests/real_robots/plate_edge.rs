@@ -78,7 +78,7 @@ pub(super) fn scenario_of(job: &Job, force: f64) -> Option<Scenario> {
         .into_iter()
         .find(|robot| robot.name == job.robot)
         .unwrap();
-    let mut scenario = scenario("plate_edge");
+    let mut scenario = scenario("plate_edge_ideal");
     assert_eq!(scenario.process.feed, 0.02);
     assert_eq!(scenario.device.parameters.moving_mass, 4.0);
     scenario.arm.urdf = robot.urdf;

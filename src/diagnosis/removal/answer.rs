@@ -373,6 +373,7 @@ fn told_apart(diagnosis: &RemovalDiagnosis, rival: &Rival) -> Option<(TableRow, 
         wear: span(&diagnosis.rows, |row| row.wear)[0],
         volume: f64::NAN,
         weight: 1.0,
+        scatter: 0.0,
     };
     [0.6 * least, 1.5 * most]
         .into_iter()

@@ -22,6 +22,8 @@ pub(super) struct Fit {
     pub measurements: f64,
     /// Weighted sum of squares.
     pub squares: f64,
+    /// The same of the scatter that is known of the rows.
+    pub known: f64,
     /// Numbers fitted.
     pub numbers: usize,
     /// Standard error of each free number, robust against scatter that differs between rows (HC3).
@@ -40,6 +42,12 @@ impl Fit {
     pub fn left_out_rms(&self) -> f64 {
         let pairs = self.residuals.iter().zip(&self.leverage);
         rms(pairs.map(|(r, h)| r / (1.0 - h).max(1e-9)))
+    }
+
+    /// -2 ln of the likelihood but for a constant, the variance no less than that which is known.
+    pub fn deviance(&self) -> f64 {
+        let squares = self.squares.max(self.known);
+        self.measurements * (squares.ln() + self.squares / squares)
     }
 
     /// Degrees of freedom left.
@@ -222,6 +230,10 @@ fn finish(
         residuals,
         measurements: rows.iter().map(|row| row.weight).sum(),
         squares,
+        known: rows
+            .iter()
+            .map(|row| row.weight * row.scatter * row.scatter)
+            .sum(),
         numbers,
         errors: Vec::new(),
         leverage: vec![0.0; rows.len()],
@@ -241,7 +253,10 @@ fn finish(
     for (row, of) in rows.iter().enumerate() {
         let leverage = scaled.row(row).dot(&spread.row(row)).clamp(0.0, 1.0 - 1e-9);
         fit.leverage[row] = leverage;
-        let residual = of.weight.sqrt() * fit.residuals[row] / (1.0 - leverage);
+        let left = (fit.residuals[row] / (1.0 - leverage))
+            .abs()
+            .max(of.scatter);
+        let residual = of.weight.sqrt() * left;
         meat += scaled.row(row).transpose() * scaled.row(row) * residual * residual;
     }
     let covariance = &inverse * meat * &inverse;

@@ -21,6 +21,9 @@ pub struct TableRow {
     pub volume: f64,
     /// Its weight in the fit: 1 of a measurement [1].
     pub weight: f64,
+    /// Standard deviation of the logarithm of its volume that is known of how it is measured [1]; 0 where nothing is. What is left may be less by chance, or as
+    /// rows are no measurements of their own, but is not taken for less.
+    pub scatter: f64,
 }
 
 /// Settings at which the law has its reference volume.

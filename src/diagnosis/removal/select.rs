@@ -292,13 +292,13 @@ fn score(fitted: &Fit, candidates: usize) -> f64 {
             rows * (t * t / freedom as f64).ln_1p()
         })
         .sum();
-    rows * fitted.squares.ln() + price
+    fitted.deviance() + price
 }
 
 /// Bayesian information criterion.
 fn criterion(fitted: &Fit) -> f64 {
     let rows = fitted.measurements;
-    rows * fitted.squares.ln() + fitted.numbers as f64 * rows.ln()
+    fitted.deviance() + fitted.numbers as f64 * rows.ln()
 }
 
 /// Value and 95 % interval by Student's t with robust errors [SI].

@@ -6,9 +6,9 @@ use crate::plant::{ContactLaw, PlantParameters};
 #[rustfmt::skip] // A table: one number a line.
 numbers! { CONTACT:
     /// contact stiffness between tool and workpiece
-    CONTACT_STIFFNESS = "contact.stiffness_n_per_m", [100.0, 1e9], (stiffness, |p, _, stiffness| p.contact.law = ContactLaw::Linear { stiffness }), 1.5e5;
+    CONTACT_STIFFNESS = "contact.stiffness_n_per_m", [100.0, 1e9], (stiffness, |p, _, stiffness| p.contact.law = ContactLaw::Linear { stiffness }), 8.5e5;
     /// contact damping
-    CONTACT_DAMPING = "contact.damping_n_s_per_m", [0.0, 1e6], (p => p.contact.damping), 4e2;
+    CONTACT_DAMPING = "contact.damping_n_s_per_m", [0.0, 1e6], (p => p.contact.damping), 2e2;
     /// stiffness of whichever law the contact has
     LAW_STIFFNESS = "contact.law_stiffness", ANY, (stiffness, set_stiffness);
     /// stiffness of a ball on a flat

@@ -7,6 +7,7 @@ mod air;
 mod cell;
 mod contact;
 mod cylinder;
+mod ideal;
 mod latent;
 mod links;
 mod own;

@@ -19,8 +19,11 @@ impl Layers<'_> {
     /// Gives a device the parts that the tables say it has.
     pub(super) fn add_parts(&self, device: &mut DeviceParameters) -> Result<(), ScenarioError> {
         let conductance = self.number(&registry::WALL_CONDUCTANCE)?;
-        let (_, kind) = self.find("gas_process", |keys| keys.gas_process)?;
-        device.gas_process = match kind {
+        let given = match self.of_scenario(|keys| keys.gas_process) {
+            None if self.ideal => GasProcessKind::Isothermal,
+            _ => self.find("gas_process", |keys| keys.gas_process)?.1,
+        };
+        device.gas_process = match given {
             GasProcessKind::Isothermal => GasProcess::Isothermal,
             GasProcessKind::WallHeat => GasProcess::WallHeat { conductance },
         };

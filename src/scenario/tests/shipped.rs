@@ -1,8 +1,11 @@
 //! The files that come with the project.
 
 use super::super::bench::{CommandScenario, LoadScenario};
-use super::super::{AnyScenario, EdgeSelection, load, load_any, load_bench, load_device};
-use super::scenarios;
+use super::super::device::load_with_overrides;
+use super::super::{
+    AnyScenario, EdgeSelection, ScenarioError, load, load_any, load_bench, load_device,
+};
+use super::{MINIMAL, read_any, scenarios};
 use crate::device::DeviceParameters;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::valve::ValvePosition;
@@ -32,6 +35,7 @@ fn every_scenario_loads_says_what_it_shows_and_stands_in_the_readme() {
         "paper_stairstep",
         "paper_step",
         "plate_edge",
+        "plate_edge_ideal",
         "retract",
         "tilted_wrist",
         "weak_supply",
@@ -143,7 +147,8 @@ fn locked_tool_is_misplaced_part_but_for_the_lock() {
 
 #[test]
 fn the_device_model_is_the_device_of_the_issue() {
-    let device = load_device(&scenarios().join("../models/device.toml")).unwrap();
+    let model = scenarios().join("../models/device.toml");
+    let device = load_with_overrides(&model, None, true).unwrap();
     let parameters = &device.parameters;
     assert_eq!(*parameters, DeviceParameters::default());
     assert!((3e5 * parameters.areas().extending - 482.5).abs() < 0.1);
@@ -182,5 +187,50 @@ fn the_device_model_is_the_device_of_the_issue() {
         ),
         (0.1, 0.05)
     );
-    assert!(!device.locked);
+    assert!(!device.locked && device.ideal);
+    // A device that exists has its seals and its heat besides, and no more.
+    let real = load_device(&model).unwrap();
+    assert!(!real.ideal);
+    let seals = real.parameters.seal_friction;
+    assert_eq!(
+        (seals.coulomb, seals.static_force, seals.viscous),
+        (10.0, 14.0, 50.0)
+    );
+    assert_eq!(
+        real.parameters.gas_process,
+        GasProcess::WallHeat { conductance: 0.5 }
+    );
+    let without = DeviceParameters {
+        seal_friction: parameters.seal_friction,
+        gas_process: parameters.gas_process,
+        ..real.parameters
+    };
+    assert_eq!(without, *parameters);
+}
+
+#[test]
+fn what_a_scenario_gives_stands_before_what_makes_its_device_ideal() {
+    let with = |lines: &str| {
+        let (before, after) = MINIMAL.split_once("[workpiece]").unwrap();
+        let AnyScenario::Cell(cell) = read_any(&format!("{before}{lines}\n[workpiece]{after}"))?
+        else {
+            panic!("a cell")
+        };
+        Ok::<_, ScenarioError>(cell)
+    };
+    let cell = with("ideal = true\n[device.override]\nseal_static_force_n = 3").unwrap();
+    let seals = cell.device.parameters.seal_friction;
+    assert_eq!((seals.coulomb, seals.static_force), (0.0, 3.0));
+    assert_eq!((cell.contact.stiffness, cell.contact.damping), (1.5e5, 4e2));
+    let real = with("").unwrap();
+    assert_eq!((real.contact.stiffness, real.contact.damping), (8.5e5, 2e2));
+    // The breakaway force that makes it ideal stands nowhere, so that it cannot be pointed at.
+    let message = with("ideal = true\n[device.override]\nseal_coulomb_force_n = 3")
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("`device.override.seal_static_force_n` is missing")
+            && message.contains("at least seal_coulomb_force_n"),
+        "{message}"
+    );
 }
