@@ -262,7 +262,7 @@ fn bad_studies_are_refused_by_place() {
     refused(
         |bench| bench.replace("shaken.toml", "position_mm", "positron_mm"),
         2,
-        "shaken.toml:15:1: unknown key `load.positron_mm`",
+        "shaken.toml:16:1: unknown key `load.positron_mm`",
     );
     refused(
         |bench| std::fs::remove_file(bench.path("study.toml")).unwrap(),

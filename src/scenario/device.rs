@@ -101,11 +101,9 @@ impl<'a> Layers<'a> {
         if number.name == registry::OPPOSING_PRESSURE.name && self.given(number).is_err() {
             return Ok(0.0);
         }
-        if let Some(value) = self.idealised(number) {
-            return Ok(value);
-        }
         let (section, key, value) = self.given(number)?;
-        section.known(number, key, value)
+        let value = section.known(number, key, value)?;
+        Ok(self.idealised(number).unwrap_or(value))
     }
 
     /// Value of a number by which the device is ideal [SI], unless the scenario gives it.

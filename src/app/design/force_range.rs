@@ -41,6 +41,8 @@ mod tests {
     fn weight_widens_or_narrows_it_and_seals_narrow_it() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/models/device.toml");
         let mut device = load_device(path.as_ref()).unwrap().parameters;
+        assert_eq!(device.seal_friction.static_force, 14.0);
+        device.seal_friction.static_force = 0.0;
         let near = |found: [f64; 2], expected: [f64; 2]| {
             let close = |i: usize| (found[i] - expected[i]).abs() < 1e-3;
             assert!(close(0) && close(1), "{found:?} {expected:?}");

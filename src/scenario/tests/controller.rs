@@ -43,10 +43,10 @@ fn every_key_reaches_its_field() {
         response_time: Some(0.02),
         observer_time: Some(0.03),
         tracking_frequency: Some(50.0),
-        // The device has none; breaking away takes as much as sliding then.
+        // Breaking away takes as much as of the device, more than sliding.
         seals: Some(SealFriction {
             coulomb: 12.0,
-            static_force: 12.0,
+            static_force: 14.0,
             stribeck_velocity: 0.01,
             viscous: 30.0,
             presliding_displacement: 20e-6,

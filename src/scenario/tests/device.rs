@@ -59,7 +59,8 @@ fn every_key_of_what_is_off_by_default_reaches_its_field() {
         hose: Some(Hose::lumped(4e-5, 2e7)),
         ..DeviceParameters::default()
     };
-    let read = read_bench(&with(keys)).unwrap();
+    let text = with(keys).replace("[device]\n", "[device]\nideal = true\n");
+    let read = read_bench(&text).unwrap();
     assert_eq!(read.device.parameters, expected);
 }
 

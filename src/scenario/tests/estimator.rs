@@ -2,13 +2,18 @@
 
 use super::{MINIMAL_BENCH, read_bench};
 
+/// A bench whose device the estimator models: its air keeps its temperature.
+fn with(tables: &str) -> String {
+    MINIMAL_BENCH.replace("[device]\n", "[device]\nideal = true\n") + tables
+}
+
 fn set_up(tables: &str) -> String {
-    let scenario = read_bench(&format!("{MINIMAL_BENCH}{tables}")).unwrap();
+    let scenario = read_bench(&with(tables)).unwrap();
     format!("{:?}", scenario.estimator.unwrap())
 }
 
 fn refusal(tables: &str) -> String {
-    read_bench(&format!("{MINIMAL_BENCH}{tables}"))
+    read_bench(&with(tables))
         .unwrap_err()
         .to_string()
 }

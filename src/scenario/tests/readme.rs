@@ -108,7 +108,7 @@ fn beside(key: &str) -> String {
         ("removal", name) => removal(name),
         ("obstacle", _) => "[[obstacle]]\nbox_mm = [1, 1, 1]".into(),
         ("arm.drives", _) => "[[arm.drives]]\njoint = 'a'".into(),
-        ("estimator", _) => "[estimator]\n".into(),
+        ("estimator", _) => "[device.override]\ngas_process = 'isothermal'\n[estimator]\n".into(),
         ("hand", _) => "[hand]\npeak_force_n = 1\nfrequency_hz = 1".into(),
         ("command", "force_n") => "[[command]]\nat_s = 0\nforce_n = 1".into(),
         ("command", _) => "[[command]]\nat_s = 0\nset_pressure_bar_gauge = 1".into(),
