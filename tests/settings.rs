@@ -15,6 +15,7 @@ fn bench() -> Bench {
 kind = "bench"
 title = "Short"
 [device]
+ideal = true
 model = "device.toml"
 [bench]
 duration_s = 1.5

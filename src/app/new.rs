@@ -225,6 +225,7 @@ fn with_own(
         let flange = likely_flange(&urdf).map_err(CellError::from)?;
         put("urdf", &format!("{:?}", urdf.display().to_string()));
         put("flange_link", &format!("{flange:?}"));
+        text = without_drives(&text);
         files.retain(|(path, _)| !path.ends_with(BESIDE[0].0));
     }
     if let Some(part) = &arguments.part {
@@ -247,6 +248,15 @@ fn with_own(
     }
     files[0].1 = text.into_bytes();
     Ok(files)
+}
+
+/// A cell's text without the springs of the arm that comes with the program: another arm's joints have other names.
+fn without_drives(text: &str) -> String {
+    let tables = text.split("\n\n");
+    let kept: Vec<&str> = tables
+        .filter(|table| !table.starts_with("[[arm.drives]]"))
+        .collect();
+    kept.join("\n\n")
 }
 
 /// The unit with which a mesh is read as a part of a usual size; millimetres first.
