@@ -213,6 +213,9 @@ fn with_own(
         })
     };
     let mut text = String::from_utf8_lossy(&files[0].1).into_owned();
+    if arguments.urdf.is_some() {
+        text = without_drives(&text);
+    }
     let mut put = |line: &str, value: &str| {
         let lines = text.lines().map(|old| match old.split_once(" = ") {
             Some((key, _)) if key == line => format!("{key} = {value}"),
@@ -225,7 +228,6 @@ fn with_own(
         let flange = likely_flange(&urdf).map_err(CellError::from)?;
         put("urdf", &format!("{:?}", urdf.display().to_string()));
         put("flange_link", &format!("{flange:?}"));
-        text = without_drives(&text);
         files.retain(|(path, _)| !path.ends_with(BESIDE[0].0));
     }
     if let Some(part) = &arguments.part {

@@ -13,9 +13,7 @@ fn set_up(tables: &str) -> String {
 }
 
 fn refusal(tables: &str) -> String {
-    read_bench(&with(tables))
-        .unwrap_err()
-        .to_string()
+    read_bench(&with(tables)).unwrap_err().to_string()
 }
 
 #[test]
