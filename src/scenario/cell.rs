@@ -326,6 +326,8 @@ pub struct RemovalScenario {
     pub law: RemovalLaw,
     /// Contact area that the law is taken at [m2].
     pub contact_area: f64,
+    /// Work of force and speed that the tool has done before [J].
+    pub wear_at_start: f64,
     /// Length of edge on which the tool touches at a time [m].
     pub contact_length: f64,
     /// Tangential force.

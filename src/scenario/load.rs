@@ -282,6 +282,18 @@ fn passes(
     document: &Document<'_>,
     file: &ScenarioFile,
 ) -> Result<Vec<PassScenario>, ScenarioError> {
+    let section = Section::new(document, "process");
+    if file.pass.is_empty() {
+        let count = file.process.passes.unwrap_or(1);
+        return Ok(vec![
+            PassScenario::default();
+            section.count("passes", count, 1..=100)?
+        ]);
+    }
+    if file.process.passes.is_some() {
+        let reason = "there are [[pass]] tables, which are as many as there are passes";
+        return Err(section.misplaced("passes", reason.to_owned()));
+    }
     let pass = |(index, keys): (usize, &file::PassKeys)| {
         let section = Section::new(document, format!("pass[{index}]"));
         let force = |value| section.number("force_n", value, 0.1..=5000.0);
