@@ -257,6 +257,8 @@ pub struct ProcessScenario {
     pub feed_follows: Option<FeedFollows>,
     /// Acceleration along the path [m/s2].
     pub acceleration: f64,
+    /// Largest acceleration across the path [m/s2]; infinite for a feed that does not fall where the edge bends.
+    pub lateral_acceleration: f64,
     /// Jerk along the path [m/s3].
     pub jerk: f64,
     /// Stroke at which the device is to work [m].

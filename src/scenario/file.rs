@@ -263,6 +263,7 @@ pub(super) struct ProcessKeys {
     pub feed_mm_per_s: f64,
     pub corner_feed_mm_per_s: Option<f64>,
     pub acceleration_mm_per_s2: Option<f64>,
+    pub lateral_acceleration_mm_per_s2: Option<f64>,
     pub jerk_mm_per_s3: Option<f64>,
     pub working_stroke_mm: Option<f64>,
     pub lean_deg: Option<f64>,
