@@ -286,11 +286,156 @@ fn limits_that_no_design_keeps_end_with_exit_code_1() {
     );
 }
 
+/// A burr of 30 mm of the plate's edge, taken off by a ball that turns.
+const BURRED: &str = r#"schema = 1
+[study]
+title = "burred"
+scenarios = ["burred.toml"]
+evaluations = 200
+[objective]
+minimise = "duration_s"
+[limits]
+residual_burr_share_percent = { max = 0 }
+chamfer_leg_mean_mm = { min = 0.2, max = 0.6 }
+[variables."process.feed_mm_per_s"]
+min = 15
+max = 100
+start = 30
+scale = "log"
+[variables."process.lean_deg"]
+min = -20
+max = 20
+start = 0
+[variables."process.passes"]
+catalogue = [1, 2, 3]
+start = 2
+[variables."tool.spindle_speed_rpm"]
+min = 10000
+max = 24000
+start = 20000
+"#;
+
+fn burred(study: &str) -> Bench {
+    let bench = folder(study);
+    let text = std::fs::read_to_string(project("scenarios/studies/burred_plate.toml")).unwrap();
+    let text = text
+        .replace("../../models/arm/arm10.urdf", "arm.urdf")
+        .replace("../../models/device.toml", "device.toml")
+        .replace("../../assets/plate.stl", "part.stl")
+        .replace("end_mm = 290", "end_mm = 40");
+    bench.write("burred.toml", text);
+    bench
+}
+
+#[test]
+fn passes_lean_and_spindle_speed_are_the_designer_s_to_choose() {
+    let bench = burred(BURRED);
+    let study = design::load(&bench.path("study.toml")).unwrap();
+    let evaluator = ScenarioEvaluator::new(&study).unwrap();
+    let of = |feed: f64, lean: f64, passes: f64, speed: f64| {
+        let design = study.design(&[feed, lean, passes, speed]);
+        let outcome = evaluator.evaluate(&design).unwrap();
+        let metrics = &outcome.scenarios[0].metrics;
+        ["duration_s", "removed_volume_mm3"].map(|name| metrics[name])
+    };
+    let start = of(30.0, 0.0, 2.0, 20_000.0);
+    let once = of(30.0, 0.0, 1.0, 20_000.0);
+    let slower = of(30.0, 0.0, 2.0, 10_000.0);
+    let leaned = of(30.0, 20.0, 2.0, 20_000.0);
+    // Each pass takes about as long and as much; what comes off goes with the speed, and the force that wears is the same along the normal.
+    assert!(
+        once[0] < 0.62 * start[0] && once[0] > 0.4 * start[0],
+        "{once:?} {start:?}"
+    );
+    assert!(
+        (once[1] / start[1] - 0.5).abs() < 0.05,
+        "{once:?} {start:?}"
+    );
+    assert!(
+        (slower[1] / start[1] - 0.5).abs() < 0.05,
+        "{slower:?} {start:?}"
+    );
+    assert!(
+        leaned[1] != start[1] && (leaned[0] - start[0]).abs() < 0.3,
+        "{leaned:?}"
+    );
+}
+
+#[test]
+fn a_tolerance_that_no_feed_meets_ends_with_exit_code_1_and_one_message() {
+    let study = BURRED.replace("min = 0.2, max = 0.6", "min = 4, max = 5");
+    let (head, _) = study
+        .split_once("[variables.\"process.lean_deg\"]")
+        .unwrap();
+    let bench = burred(head);
+    let outcome = bench.idc(
+        &[
+            "design",
+            "study.toml",
+            "--out",
+            "out",
+            "--evaluations",
+            "20",
+        ],
+        &[],
+    );
+    let line = outcome.only_line("error: ");
+    let words = "error: no design within the bounds keeps the limits: the best of ";
+    assert!(
+        line.starts_with(words) && line.contains("chamfer_leg_mean_mm at least 4 mm by"),
+        "{line}"
+    );
+    assert_eq!(
+        (
+            outcome.code,
+            outcome.out.as_str(),
+            outcome.sentences().as_str()
+        ),
+        (1, "", line)
+    );
+    assert!(!bench.path("out/design.json").exists());
+}
+
+#[test]
+fn draws_at_the_chosen_design_are_the_same_on_any_number_of_threads() {
+    let study = STUDY.replace("evaluations = 100", "evaluations = 50")
+        + "[limits]\ncoefficient_of_variation_percent = { max = 100 }\n[robustness]\nruns = 12\n[robustness.variables.axial_load_n]\nmin = 0\nmax = 40\n[robustness.variables.\"load.frequency_hz\"]\nmean = 8\nstandard_deviation = 0.5\n";
+    let bench = folder(&study);
+    let files = |threads: &str| {
+        let outcome = run(&bench, Some(threads));
+        assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
+        let names = ["design.json", "robustness.svg", "report.html"];
+        let read = |name: &str| std::fs::read(bench.path("out").join(name)).unwrap();
+        (names.map(read), outcome.out)
+    };
+    let first = files("1");
+    assert!(first == files("3"));
+    let result: serde_json::Value = serde_json::from_slice(&first.0[0]).unwrap();
+    let robustness = &result["robustness"];
+    assert_eq!(robustness["draws"].as_array().unwrap().len(), 12);
+    assert_eq!(robustness["all_limits"]["kept"], 12);
+    // A load moves the force, and with it the variation.
+    let told = &robustness["quantiles"][0];
+    assert!(
+        told["percent_95"].as_f64() > told["percent_5"].as_f64(),
+        "{told}"
+    );
+    let page = String::from_utf8(first.0[2].clone()).unwrap();
+    assert!(page.contains("Robustness") && page.contains("normal, mean 8, standard deviation 0.5"));
+    // What a draw would be refused for is told before anything is searched.
+    bench.replace("study.toml", "max = 40", "max = 40000");
+    let outcome = run(&bench, None);
+    let line = outcome.only_line("error: ");
+    let words = "study.toml:14:23: `robustness.variables.axial_load_n` draws 39960, which a scenario of the study does not take: shaken.toml: `device.override.axial_load_n` is 39960 N, expected -2000 to 2000 N";
+    assert!(outcome.code == 2 && line.ends_with(words), "{line}");
+}
+
 #[test]
 fn the_picture_of_another_study_does_not_stay() {
     let bench = folder(&STUDY.replace("evaluations = 100", "evaluations = 50"));
     std::fs::create_dir(bench.path("out")).unwrap();
     bench.write("out/front.svg", "old");
+    bench.write("out/robustness.svg", "old");
     bench.write("out/mine.txt", "mine");
     let outcome = bench.idc(
         &["design", "study.toml", "--out", "out", "--force", "--json"],

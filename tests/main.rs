@@ -21,6 +21,7 @@ mod effects;
 mod equations;
 mod estimator;
 mod examples;
+mod feed;
 mod first_diagnosis;
 mod fleet;
 mod functions;

@@ -41,6 +41,7 @@ fn belt() -> Scenario {
         while_following: true,
     });
     cell.removal = Some(RemovalScenario {
+        wear_at_start: 0.0,
         law: RemovalLaw::preston(COEFFICIENT),
         contact_area: 1e-6,
         contact_length: 1e-3,
@@ -355,4 +356,23 @@ fn five_newtons_are_held_at_any_inclination_with_an_opposing_pressure() {
         let mean = follow.iter().sum::<f64>() / follow.len() as f64;
         assert!((mean / 5.0 - 1.0).abs() < 0.02, "{turn}: {mean}");
     }
+}
+
+#[test]
+fn a_tool_that_comes_worn_goes_on_from_there() {
+    let worn = |at_start: f64| {
+        let mut cell = belt();
+        let removal = cell.removal.as_mut().unwrap();
+        removal.law.wear_work = 20e3;
+        removal.wear_at_start = at_start;
+        done(cell)
+    };
+    let (new, old) = (worn(0.0), worn(14e3));
+    let last = |run: &Done| *run.of(schema::TOOL_WEAR).last().unwrap();
+    assert_eq!(new.of(schema::TOOL_WEAR)[0], 0.0);
+    assert_eq!(old.of(schema::TOOL_WEAR)[0], 14e3);
+    assert!(((last(&old) - last(&new)) / 14e3 - 1.0).abs() < 1e-2);
+    // The same work at exp(-w / w0) of the rate.
+    let ratio = old.volume() / new.volume();
+    assert!((ratio / (-0.7f64).exp() - 1.0).abs() < 1e-2, "{ratio}");
 }

@@ -99,7 +99,7 @@ enum Command {
 struct DesignArguments {
     /// Study file.
     study: PathBuf,
-    /// Folder for design.json, override.toml and front.svg [default: runs/<study name>].
+    /// Folder for design.json, override.toml, front.svg and robustness.svg [default: runs/<study name>].
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
     /// Put new results in place of old ones.

@@ -1,5 +1,5 @@
 //! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, lean.svg, drawing.json, figures.svg of a bench, varied.toml of
-//! `--set`; those of a study: design.json, override.toml, front.svg, report.html. All appear, or none.
+//! `--set`; those of a study: design.json, override.toml, front.svg, robustness.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -46,6 +46,7 @@ pub(super) const RUN_NAMES: [&str; 11] = [
 pub(super) const DESIGN: &str = "design.json";
 pub(super) const OVERRIDE: &str = "override.toml";
 pub(super) const FRONT: &str = "front.svg";
+pub(super) const ROBUSTNESS: &str = "robustness.svg";
 pub(super) const DIAGNOSIS: &str = "diagnosis.json";
 /// Recordings of a diagnosis beside its models, and their balances.
 pub(super) const COMPARISON: &str = "comparison.parquet";

@@ -18,7 +18,7 @@ use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
     BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, LEAN, REPORT,
-    SAMPLES, SUMMARY, Standing, is_same, prepare_file,
+    ROBUSTNESS, SAMPLES, SUMMARY, Standing, is_same, prepare_file,
 };
 use super::fleet::{self, FLEET};
 use super::output::say;
@@ -83,6 +83,7 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         DRAWING,
         DESIGN,
         FRONT,
+        ROBUSTNESS,
         SWEEP,
         vary::RUNS,
         FLEET,
@@ -110,8 +111,10 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         ("fleet", fleet::page_of(&found)?)
     } else if folder.join(DESIGN).is_file() {
         let document = read_json(&folder.join(DESIGN))?;
-        let front = std::fs::read_to_string(folder.join(FRONT)).ok();
-        ("study", of_design(&document, front.as_deref()))
+        let pictures =
+            [FRONT, ROBUSTNESS].map(|name| std::fs::read_to_string(folder.join(name)).ok());
+        let shown = pictures.each_ref().map(Option::as_deref);
+        ("study", of_design(&document, shown))
     } else {
         return Err(AppError::NoResults {
             folder: folder.display().to_string(),
@@ -141,9 +144,9 @@ pub(super) fn of_diagnosis(answer: &Answer, comparison: &Comparison) -> String {
     html(&diagnosis::page(answer, comparison))
 }
 
-/// The page of a design study: design.json, and front.svg where there is one.
-pub(super) fn of_design(document: &serde_json::Value, front: Option<&str>) -> String {
-    html(&design::page(document, front))
+/// The page of a design study: design.json, and front.svg and robustness.svg where there are such.
+pub(super) fn of_design(document: &serde_json::Value, pictures: [Option<&str>; 2]) -> String {
+    html(&design::page(document, pictures))
 }
 
 /// A run as its folder has it.

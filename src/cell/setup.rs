@@ -181,6 +181,7 @@ impl Setup {
             friction: scenario.contact.friction,
             passes: &self.passes,
             corner_feed: process.corner_feed,
+            lateral_acceleration: process.lateral_acceleration,
             limits: MotionLimits {
                 acceleration: process.acceleration,
                 jerk: process.jerk,

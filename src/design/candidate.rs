@@ -30,6 +30,13 @@ impl Design {
         Self { entries }
     }
 
+    /// The design with further keys, which come after its own and take their place.
+    #[must_use]
+    pub fn with(&self, further: impl IntoIterator<Item = (String, f64)>) -> Self {
+        let own = self.entries.iter().cloned();
+        Self::new(own.chain(further).collect())
+    }
+
     /// Its keys and values, in order.
     pub fn iter(&self) -> impl Iterator<Item = (&str, f64)> {
         self.entries

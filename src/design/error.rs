@@ -22,6 +22,20 @@ pub enum DesignError {
         /// Message on the scenario.
         reason: Box<ScenarioError>,
     },
+    /// A drawn value that a scenario cannot take.
+    #[error(
+        "{place}: `robustness.variables.{key}` draws {value}, which a scenario of the study does not take: {reason}"
+    )]
+    Scatter {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// A value near an end of what is drawn.
+        value: f64,
+        /// Message on the scenario.
+        reason: Box<ScenarioError>,
+    },
     /// The starting design, to which everything is compared.
     #[error("{}: the starting design cannot be simulated: {detail}", file.display())]
     Start {

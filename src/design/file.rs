@@ -29,6 +29,8 @@ pub(super) struct StudyFile {
     /// Variables: keys of `[device.override]` or, in quotes, of a table of the scenario.
     #[serde(default)]
     pub variables: BTreeMap<String, VariableKeys>,
+    /// What varies from part to part and is not the designer's to choose, drawn at the chosen design.
+    pub robustness: Option<RobustnessKeys>,
 }
 
 /// `[study]`: its scenarios and its search.
@@ -109,6 +111,38 @@ pub(super) struct VariableKeys {
     pub rod_mm: Option<Vec<f64>>,
 }
 
+/// `[robustness]`: draws at the chosen design.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RobustnessKeys {
+    /// Draws, each of them simulated in every scenario.
+    #[schemars(range(min = 10, max = 100_000), extend("default" = 40))]
+    pub runs: Option<usize>,
+    /// Seed of the draws.
+    #[schemars(extend("default" = 1))]
+    pub seed: Option<u64>,
+    /// What is drawn: keys of `[device.override]` or, in quotes, of any table of the scenario.
+    #[serde(default)]
+    pub variables: BTreeMap<String, ScatterKeys>,
+}
+
+/// A table of `[robustness.variables]`: evenly from `min` to `max`, or normally distributed, then between `min` and `max` where they are given.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ScatterKeys {
+    /// The least that is drawn, in the key's unit.
+    pub min: Option<f64>,
+    /// The most that is drawn, in the key's unit.
+    pub max: Option<f64>,
+    /// Mean of a normal distribution, in the key's unit.
+    pub mean: Option<f64>,
+    /// Its standard deviation, in the key's unit.
+    pub standard_deviation: Option<f64>,
+    /// Whether it is a whole number, as a seed is.
+    #[schemars(extend("default" = false))]
+    pub whole: Option<bool>,
+}
+
 /// Scale of a variable's steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -133,11 +167,14 @@ pub(super) fn study_sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("objective", keys::<ObjectiveKeys>()),
         ("limits.*", keys::<BoundKeys>()),
         ("variables.*", keys::<VariableKeys>()),
+        ("robustness", keys::<RobustnessKeys>()),
+        ("robustness.variables.*", keys::<ScatterKeys>()),
     ]
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::robustness::DEFAULT_RUNS;
     use super::super::study::{
         DEFAULT_EVALUATIONS, DEFAULT_FRONT_POINTS, DEFAULT_METRIC, DEFAULT_SEED,
     };
@@ -150,6 +187,8 @@ mod tests {
         };
         assert_eq!(default("study", "seed"), DEFAULT_SEED);
         assert_eq!(default("study", "evaluations"), DEFAULT_EVALUATIONS);
+        assert_eq!(default("robustness", "runs"), DEFAULT_RUNS);
+        assert_eq!(default("robustness", "seed"), DEFAULT_SEED);
         assert_eq!(default("objective", "minimise"), DEFAULT_METRIC);
         assert_eq!(default("objective", "front_points"), DEFAULT_FRONT_POINTS);
     }

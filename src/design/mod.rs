@@ -10,6 +10,8 @@
 //! chosen design beside the starting one, the trade-off front against a second objective, what binds it, and what each variable would still do.
 //! The simulation of a design is none of this module's business.
 //!
+//! What varies from part to part is no variable: `[robustness]` draws it at the chosen design, and tells how many draws keep the limits (`robustness`).
+//!
 //! The search (`search`): differential evolution over everything with feasibility first, then COBYLA on the continuous variables of the best few
 //! catalogue choices and of their neighbours. The front: the same under a ceiling on the second objective, one level after the other.
 
@@ -27,6 +29,7 @@ mod picture;
 mod polish;
 mod refine;
 mod result;
+mod robustness;
 mod search;
 mod sensitivity;
 mod study;
@@ -40,11 +43,12 @@ pub use error::DesignError;
 pub use file::schema;
 pub use label::{number, spoken};
 pub use limits::{Limit, LimitQuantity, Side};
-pub use picture::front_svg;
+pub use picture::{front_svg, robustness_svg};
 pub use result::{
     ActiveBound, ActiveLimit, Candidate, FrontPoint, LimitState, ObjectiveNames, Sensitivity,
     StudyResult,
 };
+pub use robustness::{Distribution, Robustness, Scatter, Scattering};
 pub use search::{check_start, run};
 pub use study::{Objective, Over, Study, TradeOff, load};
 pub use text::text;

@@ -3,6 +3,7 @@
 //! The drawing library counts in whole units; a unit is a tenth of a pixel here, so that the curves are smooth.
 
 mod overlay;
+mod robustness;
 
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
@@ -34,6 +35,8 @@ const FAR: f64 = 3.0;
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+pub use robustness::robustness_svg;
 
 /// The picture as SVG; none if the study has no second objective.
 ///

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::candidate::{Design, ScenarioOutcome};
+use super::robustness::Robustness;
 
 /// The result of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -34,6 +35,9 @@ pub struct StudyResult {
     pub active_limits: Vec<ActiveLimit>,
     /// Effect of a change of one variable alone on the chosen design.
     pub sensitivities: Vec<Sensitivity>,
+    /// What draws at the chosen design do, if the study asks for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robustness: Option<Robustness>,
     /// Both objectives of every other design that keeps the limits, second one first; for the picture.
     #[serde(skip)]
     pub others: Vec<[f64; 2]>,

@@ -6,6 +6,7 @@
 //! 4. Between the ends, level by level, then in the widest gaps: the objective under a ceiling on the second one (epsilon-constraint; Y. Y. Haimes et al., IEEE Trans. Syst.
 //!    Man Cybern. 1, 1971), from the best known design below it. It finds the parts of a front that are not convex as well.
 //! 5. What binds the chosen design.
+//! 6. Draws of what varies from part to part, at the chosen design (`robustness`).
 //!
 //! Every design that was ever evaluated can become the chosen one or a point of the front.
 
@@ -26,6 +27,7 @@ use super::label::with_unit;
 use super::limits::Limit;
 use super::refine::{distinct_best, refine};
 use super::result::StudyResult;
+use super::robustness;
 use super::study::{Study, TradeOff};
 use super::variable::Domain;
 
@@ -51,7 +53,12 @@ pub fn run(
     evaluator: &dyn Evaluate,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<StudyResult, DesignError> {
-    let archive = Archive::new(study, evaluator, progress);
+    let draws = study
+        .scattering
+        .as_ref()
+        .map_or(0, |scattering| scattering.runs);
+    let searched = |done, budget| progress(done, budget + draws);
+    let archive = Archive::new(study, evaluator, &searched);
     let start = start(&archive)?;
     let scale = |value: f64| if value == 0.0 { 1.0 } else { value.abs() };
     let goal = Goal {
@@ -83,7 +90,14 @@ pub fn run(
         levels(&archive, &goal, &other, best.1.trade_off, budgets[4])?;
     }
     let left = study.evaluations - budgets.iter().sum::<usize>();
-    conclude::conclude(&archive, &goal, &start, left)
+    let mut result = conclude::conclude(&archive, &goal, &start, left)?;
+    if let Some(scattering) = &study.scattering {
+        let budget = study.evaluations + draws;
+        let done = |done| progress(study.evaluations + done, budget);
+        let drawn = robustness::draw(study, scattering, &result.chosen, evaluator, &done);
+        result.robustness = Some(drawn);
+    }
+    Ok(result)
 }
 
 /// Simulates the starting design alone, to find what is wrong with a study before anything else is done.

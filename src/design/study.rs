@@ -13,6 +13,7 @@ use super::file::{
     BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys, study_sections,
 };
 use super::limits::{Limit, LimitQuantity, Side};
+use super::robustness::{Scattering, scattering};
 use super::variable::{Variable, variable};
 
 /// Metric that is minimised unless the file says otherwise.
@@ -44,6 +45,8 @@ pub struct Study {
     pub front_points: usize,
     /// Limits to be kept.
     pub limits: Vec<Limit>,
+    /// What is drawn at the chosen design, if anything is.
+    pub scattering: Option<Scattering>,
     /// Where the metrics of both objectives, then those of the limits stand in the file.
     pub(super) places: Vec<(String, String, Place)>,
 }
@@ -164,6 +167,9 @@ pub(super) fn from_text(path: &Path, text: &str) -> Result<Study, ScenarioError>
     let least = least_evaluations(variables.len());
     let (objective, trade_off, front_points) = objectives(&document, &file.objective, &variables)?;
     let limits = limits(&document, &file)?;
+    let scattering = (file.robustness.as_ref())
+        .map(|keys| scattering(&document, keys, &variables))
+        .transpose()?;
     let study = Study {
         path: path.to_owned(),
         title: section.text("title", &file.study.title)?,
@@ -176,6 +182,7 @@ pub(super) fn from_text(path: &Path, text: &str) -> Result<Study, ScenarioError>
         trade_off,
         front_points,
         limits,
+        scattering,
     };
     Ok(study)
 }

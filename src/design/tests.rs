@@ -4,6 +4,7 @@ mod fronts;
 mod optimum;
 mod output;
 mod refusals;
+mod robustness;
 mod surrogate;
 
 use std::path::{Path, PathBuf};

@@ -1,5 +1,7 @@
 //! The result as a plain table for the terminal, in at most 80 columns.
 
+mod robustness;
+
 use std::fmt::Write;
 
 use super::label::{number, symbol, with_unit};
@@ -26,6 +28,7 @@ pub fn text(study: &Study, result: &StudyResult) -> String {
     binding(&mut out, result);
     steps(&mut out, result);
     front(&mut out, result);
+    robustness::robustness(&mut out, result);
     search(&mut out, result);
     out
 }

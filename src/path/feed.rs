@@ -1,5 +1,6 @@
-//! Feed along the edge: as asked for, less at corners, and less where an axis could not keep up.
+//! Feed along the edge: as asked for, less at corners and where the edge bends (`curvature`), and less where an axis could not keep up.
 
+use super::curvature::feed_limit;
 use super::error::{Obstacle, PlanError};
 use super::profile::SpeedSection;
 use super::request::{KNOT_SPACING, Phase, PlanRequest, waypoint_error};
@@ -11,6 +12,8 @@ use crate::arm::chain::MAX_JOINTS;
 const SPEED_SHARE: f64 = 0.9;
 /// Length over which the feed may be slowed for an axis's speed limit [m].
 const FEED_CHUNK: f64 = 1e-2;
+/// The same for its curvature, which changes over shorter lengths.
+const BEND_CHUNK: f64 = 2e-3;
 /// Share of the feed below which slowing down would no longer be following [1].
 const LEAST_SHARE: f64 = 0.1;
 
@@ -37,10 +40,23 @@ pub(super) fn sections(
             Stretch::Edge { .. } => feed,
             Stretch::Corner { .. } => feed.min(request.corner_feed),
         };
-        let chunks = (section.length / FEED_CHUNK).ceil().max(1.0);
+        let bends = matches!(section.stretch, Stretch::Edge { .. })
+            && request.lateral_acceleration.is_finite();
+        let chunk = if bends { BEND_CHUNK } else { FEED_CHUNK };
+        let chunks = (section.length / chunk).ceil().max(1.0);
         let length = section.length / chunks;
         for chunk in 0..chunks as usize {
             let place = section.start + length * chunk as f64;
+            let ends = [place, place + length];
+            let wanted = match bends {
+                true => wanted.min(feed_limit(
+                    &request.tool_path,
+                    section,
+                    ends,
+                    request.lateral_acceleration,
+                )),
+                false => wanted,
+            };
             let (speed, joint) = speed_cap(request, spline, place, place + length);
             if speed < wanted && slowest.as_ref().is_none_or(|s| speed < s.speed) {
                 slowest = Some(Slowest {

@@ -7,6 +7,7 @@
 
 mod check;
 mod collisions;
+mod curvature;
 mod error;
 mod feed;
 mod legs;

@@ -69,6 +69,8 @@ pub struct PlanRequest<'a> {
     pub passes: &'a [Pass],
     /// Feed past corners [m/s].
     pub corner_feed: f64,
+    /// Largest acceleration across the path [m/s2]; infinite for a feed that does not fall where the edge bends.
+    pub lateral_acceleration: f64,
     /// Acceleration and jerk along the path.
     pub limits: MotionLimits,
     /// Distance before the edge at which the motion starts [m].

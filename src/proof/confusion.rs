@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::binomial::upper_bound;
 use super::outcome::Outcome;
 use super::reliability::Reliability;
 use super::summary::percentile;
 use crate::laboratory::LOST;
+use crate::quantity::binomial::upper_bound;
 use crate::quantity::significant;
 
 /// 90th percentile of a prediction's error from which an explanation is not a full one [standard deviations].

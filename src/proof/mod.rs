@@ -2,7 +2,6 @@
 //!
 //! An answer is scored that stands already: the sealed file of a case is opened only after its diagnosis has been written.
 
-mod binomial;
 mod case_conditions;
 mod confusion;
 mod error;

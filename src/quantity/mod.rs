@@ -1,7 +1,9 @@
-//! Numbers with their units as people read them: in the terminal, on a page, in the viewer's text.
+//! Numbers with their units as people read them: in the terminal, on a page, in the viewer's text; and bounds on a share that was counted.
 //!
 //! One rule, which docs/METRICS.md states: four significant digits at most, none of them finer than the resolution of the unit, which is below what the
 //! sensors of such a cell resolve. What is not zero but finer than that is `<0.001`. Files keep every digit.
+
+pub mod binomial;
 
 /// Significant digits at most; forces near the desired one differ in the fourth.
 pub const DIGITS: usize = 4;

@@ -259,6 +259,8 @@ pub struct ProcessScenario {
     pub feed_follows: Option<FeedFollows>,
     /// Acceleration along the path [m/s2].
     pub acceleration: f64,
+    /// Largest acceleration across the path [m/s2]; infinite for a feed that does not fall where the edge bends.
+    pub lateral_acceleration: f64,
     /// Jerk along the path [m/s3].
     pub jerk: f64,
     /// Stroke at which the device is to work [m].
@@ -328,6 +330,8 @@ pub struct RemovalScenario {
     pub law: RemovalLaw,
     /// Contact area that the law is taken at [m2].
     pub contact_area: f64,
+    /// Work of force and speed that the tool has done before [J].
+    pub wear_at_start: f64,
     /// Length of edge on which the tool touches at a time [m].
     pub contact_length: f64,
     /// Tangential force.

@@ -260,6 +260,7 @@ fn process(
         feed: section.number("feed_mm_per_s", keys.feed_mm_per_s, 0.1..=1000.0)?,
         corner_feed: section.number("corner_feed_mm_per_s", corner_feed, 0.05..=1000.0)?,
         acceleration: section.number("acceleration_mm_per_s2", keys.acceleration_mm_per_s2.unwrap_or(500.0), 1.0..=20_000.0)?,
+        lateral_acceleration: section.number("lateral_acceleration_mm_per_s2", keys.lateral_acceleration_mm_per_s2.unwrap_or(f64::INFINITY), 1.0..=f64::INFINITY)?,
         jerk: section.number("jerk_mm_per_s3", keys.jerk_mm_per_s3.unwrap_or(5000.0), 10.0..=1_000_000.0)?,
         working_stroke: working_stroke(section, keys, device.parameters.full_stroke)?,
         lean: section.number("lean_deg", keys.lean_deg.unwrap_or(0.0), -60.0..=60.0)?,
@@ -283,6 +284,18 @@ fn passes(
     document: &Document<'_>,
     file: &ScenarioFile,
 ) -> Result<Vec<PassScenario>, ScenarioError> {
+    let section = Section::new(document, "process");
+    if file.pass.is_empty() {
+        let count = file.process.passes.unwrap_or(1);
+        return Ok(vec![
+            PassScenario::default();
+            section.count("passes", count, 1..=100)?
+        ]);
+    }
+    if file.process.passes.is_some() {
+        let reason = "there are [[pass]] tables, which are as many as there are passes";
+        return Err(section.misplaced("passes", reason.to_owned()));
+    }
     let pass = |(index, keys): (usize, &file::PassKeys)| {
         let section = Section::new(document, format!("pass[{index}]"));
         let force = |value| section.number("force_n", value, 0.1..=5000.0);

@@ -120,9 +120,10 @@ fn keys_of(law: RemovalWord) -> (&'static str, &'static [&'static str]) {
 }
 
 /// Keys that every law may have.
-const OF_ALL: [&str; 5] = [
+const OF_ALL: [&str; 6] = [
     "law",
     "wear_work_kj",
+    "wear_at_start_kj",
     "contact_length_mm",
     "specific_energy_j_per_mm3",
     "friction_coefficient",
@@ -169,6 +170,11 @@ pub(super) fn removal(
     Ok(RemovalScenario {
         law,
         contact_area: section.number("contact_area_mm2", area, 1e-3..=1e4)?,
+        wear_at_start: section.number(
+            "wear_at_start_kj",
+            keys.wear_at_start_kj.unwrap_or(0.0),
+            0.0..=1e6,
+        )?,
         contact_length: section.number("contact_length_mm", length, 0.1..=100.0)?,
         cutting: CuttingForce {
             specific_energy: section.number("specific_energy_j_per_mm3", energy, 0.0..=1000.0)?,

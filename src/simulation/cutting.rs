@@ -47,7 +47,7 @@ pub struct Cutting {
 }
 
 impl Cutting {
-    /// A new tool on the edge as it comes to the cell; none of a tool that does not turn.
+    /// The tool, as worn as it comes, on the edge as it comes to the cell; none of a tool that does not turn.
     pub fn new(cell: &Cell) -> Option<Self> {
         let scenario = &cell.scenario;
         let tool = scenario.tool?;
@@ -63,7 +63,7 @@ impl Cutting {
             ball_radius: scenario.device.tool_radius,
             place: 0.0,
             ride: cell.part.edge_state.ride(0.0, scenario.device.tool_radius),
-            wear: 0.0,
+            wear: (scenario.removal).map_or(0.0, |removal| removal.wear_at_start),
             reading: CuttingReading::default(),
         })
     }

@@ -3,11 +3,13 @@
 //! [`Variable`] is what is varied, [`Points`] the values of each run by its number, so that none need be held; [`share_of_variance`] says how much of a
 //! number's scatter goes with one variable, with an interval, and [`quantiles`] how it is distributed.
 
+mod latin;
 mod points;
 mod share;
 mod statistics;
 mod variable;
 
+pub use latin::LatinHypercube;
 pub use points::{Points, Sampling};
 pub use share::{Share, share_of_variance};
 pub use statistics::{QUANTILES, quantiles, rank_correlation};

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::str::FromStr;
 
-use rand::{Rng, SeedableRng, seq::SliceRandom};
-use rand_chacha::ChaCha8Rng;
+use rand::Rng;
 
+use super::latin::{LatinHypercube, stream};
 use super::variable::{Values, Variable, VaryError};
 
 /// Runs at most.
@@ -51,8 +51,8 @@ pub struct Points {
     sampling: Sampling,
     seed: u64,
     count: usize,
-    /// Of a Latin hypercube: which part of its range each variable has in each run.
-    parts: Vec<Vec<u32>>,
+    /// Of a Latin hypercube.
+    latin: Option<LatinHypercube>,
     /// Of a table: its rows, in place of all else.
     rows: Option<Vec<Vec<String>>>,
 }
@@ -76,22 +76,14 @@ impl Points {
             },
             most: MOST,
         })?;
-        let parts = match sampling {
-            Sampling::Latin(_) => (0..variables.len())
-                .map(|place| {
-                    let mut parts: Vec<u32> = (0..count as u32).collect();
-                    parts.shuffle(&mut stream(seed, place as u64));
-                    parts
-                })
-                .collect(),
-            _ => Vec::new(),
-        };
+        let latin = matches!(sampling, Sampling::Latin(_))
+            .then(|| LatinHypercube::new(count, variables.len(), seed));
         Ok(Self {
             variables,
             sampling,
             seed,
             count,
-            parts,
+            latin,
             rows: None,
         })
     }
@@ -146,7 +138,7 @@ impl Points {
             sampling: Sampling::Grid,
             seed: 0,
             count: rows.len(),
-            parts: Vec::new(),
+            latin: None,
             rows: Some(rows),
         })
     }
@@ -186,8 +178,14 @@ impl Points {
         if let Some(rows) = &self.rows {
             return rows[run].clone();
         }
-        match self.sampling {
-            Sampling::Grid => {
+        match (self.sampling, &self.latin) {
+            (_, Some(latin)) => {
+                let values = self.variables.iter().zip(latin.shares(run));
+                values
+                    .map(|(variable, share)| variable.at_share(share))
+                    .collect()
+            }
+            (Sampling::Grid | Sampling::Latin(_), None) => {
                 let mut rest = run;
                 let mut values: Vec<String> = (self.variables.iter().rev())
                     .map(|variable| {
@@ -200,31 +198,14 @@ impl Points {
                 values.reverse();
                 values
             }
-            Sampling::Random(_) => {
+            (Sampling::Random(_), None) => {
                 // A stream each, so that more runs leave the first ones as they are.
                 let mut random = stream(self.seed, run as u64);
                 let value = |variable: &Variable| variable.at_share(random.random());
                 self.variables.iter().map(value).collect()
             }
-            Sampling::Latin(count) => {
-                let mut random = stream(self.seed ^ 0x9e37_79b9_7f4a_7c15, run as u64);
-                let parts = self.variables.iter().zip(&self.parts);
-                parts
-                    .map(|(variable, parts)| {
-                        let within: f64 = random.random();
-                        variable.at_share((f64::from(parts[run]) + within) / count as f64)
-                    })
-                    .collect()
-            }
         }
     }
-}
-
-/// Random numbers of one of many streams.
-fn stream(seed: u64, number: u64) -> ChaCha8Rng {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    random.set_stream(number);
-    random
 }
 
 fn once<'a>(keys: impl Iterator<Item = &'a str>) -> Result<(), VaryError> {

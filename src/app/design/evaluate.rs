@@ -41,7 +41,7 @@ impl ScenarioEvaluator {
         let read = |(path, name): (&std::path::PathBuf, String)| {
             let template = ScenarioTemplate::read(path)?;
             match template.with(&values) {
-                Ok(_) => Ok((name, template)),
+                Ok(_) => drawn(study, &template).map(|()| (name, template)),
                 Err(reason) => {
                     let variable = reason.key().and_then(|key| study.variable_to_blame(key));
                     Err(match variable {
@@ -60,6 +60,23 @@ impl ScenarioEvaluator {
             scenarios: scenarios.collect::<Result<_, DesignError>>()?,
         })
     }
+}
+
+/// Whether a scenario takes the ends of what is drawn.
+fn drawn(study: &Study, template: &ScenarioTemplate) -> Result<(), DesignError> {
+    for scatter in study.scattering.iter().flat_map(|s| &s.scatters) {
+        for end in scatter.ends() {
+            let design = study.starting_design().with([(scatter.key.clone(), end)]);
+            let taken = template.with(&design.scenario_values());
+            taken.map_err(|reason| DesignError::Scatter {
+                place: scatter.place.clone(),
+                key: scatter.key.clone(),
+                value: end,
+                reason: Box::new(reason),
+            })?;
+        }
+    }
+    Ok(())
 }
 
 /// Names of the files, or their paths where two have the same name.

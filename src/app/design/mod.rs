@@ -1,4 +1,4 @@
-//! `idc design`: from a study file to design.json, override.toml and front.svg.
+//! `idc design`: from a study file to design.json, override.toml, front.svg and robustness.svg.
 
 mod evaluate;
 mod failure;
@@ -11,14 +11,16 @@ use serde::Serialize;
 pub use evaluate::ScenarioEvaluator;
 
 use super::error::AppError;
-use super::files::{DESIGN, FRONT, OVERRIDE, OutputFolder, REPORT, Standing, provenance};
+use super::files::{
+    DESIGN, FRONT, OVERRIDE, OutputFolder, REPORT, ROBUSTNESS, Standing, provenance,
+};
 use super::report::of_design;
 use crate::design::{self, Domain, Study, StudyResult, Variable};
 use crate::recording::provenance::Provenance;
 use crate::scenario::{self, AnyScenario, files_of_cell};
 
 /// All that a study may write.
-const NAMES: [&str; 4] = [DESIGN, OVERRIDE, FRONT, REPORT];
+const NAMES: [&str; 5] = [DESIGN, OVERRIDE, FRONT, ROBUSTNESS, REPORT];
 
 /// A study that can be done, and a folder that its files can go to.
 pub(super) struct PreparedStudy {
@@ -74,18 +76,24 @@ impl PreparedStudy {
         let result = design::run(&self.study, &self.evaluator, progress)?;
         let document = document(&self.study, &result, &self.provenance)?;
         let override_text = result.override_text();
-        let front = design::front_svg(&result)?;
+        let pictures = [
+            (FRONT, design::front_svg(&result)?),
+            (ROBUSTNESS, design::robustness_svg(&result)?),
+        ];
         let mut files = vec![
             (DESIGN, document.as_str()),
             (OVERRIDE, override_text.as_str()),
         ];
-        let report = of_design(&serde_json::from_str(&document)?, front.as_deref());
+        let shown = pictures.each_ref().map(|(_, svg)| svg.as_deref());
+        let report = of_design(&serde_json::from_str(&document)?, shown);
         files.push((REPORT, report.as_str()));
-        files.extend(front.as_deref().map(|svg| (FRONT, svg)));
+        for (name, svg) in &pictures {
+            files.extend(svg.as_deref().map(|svg| (*name, svg)));
+        }
         let names = self.folder.write_texts(&files)?;
-        if front.is_none() {
+        for (name, _) in pictures.iter().filter(|(_, svg)| svg.is_none()) {
             // The picture of another study would pass for one of this.
-            self.folder.discard(FRONT)?;
+            self.folder.discard(name)?;
         }
         Ok(FinishedStudy {
             table: design::text(&self.study, &result),

@@ -1,5 +1,7 @@
 //! The page of a design study.
 
+mod robustness;
+
 use serde_json::Value;
 
 use super::super::files::{DESIGN, OVERRIDE};
@@ -11,12 +13,13 @@ use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 
 /// The page.
-pub(super) fn page<'a>(document: &Value, front: Option<&str>) -> Page<'a> {
+pub(super) fn page<'a>(document: &Value, [front, robustness]: [Option<&str>; 2]) -> Page<'a> {
     let sections = [
         Some(chosen(document)),
         front.map(|svg| trade_off(document, svg)),
         Some(binding(document)),
         limits(document),
+        robustness::robustness(document, robustness),
         Some(steps(document)),
         Some(measured_by(document)),
         Some(provenance_of(document)),

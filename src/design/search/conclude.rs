@@ -65,6 +65,7 @@ pub(super) fn conclude(
         active_limits,
         chosen: candidate(study, &(chosen, score)),
         sensitivities,
+        robustness: None,
         others: points,
     })
 }

@@ -21,6 +21,7 @@ fn every_key_of_the_process_reaches_its_field() {
         force: 150.0,
         feed: 0.021,
         corner_feed: 0.007,
+        lateral_acceleration: f64::INFINITY,
         acceleration: 0.6,
         jerk: 7.0,
         working_stroke: 0.018,

@@ -24,7 +24,8 @@ fn at_most(hits: usize, trials: usize, probability: f64) -> f64 {
 }
 
 /// The probability that is so high that so few hits would come with a probability of `alpha` alone.
-pub(super) fn upper_bound(hits: usize, trials: usize, alpha: f64) -> f64 {
+#[must_use]
+pub fn upper_bound(hits: usize, trials: usize, alpha: f64) -> f64 {
     if hits >= trials {
         return 1.0;
     }
@@ -40,9 +41,32 @@ pub(super) fn upper_bound(hits: usize, trials: usize, alpha: f64) -> f64 {
     high
 }
 
+/// The probabilities that are neither so low nor so high that the hits would come with a probability of `alpha / 2` alone.
+#[must_use]
+pub fn interval(hits: usize, trials: usize, alpha: f64) -> [f64; 2] {
+    let misses = trials.saturating_sub(hits);
+    [
+        1.0 - upper_bound(misses, trials, 0.5 * alpha),
+        upper_bound(hits, trials, 0.5 * alpha),
+    ]
+}
+
 #[cfg(test)]
 mod tests {
-    use super::upper_bound;
+    use super::{interval, upper_bound};
+
+    #[test]
+    fn an_interval_has_both_bounds() {
+        // R: binom.test(28, 40)$conf.int
+        let [low, high] = interval(28, 40, 0.05);
+        assert!(
+            (low - 0.534_684).abs() < 1e-5 && (high - 0.834_373).abs() < 1e-5,
+            "{low} {high}"
+        );
+        // All of n: (alpha / 2)^(1 / n) to 1.
+        let [low, high] = interval(40, 40, 0.05);
+        assert!((low - 0.025f64.powf(1.0 / 40.0)).abs() < 1e-12 && high == 1.0);
+    }
 
     #[test]
     fn the_bounds_are_those_of_the_closed_forms() {
