@@ -138,3 +138,26 @@ fn a_reader_that_has_gone_is_no_error() {
     assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
     assert_eq!(output.status.code(), Some(0));
 }
+
+/// The template's springs are those of the arm that comes with the program; a file for another arm named joints that it had not.
+#[test]
+fn a_cell_to_start_from_fits_an_arm_with_joints_of_other_names() {
+    let bench = Bench::new("plate_edge_ideal");
+    let arm = std::fs::read_to_string(bench.path("arm.urdf")).unwrap();
+    bench.write("other.urdf", arm.replace("\"elbow\"", "\"joint_3\""));
+    for (arguments, expected) in [
+        (vec![], "stiffness_n_m_per_rad"),
+        (vec!["--urdf", "other.urdf"], "lag_bandwidth_hz"),
+    ] {
+        let new = [
+            &["new", "cell", "own.toml", "--force", "--quiet"],
+            &arguments[..],
+        ]
+        .concat();
+        assert_eq!(bench.idc(&new, &[]).code, 0);
+        let text = std::fs::read_to_string(bench.path("own.toml")).unwrap();
+        assert!(text.contains(expected), "{text}");
+        let checked = bench.idc(&["check", "own.toml"], &[]);
+        assert_eq!(checked.code, 0, "{}", checked.err);
+    }
+}

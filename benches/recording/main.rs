@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// A scenario of the project that takes a minute.
 fn minute(folder: &Path) -> Result<PathBuf, Box<dyn Error>> {
     let project = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(project.join("scenarios/plate_edge.toml"))?;
+    let text = std::fs::read_to_string(project.join("scenarios/plate_edge_ideal.toml"))?;
     let text = text.replace("feed_mm_per_s = 20", FEED);
     let text = text.replace("\"../", &format!("\"{}/", project.display()));
     let file = folder.join("minute.toml");

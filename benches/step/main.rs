@@ -30,7 +30,7 @@ const STEPS: usize = 5000;
 fn main() -> Result<(), Box<dyn Error>> {
     // `cargo test --benches` only wants to know that the benches run.
     let measuring = std::env::args().any(|argument| argument == "--bench");
-    let cell = cell("plate_edge.toml")?;
+    let cell = cell("plate_edge_ideal.toml")?;
     println!("{}", pin_to_one_core());
     let mut criterion = parts::criterion();
     parts::all(&mut criterion, &cell);
@@ -129,7 +129,7 @@ fn per_step(time: Duration) -> f64 {
 
 fn print_ours(rounds: &mut Rounds) {
     println!(
-        "\nplate_edge, following, one core; medians of {ROUNDS} interleaved rounds of {STEPS} steps"
+        "\nplate_edge_ideal, following, one core; medians of {ROUNDS} interleaved rounds of {STEPS} steps"
     );
     println!(
         "{:<40} {:>10} {:>12} {:>22}",

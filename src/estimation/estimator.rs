@@ -70,7 +70,10 @@ fn not_modelled(device: &DeviceParameters) -> Option<&'static str> {
     let isothermal = device.gas_process == GasProcess::Isothermal;
     let pressed = device.seal_friction.pressure_coefficient != 0.0;
     [
-        (!isothermal, "chambers whose gas warms up"),
+        (
+            !isothermal,
+            "chambers whose gas warms up (gas_process; \"isothermal\" has none)",
+        ),
         (device.hose.is_some(), "a line between regulator and valve"),
         (!device.leakage.is_none(), "leaks"),
         (device.axial_load != AxialLoad::NONE, "an axial load"),

@@ -27,7 +27,7 @@ ENCODER = 2e-6
 RATE = 250.0
 # Cell: part, what its file says and what the study has it say, where the burr stands [mm].
 CELLS = {
-    "plate_edge": (
+    "plate_edge_ideal": (
         "plate.stl",
         [("start_mm = 10\n", "start_mm = 100\n"), ("end_mm = 290", "end_mm = 160"), ("force_n = 150", "force_n = FORCE")],
         35,
