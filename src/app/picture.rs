@@ -276,7 +276,8 @@ fn edge_path(cell: &Cell, recording: &Recording) -> Result<EdgePath, RecordingEr
         let place = recording.values(schema::PATH_LENGTH)?;
         let desired = cell.scenario.process.force;
         for i in recording.samples_in(span).filter(|&i| force[i] > 0.0) {
-            let segment = (place[i] / edge.length * EDGE_SEGMENTS as f64) as usize;
+            // A sample between two of them is of the one that begins there, whatever its last bits are.
+            let segment = (place[i] / edge.length * EDGE_SEGMENTS as f64 + 1e-9) as usize;
             let sum = &mut sums[segment.min(EDGE_SEGMENTS - 1)];
             sum.0 += (force[i] - desired) / desired;
             sum.1 += 1;

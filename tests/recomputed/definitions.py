@@ -212,7 +212,7 @@ class CellRun(Run):
         """Mean relative error of the force over each piece of the edge while following [1]; NaN where nothing touched."""
         follow, desired = self.phase("follow"), self.scenario["process"]["force_n"]
         force, place = self.column("contact_force_n", follow), self.column("path_length_m", follow)
-        piece = np.minimum((place / self.edge_length * self.PIECES).astype(int), self.PIECES - 1)
+        piece = np.minimum((place / self.edge_length * self.PIECES + 1e-9).astype(int), self.PIECES - 1)
         touching = force > 0
         sums = np.bincount(piece[touching], (force[touching] - desired) / desired, self.PIECES)
         counts = np.bincount(piece[touching], minlength=self.PIECES)
