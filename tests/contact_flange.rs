@@ -3,6 +3,9 @@
 use std::path::Path;
 
 use idc_cell::cell::Cell;
+use idc_cell::diagnosis::flange::{ForceRamp, Run};
+use idc_cell::diagnosis::flange_fit::fit_flange;
+use idc_cell::plant::flange::{FlangeCourse, FlangeModel, Reader, SAMPLED, flange_force};
 use idc_cell::recording::schema;
 use idc_cell::scenario::Scenario;
 
@@ -89,6 +92,85 @@ fn the_force_of_a_sliding_contact_flange_varies_as_it_was_recorded() {
         assert!(
             recorded / 1.5 < simulated && simulated < 1.5 * recorded,
             "{name}: {recorded} {simulated}"
+        );
+    }
+}
+
+/// A flange whose numbers no prior is centred on.
+const PLANTED: [f64; 17] = [
+    4.2, 1.3, 2.4e5, 0.02, 300.0, 9e5, 0.2, 0.9, 1.0e6, 0.03, 3.0, 6e-5, 12.0, 0.5, 2.2e3, 0.01,
+    0.015,
+];
+
+/// A run of the planted flange as a log has it: read 500 times a second, held onto 1250 Hz, two lags.
+fn planted(name: &str, speed: f64, desired: f64, ramp: Option<ForceRamp>) -> Run {
+    let period = 8e-4;
+    let count = 3000;
+    let time: Vec<f64> = (0..count).map(|i| -0.4 + period * f64::from(i)).collect();
+    let speeds: Vec<f64> = time
+        .iter()
+        .map(|t| if *t < 0.01 { speed } else { 0.0 })
+        .collect();
+    let before = ramp.map_or(desired, |ramp| ramp.before);
+    let course = FlangeCourse {
+        start: time[0],
+        period,
+        speed: speeds.clone(),
+        gap: speed * 0.4,
+        before,
+        after: desired,
+        ramp: ramp.map_or(0.0, |ramp| ramp.time),
+    };
+    let force = flange_force(&FlangeModel::of(&PLANTED), &course, 2.1);
+    let reader = Reader {
+        period: 2e-3,
+        gain: 1.43,
+    };
+    let at = |t: &f64| ((reader.read_at(*t, 0.0) - time[0]) / SAMPLED).max(0.0) as usize;
+    let readings: Vec<f64> = time
+        .iter()
+        .map(|t| force[at(t).min(force.len() - 1)])
+        .collect();
+    // What the sensor adds is repeatable and small: the way of the force into the log must still be told.
+    let noise = |i: usize| 0.05 * (1.7 * (i as f64) * (i as f64)).sin();
+    let noisy: Vec<f64> = (readings.iter().zip(&time))
+        .map(|(force, t)| force + noise(at(t)))
+        .collect();
+    Run {
+        name: name.to_owned(),
+        force: reader.logged(&noisy),
+        desired: vec![desired; time.len()],
+        commanded: speeds.clone(),
+        speed: speeds,
+        force_ramp: ramp,
+        time,
+    }
+}
+
+#[test]
+fn a_planted_flange_is_fitted_and_predicts_other_runs() {
+    let measured = |run: Run| {
+        let shown = run.metrics().unwrap();
+        (run, shown)
+    };
+    let fitted = measured(planted("fitted", 0.12, 50.0, None));
+    let faster = measured(planted("faster", 0.2, 50.0, None));
+    let ramp = ForceRamp {
+        before: 10.0,
+        time: 0.1,
+    };
+    let ramped = measured(planted("ramped", 0.12, 50.0, Some(ramp)));
+    let fit = fit_flange(&[fitted], &[&faster, &ramped], 3.38).unwrap();
+    assert!((fit.report.reading_rate_hz - 500.0).abs() < 1.0);
+    assert!((fit.report.reading_gain - 1.43).abs() < 0.01);
+    for run in &fit.report.runs {
+        let [peak, ringing, settling] = [run.peak_n, run.ringing_hz, run.settling_s];
+        println!("{}: {peak:?} {ringing:?} {settling:?}", run.recording);
+        assert!(peak.error().abs() < 0.15, "{}: {peak:?}", run.recording);
+        assert!(
+            ringing.error().abs() < 0.1,
+            "{}: {ringing:?}",
+            run.recording
         );
     }
 }

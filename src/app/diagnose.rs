@@ -5,6 +5,7 @@ mod board;
 mod cell_scene;
 mod comparison_files;
 mod fit_picture;
+mod flange_picture;
 mod one;
 mod outputs;
 mod removal_picture;

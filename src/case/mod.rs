@@ -25,9 +25,11 @@ use crate::diagnosis::diagnose as search;
 use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
 use crate::diagnosis::flange_answer::FlangeDiagnosis;
+use crate::diagnosis::flange_fit::fit_flange;
 use crate::diagnosis::input::{DiagnosisInput, prepare};
 use crate::diagnosis::known::{KnownEffects, KnownFit, known_fit};
 use crate::diagnosis::progress::Observer;
+use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::servo::Axes;
 use crate::diagnosis::settings::Settings;
 use crate::effects::own_effect;
@@ -281,7 +283,7 @@ pub fn diagnose(
             cell_account::add_cell(&mut diagnosed, cell, read);
             diagnosed
         }
-        Kind::Flange { rig, runs, unseen } => of_flange_runs(rig, runs, unseen.as_deref(), start),
+        Kind::Flange { rig, runs, unseen } => of_flange_runs(rig, runs, unseen.as_deref(), start)?,
     };
     diagnosed.answer.details.case.clone_from(&case.name);
     diagnosed.answer.details.provenance = provenance;
@@ -348,32 +350,70 @@ fn of_flange_runs(
     runs: &[MeasuredRun],
     unseen: Option<&MeasuredRun>,
     start: Instant,
-) -> Diagnosed {
+) -> Result<Diagnosed, CaseError> {
     let named = |(run, shown): &MeasuredRun| (run.name.clone(), shown.clone());
+    let others: Vec<&MeasuredRun> = unseen.into_iter().collect();
+    let fit = fit_flange(runs, &others, rig.plant.device.moving_mass);
+    let (simulated, forces) = fit.map_or((None, Vec::new()), |f| (Some(f.report), f.forces));
     let diagnosis = FlangeDiagnosis {
         runs: runs.iter().map(named).collect(),
         unseen: unseen.map(named),
         mass: rig.plant.device.moving_mass,
         time_constant: rig.plant.device.regulator.time_constant,
         noise: rig.noise[Channel::Force as usize],
+        simulated,
     };
     let answer = diagnosis.answer(start.elapsed().as_secs_f64());
-    // What was found cannot be simulated from outside: it stands in the file as a comment.
-    let mut improved = improved_text(rig, &[], &[], None);
-    for effect in &answer.effects {
-        improved += &format!("\n# Found, and not simulated: {}\n", effect.name);
-        for (key, number) in &effect.parameters {
-            let (value, low, high) = (number.value, number.low, number.high);
-            improved += &format!("# {key} = {value:.5e}   # {low:.3e} to {high:.3e}\n");
-        }
-    }
     let runs: Vec<Run> = runs.iter().map(|(run, _)| run.clone()).collect();
-    Diagnosed {
+    let comparison = of_flange(&runs, unseen.map(|(run, _)| run), &forces);
+    Ok(Diagnosed {
+        improved: improved_flange(rig, &answer),
+        prediction: predicted_force(&comparison)?,
         answer,
-        improved,
-        prediction: None,
-        comparison: of_flange(&runs, unseen.map(|(run, _)| run)),
+        comparison,
         diagnosis: None,
         plant: None,
+    })
+}
+
+/// The rig file of a flange: what was found has no place in it and stands there as comments.
+fn improved_flange(rig: &RigFile, answer: &Answer) -> String {
+    let mut improved = improved_text(rig, &[], &[], None);
+    let line = |key: &str, [value, low, high]: [f64; 3]| {
+        format!("# {key} = {value:.5e}   # {low:.3e} to {high:.3e}\n")
+    };
+    for effect in &answer.effects {
+        improved += &format!(
+            "\n# Found, and not simulated by this file: {}\n",
+            effect.name
+        );
+        for (key, number) in &effect.parameters {
+            improved += &line(key, [number.value, number.low, number.high]);
+        }
     }
+    if let Some(flange) = &answer.details.flange {
+        improved += "\n# The flange as `idc diagnose` simulates it\n";
+        for number in &flange.numbers {
+            improved += &line(&number.name, [number.value, number.low, number.high]);
+        }
+    }
+    improved
+}
+
+/// The force predicted of the run that was kept back, while it is simulated.
+fn predicted_force(comparison: &Comparison) -> Result<Option<String>, CaseError> {
+    let Some(unseen) = comparison.recordings.iter().find(|run| run.unseen) else {
+        return Ok(None);
+    };
+    let force = &unseen.channels[0].improved;
+    let known: Vec<usize> = (0..force.len()).filter(|i| force[*i].is_finite()).collect();
+    if known.is_empty() {
+        return Ok(None);
+    }
+    let of = |values: &[f64]| -> Vec<f64> { known.iter().map(|i| values[*i]).collect() };
+    let column = COLUMNS[Channel::Force as usize];
+    Ok(Some(columns_text(
+        &of(&unseen.time),
+        &[(column, &of(force))],
+    )?))
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::error::CaseError;
 use super::recordings::read_rig;
-use crate::diagnosis::flange::{NoContact, Run, RunMetrics};
+use crate::diagnosis::flange::{ForceRamp, NoContact, Run, RunMetrics};
 use crate::diagnosis::input::{DiagnosisInput, NamedRecording, of_link, tolerated};
 use crate::diagnosis::recorded::{recorded_of, run_of};
 use crate::effects::{candidates, sought};
@@ -44,15 +44,14 @@ pub fn rig_of(folder: &Path) -> Result<RigFile, CaseError> {
 pub fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, CaseError> {
     let mut names: Vec<String> = Vec::new();
     for name in &rig.fit {
-        let Some((before, after)) = name.split_once('*') else {
+        if !name.contains('*') {
             names.push(name.clone());
             continue;
-        };
+        }
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         let mut found: Vec<String> = entries
             .filter_map(|entry| entry.file_name().into_string().ok())
-            .filter(|file| file.len() >= before.len() + after.len())
-            .filter(|file| file.starts_with(before) && file.ends_with(after))
+            .filter(|file| fits(name, file))
             .filter(|file| rig.predict.as_ref() != Some(file) && !names.contains(file))
             .collect();
         if found.is_empty() {
@@ -65,6 +64,18 @@ pub fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, CaseError> {
         names.append(&mut found);
     }
     Ok(names)
+}
+
+/// Whether a file's name is the one that is written, or fits it where it has a star.
+fn fits(written: &str, file: &str) -> bool {
+    match written.split_once('*') {
+        None => written == file,
+        Some((before, after)) => {
+            file.len() >= before.len() + after.len()
+                && file.starts_with(before)
+                && file.ends_with(after)
+        }
+    }
 }
 
 /// Inputs of a diagnosis.
@@ -112,7 +123,12 @@ pub(super) fn flange_runs(
     let shown = |name: &String| -> Result<MeasuredRun, CaseError> {
         let path = folder.join(name);
         let file = path.display().to_string();
-        let run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
+        let mut run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
+        let ramp = (rig.force_ramps.iter()).find(|ramp| fits(&ramp.recording, name));
+        run.force_ramp = ramp.map(|ramp| ForceRamp {
+            before: ramp.before,
+            time: ramp.time,
+        });
         let refused = |source: NoContact| CaseError::NoContact {
             folder: folder.display().to_string(),
             source,

@@ -239,25 +239,36 @@ fn in_unit(
     }
 }
 
-/// Runs of a contact flange: what was measured beside what was desired.
+/// Runs of a contact flange: what was measured beside what was desired and what is simulated, from a sample on, in the order of the runs.
 #[must_use]
-pub fn of_flange(runs: &[Run], unseen: Option<&Run>) -> Comparison {
-    let compared = |run: &Run, unseen: bool| Compared {
-        name: run.name.clone(),
-        unseen,
-        time: run.time.clone(),
-        channels: vec![ComparedChannel {
-            channel: Channel::Force,
-            measured: run.force.clone(),
-            believed: run.desired.clone(),
-            tolerated: vec![f64::NAN; run.time.len()],
-            improved: vec![f64::NAN; run.time.len()],
-            left_out: vec![f64::NAN; run.time.len()],
-        }],
+pub fn of_flange(
+    runs: &[Run],
+    unseen: Option<&Run>,
+    simulated: &[Option<(usize, Vec<f64>)>],
+) -> Comparison {
+    let compared = |index: usize, run: &Run| {
+        let mut improved = vec![f64::NAN; run.time.len()];
+        if let Some(Some((first, force))) = simulated.get(index) {
+            let part = improved.iter_mut().skip(*first);
+            part.zip(force).for_each(|(to, from)| *to = *from);
+        }
+        Compared {
+            name: run.name.clone(),
+            unseen: index >= runs.len(),
+            time: run.time.clone(),
+            channels: vec![ComparedChannel {
+                channel: Channel::Force,
+                measured: run.force.clone(),
+                believed: run.desired.clone(),
+                tolerated: vec![f64::NAN; run.time.len()],
+                improved,
+                left_out: vec![f64::NAN; run.time.len()],
+            }],
+        }
     };
-    let runs = runs.iter().map(|run| compared(run, false));
+    let all = runs.iter().chain(unseen).enumerate();
     Comparison {
-        recordings: runs.chain(unseen.map(|run| compared(run, true))).collect(),
+        recordings: all.map(|(index, run)| compared(index, run)).collect(),
         balances: Vec::new(),
     }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::account::Account;
 use super::answer::Estimate;
+use super::flange_fit::report::SimulatedFlange;
 use super::localise::NOISE_ALONE;
 use super::recorded::COLUMNS;
 use super::words::spoken;
@@ -59,6 +60,9 @@ pub struct Details {
     /// Prediction of a run of a contact flange that was not looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub predicted: Option<PredictedRun>,
+    /// The same as a simulation that was fitted to its runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flange: Option<SimulatedFlange>,
     /// Smallest effects that the recordings would have shown, where none is named.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub detectable: Vec<DetectableReport>,
@@ -265,6 +269,9 @@ pub struct RunReport {
     pub wander_n: f64,
     /// Root mean square of force less desired force while the arm moves in contact.
     pub moving_rms_n: Option<f64>,
+    /// Standard deviation of the force in the middle of that time.
+    #[serde(default)]
+    pub sliding_spread_n: Option<f64>,
     /// Share of that time without contact [1].
     pub contact_lost: f64,
 }

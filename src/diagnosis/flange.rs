@@ -23,6 +23,19 @@ pub struct Run {
     pub desired: Vec<f64>,
     /// Speed of the arm's tool along its path [m/s].
     pub speed: Vec<f64>,
+    /// The speed that the arm is commanded [m/s]; the logged one where there is none.
+    pub commanded: Vec<f64>,
+    /// The force that was set before contact, where it was not the desired one.
+    pub force_ramp: Option<ForceRamp>,
+}
+
+/// A desired force that is approached from another once the tool touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForceRamp {
+    /// Force set before contact [N].
+    pub before: f64,
+    /// Time from contact until the desired one is set [s].
+    pub time: f64,
 }
 
 /// Result of a run.
@@ -40,6 +53,8 @@ pub struct RunMetrics {
     pub peak: f64,
     /// Time from contact until the force, averaged over [`AVERAGED`], stays within [`BAND`] of its later mean [s].
     pub settling: f64,
+    /// When the tool was off for the last time [s].
+    pub bounced: f64,
     /// Frequency at which the force rings after the impact [Hz].
     pub frequency: f64,
     /// Its amplitude as it begins [N].
@@ -52,6 +67,8 @@ pub struct RunMetrics {
     pub unrest: f64,
     /// Root mean square of force less desired force while the arm moves in contact [N]; none where it does not.
     pub moving: Option<f64>,
+    /// Standard deviation of the force in the [`MIDDLE`] of that time [N].
+    pub spread: Option<f64>,
     /// Share of the time in which contact is lost while the arm moves [1].
     pub lost: f64,
     /// Until when the arm stands [s].
@@ -77,8 +94,15 @@ const SOON: f64 = 0.01;
 const MOVES: f64 = 0.01;
 /// Speed from which the arm comes to the part, and does not let the flange reach for it [m/s].
 const COMES: f64 = 1e-3;
+/// Time without motion that parts two motions [s].
+const PAUSE: f64 = 0.1;
+/// Samples in motion from which they tell something [-].
+const FEW_MOVING: usize = 50;
 /// Time that is left to a force to settle at most [s].
 const LONGEST: f64 = 6.0;
+
+/// Share of the time in which the arm moves that counts for the spread of the force: neither its start nor its end [1].
+pub const MIDDLE: [f64; 2] = [0.2, 0.9];
 
 /// Time for which a run must go on after contact [s].
 const PRESSED: f64 = 1.5;
@@ -178,7 +202,8 @@ impl Run {
         let rings = self.between(bounced + SOON, bounced + SOON + RUNG);
         let (times, forces) = (&time[rings.clone()], &force[rings]);
         let frequency = loudest(times, forces);
-        let (moving, lost) = self.moving_error(leaves, &touch);
+        let samples = self.moving(leaves, desired);
+        let (moving, lost) = self.moving_error(&samples, limit);
         Ok(RunMetrics {
             contact,
             approach: touch.approach,
@@ -186,12 +211,14 @@ impl Run {
             desired,
             peak: force[impact].iter().copied().fold(f64::MIN, f64::max),
             settling: outside.map_or(0.0, |i| time[hold.start + i] - contact),
+            bounced,
             decay: decay(times, forces, frequency),
             frequency,
             ringing: power_at(times, forces, frequency).sqrt(),
             steady: mean(&errors),
             unrest: deviation(&errors),
             moving,
+            spread: (samples.len() > FEW_MOVING).then(|| self.spread(&samples)),
             lost,
             stands_until,
         })
@@ -261,24 +288,40 @@ impl Run {
             .unwrap_or(held.end)
     }
 
-    /// Force error while the arm moves in contact [N], root mean square, and the share of that time without contact [1].
-    fn moving_error(&self, leaves: usize, touch: &Touch) -> (Option<f64>, f64) {
-        let desired = touch.desired;
-        let moving: Vec<usize> = (leaves..self.time.len())
-            .filter(|i| {
-                self.speed[*i].abs() > 3.0 * MOVES
-                    && (self.desired[*i] - desired).abs() < 0.1 * desired.abs()
-            })
-            .collect();
+    /// Samples in which the arm moves in contact, after it has stood.
+    fn moving(&self, leaves: usize, desired: f64) -> Vec<usize> {
+        let moves = |i: &usize| {
+            self.speed[*i].abs() > 3.0 * MOVES
+                && (self.desired[*i] - desired).abs() < 0.1 * desired.abs()
+        };
+        (leaves..self.time.len()).filter(moves).collect()
+    }
+
+    /// Standard deviation of the force in the [`MIDDLE`] of the time of some samples [N].
+    fn spread(&self, samples: &[usize]) -> f64 {
+        // The arm goes once; as it lifts off it moves again.
+        let pauses = |w: &[usize]| self.time[w[1]] - self.time[w[0]] > PAUSE;
+        let once = samples.windows(2).position(pauses);
+        let samples = &samples[..once.map_or(samples.len(), |last| last + 1)];
+        let (from, to) = (self.time[samples[0]], self.time[samples[samples.len() - 1]]);
+        let [first, last] = MIDDLE.map(|share| from + share * (to - from));
+        let middle = samples
+            .iter()
+            .filter(|i| self.time[**i] > first && self.time[**i] < last);
+        let forces: Vec<f64> = middle.map(|i| self.force[*i]).collect();
+        deviation(&forces)
+    }
+
+    /// Force error of samples in which the arm moves in contact [N], root mean square, and the share of them without contact [1].
+    fn moving_error(&self, moving: &[usize], limit: f64) -> (Option<f64>, f64) {
         let squares: f64 = moving
             .iter()
             .map(|i| (self.force[*i] - self.desired[*i]).powi(2))
             .sum();
-        let lost = |i: &&usize| self.force[**i] < touch.limit;
-        let gone = moving.iter().filter(lost).count();
+        let gone = moving.iter().filter(|i| self.force[**i] < limit).count();
         let count = moving.len() as f64;
         (
-            (count > 50.0).then(|| (squares / count).sqrt()),
+            (moving.len() > FEW_MOVING).then(|| (squares / count).sqrt()),
             match moving.is_empty() {
                 true => 0.0,
                 false => gone as f64 / count,
@@ -320,11 +363,11 @@ pub fn spread(values: &[f64]) -> [f64; 3] {
     [centre, centre - half, centre + half]
 }
 
-fn mean(values: &[f64]) -> f64 {
+pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-fn deviation(values: &[f64]) -> f64 {
+pub(super) fn deviation(values: &[f64]) -> f64 {
     let centre = mean(values);
     let squares: f64 = values.iter().map(|v| (v - centre).powi(2)).sum();
     (squares / values.len().max(1) as f64).sqrt()
@@ -347,7 +390,7 @@ fn averaged(time: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// Square of the amplitude at a frequency [Hz], in a bell-shaped window.
-fn power_at(time: &[f64], values: &[f64], frequency: f64) -> f64 {
+pub(super) fn power_at(time: &[f64], values: &[f64], frequency: f64) -> f64 {
     let (Some(first), Some(last)) = (time.first(), time.last()) else {
         return 0.0;
     };
@@ -445,6 +488,11 @@ mod tests {
                 .map(|t| if *t < 0.0 { 0.0 } else { 100.0 })
                 .collect(),
             speed: time
+                .iter()
+                .map(|t| if *t < 0.1 { approach } else { 0.0 })
+                .collect(),
+            force_ramp: None,
+            commanded: time
                 .iter()
                 .map(|t| if *t < 0.1 { approach } else { 0.0 })
                 .collect(),

@@ -4,6 +4,8 @@ use super::account::{Account, SectionKind};
 use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
 use super::details::{DETAILS_SCHEMA, Details, PredictedRun, RunReport};
 use super::flange::{AVERAGED, BAND, RunMetrics, spread, spread_of_sizes};
+use super::flange_fit::account::{simulated, unseen};
+use super::flange_fit::report::SimulatedFlange;
 use super::words::listed;
 
 /// Knowledge of a flange from its runs.
@@ -19,6 +21,8 @@ pub struct FlangeDiagnosis {
     pub time_constant: f64,
     /// Standard deviation of the force sensor's noise [N].
     pub noise: f64,
+    /// The flange as a simulation fitted to the runs.
+    pub simulated: Option<SimulatedFlange>,
 }
 
 /// Multiples of the noise from which a force is there [1].
@@ -32,7 +36,7 @@ impl FlangeDiagnosis {
         spread_of_sizes(&values)
     }
 
-    /// Departures of the runs from the believed first order, by name; nothing of a flange that is as believed.
+    /// Residuals of the runs from the believed first order, by name; nothing of a flange that is as believed.
     #[must_use]
     pub fn missing(&self) -> Vec<&'static str> {
         let limit = THERE * self.noise;
@@ -64,8 +68,12 @@ impl FlangeDiagnosis {
         self.runs.iter().filter_map(|(_, s)| s.decay).collect()
     }
 
-    /// Peak [N] and settling [s] of a run at another speed.
-    fn predicted(&self, shown: &RunMetrics) -> (f64, f64) {
+    /// Peak [N] and settling [s] of a run at another speed: of the simulation, or as the fitted runs' grow.
+    fn predicted(&self, name: &str, shown: &RunMetrics) -> (f64, f64) {
+        let runs = self.simulated.iter().flat_map(|flange| &flange.runs);
+        if let Some(run) = runs.filter(|run| !run.fitted).find(|r| r.recording == name) {
+            return (run.peak_n.simulated, run.settling_s.simulated);
+        }
         let peak = shown.before + shown.approach * self.impedance()[0];
         // What settles is the flange's control: as in the runs of the nearest desired force.
         let away = |s: &RunMetrics| (s.desired / shown.desired).ln().abs();
@@ -191,7 +199,7 @@ impl FlangeDiagnosis {
                     .map(|(name, shown)| report(name, shown))
                     .collect(),
                 predicted: self.unseen.as_ref().map(|(name, shown)| {
-                    let (peak, settling) = self.predicted(shown);
+                    let (peak, settling) = self.predicted(name, shown);
                     PredictedRun {
                         recording: name.clone(),
                         approach_m_per_s: shown.approach,
@@ -201,6 +209,7 @@ impl FlangeDiagnosis {
                         settling_measured_s: shown.settling,
                     }
                 }),
+                flange: self.simulated.clone(),
                 ..Details::default()
             },
         }
@@ -237,11 +246,18 @@ impl FlangeDiagnosis {
                 account.add(kind, vec![paragraph]);
             }
         }
-        let unseen = self
+        let measured = self
             .unseen
             .as_ref()
             .map(|(name, shown)| self.unseen_run(name, shown));
-        account.add(SectionKind::UnseenRun, unseen.into_iter().collect());
+        let flange = self.simulated.as_ref();
+        account.add(
+            SectionKind::Simulated,
+            flange.map(simulated).unwrap_or_default(),
+        );
+        let simulated_too = flange.map(unseen).unwrap_or_default();
+        let paragraphs = measured.into_iter().chain(simulated_too).collect();
+        account.add(SectionKind::UnseenRun, paragraphs);
         let runs = self.runs.iter().map(|(name, s)| {
             format!(
                 "{name}: {:.3} m/s, {:.0} N desired; peak {:.0} N, ringing {:.1} Hz, settled after {:.2} s, steady error {:+.2} N",
@@ -313,7 +329,7 @@ impl FlangeDiagnosis {
     }
 
     fn unseen_run(&self, name: &str, shown: &RunMetrics) -> String {
-        let (peak, settling) = self.predicted(shown);
+        let (peak, settling) = self.predicted(name, shown);
         format!(
             "{name} comes at {:.3} m/s. Predicted: a peak of {peak:.0} N, settled after {settling:.2} s; measured: {:.0} N ({:+.0} %) and {:.2} s ({:+.0} %).",
             shown.approach,
@@ -346,6 +362,7 @@ fn report(name: &str, shown: &RunMetrics) -> RunReport {
         steady_error_n: shown.steady,
         wander_n: shown.unrest,
         moving_rms_n: shown.moving,
+        sliding_spread_n: shown.spread,
         contact_lost: shown.lost,
     }
 }
@@ -382,6 +399,11 @@ mod tests {
                 .iter()
                 .map(|t| if *t < 0.0 { 0.02 } else { 0.0 })
                 .collect(),
+            force_ramp: None,
+            commanded: time
+                .iter()
+                .map(|t| if *t < 0.0 { 0.02 } else { 0.0 })
+                .collect(),
             time,
         }
     }
@@ -393,6 +415,7 @@ mod tests {
             mass: 3.0,
             time_constant: 0.05,
             noise: 0.085,
+            simulated: None,
         }
     }
 
@@ -422,6 +445,7 @@ mod tests {
             &mut run.force,
             &mut run.desired,
             &mut run.speed,
+            &mut run.commanded,
         ] {
             values.truncate(1000);
         }

@@ -20,6 +20,7 @@ pub mod finding;
 pub mod fit;
 pub mod flange;
 pub mod flange_answer;
+pub mod flange_fit;
 pub mod formula;
 pub mod free;
 pub mod hypothesis;

@@ -216,11 +216,18 @@ pub fn run_of(file: &str, name: &str, recording: &Recording) -> Result<Run, Reco
         }
         Ok(values)
     };
+    let speed = values(schema::TOOL_SPEED)?;
+    let commanded = match recording.values(schema::COMMANDED_TOOL_SPEED) {
+        Ok(_) => values(schema::COMMANDED_TOOL_SPEED)?,
+        Err(_) => speed.clone(),
+    };
     Ok(Run {
         name: name.to_owned(),
         force: values(schema::MEASURED_FORCE)?,
         desired: values(schema::DESIRED_FORCE)?,
-        speed: values(schema::TOOL_SPEED)?,
+        speed,
+        commanded,
+        force_ramp: None,
         time: recording.time().to_vec(),
     })
 }

@@ -15,6 +15,7 @@ mod cell_parameters;
 mod chain;
 mod contact;
 mod contact_friction;
+pub mod flange;
 mod initial_state;
 mod inputs;
 mod joint_deflections;

@@ -89,6 +89,8 @@ pub const SET_PRESSURE_GAUGE: &str = "set_pressure_gauge";
 pub const MEASURED_REGULATOR_PRESSURE_GAUGE: &str = "measured_regulator_pressure_gauge";
 /// Speed of the arm's tool along its path, as the arm tells it.
 pub const TOOL_SPEED: &str = "tool_speed";
+/// Speed along its path that the arm is commanded.
+pub const COMMANDED_TOOL_SPEED: &str = "commanded_tool_speed";
 /// Contact force estimated without a load cell.
 pub const ESTIMATED_FORCE: &str = "estimated_force";
 /// Standard deviation that the estimator gives it.

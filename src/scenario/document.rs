@@ -289,7 +289,14 @@ fn expected_value(expected: &str, key: &str) -> String {
         "a boolean" => "true or false".to_owned(),
         "a string" | "path string" => "a text in quotes".to_owned(),
         "a sequence"
-            if ["arm.limit_overrides", "arm.drives", "command", "valve"].contains(&key) =>
+            if [
+                "arm.limit_overrides",
+                "arm.drives",
+                "command",
+                "recordings.force_ramp",
+                "valve",
+            ]
+            .contains(&key) =>
         {
             format!("tables [[{key}]]")
         }

@@ -32,7 +32,7 @@ mod values;
 pub use improved::improved_text;
 pub(super) use number::NUMBER_OR_TABLE;
 pub(super) use quantities::{blank, described_numbers};
-pub use values::Tolerance;
+pub use values::{RecordingForceRamp, Tolerance};
 
 /// Version of the format.
 const SCHEMA: u32 = 2;
@@ -58,6 +58,8 @@ pub struct RigFile {
     pub fit: Vec<String>,
     /// Recording whose inputs are to be predicted.
     pub predict: Option<String>,
+    /// Force ramps of recordings of a contact flange.
+    pub force_ramps: Vec<RecordingForceRamp>,
     /// Effects that the file names, in the order of the catalogue, with all their numbers.
     pub effects: Vec<PresentEffect>,
 }
@@ -95,7 +97,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     plant.latent = latent::latent(&document, keys.latent.as_ref())?;
     let (rate, noise) = sensors(&document, &keys, plant.chain)?;
     let pressure_drift = pressure_drift(&document, &keys)?;
-    let (fit, predict) = recordings(&document, keys.recordings)?;
+    let recordings = recordings(&document, keys.recordings, plant.chain)?;
     Ok(RigFile {
         path: path.to_owned(),
         text: text.to_owned(),
@@ -104,8 +106,9 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
         rate,
         noise,
         pressure_drift,
-        fit,
-        predict,
+        fit: recordings.fit,
+        predict: recordings.predict,
+        force_ramps: recordings.force_ramps,
         effects,
     })
 }

@@ -6,6 +6,7 @@ use super::super::error::AppError;
 use super::super::files::{DIAGNOSIS, OutputFolder, Standing, is_same};
 use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
+use super::flange_picture;
 use super::outputs::{Finished, NAMES, Outputs, stands_complete};
 use super::removal_picture;
 use super::unlisted_picture::picture;
@@ -138,7 +139,7 @@ impl Prepared {
             diagnosis,
             ..
         } = diagnosed;
-        let (mut shape, mut fit) = (None, None);
+        let (mut shape, mut fit) = (None, flange_picture::picture(&answer, &comparison)?);
         if let Some(diagnosis) = &diagnosis {
             shape = picture(diagnosis)?;
             fit = fit_picture::picture(diagnosis)?;

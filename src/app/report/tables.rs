@@ -20,6 +20,7 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<PageSection<'a>> {
     let mut blocks: Vec<Block<'a>> = tables.into_iter().flatten().map(Block::PageTable).collect();
     let kinds = [
         SectionKind::Remaining,
+        SectionKind::Simulated,
         SectionKind::UnseenRun,
         SectionKind::Runs,
     ];

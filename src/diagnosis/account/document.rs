@@ -47,6 +47,8 @@ pub enum SectionKind {
     SteadyError,
     /// Its force error while the arm moves.
     ErrorWhileMoving,
+    /// The same simulated.
+    Simulated,
     /// Prediction of a run of it that was not fitted to.
     UnseenRun,
     /// Its runs.
@@ -81,6 +83,7 @@ impl SectionKind {
             Self::Settling => "Settling",
             Self::SteadyError => "Steady error",
             Self::ErrorWhileMoving => "While the arm moves",
+            Self::Simulated => "As a simulation",
             Self::UnseenRun => "A run that it never saw",
             Self::Runs => "The runs",
             Self::Arm => "The arm",

@@ -56,6 +56,17 @@ pub(super) struct RecordingsKeys {
     #[serde(default)]
     pub fit: Vec<String>,
     pub predict: Option<String>,
+    #[serde(default)]
+    pub force_ramp: Vec<ForceRampKeys>,
+}
+
+/// `[[recordings.force_ramp]]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ForceRampKeys {
+    pub recording: String,
+    pub before_contact_n: f64,
+    pub time_s: f64,
 }
 
 impl RigKeys {
@@ -91,6 +102,7 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("", keys::<RigKeys>()),
         ("rig", keys::<PartKeys>()),
         ("recordings", keys::<RecordingsKeys>()),
+        ("recordings.force_ramp", keys::<ForceRampKeys>()),
     ];
     sections.extend(TABLES.iter().map(|(table, keys)| (*table, &keys[..])));
     let with_accuracy = [

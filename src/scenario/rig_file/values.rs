@@ -248,11 +248,33 @@ pub(super) fn pressure_drift(
     }
 }
 
-/// Names of the recordings to diagnose from, and of the one to predict.
+/// The force that a contact flange is told before contact, and how it grows to the desired one after it.
+#[derive(Debug, Clone)]
+pub struct RecordingForceRamp {
+    /// Name of the recording, or a pattern with a star.
+    pub recording: String,
+    /// Force before contact [N].
+    pub before: f64,
+    /// Time from contact until the desired force is set [s].
+    pub time: f64,
+}
+
+/// Recordings of a rig.
+pub(super) struct Recordings {
+    /// Names of those to diagnose from.
+    pub fit: Vec<String>,
+    /// Name of that to predict.
+    pub predict: Option<String>,
+    /// Force ramps, by the recordings that have one.
+    pub force_ramps: Vec<RecordingForceRamp>,
+}
+
+/// Names of the recordings and what is said of them.
 pub(super) fn recordings(
     document: &Document<'_>,
     keys: RecordingsKeys,
-) -> Result<(Vec<String>, Option<String>), ScenarioError> {
+    chain: Chain,
+) -> Result<Recordings, ScenarioError> {
     let section = Section::new(document, "recordings");
     for (index, name) in keys.fit.iter().enumerate() {
         let key = format!("fit[{index}]");
@@ -265,5 +287,25 @@ pub(super) fn recordings(
     if let Some(name) = &keys.predict {
         section.text("predict", name)?;
     }
-    Ok((keys.fit, keys.predict))
+    if !keys.force_ramp.is_empty() && chain != Chain::ContactFlange {
+        let found = chain.name().to_owned();
+        let expected = format!(
+            "{:?} of [rig] chain where a recording has a force ramp",
+            Chain::ContactFlange.name()
+        );
+        return Err(section.refuse("force_ramp", found, expected));
+    }
+    let ramps = keys.force_ramp.iter().enumerate().map(|(index, ramp)| {
+        let section = Section::new(document, format!("recordings.force_ramp[{index}]"));
+        Ok(RecordingForceRamp {
+            recording: section.text("recording", &ramp.recording)?,
+            before: section.number("before_contact_n", ramp.before_contact_n, 0.0..=1e4)?,
+            time: section.number("time_s", ramp.time_s, 0.0..=100.0)?,
+        })
+    });
+    Ok(Recordings {
+        force_ramps: ramps.collect::<Result<_, _>>()?,
+        fit: keys.fit,
+        predict: keys.predict,
+    })
 }

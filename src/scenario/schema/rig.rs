@@ -46,6 +46,33 @@ pub fn schema() -> Value {
                     "type": "string",
                     "description": "Recording that is kept back, to be predicted.",
                 },
+                "force_ramp": {
+                    "type": "array",
+                    "items": {
+                        "type": "object",
+                        "properties": {
+                            "recording": {
+                                "type": "string",
+                                "description": "Recording that it is of; a star stands for all that fit.",
+                            },
+                            "before_contact_n": {
+                                "type": "number",
+                                "minimum": 0,
+                                "maximum": 1e4,
+                                "description": "Force that a contact flange is told before contact.",
+                            },
+                            "time_s": {
+                                "type": "number",
+                                "minimum": 0,
+                                "maximum": 100,
+                                "description": "Time from contact until the desired force is set.",
+                            },
+                        },
+                        "required": ["recording", "before_contact_n", "time_s"],
+                        "additionalProperties": false,
+                    },
+                    "description": "Force ramps of a contact flange; without one the whole desired force is set before contact.",
+                },
             },
             "additionalProperties": false,
         }),

@@ -1,0 +1,146 @@
+//! A contact flange as a simulation: [`crate::plant::flange`] fitted to runs, and other runs predicted with it.
+//!
+//! Inputs of a run are the arm's speed, the desired force and the force ramp; the contact force is predicted. What of it is met: [`residuals`]; how: [`solve`].
+//! Fits that are nearly as good as the best all count, so that what the runs do not tell apart shows as a range of what is predicted.
+
+pub(super) mod account;
+mod course;
+mod prediction;
+pub mod report;
+mod residuals;
+mod sliding;
+mod solve;
+
+use super::flange::{Run, RunMetrics};
+use crate::plant::flange::{FlangeModel, Ripple};
+use prediction::{Logged, predict_run};
+use report::{FittedNumber, SimulatedFlange, SimulatedRun};
+use residuals::Targets;
+use solve::Solution;
+
+/// Runs that are fitted to at most: the time grows with them.
+const MOST: usize = 4;
+/// Tolerances of the logarithms of a fitted run's peak, ringing and settling [1].
+const ACCEPTED: [f64; 3] = [0.03, 0.02, 0.05];
+/// Share of the best's cost by which another may be worse and still counts [1].
+const ALIKE: f64 = 0.06;
+/// Half a 95 % interval by the standard deviation [1].
+const HALF: f64 = 1.96;
+
+/// A flange fitted to runs.
+pub struct FlangeFit {
+    /// What it says.
+    pub report: SimulatedFlange,
+    /// Force that it gives of each run, from a sample on [N]; nothing where a run cannot be simulated.
+    pub forces: Vec<Option<(usize, Vec<f64>)>>,
+}
+
+/// Fits a flange of a moving mass [kg] to runs and simulates these and others; none where there is no run to fit to.
+#[must_use]
+pub fn fit_flange(
+    fitted: &[(Run, RunMetrics)],
+    unseen: &[&(Run, RunMetrics)],
+    mass: f64,
+) -> Option<FlangeFit> {
+    let targets: Vec<Targets> = (fitted.iter().take(MOST))
+        .map(|(run, shown)| Targets::of(run, shown))
+        .collect();
+    let reader = targets.first()?.reader;
+    let logged: Vec<Logged<'_>> = (fitted.iter().chain(unseen.iter().copied()))
+        .map(|(run, shown)| Logged::new(run, shown, reader))
+        .collect();
+    let solutions = alike(solve::solutions(&targets, mass), &logged[..targets.len()]);
+    let best = solutions.first()?;
+    let models: Vec<FlangeModel> = solutions.iter().map(|s| s.model).collect();
+    let ripple = sliding::ripple(&best.model, &logged[..targets.len()]);
+    let (mut runs, mut forces) = (Vec::new(), Vec::new());
+    for (index, run) in logged.iter().enumerate() {
+        let Some(made) = predict_run(&models, ripple, run) else {
+            forces.push(None);
+            continue;
+        };
+        let (name, _) = match fitted.get(index) {
+            Some((run, shown)) => (&run.name, shown),
+            None => (&unseen[index - fitted.len()].0.name, run.shown),
+        };
+        runs.push(SimulatedRun {
+            recording: name.clone(),
+            fitted: index < targets.len(),
+            force_before_n: run.course.course.before,
+            force_ramp_s: run.course.course.ramp,
+            peak_n: made.peak,
+            ringing_hz: made.ringing,
+            settling_s: made.settling,
+            sliding_spread_n: made.spread,
+        });
+        forces.push(Some((run.first, made.force)));
+    }
+    Some(FlangeFit {
+        report: SimulatedFlange {
+            numbers: numbers(best, ripple),
+            reading_rate_hz: 1.0 / reader.period,
+            reading_gain: reader.gain,
+            solutions: solutions.len(),
+            runs,
+        },
+        forces,
+    })
+}
+
+/// Those that count as well as the best, by their cost with that of the fitted runs' results.
+fn alike(solutions: Vec<Solution>, fitted: &[Logged<'_>]) -> Vec<Solution> {
+    let cost = |solution: &Solution| {
+        let results = fitted.iter().map(|run| {
+            let Some(made) = predict_run(&[solution.model], None, run) else {
+                return f64::INFINITY;
+            };
+            let results = [made.peak, made.ringing, made.settling].into_iter();
+            let residuals = results
+                .zip(ACCEPTED)
+                .map(|(result, accepted)| (result.simulated / result.recorded).ln() / accepted);
+            residuals.map(solve::loss).sum()
+        });
+        solution.cost + results.sum::<f64>()
+    };
+    let mut ranked: Vec<(f64, Solution)> = (solutions.into_iter())
+        .map(|solution| (cost(&solution), solution))
+        .collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let most = ranked.first().map_or(0.0, |(cost, _)| cost * (1.0 + ALIKE));
+    let counts = ranked.into_iter().filter(|(cost, _)| *cost <= most);
+    counts.map(|(_, solution)| solution).collect()
+}
+
+fn numbers(best: &Solution, ripple: Option<Ripple>) -> Vec<FittedNumber> {
+    let all = FlangeModel::NAMES.iter().zip(best.model.numbers());
+    let mut numbers: Vec<FittedNumber> = (all.zip(best.deviations))
+        .map(|((name, value), deviation)| {
+            let factor = (HALF * deviation).exp();
+            FittedNumber {
+                name: (*name).to_owned(),
+                value,
+                low: value / factor,
+                high: value * factor,
+            }
+        })
+        .collect();
+    let ripples = ripple.map(|r| {
+        [
+            ("arm_ripple", r.ratio),
+            ("arm_ripple_bandwidth_hz", r.bandwidth),
+        ]
+    });
+    // Met, not fitted: what else would meet it is not known.
+    numbers.extend(
+        ripples
+            .into_iter()
+            .flatten()
+            .map(|(name, value)| FittedNumber {
+                name: name.to_owned(),
+                value,
+                low: 0.5 * value,
+                high: 2.0 * value,
+            }),
+    );
+    numbers
+}
