@@ -108,6 +108,7 @@ fn scene() -> Scene {
             relative_force_error: vec![0.02, f64::NAN],
             length: 2.0,
         },
+        finished_edge: None,
         contact_arrows: frame_times.iter().map(arrow).collect(),
         frame_times,
         limits: SceneLimits {
