@@ -71,17 +71,20 @@ pub(super) fn write_finished_edge(
     rrd.add_static(RESIDUAL_BURR, &lines)
 }
 
-/// Writes the summary, and below it how to read the edge's colours.
+/// Writes the summary, and below it how to read the edge's colours; nothing where there is neither.
 pub(super) fn write_summary(
     rrd: &mut RrdWriter,
     markdown: &str,
     scene: &Scene,
 ) -> Result<(), RrdError> {
-    let mut text = markdown.to_owned();
-    if let Some(edge) = &scene.finished_edge {
-        text = format!("{text}\n\n{}", edge.legend());
+    let legend = scene.finished_edge.as_ref().map(FinishedEdge::legend);
+    let parts = (!markdown.is_empty()).then(|| markdown.to_owned());
+    let parts: Vec<String> = parts.into_iter().chain(legend).collect();
+    if parts.is_empty() {
+        return Ok(());
     }
-    rrd.add_static(SUMMARY, &TextDocument::from_markdown(text))
+    let text = TextDocument::from_markdown(parts.join("\n\n"));
+    rrd.add_static(SUMMARY, &text)
 }
 
 /// A band through rows of points across it. Without normals its colours are shown as they are, wherever the light comes from.

@@ -134,9 +134,7 @@ impl GrowingRrd {
             signals::write_guides(&mut self.rrd, plot, &axes)?;
         }
         signals::write_phases(&mut self.rrd, recording, &axes)?;
-        if !self.options.summary_markdown.is_empty() {
-            write_summary(&mut self.rrd, &self.options.summary_markdown, scene)?;
-        }
+        write_summary(&mut self.rrd, &self.options.summary_markdown, scene)?;
         // Chunks of the two stores are told apart as those of two recordings.
         let mut layout = RrdWriter::begin(StoreKind::Blueprint, &self.id, !self.number)?;
         write_layout(&mut layout, scene, plots, recording, &self.options)?;
