@@ -331,6 +331,12 @@ class Job:
         elif kind == "" and (found := re.search(r"\((\d+) of (\d+) samples: the extremes of each stretch\)", text)):
             whole = (len(self.run.samples), len(self.run.phase("follow")) if not self.is_bench else 0)
             self.checked.fact(where, int(found[2]) in whole, True)
+        elif text.startswith("These numbers rest on values"):
+            judged = self.document["judged"]
+            keys = [value["key"] for value in judged if not value["key"].startswith("device.")]
+            self.checked.fact(f"{where}: keys", sorted(re.findall(r"(?:removal|workpiece)\.[\w.]*\w", text)), sorted(keys))
+            many = re.search(r"(\d+) values? that the device model marks", text)
+            self.checked.fact(f"{where}: values of the device", int(many[1]) if many else 0, len(judged) - len(keys))
         elif re.search(r"\d", text):
             self.checked.uncovered(where, text)
 
