@@ -328,7 +328,7 @@ fn the_edge_is_drawn_before_and_after_in_the_colours_of_its_error() {
             assert!(
                 (found - expected).abs() < 1e-6,
                 "station {i}: {found} {expected}"
-            )
+            );
         };
         near(on_edge(before[2 * i]), 0.0);
         near(before[2 * i + 1].distance(before[2 * i]), factor * burr);

@@ -343,7 +343,7 @@ fn off_five_newtons(other: &str, controlled: bool) -> f64 {
         cell.contact = real.contact;
         if controlled {
             cell.controller = real.controller.clone();
-            cell.sensing = real.sensing.clone();
+            cell.sensing = real.sensing;
         }
         // The tool comes down forwards, 45 degrees steep: turning gravity about the edge turns the whole cell about it.
         let gravity = cell.simulation.gravity;

@@ -159,7 +159,6 @@ fn sources(study: &Study, scenarios: &[AnyScenario]) -> Result<Provenance, AppEr
 
 /// design.json.
 fn document(prepared: &PreparedStudy, result: &StudyResult) -> Result<String, AppError> {
-    let study = &prepared.study;
     #[derive(Serialize)]
     struct Varied<'a> {
         key: &'a str,
@@ -193,6 +192,7 @@ fn document(prepared: &PreparedStudy, result: &StudyResult) -> Result<String, Ap
         judged: &'a [JudgedValue],
         provenance: &'a Provenance,
     }
+    let study = &prepared.study;
     Ok(serde_json::to_string_pretty(&Document {
         study: study.path.display().to_string(),
         scenarios: study

@@ -19,7 +19,7 @@ use ::rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
 use ::rerun::{
     AsComponents, EntityPath, SerializationError, SerializedComponentColumn, StoreId, StoreKind,
 };
-use arrow::array::Array as _;
+use arrow::array::Array;
 
 /// Longest time that a viewer that listens may take to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -188,7 +188,7 @@ impl RrdWriter {
             .map(|t| (*t.timeline().name(), t))
             .collect();
         let columns: ChunkComponents = columns.into_iter().collect();
-        let rows = columns.list_arrays().next().map_or(0, |rows| rows.len());
+        let rows = columns.list_arrays().next().map_or(0, Array::len);
         // In the order in which they come: Rerun's own row ids would sort them along the path, where a second pass begins anew, and give such a chunk an
         // id by the clock.
         let next = |row: &RowId| Some(row.next());
