@@ -4,13 +4,15 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
-use idc_cell::app::{run_cell, scene_of};
+use idc_cell::app::{finished_edge, run_cell, scene_of};
 use idc_cell::arm::VisualShape;
 use idc_cell::cell::Cell;
 use idc_cell::recording::rerun::{RerunOptions, write_rrd};
 use idc_cell::recording::scene::Scene;
-use idc_cell::scenario::{Obstacle, ObstacleShape};
-use rerun::{ChunkStore, ChunkStoreConfig, CoordinateFrame, Mesh3D, Transform3D};
+use idc_cell::scenario::{BurrScenario, Obstacle, ObstacleShape};
+use rerun::{
+    ChunkStore, ChunkStoreConfig, CoordinateFrame, LineStrips3D, Mesh3D, TextDocument, Transform3D,
+};
 
 use crate::common::scenario;
 
@@ -216,4 +218,151 @@ fn what_is_checked_for_collisions_is_where_the_links_and_obstacles_are() {
         grown < most as u64,
         "{grown} bytes for {triangles} triangles"
     );
+}
+
+/// Colours of an entity's mesh, a corner each: red, green, blue, opacity.
+fn corner_colours(store: &ChunkStore, entity: &str) -> Vec<[u8; 4]> {
+    let colours = Mesh3D::descriptor_vertex_colors().component;
+    let chunks = store.iter_physical_chunks();
+    let own = chunks.filter(|chunk| chunk.entity_path().to_string() == entity);
+    let mut found = Vec::new();
+    for chunk in own {
+        let rows = chunk.iter_slices::<u32>(colours).flatten();
+        found.extend(rows.map(|colour| colour.to_be_bytes()));
+    }
+    found
+}
+
+/// What an edge_profile.csv holds: burr before, burr after and leg of each station [m].
+fn stations(text: &str) -> Vec<[f64; 3]> {
+    let rows = text.lines().skip(1).map(|line| {
+        let fields: Vec<f64> = line
+            .split(',')
+            .map(|field| field.parse().unwrap())
+            .collect();
+        [fields[1], fields[2], fields[3]].map(|millimetres| 1e-3 * millimetres)
+    });
+    rows.collect()
+}
+
+/// A leg's colour, of a tolerance of 0.2 to 0.6 mm: 35 % to 100 % of the way from nearly white to blue or vermilion.
+fn colour_of(leg: f64) -> [f64; 4] {
+    let blend = |end: [f64; 3], off: f64| {
+        let way = 0.35 + 0.65 * off.min(1.0);
+        let [r, g, b] = end.map(|end| 245.0 + way * (end - 245.0));
+        [r, g, b, 255.0]
+    };
+    if leg < 0.2e-3 {
+        blend([0.0, 114.0, 178.0], 1.0 - leg / 0.2e-3)
+    } else if leg > 0.6e-3 {
+        blend([213.0, 94.0, 0.0], leg / 0.6e-3 - 1.0)
+    } else {
+        [0.0, 158.0, 115.0, 255.0]
+    }
+}
+
+// Catches: a chamfer drawn beside its edge, in the colours of another station, or too much as too little.
+#[test]
+fn the_edge_is_drawn_before_and_after_in_the_colours_of_its_error() {
+    let mut job = scenario("deburred_edge");
+    job.workpiece.edge.start = 0.1;
+    job.workpiece.edge.end = Some(0.16);
+    // One fast pass over a burr of very different heights: some of it stays, and some of the chamfer is too small.
+    job.passes.truncate(1);
+    job.passes[0].force = Some(40.0);
+    job.passes[0].feed = Some(0.1);
+    job.workpiece.burr_root = 0.25e-3;
+    job.workpiece.burr = BurrScenario::Random {
+        seed: 1,
+        mean_height: 0.3e-3,
+        height_deviation: 0.2e-3,
+        correlation_length: 8e-3,
+    };
+    job.expect.clear();
+    let cell = Cell::new(job).unwrap();
+    let run = run_cell(&cell, &mut |_, _| ()).unwrap();
+    let profile = run.edge.as_ref().unwrap();
+    let mut scene = scene_of(&cell, &run.recording, &run.frames).unwrap();
+    assert!(scene.finished_edge.is_none());
+    scene.finished_edge = Some(finished_edge(&cell, profile));
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str| {
+        let file = folder.path().join(name);
+        write_rrd(&file, &run.recording, &scene, &RerunOptions::default()).unwrap();
+        file
+    };
+    let [file, again] = ["recording.rrd", "again.rrd"].map(write);
+    assert!(std::fs::read(&file).unwrap() == std::fs::read(&again).unwrap());
+    let store = read(&file);
+
+    let stations = stations(&profile.text());
+    let part = cell.part.world_from_part;
+    let edge: Vec<DVec3> = (cell.part.edge.points.iter())
+        .map(|point| part.transform_point(*point))
+        .collect();
+    let on_edge = |point: DVec3| distance(point, &edge);
+    let (after, _) = mesh(&store, "/cell/edge/after");
+    let (before, _) = mesh(&store, "/cell/edge/before");
+    let colours = corner_colours(&store, "/cell/edge/after");
+    assert_eq!(after.len(), 3 * stations.len());
+    assert_eq!(before.len(), 2 * stations.len());
+    assert_eq!(colours.len(), after.len());
+    let legend = TextDocument::descriptor_text().component;
+    let legend = store.iter_physical_chunks().find_map(|chunk| {
+        let own = chunk.entity_path().to_string() == "/summary";
+        let mut texts = chunk.iter_slices::<String>(legend);
+        own.then(|| texts.next().unwrap()[0].to_string())
+    });
+    let legend = legend.unwrap();
+    let factor = legend.split_once("Drawn ").unwrap().1;
+    let factor: f64 = factor.split(' ').next().unwrap().parse().unwrap();
+    assert!(
+        legend.contains("within the tolerance, 0.2 to 0.6 mm"),
+        "{legend}"
+    );
+
+    let mut kinds = [0; 3];
+    for (i, [burr, _, leg]) in stations.iter().enumerate() {
+        // As the file holds them, in f32: half a micrometre at a metre.
+        let near = |found: f64, expected: f64| {
+            assert!(
+                (found - expected).abs() < 1e-6,
+                "station {i}: {found} {expected}"
+            );
+        };
+        near(on_edge(before[2 * i]), 0.0);
+        near(before[2 * i + 1].distance(before[2 * i]), factor * burr);
+        let [left, foot, right] = [0, 1, 2].map(|corner| after[3 * i + corner]);
+        near(on_edge(foot), 0.2e-3);
+        near(left.distance(foot), factor * leg);
+        near(right.distance(foot), factor * leg);
+        // The faces of a plate.
+        assert!((left - foot).dot(right - foot).abs() < 1e-8);
+        for colour in &colours[3 * i..3 * i + 3] {
+            for (found, expected) in colour.iter().zip(colour_of(*leg)) {
+                assert!(
+                    (f64::from(*found) - expected).abs() <= 1.0,
+                    "station {i}: {colour:?} of {leg} m"
+                );
+            }
+        }
+        kinds[if *leg < 0.2e-3 {
+            0
+        } else {
+            1 + usize::from(*leg > 0.6e-3)
+        }] += 1;
+    }
+    assert!(kinds.iter().all(|count| *count > 5), "{kinds:?}");
+
+    let strips = LineStrips3D::descriptor_strips().component;
+    let left = stations
+        .iter()
+        .filter(|[_, burr, _]| *burr > 0.02e-3)
+        .count();
+    let marked = store.iter_physical_chunks().filter(|chunk| {
+        chunk.entity_path().to_string() == "/cell/edge/residual_burr"
+            && chunk.components().contains_component(strips)
+    });
+    let marked: usize = marked.map(|chunk| chunk.num_rows()).sum();
+    assert!(left > 20 && marked == 1, "{left} stations with a burr");
 }

@@ -63,6 +63,44 @@ fn bench(rows: &str) -> Bench {
     bench
 }
 
+/// What `idc new` writes is a case as it stands, `idc check` explains it, and its diagnosis names what the made-up rows have.
+#[test]
+fn a_new_table_is_checked_and_diagnosed_as_it_stands() {
+    let bench = Bench::new("plate_edge_ideal");
+    let new = bench.idc(&["new", "removal_table", "mine/rig.toml"], &[]);
+    assert_eq!(new.code, 0, "{}", new.err);
+    assert!(
+        new.out.contains("mine/rig_runs.csv") && new.out.contains("next: idc diagnose mine"),
+        "{}",
+        new.out
+    );
+    for target in ["mine", "mine/rig.toml"] {
+        let checked = bench.idc(&["check", target], &[]);
+        assert_eq!(checked.code, 0, "{}", checked.err);
+        for words in [
+            "24 rows to diagnose from",
+            "feed from feed_mm_s, in mm/s",
+            "idc diagnose mine",
+        ] {
+            assert!(checked.out.contains(words), "{}", checked.out);
+        }
+    }
+    let answer = diagnosed(&bench, "mine");
+    let mut found = names(&answer);
+    found.sort_unstable();
+    assert_eq!(found, ["removal_force_exponent", "tool_wear"]);
+    // A second one elsewhere under another name has a table of its own name, and what stands is kept.
+    let again = bench.idc(&["new", "removal_table", "mine/rig.toml"], &[]);
+    assert_eq!(again.code, 2, "{}", again.err);
+    assert_eq!(
+        bench
+            .idc(&["new", "removal_table", "belt.toml", "--quiet"], &[])
+            .code,
+        0
+    );
+    assert!(bench.path("belt_runs.csv").is_file());
+}
+
 fn names(answer: &Value) -> Vec<&str> {
     let effects = answer["effects"].as_array().unwrap().iter();
     effects

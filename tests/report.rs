@@ -88,6 +88,68 @@ fn the_page_of_a_run_comes_again_and_names_bounds_that_were_not_kept() {
     assert!(!text.contains("over the following phase"));
 }
 
+// Catches: a value that is declared judged and not told, one told that is declared otherwise, and a study that says nothing of them.
+#[test]
+fn a_run_says_which_of_its_numbers_rest_on_judged_values() {
+    let bench = Bench::new("deburred_edge");
+    bench.replace("scenario.toml", "end_mm = 290", "end_mm = 50");
+    bench.replace("scenario.toml", "friction_coefficient = 0.3\n", "");
+    let text = fs::read_to_string(bench.path("scenario.toml")).unwrap();
+    bench.write("scenario.toml", text.split("[expect]").next().unwrap());
+    let words = [
+        "run",
+        "scenario.toml",
+        "--out",
+        "out",
+        "--quiet",
+        "--no-recording",
+    ];
+    assert_eq!(bench.idc(&words, &[]).code, 0);
+    let summary = bench.summary();
+    let told = summary["judged"].as_array().unwrap();
+    let key = |value: &Value| value["key"].as_str().unwrap().to_owned();
+    let rows = fs::read_to_string(project("scenarios/README.md")).unwrap();
+    let model = fs::read_to_string(project("models/device.toml")).unwrap();
+    for value in told {
+        let key = key(value);
+        let declared = match key.strip_prefix("device.") {
+            Some(own) => (model.lines()).find(|line| line.starts_with(&format!("{own} = "))),
+            None => (rows.lines()).find(|line| line.starts_with(&format!("| `{key}` |"))),
+        };
+        assert!(declared.unwrap().contains("judged"), "{key}");
+    }
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+    let (_, told_there) = page.split_once("These numbers rest on values").unwrap();
+    let sentence = told_there.split("measure your own").next().unwrap();
+    for expected in [
+        "leg of the chamfer and burr that is left on removal.coefficient_mm3_per_j, removal.contact_length_mm (default) and workpiece.burr.root_mm",
+        "spindle torque and power on removal.friction_coefficient (default) and removal.specific_energy_j_per_mm3",
+        "share out of tolerance on workpiece.chamfer.residual_burr_max_mm (default)",
+        "contact force and stroke on ",
+    ] {
+        assert!(sentence.contains(expected), "{sentence}");
+    }
+    // What the scenario gives is no longer the model's, and what switches something off decides nothing.
+    let given = |key_: &str| told.iter().any(|value| key(value) == key_);
+    assert!(given("device.seal_coulomb_force_n") && !given("device.axial_load_n"));
+    assert!(!given("removal.wear_work_kj"));
+    bench.replace(
+        "scenario.toml",
+        "[workpiece]\n",
+        "[device.override]\nseal_coulomb_force_n = 9\n\n[workpiece]\n",
+    );
+    let words = [&words[..], &["--force"]].concat();
+    assert_eq!(bench.idc(&words, &[]).code, 0);
+    let summary = bench.summary();
+    let again = summary["judged"].as_array().unwrap();
+    assert_eq!(again.len() + 1, told.len());
+    assert!(
+        !again
+            .iter()
+            .any(|value| key(value) == "device.seal_coulomb_force_n")
+    );
+}
+
 #[test]
 fn damaged_folders_are_refused_by_one_message_and_keep_their_page() {
     let bench = diagnosed("case-02");

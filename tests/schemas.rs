@@ -9,7 +9,14 @@ use crate::common::project;
 
 /// Set, the schemas are written anew.
 const UPDATE: &str = "IDC_UPDATE_SCHEMAS";
-const KINDS: [&str; 5] = ["scenario", "rig", "import", "study", "device"];
+const KINDS: [&str; 6] = [
+    "scenario",
+    "rig",
+    "import",
+    "study",
+    "device",
+    "removal_table",
+];
 
 fn printed(kind: &str) -> Value {
     let output = Command::new(env!("CARGO_BIN_EXE_idc"))
@@ -97,6 +104,7 @@ fn shipped(kind: &str) -> Vec<PathBuf> {
         .concat(),
         "study" => one("scenarios/studies/device_design.toml"),
         "device" => one("models/device.toml"),
+        "removal_table" => one("assets/new/removal_table.toml"),
         other => panic!("{other}"),
     }
 }
@@ -240,6 +248,42 @@ fn slips_of_the_pen_are_not() {
             "bore_mm = 32",
             "bore_mm = 320",
         ),
+        (
+            "removal_table",
+            "assets/new/removal_table.toml",
+            "fit = ",
+            "fits = ",
+        ),
+        (
+            "removal_table",
+            "assets/new/removal_table.toml",
+            "\"preston\"",
+            "\"prestom\"",
+        ),
+        (
+            "removal_table",
+            "assets/new/removal_table.toml",
+            "unit = \"N\"",
+            "unit = \"lbf\"",
+        ),
+        (
+            "removal_table",
+            "assets/new/removal_table.toml",
+            "force_n\", unit",
+            "force_n\", scatter_percent = 3, unit",
+        ),
+        (
+            "removal_table",
+            "assets/new/removal_table.toml",
+            "kind = \"removal_table\"",
+            "kind = \"bench\"",
+        ),
+        (
+            "removal_table",
+            "assets/new/removal_table.toml",
+            "law = \"preston\"",
+            "wear_rate = -1\nlaw = \"preston\"",
+        ),
     ] {
         let text = read(&project(file));
         assert!(text.contains(from), "{file} holds no {from:?}");
@@ -282,6 +326,7 @@ fn keys_are_described() {
         ("bench", &scenario["then"]),
         ("import", &printed("import")),
         ("study", &printed("study")),
+        ("removal_table", &printed("removal_table")),
     ] {
         undescribed(name, schema, &mut bare);
     }

@@ -12,8 +12,8 @@ use crate::metrics::{BenchLimits, BenchSummary, BoundCheck, Timing, summarise_be
 use crate::recording::Recording;
 use crate::recording::provenance::Provenance;
 use crate::rig::{Rig, RigError};
-use crate::scenario::BenchScenario;
 use crate::scenario::bench::LoadScenario;
+use crate::scenario::{BenchScenario, JudgedValue};
 
 /// A bench run that has ended.
 pub struct FinishedBench {
@@ -121,6 +121,9 @@ pub(super) fn document(
         summary: &'a BenchSummary,
         expectations: &'a [BoundCheck],
         samples: usize,
+        /// Values in use that nobody has measured in public.
+        #[serde(skip_serializing_if = "<[_]>::is_empty")]
+        judged: &'a [JudgedValue],
         provenance: &'a Provenance,
     }
     Ok(serde_json::to_string_pretty(&Document {
@@ -133,6 +136,7 @@ pub(super) fn document(
         summary: &finished.summary,
         expectations,
         samples: finished.recording.sample_count(),
+        judged: &scenario.device.judged,
         provenance: origin,
     })?)
 }

@@ -68,6 +68,7 @@ pub(super) fn scene_of(
         frame_times: frames.iter().map(|&i| recording.time()[i]).collect(),
         frame_path_lengths: vec![0.0; frames.len()],
         edge_path: EdgePath::default(),
+        finished_edge: None,
         contact_arrows: frames
             .iter()
             .map(|&i| ContactArrow {

@@ -2,6 +2,7 @@
 
 mod bench;
 mod cell;
+mod removal_table;
 mod report;
 mod rig;
 mod study;
@@ -14,7 +15,9 @@ use self::report::Report;
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
+use crate::case::RIG;
 use crate::recording::atomic::write_text;
+use crate::scenario::removal_table::is_removal_table;
 use crate::scenario::{self, AnyScenario, ScenarioError};
 
 /// For the help.
@@ -36,7 +39,7 @@ Examples:
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
-    /// Scenario, rig file, import map, study or device model; or a folder with rig.toml and its recordings.
+    /// Scenario, rig file, table of runs, import map, study or device model; or a folder with rig.toml and its recordings.
     pub(super) file: PathBuf,
     /// SVG file for a drawing of how a cell's tool stands across its edge.
     #[arg(long, value_name = "FILE", help_heading = "Output")]
@@ -72,6 +75,9 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
 
 fn explained(file: &Path) -> Result<Report, AppError> {
     if file.is_dir() {
+        if is_removal_table(&file.join(RIG)) {
+            return removal_table::removal_table(file);
+        }
         return rig::case(file);
     }
     if file
@@ -105,6 +111,9 @@ fn explained(file: &Path) -> Result<Report, AppError> {
         if has("device") {
             return study::model(file);
         }
+    }
+    if is_removal_table(file) {
+        return removal_table::removal_table(file);
     }
     match scenario::load_any(file) {
         Ok(AnyScenario::Cell(cell)) => cell::cell(*cell),

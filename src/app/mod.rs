@@ -43,6 +43,6 @@ pub use complaint::{complain, wants_json};
 pub use design::ScenarioEvaluator;
 pub use error::{AppError, ExitCode};
 pub use interrupt::listen;
-pub use picture::scene_of;
+pub use picture::{finished_edge, scene_of};
 pub use run::{Finished, run_cell};
 pub use viewer::ViewerError;

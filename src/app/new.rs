@@ -8,9 +8,11 @@ use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
 use crate::arm::likely_flange;
+use crate::case::RIG;
 use crate::cell::CellError;
 use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
+use crate::scenario::removal_table::REMOVAL_TABLE;
 use crate::workpiece::load_mesh;
 
 /// For the help.
@@ -26,6 +28,9 @@ Examples:
   # A rig file and an import map, for logs of a device on a bench.
   idc new rig runs/mine/rig.toml
   idc new import runs/mine/map.toml
+  # Runs of a tool and what it took off, with a table beside it.
+  idc new removal_table runs/mine/belt/rig.toml
+  idc diagnose runs/mine/belt --out runs/mine/belt_found
   # An import map by looking at logs: what it tells of them and how sure it is
   # stands in its comments, and what it asks for.
   idc new import runs/mine/looked.toml --from assets/first/stairs.csv
@@ -34,6 +39,10 @@ Examples:
 
 /// Where a template names the folder of models.
 const MODELS: &str = "MODELS";
+/// Where a template names a table of runs.
+const TABLE: &str = "TABLE";
+/// Rows of such a table.
+const RUNS: &[u8] = include_bytes!("../../assets/new/removal_runs.csv");
 /// Files that a cell needs.
 const BESIDE: [(&str, &[u8]); 3] = [
     ("arm10.urdf", include_bytes!("../../models/arm/arm10.urdf")),
@@ -84,6 +93,9 @@ enum Kind {
     Rig,
     /// An import map: what the columns of a log are.
     Import,
+    /// A table of runs: what a tool took off at which settings.
+    #[value(name = "removal_table")]
+    RemovalTable,
 }
 
 impl Kind {
@@ -92,6 +104,7 @@ impl Kind {
             Self::Cell => "cell",
             Self::Rig => "rig",
             Self::Import => "import",
+            Self::RemovalTable => REMOVAL_TABLE,
         }
     }
 
@@ -100,16 +113,24 @@ impl Kind {
             Self::Cell => include_str!("../../assets/new/cell.toml"),
             Self::Rig => include_str!("../../assets/new/rig.toml"),
             Self::Import => include_str!("../../assets/new/import.toml"),
+            Self::RemovalTable => include_str!("../../assets/new/removal_table.toml"),
         }
     }
 
     /// Next step with the file.
     fn next(self, file: &Path) -> String {
+        let folder = file
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new(".")).display();
+        let is_case = file.ends_with(RIG);
         let file = file.display();
         match self {
             Self::Cell => format!("idc run {file}"),
             Self::Rig => format!("idc check {file}"),
             Self::Import => format!("idc import {file} LOG.csv"),
+            Self::RemovalTable if is_case => format!("idc diagnose {folder}"),
+            Self::RemovalTable => format!("idc check {file}"),
         }
     }
 }
@@ -282,7 +303,9 @@ fn likely_unit(part: &Path) -> Result<&'static str, AppError> {
 fn files(kind: Kind, file: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let models = format!("{stem}_models");
+    let runs = format!("{stem}_runs.csv");
     let text = kind.template().replace(MODELS, &models);
+    let text = text.replace(TABLE, &runs);
     let mut files = vec![(file.to_owned(), text.into_bytes())];
     if matches!(kind, Kind::Cell) {
         let beside = BESIDE.iter();
@@ -291,12 +314,16 @@ fn files(kind: Kind, file: &Path) -> Vec<(PathBuf, Vec<u8>)> {
                 (file.with_file_name(&models).join(name), content.to_vec())
             }));
     }
+    if matches!(kind, Kind::RemovalTable) {
+        files.push((file.with_file_name(runs), RUNS.to_vec()));
+    }
     files
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::RemovalCase;
     use crate::cell::Cell;
     use crate::import::load_map;
     use crate::scenario::load;
@@ -322,5 +349,8 @@ mod tests {
         assert_eq!((rig.fit.len(), rig.tolerances.len()), (1, 8));
         let (_folder, file) = written(Kind::Import);
         assert_eq!(load_map(&file).unwrap().files[0].channels.len(), 7);
+        let (_folder, file) = written(Kind::RemovalTable);
+        let case = RemovalCase::from_file(&file, String::new()).unwrap();
+        assert_eq!((case.rows.len(), case.unseen.len()), (24, 0));
     }
 }

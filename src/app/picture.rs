@@ -1,5 +1,6 @@
 //! The scene that belongs to a run: arm, device, workpiece, edge, contact force.
 
+use glam::DVec3;
 use glamx::DPose3;
 
 use crate::arm::{Arm, Visual, VisualShape};
@@ -7,6 +8,8 @@ use crate::cell::{Cell, DeviceShape};
 use crate::collision::{Body, Mount, Role};
 use crate::drawing::{CrossSection, cross_section};
 use crate::path::{Phase, Reference};
+use crate::recording::csv::EdgeProfile;
+use crate::recording::finished_edge::FinishedEdge;
 use crate::recording::scene::{
     CollisionShape, Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits,
     ScenePoses, SceneShape,
@@ -53,6 +56,7 @@ pub(super) fn motion_of(cell: &Cell, frames: &FrameLog) -> Scene {
         frame_times: frames.times.clone(),
         frame_path_lengths: frames.path_lengths.clone(),
         edge_path: EdgePath::default(),
+        finished_edge: None,
         contact_arrows: frames
             .contact_points
             .iter()
@@ -256,6 +260,35 @@ pub(super) fn across_the_edge(cell: &Cell) -> String {
         axis: reference.axis,
         gravity: cell.scenario.simulation.gravity,
     })
+}
+
+/// The edge before and after it was worked, where it really lies.
+#[must_use]
+pub fn finished_edge(cell: &Cell, profile: &EdgeProfile) -> FinishedEdge {
+    let part = cell.part.world_from_part;
+    let stations = profile.place.iter().map(|place| cell.part.edge.at(*place));
+    let stations: Vec<_> = stations.collect();
+    // Along a face, away from the edge: against the other face's normal.
+    let into =
+        |own: DVec3, other: DVec3| part.rotation * (-other).reject_from(own).normalize_or_zero();
+    let chamfer = cell.scenario.workpiece.chamfer;
+    FinishedEdge {
+        points_in_world: (stations.iter().map(|at| part.transform_point(at.point))).collect(),
+        outwards: (stations.iter().map(|at| part.rotation * at.bisector)).collect(),
+        into_faces: (stations.iter())
+            .map(|at| {
+                [
+                    into(at.normal_a, at.normal_b),
+                    into(at.normal_b, at.normal_a),
+                ]
+            })
+            .collect(),
+        burr_before: profile.burr_before.clone(),
+        burr_after: profile.burr_after.clone(),
+        chamfer_leg: profile.chamfer_leg.clone(),
+        leg_limits: chamfer.leg,
+        burr_limit: chamfer.residual_burr,
+    }
 }
 
 /// The edge as it was planned, with the mean relative error of the force over each segment while following.

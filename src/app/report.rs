@@ -4,6 +4,7 @@ mod charts;
 mod design;
 mod diagnosis;
 mod finished_edge;
+mod judged;
 mod provenance;
 mod run;
 mod signals;

@@ -41,6 +41,9 @@ enum File {
     Study,
     /// A device model.
     Device,
+    /// A table of runs: what a tool took off.
+    #[value(name = "removal_table")]
+    RemovalTable,
 }
 
 impl File {
@@ -51,6 +54,7 @@ impl File {
             Self::Import => import::map_file::schema(),
             Self::Study => design::schema(),
             Self::Device => scenario::schema::device(),
+            Self::RemovalTable => scenario::removal_table::schema(),
         }
     }
 }

@@ -9,6 +9,7 @@ pub mod board;
 pub mod csv;
 mod error;
 pub mod error_scale;
+pub mod finished_edge;
 #[cfg(feature = "parquet")]
 pub mod long_table;
 #[cfg(feature = "parquet")]

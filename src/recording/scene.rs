@@ -7,6 +7,7 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use super::RecordingError;
+use super::finished_edge::FinishedEdge;
 
 /// Red, green, blue and opacity, 0 to 255.
 pub type Colour = [u8; 4];
@@ -128,6 +129,8 @@ pub struct Scene {
     pub frame_path_lengths: Vec<f64>,
     /// The planned path.
     pub edge_path: EdgePath,
+    /// The edge before and after it was worked; of a whole run with a turning tool.
+    pub finished_edge: Option<FinishedEdge>,
     /// Contact force at each frame.
     pub contact_arrows: Vec<ContactArrow>,
     /// Limits for the plots.
@@ -153,6 +156,9 @@ impl Scene {
             self.check_body(body)?;
         }
         self.check_collision_shapes()?;
+        if let Some(edge) = &self.finished_edge {
+            edge.check()?;
+        }
         for (index, limit) in self.limits.joint_torque.iter().enumerate() {
             if !(limit.is_finite() && *limit > 0.0) {
                 let what = format!("torque limit of joint {}", index + 1);

@@ -6,6 +6,7 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use super::controller::ControllerScenario;
+use super::judged::JudgedValue;
 use crate::device::DeviceParameters;
 use crate::effects::PresentEffect;
 use crate::physics::cutting_force::CuttingForce;
@@ -49,6 +50,15 @@ pub struct Scenario {
     pub expect: Vec<Expectation>,
     /// Physics beyond the cell, as a diagnosis writes it into improved.toml, with all its numbers; nothing that is simulated.
     pub effects: Vec<PresentEffect>,
+    /// Values of tool and edge in use that nobody has measured in public; those of the device are with it.
+    pub judged: Vec<JudgedValue>,
+}
+
+impl Scenario {
+    /// Values in use that nobody has measured in public: of tool and edge, then of the device.
+    pub fn judged_values(&self) -> impl Iterator<Item = &JudgedValue> {
+        self.judged.iter().chain(&self.device.judged)
+    }
 }
 
 /// The arm.
@@ -136,6 +146,8 @@ pub struct DeviceScenario {
     pub tool_centre: f64,
     /// Radius of the ball nose [m].
     pub tool_radius: f64,
+    /// Values in use that nobody has measured in public.
+    pub judged: Vec<JudgedValue>,
 }
 
 /// The workpiece.

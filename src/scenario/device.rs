@@ -7,6 +7,7 @@ use super::check::Section;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{ModelFile, SCHEMA};
+use super::judged;
 use super::rig_file::blank;
 use super::sections::model_sections;
 use super::units::Unit;
@@ -59,6 +60,7 @@ pub(super) fn load_with_overrides(
         moving_radius_of_gyration: model.number(&registry::MOVING_GYRATION)?,
         tool_centre: model.number(&registry::TOOL_CENTRE)?,
         tool_radius: model.number(&registry::TOOL_RADIUS)?,
+        judged: judged::of_model(&text, |key| model.stands_above(key)),
     };
     model.check()?;
     Ok(device)
@@ -113,6 +115,15 @@ impl<'a> Layers<'a> {
         self.of_scenario(|keys| keys.numbers.get(key).copied())
             .is_none()
             .then_some(ideal)
+    }
+
+    /// Whether something else counts than what the model file says of a key.
+    fn stands_above(&self, key: &str) -> bool {
+        let mut above = self.layers.iter().rev().skip(1);
+        let mut numbers = registry::all().filter(|number| number.device_key == Some(key));
+        above.any(|(section, _)| section.given().any(|own| own == key))
+            || (self.ideal && key == "gas_process")
+            || numbers.any(|number| self.idealised(number).is_some())
     }
 
     /// What the scenario itself gives.

@@ -13,6 +13,7 @@ use super::document::Document;
 use super::effects::{EffectKeys, effects};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
+use super::judged;
 use super::rig_device::is_rig;
 use super::sections::scenario_sections;
 use super::sensing::sensing;
@@ -66,6 +67,7 @@ pub(super) fn from_document(
         simulation,
         expect: expectations(&section("expect"), &file.expect)?,
         effects: of_whole(document, &file.effect, &device, &contact)?,
+        judged: judged::of_cell(document),
         device,
         contact,
     })

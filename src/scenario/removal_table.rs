@@ -3,11 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::Deserialize;
+use serde_json::{Value, json};
 
 use super::check::Section;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
+use super::schema::plain_schema;
 use super::suggestion::Sections;
 
 /// Version of the format.
@@ -65,30 +68,43 @@ struct KindKeys {
     kind: Option<String>,
 }
 
-#[derive(Deserialize)]
+/// A table of runs: what a tool took off at which settings, and the law of removal that is believed.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileKeys {
+    /// Version of the format.
     #[expect(dead_code, reason = "checked by Document::new")]
+    #[schemars(range(min = 1, max = 1))]
     schema: u32,
+    /// What the file is.
     #[expect(dead_code, reason = "checked before the file is read as this")]
+    #[schemars(extend("const" = REMOVAL_TABLE))]
     kind: String,
+    /// Name for people.
     title: Option<String>,
+    /// Tables of runs, CSV with a header, from the file's folder.
     tables: TablesKeys,
+    /// Which column is what.
     columns: ColumnsKeys,
+    /// The law that is believed.
     believed: BelievedKeys,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct TablesKeys {
+    /// Tables to diagnose from.
+    #[schemars(length(min = 1))]
     fit: Vec<PathBuf>,
+    /// Tables to be predicted once the law is fitted.
     #[serde(default)]
     predict: Vec<PathBuf>,
+    /// Rows of the tables to fit that are kept back, to be predicted.
     hold_back: Option<HoldBack>,
 }
 
 /// Rows of the tables to fit that are kept back, to be predicted.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HoldBack {
     /// Column.
@@ -99,53 +115,99 @@ pub struct HoldBack {
     pub to: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ColumnsKeys {
+    /// Normal force.
     force: ColumnKeys,
+    /// Grinding time, of a tool that rests; none beside `feed`.
     time: Option<ColumnKeys>,
+    /// Feed, of a tool that moves; none beside `time`.
     feed: Option<ColumnKeys>,
+    /// Speed of the tool, in one unit throughout.
     speed: Option<ColumnKeys>,
+    /// Whether the speed is that under load; false: as set without load, which may sag.
+    #[schemars(extend("default" = true))]
     speed_under_load: Option<bool>,
+    /// Contact area.
     area: Option<ColumnKeys>,
+    /// Wear before the run, in any unit.
     wear: Option<ColumnKeys>,
+    /// Whether the wear is the sum of force x time x speed of the rows before, each table beginning with a new tool.
     #[serde(default)]
     cumulate_wear: bool,
+    /// Volume that came off.
     volume: ColumnKeys,
+    /// Column that is 0 of rows that count less.
     weight: Option<WeightKeys>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ColumnKeys {
+    /// Name in the header.
     name: String,
+    /// Unit of its values.
     unit: Option<String>,
+    /// Standard deviation of a volume, as far as it is known of how it is measured [%].
+    #[schemars(range(min = 0, max = 100), extend("default" = 0))]
     scatter_percent: Option<f64>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WeightKeys {
+    /// Name in the header.
     name: String,
+    /// Weight of rows where it is 0; of the others 1.
+    #[schemars(range(min = 0.01, max = 1))]
     where_0: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct BelievedKeys {
+    /// "preston": in proportion to force, speed and time; "threshold": the same above a threshold force; "power": powers of them.
+    #[schemars(extend("enum" = LAWS))]
     law: String,
+    /// Volume that comes off at the reference settings [mm3]; left out: to be fitted.
+    #[schemars(range(min = 1e-9, max = 1e9))]
     reference_volume_mm3: Option<f64>,
+    /// Force at which that comes off [N]; left out: the mean of the table, as those below.
+    #[schemars(range(min = 1e-9, max = 1e9))]
     reference_force_n: Option<f64>,
+    /// Time in which that comes off [s].
+    #[schemars(range(min = 1e-9, max = 1e9))]
     reference_time_s: Option<f64>,
+    /// Feed at which that comes off [mm/s].
+    #[schemars(range(min = 1e-9, max = 1e9))]
     reference_feed_mm_per_s: Option<f64>,
+    /// Speed at which that comes off, in the unit of its column.
+    #[schemars(range(min = 1e-9, max = 1e9))]
     reference_speed: Option<f64>,
+    /// Contact area at which that comes off [mm2].
+    #[schemars(range(min = 1e-9, max = 1e9))]
     reference_area_mm2: Option<f64>,
+    /// Exponent of the force; needed with "power".
+    #[schemars(range(min = -5, max = 5), extend("default" = 1))]
     force_exponent: Option<f64>,
+    /// Exponent of the time, or of one over the feed.
+    #[schemars(range(min = -5, max = 5), extend("default" = 1))]
     time_exponent: Option<f64>,
+    /// Exponent of the speed.
+    #[schemars(range(min = -5, max = 5), extend("default" = 1))]
     speed_exponent: Option<f64>,
+    /// Exponent of the contact area.
+    #[schemars(range(min = -5, max = 5), extend("default" = 0))]
     area_exponent: Option<f64>,
+    /// Force below which nothing comes off [N]; needed with "threshold".
+    #[schemars(range(min = 0, max = 1e5), extend("default" = 0))]
     threshold_force_n: Option<f64>,
+    /// Share of the speed that is lost per force [1/N].
+    #[schemars(range(min = 0, max = 10), extend("default" = 0))]
     speed_sag_per_n: Option<f64>,
+    /// Natural logarithm of the volume that is lost per wear, in the unit of its column.
+    #[schemars(range(min = 0, max = 1e9), extend("default" = 0))]
     wear_rate: Option<f64>,
 }
 
@@ -305,6 +367,39 @@ pub fn load_removal_table(path: &Path) -> Result<RemovalTableFile, ScenarioError
     })
 }
 
+/// Schema of the file.
+#[must_use]
+pub fn schema() -> Value {
+    let mut schema = plain_schema::<FileKeys>();
+    let columns = &mut schema["properties"]["columns"]["properties"];
+    let units: [(&str, &[(&str, f64)]); 7] = [
+        ("force", &FORCES),
+        ("time", &TIMES),
+        ("feed", &FEEDS),
+        ("speed", &SPEEDS),
+        ("area", &AREAS),
+        ("wear", &[]),
+        ("volume", &VOLUMES),
+    ];
+    for (key, units) in units {
+        let column = &mut columns[key];
+        let names: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
+        if !names.is_empty() {
+            column["properties"]["unit"]["enum"] = json!(names);
+            column["required"] = json!(["name", "unit"]);
+        }
+        if let Some(keys) = column["properties"]
+            .as_object_mut()
+            .filter(|_| key != "volume")
+        {
+            keys.remove("scatter_percent");
+        }
+    }
+    schema
+}
+
+/// Words for a law.
+const LAWS: [&str; 3] = ["preston", "threshold", "power"];
 const FORCES: [(&str, f64); 2] = [("N", 1.0), ("kN", 1e3)];
 const TIMES: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 const FEEDS: [(&str, f64); 4] = [

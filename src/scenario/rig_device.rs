@@ -79,6 +79,7 @@ pub(super) fn bench_device(
             moving_radius_of_gyration: 0.05,
             tool_centre: 0.15,
             tool_radius: 0.005,
+            judged: Vec::new(),
         },
         gravity_along_extension: rig.plant.gravity_along_extension,
         contact: rig.plant.contact,

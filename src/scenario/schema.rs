@@ -2,7 +2,7 @@
 //! pages that describe the keys (which the tests hold against the program).
 
 mod described;
-mod page;
+pub(super) mod page;
 mod rig;
 
 use schemars::JsonSchema;

@@ -268,10 +268,30 @@ class Job:
                 self.tally(where, found)
             elif "the desired force:" in line:
                 self.far(where, line)
-            elif line not in (self.document["title"], "Force along the path"):
+            elif found := re.fullmatch(r"Drawn (\d+) times as large as it is\.", line):
+                self.checked.fact(where, int(found[1]), self.enlarged())
+            elif line not in (self.document["title"], "Force along the path", "The edge before and after"):
                 self.checked.uncovered("viewer", line)
         for head, *rows in tables:
             self.viewer_table(head, rows)
+
+    def enlarged(self):
+        """The largest of 1, 2, 5, 10, .. by which neither burr nor chamfer is drawn larger than 6 % of the edge, which is straight here."""
+        profile = pd.read_csv(self.folder / "edge_profile.csv")
+        largest = max(profile.burr_before_mm.max(), profile.chamfer_leg_mm.max())
+        length = profile.position_mm.iloc[-1] - profile.position_mm.iloc[0]
+        fits = [step * 10**power for power in range(4) for step in (1, 2, 5) if step * 10**power * largest <= 0.06 * length]
+        return max(fits, default=1)
+
+    def legend(self, where, row):
+        chamfer = self.run.scenario["workpiece"].get("chamfer", {})
+        if row[0].strip("`") == "/cell/edge/after":
+            least, most = (chamfer.get(key) for key in ("leg_min_mm", "leg_max_mm"))
+            ends = [float(end) for end in (least, most) if end]
+            printed = re.search(r"within the tolerance, ([^.]*(?:\.\d[^.]*)*)\. Blue", row[1])[1]
+            self.checked.fact(where, [float(end) for end in re.findall(r"[\d.]+", printed)], ends)
+        elif row[0].strip("`") == "/cell/edge/residual_burr":
+            self.checked.fact(where, float(re.search(r"more than ([\d.]+) mm", row[1])[1]), float(chamfer.get("residual_burr_max_mm", 0.02)))
 
     def viewer_table(self, head, rows):
         by_label = {(label, unit): key for key, (label, unit) in self.labels.items()}
@@ -283,6 +303,8 @@ class Job:
                 tenth = self.numbers["force_by_tenth"][number]
                 for printed, key in zip(row, ["from_mm", "to_mm", "force_mean_n", "force_standard_deviation_n"], strict=True):
                     self.checked.number(where, printed, tenth[key])
+            elif head[0] == "entity":
+                self.legend(where, row)
             elif head[0] == "at, s":
                 for printed, (name, _, key) in zip(row, LEVELS, strict=True):
                     self.checked.number(f"{where}: {name}", printed, self.numbers["levels"][number][key])
@@ -331,6 +353,12 @@ class Job:
         elif kind == "" and (found := re.search(r"\((\d+) of (\d+) samples: the extremes of each stretch\)", text)):
             whole = (len(self.run.samples), len(self.run.phase("follow")) if not self.is_bench else 0)
             self.checked.fact(where, int(found[2]) in whole, True)
+        elif text.startswith("These numbers rest on values"):
+            judged = self.document["judged"]
+            keys = [value["key"] for value in judged if not value["key"].startswith("device.")]
+            self.checked.fact(f"{where}: keys", sorted(re.findall(r"(?:removal|workpiece)\.[\w.]*\w", text)), sorted(keys))
+            many = re.search(r"(\d+) values? that the device model marks", text)
+            self.checked.fact(f"{where}: values of the device", int(many[1]) if many else 0, len(judged) - len(keys))
         elif re.search(r"\d", text):
             self.checked.uncovered(where, text)
 

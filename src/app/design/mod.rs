@@ -17,7 +17,7 @@ use super::files::{
 use super::report::of_design;
 use crate::design::{self, Domain, Study, StudyResult, Variable};
 use crate::recording::provenance::Provenance;
-use crate::scenario::{self, AnyScenario, files_of_cell};
+use crate::scenario::{self, AnyScenario, JudgedValue, files_of_cell};
 
 /// All that a study may write.
 const NAMES: [&str; 5] = [DESIGN, OVERRIDE, FRONT, ROBUSTNESS, REPORT];
@@ -29,6 +29,8 @@ pub(super) struct PreparedStudy {
     folder: OutputFolder,
     /// Its files as they were when they were read: a search takes minutes.
     provenance: Provenance,
+    /// Values in use that nobody has measured in public, of all scenarios.
+    judged: Vec<JudgedValue>,
 }
 
 /// A study that was done.
@@ -55,8 +57,10 @@ impl PreparedStudy {
         }
         let evaluator = ScenarioEvaluator::new(&study)?;
         design::check_start(&study, &evaluator)?;
+        let scenarios = scenarios(&study)?;
         Ok(Self {
-            provenance: sources(&study)?,
+            provenance: sources(&study, &scenarios)?,
+            judged: judged(&study, &scenarios),
             folder: OutputFolder::prepare(folder, &NAMES, standing)?,
             study,
             evaluator,
@@ -74,7 +78,7 @@ impl PreparedStudy {
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<FinishedStudy, AppError> {
         let result = design::run(&self.study, &self.evaluator, progress)?;
-        let document = document(&self.study, &result, &self.provenance)?;
+        let document = document(self, &result)?;
         let override_text = result.override_text();
         let pictures = [
             (FRONT, design::front_svg(&result)?),
@@ -103,13 +107,37 @@ impl PreparedStudy {
     }
 }
 
+fn scenarios(study: &Study) -> Result<Vec<AnyScenario>, AppError> {
+    let scenarios = study.scenarios.iter();
+    let scenarios = scenarios.map(|path| scenario::load_any(path));
+    Ok(scenarios.collect::<Result<_, _>>()?)
+}
+
+/// Values of the scenarios that nobody has measured in public, each once, but for those that the study varies.
+fn judged(study: &Study, scenarios: &[AnyScenario]) -> Vec<JudgedValue> {
+    let varied = |key: &str| {
+        let own = key.strip_prefix("device.").unwrap_or(key);
+        (study.variables.iter()).any(|variable| [key, own].contains(&variable.key.as_str()))
+    };
+    let mut found: Vec<JudgedValue> = Vec::new();
+    for scenario in scenarios {
+        let own: Vec<&JudgedValue> = match scenario {
+            AnyScenario::Cell(cell) => cell.judged_values().collect(),
+            AnyScenario::Bench(bench) => bench.device.judged.iter().collect(),
+        };
+        for value in own {
+            if !varied(&value.key) && !found.iter().any(|known| known.key == value.key) {
+                found.push(value.clone());
+            }
+        }
+    }
+    found
+}
+
 /// The files that a study is made of.
-fn sources(study: &Study) -> Result<Provenance, AppError> {
-    let scenarios: Vec<AnyScenario> = (study.scenarios.iter())
-        .map(|path| scenario::load_any(path))
-        .collect::<Result<_, _>>()?;
+fn sources(study: &Study, scenarios: &[AnyScenario]) -> Result<Provenance, AppError> {
     let mut files = vec![&study.path];
-    for scenario in &scenarios {
+    for scenario in scenarios {
         let own = match scenario {
             AnyScenario::Cell(cell) => files_of_cell(
                 &cell.path,
@@ -130,11 +158,7 @@ fn sources(study: &Study) -> Result<Provenance, AppError> {
 }
 
 /// design.json.
-fn document(
-    study: &Study,
-    result: &StudyResult,
-    provenance: &Provenance,
-) -> Result<String, AppError> {
+fn document(prepared: &PreparedStudy, result: &StudyResult) -> Result<String, AppError> {
     #[derive(Serialize)]
     struct Varied<'a> {
         key: &'a str,
@@ -164,8 +188,11 @@ fn document(
         variables: Vec<Varied<'a>>,
         #[serde(flatten)]
         result: &'a StudyResult,
+        #[serde(skip_serializing_if = "<[_]>::is_empty")]
+        judged: &'a [JudgedValue],
         provenance: &'a Provenance,
     }
+    let study = &prepared.study;
     Ok(serde_json::to_string_pretty(&Document {
         study: study.path.display().to_string(),
         scenarios: study
@@ -175,6 +202,7 @@ fn document(
             .collect(),
         variables: study.variables.iter().map(varied).collect(),
         result,
-        provenance,
+        judged: &prepared.judged,
+        provenance: &prepared.provenance,
     })?)
 }

@@ -5,6 +5,7 @@ mod robustness;
 use serde_json::Value;
 
 use super::super::files::{DESIGN, OVERRIDE};
+use super::judged::judged;
 use super::provenance::provenance_of;
 use super::run::labels;
 use crate::design::{number, spoken};
@@ -22,6 +23,7 @@ pub(super) fn page<'a>(document: &Value, [front, robustness]: [Option<&str>; 2])
         robustness::robustness(document, robustness),
         Some(steps(document)),
         Some(measured_by(document)),
+        judged(document, DESIGN),
         Some(provenance_of(document)),
     ];
     Page {

@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use serde_json::Value;
 
 use super::super::error::AppError;
-use super::super::files::Sketches;
+use super::super::files::{SUMMARY, Sketches};
 use super::finished_edge::finished_edge;
+use super::judged::judged;
 use super::provenance::provenance_of;
 use super::signals::{along_the_path, joints, signals};
 use crate::metrics::{BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, WIDE_BAND};
@@ -127,6 +128,7 @@ fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
         joints(run),
         levels(run),
         metrics(run),
+        judged(&run.document, SUMMARY),
         Some(from(run)),
     ];
     Page {

@@ -14,7 +14,7 @@ use crate::recording::csv::EdgeProfile;
 use crate::recording::provenance::Provenance;
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
-use crate::scenario::ChamferScenario;
+use crate::scenario::{ChamferScenario, JudgedValue};
 use crate::simulation::{CellRun, FrameLog, SampleLog, SimulationError};
 
 /// Steps between two looks at the progress bar.
@@ -210,6 +210,9 @@ pub(super) struct SummaryDocument<'a> {
     joint_names: Vec<&'a str>,
     samples: usize,
     notes: &'a [String],
+    /// Values in use that nobody has measured in public.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    judged: Vec<&'a JudgedValue>,
     provenance: &'a Provenance,
 }
 
@@ -240,6 +243,7 @@ impl<'a> SummaryDocument<'a> {
                 .collect(),
             samples: finished.recording.sample_count(),
             notes: &cell.notes,
+            judged: cell.scenario.judged_values().collect(),
             provenance: origin,
         }
     }

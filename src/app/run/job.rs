@@ -8,7 +8,7 @@ use super::super::files::{
     Sketches,
 };
 use super::super::growing::GrowingFile;
-use super::super::picture::{across_the_edge, scene_of};
+use super::super::picture::{across_the_edge, finished_edge, scene_of};
 use super::super::report::page_of_run;
 use super::super::viewer::Watch;
 use super::super::{bench, bench_figures, bench_picture};
@@ -170,7 +170,10 @@ fn perform_cell(
             .map_err(|source| unmeasured(&cell.scenario.path, source))?;
         let title = &cell.scenario.title;
         let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
-        let scene = scene_of(cell, &finished.recording, &finished.frames)?;
+        let scene = Scene {
+            finished_edge: (finished.edge.as_ref()).map(|edge| finished_edge(cell, edge)),
+            ..scene_of(cell, &finished.recording, &finished.frames)?
+        };
         let summary = markdown(title, &finished.summary, &verdicts);
         let (report, encoded) = rayon::join(
             || {

@@ -1,17 +1,18 @@
 //! A recording that is encoded while it is made, for a file that is written when it is over.
 //!
 //! Nearly all of the work, encoding bodies and signals, is done as they come. What only the whole run tells is left for the end: the layout with its
-//! ranges, the colours of the edge path, the guides in the plots, the phases and the summary.
+//! ranges, the colours of the edge path, the edge before and after it was worked, the guides in the plots, the phases and the summary.
 
 use std::path::{Path, PathBuf};
 
 use ::rerun::archetypes::RecordingInfo;
-use ::rerun::{EntityPath, StoreKind, TextDocument};
+use ::rerun::{EntityPath, StoreKind};
 
 use super::fingerprint::fingerprint;
+use super::finished_edge::{write_finished_edge, write_summary};
 use super::footer::write_joined;
 use super::layout::write_layout;
-use super::options::{RerunOptions, SUMMARY, slug};
+use super::options::{RerunOptions, slug};
 use super::plots::{Plot, plots};
 use super::rrd::{RrdError, RrdWriter};
 use super::timelines::Axes;
@@ -126,16 +127,14 @@ impl GrowingRrd {
         plots: &[Plot],
     ) -> Result<[Vec<u8>; 2], RrdError> {
         cell::write_edge_path(&mut self.rrd, &scene.edge_path)?;
+        write_finished_edge(&mut self.rrd, scene.finished_edge.as_ref())?;
         let axes = Axes::of(recording, 0.0);
         for plot in plots {
             signals::write_looks(&mut self.rrd, plot)?;
             signals::write_guides(&mut self.rrd, plot, &axes)?;
         }
         signals::write_phases(&mut self.rrd, recording, &axes)?;
-        if !self.options.summary_markdown.is_empty() {
-            let text = TextDocument::from_markdown(self.options.summary_markdown.clone());
-            self.rrd.add_static(SUMMARY, &text)?;
-        }
+        write_summary(&mut self.rrd, &self.options.summary_markdown, scene)?;
         // Chunks of the two stores are told apart as those of two recordings.
         let mut layout = RrdWriter::begin(StoreKind::Blueprint, &self.id, !self.number)?;
         write_layout(&mut layout, scene, plots, recording, &self.options)?;

@@ -48,7 +48,7 @@ pub(super) fn write_layout(
         edge: ViewBox::around(scene.edge_path.points_in_world.iter().copied()),
         eye_direction: options.eye_direction,
         has_phases: !recording.phases().is_empty(),
-        has_summary: !options.summary_markdown.is_empty(),
+        has_summary: !options.summary_markdown.is_empty() || scene.finished_edge.is_some(),
     });
     write_blueprint(rrd, &screen, &time_panel(options.opening.moment(recording)))
 }

@@ -1,18 +1,19 @@
 //! A recording that is watched while it is made.
 //!
-//! The layout goes first, then bodies and samples as they come, and at the end what only the whole run tells: the colours of the edge path and the
-//! summary. A live recording is for the eye; what is kept is the file.
+//! The layout goes first, then bodies and samples as they come, and at the end what only the whole run tells: the colours of the edge path, the
+//! finished edge and the summary. A live recording is for the eye; what is kept is the file.
 
 use std::collections::BTreeSet;
 
 use ::rerun::archetypes::{RecordingInfo, StateChange};
 use ::rerun::external::re_uri::ProxyUri;
 use ::rerun::log::TimeColumn;
-use ::rerun::{EntityPath, StoreKind, TextDocument};
+use ::rerun::{EntityPath, StoreKind};
 
 use super::fingerprint::fingerprint;
+use super::finished_edge::{write_finished_edge, write_summary};
 use super::layout::write_layout;
-use super::options::{PHASES, RerunOptions, SUMMARY, slug};
+use super::options::{PHASES, RerunOptions, slug};
 use super::plots::{Plot, Series, plots};
 use super::rrd::{LiveWriter, RrdError, RrdWriter};
 use super::timelines::Axes;
@@ -151,8 +152,8 @@ impl LiveRecording {
     pub fn end(mut self, scene: &Scene, summary_markdown: &str) -> Result<(), RecordingError> {
         let mut finish = || -> Result<(), RrdError> {
             cell::write_edge_path(&mut self.rrd, &scene.edge_path)?;
-            let text = TextDocument::from_markdown(summary_markdown.to_owned());
-            self.rrd.add_static(SUMMARY, &text)?;
+            write_finished_edge(&mut self.rrd, scene.finished_edge.as_ref())?;
+            write_summary(&mut self.rrd, summary_markdown, scene)?;
             if !self.phase.is_empty() {
                 self.phase.clear();
                 let end = self.last.clone();

@@ -1,7 +1,7 @@
 //! Recordings as Rerun files: `recording.rrd`.
 //!
-//! A file holds the cell in space (bodies, the edge path coloured by force error, the contact force
-//! as an arrow), the signals as plots in their bands and limits, the phases as a coloured lane, a
+//! A file holds the cell in space (bodies, the edge path coloured by force error, the edge before and
+//! after it was worked coloured by the chamfer's error, the contact force as an arrow), the signals as plots in their bands and limits, the phases as a coloured lane, a
 //! summary, and the screen layout in which the viewer opens it all. Everything can be watched along
 //! simulated time or along path length. Equal input gives equal bytes.
 
@@ -11,6 +11,7 @@ mod cell;
 mod check;
 mod colours;
 mod fingerprint;
+mod finished_edge;
 mod footer;
 mod growing;
 mod layout;

@@ -14,11 +14,12 @@ use ::rerun::external::re_log_types::{
 };
 use ::rerun::external::re_tuid::Tuid;
 use ::rerun::external::re_uri::ProxyUri;
-use ::rerun::log::{Chunk, ChunkError, ChunkId, LogMsg, TimeColumn};
+use ::rerun::log::{Chunk, ChunkComponents, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
 use ::rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
 use ::rerun::{
     AsComponents, EntityPath, SerializationError, SerializedComponentColumn, StoreId, StoreKind,
 };
+use arrow::array::Array;
 
 /// Longest time that a viewer that listens may take to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -186,8 +187,18 @@ impl RrdWriter {
             .into_iter()
             .map(|t| (*t.timeline().name(), t))
             .collect();
-        let columns = columns.into_iter().collect();
-        let chunk = Chunk::from_auto_row_ids(id, EntityPath::from(entity), times, columns)?;
+        let columns: ChunkComponents = columns.into_iter().collect();
+        let rows = columns.list_arrays().next().map_or(0, Array::len);
+        // In the order in which they come: Rerun's own row ids would sort them along the path, where a second pass begins anew, and give such a chunk an
+        // id by the clock.
+        let next = |row: &RowId| Some(row.next());
+        let first = RowId::from_tuid(id.as_tuid().next());
+        let row_ids: Vec<RowId> = std::iter::successors(Some(first), next)
+            .take(rows)
+            .collect();
+        let row_ids = RowId::arrow_from_slice(&row_ids);
+        let entity = EntityPath::from(entity);
+        let chunk = Chunk::new(id, entity, Some(true), row_ids, times, columns)?;
         self.append(LogMsg::ArrowMsg(self.store.clone(), chunk.to_arrow_msg()?))
     }
 

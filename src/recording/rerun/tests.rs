@@ -108,6 +108,7 @@ fn scene() -> Scene {
             relative_force_error: vec![0.02, f64::NAN],
             length: 2.0,
         },
+        finished_edge: None,
         contact_arrows: frame_times.iter().map(arrow).collect(),
         frame_times,
         limits: SceneLimits {
@@ -544,4 +545,41 @@ fn rotations_are_those_of_the_scene() {
             );
         }
     }
+}
+
+// Catches: rows sorted along the path, and ids of the clock, where a second pass goes over the edge again.
+#[test]
+fn a_path_that_is_gone_over_again_is_written_in_the_order_of_time() {
+    let whole = recording();
+    let channels = whole.channels().iter().map(|channel| {
+        let mut channel = channel.clone();
+        if channel.quantity == schema::PATH_LENGTH {
+            let again = channel.values[..SAMPLES - SAMPLES / 2].to_vec();
+            channel.values[SAMPLES / 2..].copy_from_slice(&again);
+            channel.values[..SAMPLES / 2].fill(0.07);
+        }
+        channel
+    });
+    let twice = Recording::new(whole.time().to_vec(), channels.collect(), vec![]).unwrap();
+    let mut scene = scene();
+    scene.frame_path_lengths.reverse();
+    let directory = tempfile::tempdir().unwrap();
+    let [first, second] = ["a.rrd", "b.rrd"].map(|name| {
+        let path = directory.path().join(name);
+        write_rrd(&path, &twice, &scene, &options()).unwrap();
+        path
+    });
+    assert!(fs::read(&first).unwrap() == fs::read(&second).unwrap());
+    let (data, _) = read(&first);
+    let force = moving(&data, "/plots/force");
+    assert_eq!(scalars(force), whole.values(schema::CONTACT_FORCE).unwrap());
+    assert!(times(force, SIM_TIME).is_sorted());
+    let link = moving(&data, "/cell/arm/link_1");
+    assert!(times(link, SIM_TIME).is_sorted() && !times(link, PATH_LENGTH).is_sorted());
+    let translation = Transform3D::descriptor_translation().component;
+    let places: Vec<f32> = link
+        .iter_slices::<[f32; 3]>(translation)
+        .map(|row| row[0][0])
+        .collect();
+    assert!(places.is_sorted() && places.len() == FRAMES);
 }

@@ -9,7 +9,7 @@ use super::described::Described;
 const SCENARIOS: &str = include_str!("../../../scenarios/README.md");
 
 /// Chapters of the page of scenarios for each kind; an earlier one counts where two have a key.
-pub(super) const CELL: [&str; 3] = [
+pub(in crate::scenario) const CELL: [&str; 3] = [
     "Keys of a cell",
     "Keys of the sensing chain",
     "Keys of the controller",
@@ -36,6 +36,18 @@ impl Row {
     #[cfg(feature = "import")]
     pub(crate) fn names(&self, key: &str) -> bool {
         self.cells[0].contains(&format!("`{key}`"))
+    }
+
+    /// Results that rest on its value where nobody has measured that in public: what stands behind the mark in its meaning.
+    pub(in crate::scenario) fn judged(&self) -> Option<&str> {
+        let (_, decides) = self.cells.last()?.split_once("; judged, decides ")?;
+        Some(decides)
+    }
+
+    /// Its default where that is a finite number.
+    pub(in crate::scenario) fn default_number(&self) -> Option<f64> {
+        let number = self.cells.get(2)?.parse::<f64>().ok();
+        number.filter(|number| number.is_finite())
     }
 
     /// Of a row that has key, unit, default, range and meaning.
@@ -106,7 +118,7 @@ fn row(line: &str) -> Row {
 }
 
 /// Rows of some chapters of the page of scenarios, by key.
-pub(super) fn scenario_rows(chapters: &[&str]) -> BTreeMap<String, Row> {
+pub(in crate::scenario) fn scenario_rows(chapters: &[&str]) -> BTreeMap<String, Row> {
     let mut rows: BTreeMap<String, Row> = BTreeMap::new();
     for chapter in chapters {
         let of_chapter = SCENARIOS

@@ -1,0 +1,115 @@
+//! Values in use that rest on no public measurement. Where a key is declared says so: its row in scenarios/README.md, or what stands behind it in the device
+//! model file.
+
+use serde::Serialize;
+
+use super::document::Document;
+use super::schema::page::{CELL, scenario_rows};
+
+/// What the values of a device decide.
+const OF_DEVICE: &str = "contact force and stroke";
+/// Mark of a value in a device model file.
+const MARK: &str = "judged";
+
+/// A value in use that nobody has measured in public.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JudgedValue {
+    /// Its dotted key.
+    pub key: String,
+    /// Whether it is the program's or the device model's own value, not one that the scenario gives.
+    pub default: bool,
+    /// Results that rest on it.
+    pub decides: String,
+}
+
+/// Judged values of a cell's file that works its edge; all of them are of tool and edge.
+pub(super) fn of_cell(document: &Document<'_>) -> Vec<JudgedValue> {
+    let has = |table: &str| document.keys_in(table).next().is_some();
+    if !has("removal") {
+        return Vec::new();
+    }
+    let rows = scenario_rows(&CELL).into_iter();
+    let judged = rows.filter_map(|(key, row)| {
+        let decides = row.judged()?.to_owned();
+        let (table, own) = key.rsplit_once('.')?;
+        let given = document.keys_in(table).any(|given| given == own);
+        // A burr's numbers count where there is one; no wear and the like decide nothing.
+        let usual = table != "workpiece.burr" || has(table);
+        let default = usual && row.default_number().is_some_and(|value| value != 0.0);
+        (given || default).then_some(JudgedValue {
+            key,
+            default: !given,
+            decides,
+        })
+    });
+    judged.collect()
+}
+
+/// Values of a device model file that are marked so there, but for those given above it and those that switch something off.
+pub(super) fn of_model(text: &str, is_given: impl Fn(&str) -> bool) -> Vec<JudgedValue> {
+    let marked = text.lines().filter_map(|line| {
+        let (code, remark) = line.split_once('#')?;
+        let (key, value) = code.split_once('=')?;
+        let (key, value) = (key.trim(), value.trim());
+        let off = value
+            .parse::<f64>()
+            .is_ok_and(|value| value == 0.0 || value.is_infinite());
+        let judged = remark.trim_start().starts_with(MARK) && !off && !is_given(key);
+        judged.then(|| JudgedValue {
+            key: format!("device.{key}"),
+            default: true,
+            decides: OF_DEVICE.to_owned(),
+        })
+    });
+    marked.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn a_models_marks_are_read_where_something_is_on() {
+        let text = "a_n = 3   # judged: as usual\nb_n = 0 # judged\nc = inf # judged\nd = 2 # spec\n# judged = 4\ne = \"wall\" # judged\nf = 1 # judged\n";
+        let found = of_model(text, |key| key == "f");
+        let keys: Vec<&str> = found.iter().map(|value| value.key.as_str()).collect();
+        assert_eq!(keys, ["device.a_n", "device.e"]);
+    }
+
+    #[test]
+    fn keys_in_use_are_told_with_what_they_decide() {
+        let of = |text: &str| {
+            let document = Document::new(Path::new("a.toml"), text, 2).unwrap();
+            let found = of_cell(&document);
+            let told = found.iter().map(|value| (value.key.clone(), value.default));
+            assert!(found.iter().all(|value| !value.decides.is_empty()));
+            told.collect::<Vec<_>>()
+        };
+        assert_eq!(of("[workpiece.burr]\nkind = \"none\"\n"), []);
+        let found = of("[removal]\nlaw = \"preston\"\ncoefficient_mm3_per_j = 0.01\n");
+        let given = ("removal.coefficient_mm3_per_j".to_owned(), false);
+        let usual = |key: &str| (key.to_owned(), true);
+        assert!(found.contains(&given), "{found:?}");
+        assert!(found.contains(&usual("removal.friction_coefficient")));
+        assert!(found.contains(&usual("workpiece.chamfer.residual_burr_max_mm")));
+        // No burr, no wear, another law.
+        for absent in [
+            "burr.root_mm",
+            "wear_work_kj",
+            "wear_at_start_kj",
+            "rate_mm3_per_s",
+        ] {
+            assert!(
+                !found.iter().any(|(key, _)| key.ends_with(absent)),
+                "{absent}"
+            );
+        }
+        let worn = of(
+            "[removal]\nlaw = \"preston\"\nwear_work_kj = 100\n[workpiece.burr]\nkind = \"random\"\n",
+        );
+        assert!(worn.contains(&("removal.wear_work_kj".to_owned(), false)));
+        assert!(worn.contains(&usual("workpiece.burr.root_mm")));
+    }
+}
