@@ -5,7 +5,7 @@
 //! ```
 //!
 //! On one core, the same for both. First each part alone (criterion), then interleaved rounds of the whole cell, the whole cell with its parts timed,
-//! the rigid bodies alone, and MuJoCo on the same arm, load and path; the table at the end holds their medians. The timed parts of a step include the
+//! the whole cell of deburred_edge (seals, air that warms up, a tool that turns, removal), the rigid bodies alone, and MuJoCo on the same arm, load and path; the table at the end holds their medians. The timed parts of a step include the
 //! clock's own readings, so they add up to somewhat more than the step itself.
 
 mod job;
@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use idc_cell::cell::Cell;
 use idc_cell::simulation::StepTimes;
 
-use job::{Following, cell, holding_world};
+use job::{Following, holding_world};
 use peer::Peer;
 
 /// Rounds of everything, interleaved, of which the median counts.
@@ -30,13 +30,14 @@ const STEPS: usize = 5000;
 fn main() -> Result<(), Box<dyn Error>> {
     // `cargo test --benches` only wants to know that the benches run.
     let measuring = std::env::args().any(|argument| argument == "--bench");
-    let cell = cell("plate_edge_ideal.toml")?;
+    let cell = job::cell("plate_edge_ideal.toml")?;
+    let deburring = job::cell("deburred_edge.toml")?;
     println!("{}", pin_to_one_core());
     let mut criterion = parts::criterion();
     parts::all(&mut criterion, &cell);
     criterion.final_summary();
     if measuring {
-        compare(&cell)?;
+        compare(&cell, &deburring)?;
     }
     Ok(())
 }
@@ -65,6 +66,7 @@ fn pin_to_one_core() -> String {
 #[derive(Default)]
 struct Rounds {
     whole: Vec<f64>,
+    deburring: Vec<f64>,
     parts: [Vec<f64>; 5],
     rigid_bodies_alone: Vec<f64>,
     mujoco: Vec<f64>,
@@ -79,14 +81,17 @@ const PARTS: [&str; 5] = [
     "sample",
 ];
 
-fn compare(cell: &Cell) -> Result<(), Box<dyn Error>> {
+fn compare(cell: &Cell, deburring: &Cell) -> Result<(), Box<dyn Error>> {
     let mut following = Following::new(cell);
+    let mut removing = Following::new(deburring);
     let mut world = holding_world(cell, 0.0);
     let mut peer = Peer::start(cell, STEPS);
     let mut rounds = Rounds::default();
     let mut last_round = None;
     for _ in 0..ROUNDS {
         rounds.whole.push(per_step(following.run(STEPS, None)));
+        let removed = removing.run(STEPS, None);
+        rounds.deburring.push(per_step(removed));
         let mut times = StepTimes::default();
         following.run(STEPS, Some(&mut times));
         let parts = [
@@ -110,7 +115,11 @@ fn compare(cell: &Cell) -> Result<(), Box<dyn Error>> {
             last_round = Some(round);
         }
     }
+    let slower = ratio(&rounds.deburring, &rounds.whole);
     print_ours(&mut rounds);
+    println!(
+        "deburred_edge / plate_edge_ideal: {slower:.3} times the time of a step, median of the rounds' ratios"
+    );
     let (force, desired) = (world.force(), cell.scenario.process.force);
     println!(
         "the rigid bodies alone press with {force:.4} N of {desired} N, {:.4} mm deep",
@@ -139,6 +148,7 @@ fn print_ours(rounds: &mut Rounds) {
     for (name, values) in PARTS.iter().zip(&mut rounds.parts) {
         println!("  {name:<38} {:>10.3}", median(values) * 1e6);
     }
+    row("whole cell of deburred_edge", &mut rounds.deburring);
     row(
         "rigid bodies alone, arm held",
         &mut rounds.rigid_bodies_alone,
@@ -185,6 +195,12 @@ fn row(name: &str, values: &mut [f64]) {
         1.0 / slowest,
         1.0 / fastest
     );
+}
+
+/// Median of the quotients, round by round.
+fn ratio(of: &[f64], by: &[f64]) -> f64 {
+    let mut ratios: Vec<f64> = of.iter().zip(by).map(|(of, by)| of / by).collect();
+    median(&mut ratios)
 }
 
 /// Median; leaves the values sorted.
