@@ -338,6 +338,104 @@ fn in_runs_as_believed_nothing_is_found_and_a_joint_that_rubs_is_named() {
     }
 }
 
+/// A tool that turns, and takes off what its work is worth, twice.
+const DEBURRING: &str = "[tool]
+shape = \"ball\"
+spindle_speed_rpm = 20000
+spindle_lead_deg = 45
+stall_torque_n_mm = 500
+
+[removal]
+law = \"preston\"
+coefficient_mm3_per_j = 0.012
+specific_energy_j_per_mm3 = 25
+friction_coefficient = 0.3
+
+[[pass]]
+
+[[pass]]
+";
+
+/// Columns of a run's edge_profile.csv: place on the edge [mm], burr before and after [mm].
+fn edge_profile(file: &Path) -> Vec<[f64; 3]> {
+    let text = std::fs::read_to_string(file).unwrap();
+    let rows = text.lines().skip(1).map(|line| {
+        let numbers: Vec<f64> = line.split(',').map(|n| n.parse().unwrap()).collect();
+        [numbers[0], numbers[1], numbers[2]]
+    });
+    rows.collect()
+}
+
+/// The same edge is measured, ground in two passes, and measured again, with the burr that the passes left.
+#[test]
+#[ignore = "four minutes: two diagnoses of four runs each"]
+fn a_burr_is_found_before_it_is_ground_off_and_not_after() {
+    let burred = PLANTED.iter().find(|p| p.case == "burr").unwrap();
+    let bench = Bench::new("plate_edge_ideal");
+    let asset = project(&format!("assets/{}", PLATE.part));
+    std::fs::copy(asset, bench.path(PLATE.part)).unwrap();
+    bench.write("believed.toml", scenario(&PLATE, &PROGRAMS[0], &NOTHING));
+    let measured = |case: &str, edited: &dyn Fn(String) -> String, planted: &Planted| {
+        for program in &PROGRAMS {
+            bench.write("run.toml", edited(scenario(&PLATE, program, planted)));
+            let folder = format!("cases/{case}/{}", program.0);
+            let outcome = bench.idc(&["run", "run.toml", "--out", &folder, "--quiet"], &[]);
+            assert_eq!(outcome.code, 0, "{case}: {}", outcome.err);
+        }
+    };
+    measured("before", &|text| text, burred);
+
+    let program = ("grind", 0.0, 60.0, 30.0, 21);
+    bench.write("grind.toml", scenario(&PLATE, &program, burred) + DEBURRING);
+    let outcome = bench.idc(&["run", "grind.toml", "--out", "ground", "--quiet"], &[]);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let profile = edge_profile(&bench.path("ground/edge_profile.csv"));
+    let largest = |column: usize| profile.iter().map(|row| row[column]).fold(0.0, f64::max);
+    assert!((largest(1) - 0.4).abs() < 0.01, "{}", largest(1));
+    assert_eq!(largest(2), 0.0, "the law says that two passes take it off");
+
+    // Stations stand in the middle of what they are of: a table goes from end to end.
+    let end = profile.last().unwrap()[0] + 1.0;
+    let mut table = "position_mm,height_mm\n".to_owned();
+    table += &format!("0,{}\n", profile[0][2]);
+    for [place, _, after] in &profile {
+        table += &format!("{place},{after}\n");
+    }
+    table += &format!("{end},{}\n", profile.last().unwrap()[2]);
+    bench.write("left.csv", table);
+    let left = |text: String| {
+        let burr = "[workpiece.burr]\nkind = \"table\"\npath = \"left.csv\"\n[sensing]\n";
+        text.replacen(END, burr, 1)
+    };
+    measured("after", &left, &NOTHING);
+
+    let outcome = bench.idc(
+        &[
+            "diagnose",
+            "cases",
+            "--all",
+            "--scenario",
+            "believed.toml",
+            "--out",
+            "out",
+            "--quiet",
+        ],
+        &[],
+    );
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let before = Planted {
+        case: "before",
+        ..PLANTED[7]
+    };
+    assert_eq!(before.name, "burr");
+    holds(&bench, &before, 0);
+    let after = Planted {
+        case: "after",
+        ..NOTHING
+    };
+    holds(&bench, &after, 0);
+}
+
 /// Seals that cell and belief both have.
 const SEALS: Planted = Planted {
     case: "seals",

@@ -66,16 +66,23 @@ pub fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, CaseError> {
     Ok(names)
 }
 
-/// Whether a file's name is the one that is written, or fits it where it has a star.
+/// Whether a file's name is the one that is written, or fits it where it has stars.
 fn fits(written: &str, file: &str) -> bool {
-    match written.split_once('*') {
-        None => written == file,
-        Some((before, after)) => {
-            file.len() >= before.len() + after.len()
-                && file.starts_with(before)
-                && file.ends_with(after)
+    let Some((first, rest)) = written.split_once('*') else {
+        return written == file;
+    };
+    let Some(mut left) = file.strip_prefix(first) else {
+        return false;
+    };
+    let mut parts: Vec<&str> = rest.split('*').collect();
+    let last = parts.pop().unwrap_or_default();
+    for part in parts {
+        match left.split_once(part) {
+            Some((_, behind)) => left = behind,
+            None => return false,
         }
     }
+    left.ends_with(last)
 }
 
 /// Inputs of a diagnosis.
@@ -141,4 +148,21 @@ pub(super) fn flange_runs(
         .map(shown)
         .collect::<Result<_, _>>()?;
     Ok((runs, rig.predict.as_ref().map(shown).transpose()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fits;
+
+    #[test]
+    fn stars_stand_for_anything() {
+        assert!(fits("run.csv", "run.csv") && !fits("run.csv", "a_run.csv"));
+        assert!(fits("*.csv", "run.csv") && !fits("*.csv", "run.parquet"));
+        assert!(fits("a*b*c", "a1b2c") && fits("a*b*c", "abc") && !fits("a*b*c", "acb"));
+        assert!(
+            fits("*_ramp0.1_*", "run_ramp0.1_force.csv")
+                && !fits("*_ramp0.1_*", "run_ramp0.2_force.csv")
+        );
+        assert!(!fits("ab*ba", "aba"));
+    }
 }

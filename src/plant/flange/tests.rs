@@ -8,14 +8,15 @@ fn model() -> FlangeModel {
     ])
 }
 
+/// An arm that touches 0.1 s after the start and goes on for 2 mm, so that the slide leaves its stop.
 fn course(speed: f64, force: f64) -> FlangeCourse {
-    let approach = 50;
-    let speeds = (0..1000).map(|i| if i < approach { speed } else { 0.0 });
+    let approach = (0.1 + 2e-3 / speed) / 2e-3;
+    let speeds = (0..1000).map(|i| if f64::from(i) < approach { speed } else { 0.0 });
     FlangeCourse {
         start: -0.1,
         period: 2e-3,
         speed: speeds.collect(),
-        gap: speed * 0.099,
+        gap: speed * 0.1,
         before: force,
         after: force,
         ramp: 0.0,
@@ -73,5 +74,6 @@ fn a_ramp_presses_lightly_first() {
     let hard = flange_force(&model(), &course(0.05, 80.0), 1.5);
     let mean = |force: &[f64]| force.iter().sum::<f64>() / force.len() as f64;
     assert!(mean(&soft[1000..1800]) < 0.6 * mean(&hard[1000..1800]));
-    assert!((soft[soft.len() - 1] - 80.0).abs() < 0.5);
+    // What still rings about the set force has no part in its mean.
+    assert!((mean(&soft[soft.len() - 4000..]) - 80.0).abs() < 0.5);
 }

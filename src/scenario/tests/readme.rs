@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use toml::{Table, Value};
 
+use super::super::AnyScenario;
 use super::super::document::join;
 use super::super::sections::{bench_sections, model_sections, scenario_sections};
 use super::super::units::Unit;
@@ -205,7 +206,18 @@ fn outcome(format: Format, key: &str, value: Option<Value>) -> Result<String, St
     }
     let text = toml::to_string(&table).unwrap();
     match read_any(&text) {
-        Ok(scenario) => Ok(format!("{scenario:?}")),
+        Ok(mut scenario) => {
+            // A value that is given is no default that somebody judged, though it is the same.
+            let device = match &mut scenario {
+                AnyScenario::Cell(cell) => {
+                    cell.judged.clear();
+                    &mut cell.device
+                }
+                AnyScenario::Bench(bench) => &mut bench.device,
+            };
+            device.judged.clear();
+            Ok(format!("{scenario:?}"))
+        }
         Err(error) => Err(error.to_string()),
     }
 }
