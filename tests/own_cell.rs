@@ -368,7 +368,7 @@ fn edge_profile(file: &Path) -> Vec<[f64; 3]> {
 
 /// The same edge is measured, ground in two passes, and measured again, with the burr that the passes left.
 #[test]
-#[ignore = "four minutes: two diagnoses of four runs each"]
+#[ignore = "a minute: two diagnoses of four runs each"]
 fn a_burr_is_found_before_it_is_ground_off_and_not_after() {
     let burred = PLANTED.iter().find(|p| p.case == "burr").unwrap();
     let bench = Bench::new("plate_edge_ideal");
