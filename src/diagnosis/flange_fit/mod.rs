@@ -59,12 +59,8 @@ pub fn fit_flange(
             forces.push(None);
             continue;
         };
-        let (name, _) = match fitted.get(index) {
-            Some((run, shown)) => (&run.name, shown),
-            None => (&unseen[index - fitted.len()].0.name, run.shown),
-        };
         runs.push(SimulatedRun {
-            recording: name.clone(),
+            recording: run.run.name.clone(),
             fitted: index < targets.len(),
             force_before_n: run.course.course.before,
             force_ramp_s: run.course.course.ramp,

@@ -13,7 +13,7 @@ pub(super) const PHASES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
 /// A run with its inputs.
 pub(super) struct Logged<'a> {
-    run: &'a Run,
+    pub run: &'a Run,
     pub shown: &'a RunMetrics,
     pub course: RunCourse,
     reader: Reader,
@@ -83,6 +83,9 @@ fn read(force: &[f64], start: f64, run: &Logged<'_>, phase: f64) -> Vec<f64> {
     run.reader.logged(&readings)
 }
 
+/// Results of a simulated log, and the spread of its force while the arm slides [N].
+type LoggedResult = (RunMetrics, Option<f64>);
+
 /// Results of a run by some flanges at all phases; none where one of them never settles to be measured.
 pub(super) struct RunPrediction {
     pub peak: SimulatedResult,
@@ -102,7 +105,7 @@ pub(super) fn predict_run(
         Some(ripple) => run.course.with_ripple(ripple),
         None => run.course.course.clone(),
     };
-    let mut results: Vec<(RunMetrics, Option<f64>)> = Vec::new();
+    let mut results: Vec<LoggedResult> = Vec::new();
     let mut first = Vec::new();
     for model in models {
         let force = flange_force(model, &course, run.course.end + 2.0 * SAMPLED);
@@ -120,7 +123,7 @@ pub(super) fn predict_run(
     if results.is_empty() {
         return None;
     }
-    let beside = |recorded: f64, of: &dyn Fn(&(RunMetrics, Option<f64>)) -> f64| {
+    let beside = |recorded: f64, of: &dyn Fn(&LoggedResult) -> f64| {
         let [simulated, low, high] = median_and_range(results.iter().map(of).collect());
         SimulatedResult {
             recorded,

@@ -57,7 +57,7 @@ pub struct SimulatedRun {
 pub struct SimulatedResult {
     /// As recorded.
     pub recorded: f64,
-    /// As simulated; the mean over instants of reading and solutions.
+    /// As simulated; the median over instants of reading and solutions.
     pub simulated: f64,
     /// Least of these.
     pub low: f64,

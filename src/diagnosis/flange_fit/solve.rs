@@ -76,7 +76,7 @@ pub(super) fn solutions(targets: &[Targets], mass: f64) -> Vec<Solution> {
                 let problem = &problem;
                 let own = (worker..STARTS).step_by(workers as usize);
                 scope.spawn(move || {
-                    own.map(|seed| (seed, problem.from_start(seed)))
+                    own.map(|seed| (seed, problem.started(seed)))
                         .collect::<Vec<_>>()
                 })
             })
@@ -130,7 +130,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    fn from_start(&self, seed: u64) -> Solution {
+    fn started(&self, seed: u64) -> Solution {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let count = FLANGE_NUMBERS + self.targets.len();
         let draws = (0..DRAWS).map(|_| {

@@ -188,8 +188,8 @@ impl State {
             self.air.force + friction + stop - carried,
             contact - read,
         ];
-        for body in 0..3 {
-            self.speed[body] += forces[body] / parts.masses[body] * step;
+        for (body, force) in forces.into_iter().enumerate() {
+            self.speed[body] += force / parts.masses[body] * step;
             self.place[body] += self.speed[body] * step;
         }
         read
