@@ -1,9 +1,10 @@
 //! `idc vary` and `idc task`: the same table whoever does the runs, nothing done twice, what cannot be is refused before anything is written.
 
 use std::collections::BTreeMap;
+use std::net::TcpListener;
 use std::os::unix::fs::MetadataExt as _;
-use std::path::PathBuf;
-use std::process::Command;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
 
 use idc_cell::recording::long_table::{LongColumn, read_long};
 use serde_json::Value;
@@ -283,6 +284,54 @@ fn python_with(module: &str) -> Option<PathBuf> {
     there.then_some(python)
 }
 
+/// A scheduler and a worker, as docs/CLUSTER.md starts them; they end with this.
+struct Cluster(Vec<Child>);
+
+impl Drop for Cluster {
+    fn drop(&mut self) {
+        for child in &mut self.0 {
+            child.kill().ok();
+            child.wait().ok();
+        }
+    }
+}
+
+/// A cluster on a free port, and the engine's name of it.
+fn at_address(python: &Path) -> (Cluster, String) {
+    // Free now; the scheduler takes it at once.
+    let port = TcpListener::bind("127.0.0.1:0")
+        .unwrap()
+        .local_addr()
+        .unwrap()
+        .port();
+    let address = format!("tcp://127.0.0.1:{port}");
+    let start = |words: &[&str]| {
+        let mut command = Command::new(python);
+        command.args(["-m", "dask"]).args(words);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        command.spawn().unwrap()
+    };
+    let text = port.to_string();
+    let scheduler = start(&[
+        "scheduler",
+        "--host",
+        "127.0.0.1",
+        "--port",
+        &text,
+        "--dashboard-address",
+        ":0",
+    ]);
+    let worker = start(&[
+        "worker",
+        &address,
+        "--nthreads",
+        "1",
+        "--no-nanny",
+        "--no-dashboard",
+    ]);
+    (Cluster(vec![scheduler, worker]), format!("dask={address}"))
+}
+
 #[test]
 fn dask_and_snakemake_make_the_same_table_with_and_without_a_shared_folder() {
     let bench = plate();
@@ -321,6 +370,15 @@ fn dask_and_snakemake_make_the_same_table_with_and_without_a_shared_folder() {
             "{}",
             other.err
         );
+    }
+    if let Some(python) = python_with("distributed") {
+        let (cluster, address) = at_address(&python);
+        let python = python.display().to_string();
+        let dask = ["--quiet", "--engine", &address, "--python", &python];
+        let outcome = vary(&bench, "address", &dask);
+        assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
+        assert!(table("address") == table("local"));
+        drop(cluster);
     }
     if let Some(python) = python_with("snakemake") {
         assert_eq!(vary(&bench, "snake", &["--plan", "--quiet"]).code, 0);

@@ -174,7 +174,7 @@ async def check(client, order):
         os.remove(mark)
     for worker, (version, sees) in sorted(workers.items()):
         if version != order["version"]:
-            refuse(f"the worker {worker} has `{version}`, expected {order['version']} on every worker, at {order['program']} (--program names another place)")
+            refuse(f"the worker {worker} has `{version.partition(chr(10))[0]}`, expected {order['version']} on every worker, at {order['program']} (--program names another place)")
         if not sees and not order["carry"]:
             refuse(
                 f"the worker {worker} does not see {os.path.dirname(order['plan'])}; expected a folder that all workers share (--out), or --carry, "
