@@ -1,6 +1,6 @@
 //! A contact flange as a simulation: [`crate::plant::flange`] fitted to runs, and other runs predicted with it.
 //!
-//! Inputs of a run are the arm's speed, the desired force and the force ramp; the contact force is predicted. What of it is met: [`residuals`]; how: [`solve`].
+//! Inputs of a run are the arm's speed, the desired force and the force ramp; the contact force is predicted. What of it is met: `residuals`; how: `solve`.
 //! Fits that are nearly as good as the best all count, so that what the runs do not tell apart shows as a range of what is predicted.
 
 pub(super) mod account;

@@ -5,8 +5,8 @@
 //!       air, seals, stop
 //! ```
 //!
-//! One effect a file: [`contact`], [`structure`] (also what carries the workpiece), [`seal`], [`regulation`], [`stop`]; put together in [`motion`]; the arm
-//! in [`arm_motion`] and [`ripple`], the way of the force into the log in [`reader`]. Leaves out: gravity (the flange compensates it), motion across the axis.
+//! One effect a file: `contact`, `structure` (also what carries the workpiece), `seal`, `regulation`, `stop`; put together in `motion`; the arm
+//! in `arm_motion` and `ripple`, the way of the force into the log in `reader`. Leaves out: gravity (the flange compensates it), motion across the axis.
 
 mod arm_motion;
 mod contact;

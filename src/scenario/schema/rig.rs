@@ -32,51 +32,7 @@ pub fn schema() -> Value {
             "additionalProperties": false,
         }),
     );
-    tables.insert(
-        "recordings".to_owned(),
-        json!({
-            "type": "object",
-            "properties": {
-                "fit": {
-                    "type": "array",
-                    "items": { "type": "string" },
-                    "description": "Recordings beside this file to diagnose from; a star stands for all that fit.",
-                },
-                "predict": {
-                    "type": "string",
-                    "description": "Recording that is kept back, to be predicted.",
-                },
-                "force_ramp": {
-                    "type": "array",
-                    "items": {
-                        "type": "object",
-                        "properties": {
-                            "recording": {
-                                "type": "string",
-                                "description": "Recording that it is of; a star stands for all that fit.",
-                            },
-                            "before_contact_n": {
-                                "type": "number",
-                                "minimum": 0,
-                                "maximum": 1e4,
-                                "description": "Force that a contact flange is told before contact.",
-                            },
-                            "time_s": {
-                                "type": "number",
-                                "minimum": 0,
-                                "maximum": 100,
-                                "description": "Time from contact until the desired force is set.",
-                            },
-                        },
-                        "required": ["recording", "before_contact_n", "time_s"],
-                        "additionalProperties": false,
-                    },
-                    "description": "Force ramps of a contact flange; without one the whole desired force is set before contact.",
-                },
-            },
-            "additionalProperties": false,
-        }),
-    );
+    tables.insert("recordings".to_owned(), recordings());
     let effects = Chain::ALL.into_iter().flat_map(candidates);
     tables.insert("effect".to_owned(), super::super::effects::schema(effects));
     tables.insert(
@@ -89,6 +45,52 @@ pub fn schema() -> Value {
         "type": "object",
         "properties": tables,
         "required": ["schema"],
+        "additionalProperties": false,
+    })
+}
+
+/// `[recordings]`.
+fn recordings() -> Value {
+    json!({
+        "type": "object",
+        "properties": {
+            "fit": {
+                "type": "array",
+                "items": { "type": "string" },
+                "description": "Recordings beside this file to diagnose from; a star stands for all that fit.",
+            },
+            "predict": {
+                "type": "string",
+                "description": "Recording that is kept back, to be predicted.",
+            },
+            "force_ramp": {
+                "type": "array",
+                "items": {
+                    "type": "object",
+                    "properties": {
+                        "recording": {
+                            "type": "string",
+                            "description": "Recording that it is of; a star stands for all that fit.",
+                        },
+                        "before_contact_n": {
+                            "type": "number",
+                            "minimum": 0,
+                            "maximum": 1e4,
+                            "description": "Force that a contact flange is told before contact.",
+                        },
+                        "time_s": {
+                            "type": "number",
+                            "minimum": 0,
+                            "maximum": 100,
+                            "description": "Time from contact until the desired force is set.",
+                        },
+                    },
+                    "required": ["recording", "before_contact_n", "time_s"],
+                    "additionalProperties": false,
+                },
+                "description": "Force ramps of a contact flange; without one the whole desired force is set before contact.",
+            },
+        },
         "additionalProperties": false,
     })
 }
