@@ -266,6 +266,12 @@ fn diagnosed(job: &Job, all: &[Planted]) -> Bench {
             assert_eq!(outcome.code, 0, "{}: {}", planted.case, outcome.err);
         }
     }
+    diagnose_cases(&bench);
+    bench
+}
+
+/// Diagnoses all cases of a bench against what is believed.
+fn diagnose_cases(bench: &Bench) {
     let outcome = bench.idc(
         &[
             "diagnose",
@@ -280,7 +286,6 @@ fn diagnosed(job: &Job, all: &[Planted]) -> Bench {
         &[],
     );
     assert_eq!(outcome.code, 0, "{}", outcome.err);
-    bench
 }
 
 /// Answer to a case, and the account of it.
@@ -409,20 +414,7 @@ fn a_burr_is_found_before_it_is_ground_off_and_not_after() {
     };
     measured("after", &left, &NOTHING);
 
-    let outcome = bench.idc(
-        &[
-            "diagnose",
-            "cases",
-            "--all",
-            "--scenario",
-            "believed.toml",
-            "--out",
-            "out",
-            "--quiet",
-        ],
-        &[],
-    );
-    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    diagnose_cases(&bench);
     let before = Planted {
         case: "before",
         ..PLANTED[7]

@@ -379,8 +379,9 @@ fn of_flange_runs(
 /// The rig file of a flange: what was found has no place in it and stands there as comments.
 fn improved_flange(rig: &RigFile, answer: &Answer) -> String {
     let mut improved = improved_text(rig, &[], &[], None);
-    let line = |key: &str, [value, low, high]: [f64; 3]| {
-        format!("# {key} = {value:.5e}   # {low:.3e} to {high:.3e}\n")
+    let line = |key: &str, value: f64, interval: Option<[f64; 2]>| {
+        let range = interval.map(|[low, high]| format!("   # {low:.3e} to {high:.3e}"));
+        format!("# {key} = {value:.5e}{}\n", range.unwrap_or_default())
     };
     for effect in &answer.effects {
         improved += &format!(
@@ -388,13 +389,13 @@ fn improved_flange(rig: &RigFile, answer: &Answer) -> String {
             effect.name
         );
         for (key, number) in &effect.parameters {
-            improved += &line(key, [number.value, number.low, number.high]);
+            improved += &line(key, number.value, Some([number.low, number.high]));
         }
     }
     if let Some(flange) = &answer.details.flange {
         improved += "\n# The flange as `idc diagnose` simulates it\n";
         for number in &flange.numbers {
-            improved += &line(&number.name, [number.value, number.low, number.high]);
+            improved += &line(&number.name, number.value, number.interval);
         }
     }
     improved

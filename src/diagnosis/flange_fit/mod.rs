@@ -73,7 +73,7 @@ pub fn fit_flange(
     }
     Some(FlangeFit {
         report: SimulatedFlange {
-            numbers: numbers(best, ripple),
+            numbers: numbers(&solutions, ripple),
             reading_rate_hz: 1.0 / reader.period,
             reading_gain: reader.gain,
             solutions: solutions.len(),
@@ -107,36 +107,30 @@ fn alike(solutions: Vec<Solution>, fitted: &[Logged<'_>]) -> Vec<Solution> {
     counts.map(|(_, solution)| solution).collect()
 }
 
-fn numbers(best: &Solution, ripple: Option<Ripple>) -> Vec<FittedNumber> {
-    let all = FlangeModel::NAMES.iter().zip(best.model.numbers());
-    let mut numbers: Vec<FittedNumber> = (all.zip(best.deviations))
-        .map(|((name, value), deviation)| {
-            let factor = (HALF * deviation).exp();
-            FittedNumber {
-                name: (*name).to_owned(),
-                value,
-                low: value / factor,
-                high: value * factor,
-            }
-        })
-        .collect();
-    let ripples = ripple.map(|r| {
+/// Numbers of the best of some fits.
+fn numbers(solutions: &[Solution], ripple: Option<Ripple>) -> Vec<FittedNumber> {
+    let all: Vec<_> = solutions.iter().map(|s| s.model.numbers()).collect();
+    let fitted = FlangeModel::NAMES.iter().enumerate().map(|(i, name)| {
+        let values = all.iter().map(|numbers| numbers[i]);
+        let factor = (HALF * solutions[0].deviations[i]).exp();
+        let least = values.clone().fold(f64::INFINITY, f64::min);
+        let largest = values.fold(0.0, f64::max);
+        FittedNumber {
+            name: (*name).to_owned(),
+            value: all[0][i],
+            interval: Some([least / factor, largest * factor]),
+        }
+    });
+    let of_ripple = ripple.into_iter().flat_map(|ripple| {
         [
-            ("arm_ripple", r.ratio),
-            ("arm_ripple_bandwidth_hz", r.bandwidth),
+            ("arm_ripple", ripple.ratio),
+            ("arm_ripple_bandwidth_hz", ripple.bandwidth),
         ]
     });
-    // Met, not fitted: what else would meet it is not known.
-    numbers.extend(
-        ripples
-            .into_iter()
-            .flatten()
-            .map(|(name, value)| FittedNumber {
-                name: name.to_owned(),
-                value,
-                low: 0.5 * value,
-                high: 2.0 * value,
-            }),
-    );
-    numbers
+    let met = of_ripple.map(|(name, value)| FittedNumber {
+        name: name.to_owned(),
+        value,
+        interval: None,
+    });
+    fitted.chain(met).collect()
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A flange as a simulation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedFlange {
-    /// Fitted numbers, by their names with units; intervals of 95 %.
+    /// Fitted numbers, by their names with units.
     pub numbers: Vec<FittedNumber>,
     /// Rate of the readings behind the log.
     pub reading_rate_hz: f64,
@@ -24,10 +24,9 @@ pub struct FittedNumber {
     pub name: String,
     /// Value.
     pub value: f64,
-    /// Lower end of its interval.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
+    /// Lower and upper end of its interval, 95 % of what the curvature of the cost leaves, over all fits that count; none where it was met, not fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval: Option<[f64; 2]>,
 }
 
 /// A run, recorded and simulated.
