@@ -62,9 +62,10 @@ fn panel<'a>(
         Series::new(label, time, values[part.clone()].to_vec(), role, stroke)
     };
     Panel {
-        title: format!("{}, {known}: {what}", run.name),
+        title: format!("{what}, {known}"),
         vertical_label: "force [N]".to_owned(),
-        horizontal: Horizontal::Time,
+        // Each panel has its own stretch of time.
+        horizontal: Horizontal::Quantity(format!("time after contact [s], {}", run.name)),
         series: vec![
             series("recorded", &channel.measured, Role::Measured, Stroke::Plain),
             series("desired", &channel.believed, Role::Command, Stroke::Dashed),
