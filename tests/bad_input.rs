@@ -141,7 +141,10 @@ fn robot_files() {
         ),
         refusal(
             |b| b.replace("arm.urdf", "effort=\"150\"", "effort=\"150"),
-            &["arm.urdf: not a valid URDF file", "Line: 112"],
+            &[
+                "arm.urdf:112: not a valid URDF file",
+                "joint `elbow` (begun on line 107)",
+            ],
         ),
         refusal(
             |b| {

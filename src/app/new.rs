@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
-use crate::arm::likely_flange;
+use crate::arm::draft_of;
 use crate::case::RIG;
 use crate::cell::CellError;
 use crate::import::{Draft, draft};
@@ -246,7 +246,7 @@ fn with_own(
     };
     if let Some(urdf) = &arguments.urdf {
         let urdf = whole(urdf)?;
-        let flange = likely_flange(&urdf).map_err(CellError::from)?;
+        let flange = draft_of(&urdf).map_err(CellError::from)?.mount.flange_link;
         put("urdf", &format!("{:?}", urdf.display().to_string()));
         put("flange_link", &format!("{flange:?}"));
         files.retain(|(path, _)| !path.ends_with(BESIDE[0].0));

@@ -3,6 +3,7 @@
 mod charts;
 mod design;
 mod diagnosis;
+mod estimated;
 mod finished_edge;
 mod judged;
 mod provenance;

@@ -13,6 +13,6 @@ pub(crate) mod test_chains;
 
 pub use chain::{BodyInertia, Joint, JointKind, KinematicChain, MAX_JOINTS};
 pub use urdf::{
-    Arm, ArmError, ArmOptions, CollisionShape, LimitOverride, Visual, VisualShape, likely_flange,
-    load_arm, mesh_files,
+    Arm, ArmDraft, ArmError, ArmOptions, CollisionShape, EstimatedMass, LimitOverride, Mount,
+    Visual, VisualShape, draft_of, load_arm, mesh_files,
 };

@@ -5,21 +5,37 @@
 
 mod arm;
 mod collisions;
+mod draft;
 mod error;
+mod format;
 mod graph;
 mod inertia;
 mod joints;
+mod masses;
 mod mesh;
+mod mount;
+mod solid;
+mod source;
 mod tree;
 mod visuals;
+mod walk;
+mod xacro;
+mod xml_fault;
 
+#[cfg(test)]
+mod said_tests;
 #[cfg(test)]
 mod tests;
 
-pub use arm::{Arm, ArmOptions, CollisionShape, LimitOverride, Visual, VisualShape};
+pub use arm::{Arm, ArmOptions, CollisionShape, EstimatedMass, LimitOverride, Visual, VisualShape};
+pub use draft::{ArmDraft, draft_of};
 pub use error::{ArmError, Refusal};
+pub use mount::Mount;
 
 use crate::arm::chain::KinematicChain;
+use glamx::DPose3;
+use masses::Masses;
+use source::Source;
 use std::path::Path;
 use tree::Tree;
 
@@ -28,31 +44,8 @@ use tree::Tree;
 /// # Errors
 /// The file or a mesh cannot be read, or holds something that cannot be honoured.
 pub fn load_arm(path: &Path, options: &ArmOptions) -> Result<Arm, ArmError> {
-    let text = std::fs::read_to_string(path).map_err(|source| ArmError::Unreadable {
-        file: path.to_path_buf(),
-        source,
-    })?;
-    // The parser says of both that there are no elements.
-    for (part, fault) in [
-        ("<robot", "it has no <robot> element"),
-        ("</robot>", "it is cut off before </robot>"),
-    ] {
-        if !text.contains(part) {
-            return Err(ArmError::Incomplete {
-                file: path.to_path_buf(),
-                fault,
-            });
-        }
-    }
-    let robot = urdf_rs::read_from_string(&text).map_err(|source| ArmError::Malformed {
-        file: path.to_path_buf(),
-        source,
-    })?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    assemble(&robot, folder, options).map_err(|refusal| ArmError::Refused {
-        file: path.to_path_buf(),
-        refusal: Box::new(refusal),
-    })
+    let source = Source::read(path)?;
+    assemble(&source, options).map_err(|refusal| refused(path, &source, refusal))
 }
 
 /// The mesh files that a URDF file leads to; those that are not found are left out, as they are of the arm.
@@ -60,57 +53,32 @@ pub fn load_arm(path: &Path, options: &ArmOptions) -> Result<Arm, ArmError> {
 /// # Errors
 /// The URDF file cannot be read.
 pub fn mesh_files(path: &Path, options: &ArmOptions) -> Result<Vec<std::path::PathBuf>, ArmError> {
-    let robot = urdf_rs::read_file(path).map_err(|source| ArmError::Malformed {
-        file: path.to_path_buf(),
-        source,
-    })?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    Ok(mesh::files(&robot, folder, options))
+    let source = Source::read(path)?;
+    Ok(mesh::files(&source.robot, &source.folder, options))
 }
 
-/// The link of a URDF file that a device would be mounted on: of those by which an arm can be loaded one with a usual name, else the last.
-///
-/// # Errors
-/// The file cannot be read, or no link of it ends an arm; why not by its last link.
-pub fn likely_flange(path: &Path) -> Result<String, ArmError> {
-    const USUAL: [&str; 3] = ["tool0", "flange", "ee_link"];
-    let text = std::fs::read_to_string(path).map_err(|source| ArmError::Unreadable {
+/// A refusal with the line of the link or joint that it is about.
+fn refused(path: &Path, source: &Source, refusal: Refusal) -> ArmError {
+    let line = refusal.subject().and_then(|(what, name)| {
+        let key = (what, name.to_owned());
+        source.walked.lines.get(&key).copied()
+    });
+    ArmError::Refused {
         file: path.to_path_buf(),
-        source,
-    })?;
-    let robot = urdf_rs::read_from_string(&text).map_err(|source| ArmError::Malformed {
-        file: path.to_path_buf(),
-        source,
-    })?;
-    let loads = |link: &str| {
-        let options = ArmOptions {
-            tip_link: link.to_owned(),
-            skip_visuals: true,
-            ..ArmOptions::default()
-        };
-        load_arm(path, &options).map(|_| link.to_owned())
-    };
-    let usual = USUAL.into_iter().find_map(|link| loads(link).ok());
-    let last = || {
-        let links = robot.links.iter().rev();
-        links
-            .map(|link| link.name.as_str())
-            .find_map(|link| loads(link).ok())
-    };
-    match usual.or_else(last) {
-        Some(link) => Ok(link),
-        None => loads(robot.links.last().map_or("", |link| &link.name)),
+        line,
+        refusal: Box::new(refusal),
     }
 }
 
-fn assemble(robot: &urdf_rs::Robot, folder: &Path, options: &ArmOptions) -> Result<Arm, Refusal> {
-    let mut notes = Vec::new();
+fn assemble(source: &Source, options: &ArmOptions) -> Result<Arm, Refusal> {
+    let mut notes = source.walked.notes.clone();
     let tree = Tree::build(
-        robot,
+        &source.robot,
         options.base_link.as_deref(),
         &options.tip_link,
         &mut notes,
     )?;
+    check_loops(&tree, source, &mut notes)?;
     for name in options.limit_overrides.keys() {
         if !tree.path_joints().any(|joint| joint.name == *name) {
             return Err(Refusal::OverrideUnknown {
@@ -118,28 +86,69 @@ fn assemble(robot: &urdf_rs::Robot, folder: &Path, options: &ArmOptions) -> Resu
             });
         }
     }
-    let bodies = inertia::merged_bodies(&tree, &mut notes)?;
+    let folder = &source.folder;
+    let visuals = match options.skip_visuals {
+        true => Vec::new(),
+        false => visuals::load(&tree, folder, options, &mut notes)?,
+    };
+    let without_inertia = &source.walked.without_inertia;
+    let shapes = match options.skip_visuals && !Masses::needs_shapes(options, without_inertia) {
+        true => Vec::new(),
+        false => collisions::load(&tree, folder, options, &mut notes)?,
+    };
+    let masses = Masses {
+        options,
+        shapes: &shapes,
+        without_inertia,
+    };
+    masses.check(&tree)?;
+    let (bodies, estimated) = inertia::merged_bodies(&tree, &masses, &mut notes)?;
     let mut joints = Vec::with_capacity(tree.moving.len());
     for (moving, body) in tree.moving.iter().zip(bodies) {
         joints.push(joints::path_joint(moving, body, options, &mut notes)?);
     }
-    let (visuals, collisions) = if options.skip_visuals {
-        (Vec::new(), Vec::new())
-    } else {
-        (
-            visuals::load(&tree, folder, options, &mut notes)?,
-            collisions::load(&tree, folder, options, &mut notes)?,
-        )
-    };
+    if let Some(angle) = mount::askew(&tree, options.tip_from_mount)? {
+        notes.push(format!(
+            "the device is mounted {:.0} degrees off the outward axis of the last joint, along z of link `{}`; arm.flange_rotation_deg turns it, and `idc new cell --urdf` finds by how much",
+            angle.to_degrees(),
+            options.tip_link
+        ));
+    }
     Ok(Arm {
-        name: robot.name.clone(),
+        name: source.robot.name.clone(),
         chain: KinematicChain {
             joints,
-            tip_from_last: tree.tip_from_last,
+            tip_from_last: tree.tip_from_last * DPose3::from_rotation(options.tip_from_mount),
         },
         link_names: tree.link_names(),
         visuals,
-        collisions,
+        collisions: match options.skip_visuals {
+            true => Vec::new(),
+            false => shapes.into_iter().map(|(_, shape)| shape).collect(),
+        },
+        estimated,
         notes,
     })
+}
+
+/// Joints that close a chain: passed over where they hold together what is rigid already.
+fn check_loops(tree: &Tree, source: &Source, notes: &mut Vec<String>) -> Result<(), Refusal> {
+    for (line, name, links) in &source.walked.loops {
+        let indices: Vec<_> = links.iter().map(|link| tree.index_of(link)).collect();
+        match (&links[..], &indices[..]) {
+            ([_, _], [one, two]) if one == two && one.is_some() => notes.push(format!(
+                "<loop_joint> `{name}` (line {line}) joins links that do not move against each other"
+            )),
+            _ => {
+                let link = |index: usize| links.get(index).cloned().unwrap_or_default();
+                return Err(Refusal::Loop {
+                    joint: name.clone(),
+                    line: *line,
+                    first: link(0),
+                    second: link(1),
+                });
+            }
+        }
+    }
+    Ok(())
 }

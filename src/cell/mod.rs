@@ -5,6 +5,7 @@ mod collision;
 mod cutting;
 mod device_shape;
 mod error;
+mod estimated;
 mod part;
 mod plant;
 mod remedy;
@@ -19,6 +20,7 @@ use glamx::DPose3;
 pub use advice::Advice;
 pub use device_shape::DeviceShape;
 pub use error::CellError;
+pub use estimated::{EstimatedArm, EstimatedLink, EstimatedTorque};
 pub use part::{Part, choose_edge, station};
 pub use setup::{Setup, Stance, arm_options};
 
@@ -66,6 +68,8 @@ pub struct Cell {
     pub axial_share: f64,
     /// Least and greatest component of gravity along the tool's axis on the edge [m/s2].
     pub gravity_on_edge: [f64; 2],
+    /// Masses of the arm that are estimated, and what that leaves open.
+    pub estimated: Option<EstimatedArm>,
     /// Notes on what a user may not expect, one sentence each.
     pub notes: Vec<String>,
 }
@@ -106,6 +110,8 @@ impl Cell {
             advice: Box::new(remedy::for_plan(&setup, &source)),
             source: Box::new(source),
         })?;
+        let spread = setup.scenario.arm.mass_spread;
+        let estimated = EstimatedArm::of(&setup.arm.estimated, spread, &request, &plan);
         let device = Device::new(
             setup
                 .plant
@@ -123,6 +129,7 @@ impl Cell {
             passes,
             mut notes,
         } = setup;
+        notes.extend(estimated.as_ref().map(EstimatedArm::note));
         notes.extend(plan.notes.iter().cloned());
         let middle = station(
             &part.edge,
@@ -145,6 +152,7 @@ impl Cell {
             plan,
             axial_share,
             gravity_on_edge,
+            estimated,
             notes,
         })
     }

@@ -267,6 +267,9 @@ pub fn arm_options(arm: &ArmScenario) -> ArmOptions {
         base_link: arm.base_link.clone(),
         tip_link: arm.flange_link.clone(),
         package_directories: arm.package_directories.clone(),
+        link_masses: arm.link_masses.clone(),
+        whole_mass: arm.whole_mass,
+        tip_from_mount: arm.flange_from_mount,
         limit_overrides: arm
             .limit_overrides
             .iter()

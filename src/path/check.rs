@@ -1,14 +1,10 @@
 //! The plan against the arm's limits, before anything moves: singularities at every knot, speeds and torques over time.
 
-use glamx::DPose3;
-
 use super::error::{Obstacle, PlanError};
 use super::plan::Plan;
 use super::posture::{SINGULAR_LIMIT, Standing};
-use super::request::{Phase, PlanRequest, waypoint_error};
-use crate::arm::chain::MAX_JOINTS;
-use crate::arm::dynamics::inverse_dynamics;
-use crate::arm::kinematics::{jacobian_at, link_poses};
+use super::request::{PlanRequest, waypoint_error};
+use super::torques;
 
 /// Interval at which speeds and torques are checked [s].
 const INTERVAL: f64 = 4e-3;
@@ -55,44 +51,12 @@ fn singularities(standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// Speeds and torques at a time, contact force and friction pressing while the tool is on the edge; joint losses included.
+/// Speeds and torques at a time.
 fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError> {
     let reference = plan.reference(time);
-    let n = request.arm.len();
-    let mut position = reference.position;
-    position[n] = request.working_stroke;
-    let mut torque = [0.0; MAX_JOINTS];
-    inverse_dynamics(
-        request.arm_with_slide,
-        request.world_from_base.rotation,
-        request.gravity,
-        &position[..=n],
-        &reference.velocity[..=n],
-        &reference.acceleration[..=n],
-        &mut torque[..=n],
-    );
-    if reference.phase == Phase::Follow {
-        let mut links = [DPose3::IDENTITY; MAX_JOINTS];
-        link_poses(
-            request.arm_with_slide,
-            request.world_from_base,
-            &position[..=n],
-            &mut links[..=n],
-        );
-        let jacobian = jacobian_at(request.arm_with_slide, &links[..=n], reference.centre);
-        let force = request
-            .force_on_tool(reference.normal, reference.tangent)
-            .to_array();
-        for (joint, torque) in torque.iter_mut().enumerate().take(n) {
-            *torque -= (0..3)
-                .map(|row| jacobian[(row, joint)] * force[row])
-                .sum::<f64>();
-        }
-    }
+    let torques = torques::needed(request, plan, time);
     for (joint, axis) in request.arm.joints.iter().enumerate() {
-        // A joint's dry friction may load its drive either way, also at rest.
-        let moving = torque[joint] + axis.damping * reference.velocity[joint];
-        let needed = moving + axis.friction.copysign(moving);
+        let needed = torques[joint];
         let obstacle = if reference.velocity[joint].abs() > axis.velocity {
             let value = reference.velocity[joint];
             Obstacle::Velocity {

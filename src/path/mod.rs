@@ -18,9 +18,11 @@ pub mod profile;
 pub mod request;
 pub mod spline;
 pub mod toolpath;
+pub mod torques;
 
 pub use error::{Obstacle, PlanError};
 pub use plan::{Plan, Reference};
 pub use posture::Outline;
 pub use request::{Pass, Phase, PlanRequest};
 pub use toolpath::{ToolAxis, ToolPath, ToolStation};
+pub use torques::TorqueRange;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
 use super::controller::ControllerScenario;
@@ -68,8 +68,16 @@ pub struct ArmScenario {
     pub urdf: PathBuf,
     /// Link that carries the arm; the URDF's root when absent.
     pub base_link: Option<String>,
-    /// Link on which the device is mounted, along its +z.
+    /// Link on which the device is mounted.
     pub flange_link: String,
+    /// Turn of the frame along whose +z the device is mounted, in that of the link.
+    pub flange_from_mount: DQuat,
+    /// Mass of the whole robot with its base, of which links that have none in the URDF take the share of their volume [kg].
+    pub whole_mass: Option<f64>,
+    /// How far an estimated mass may be off, as a share of it [1].
+    pub mass_spread: f64,
+    /// Masses of links, by name [kg].
+    pub link_masses: std::collections::BTreeMap<String, f64>,
     /// Folders of ROS packages by name, for `package://`.
     pub package_directories: std::collections::BTreeMap<String, PathBuf>,
     /// Limits for joints whose file gives none: joint name, effort [N m], velocity [rad/s].

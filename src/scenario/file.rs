@@ -87,6 +87,11 @@ pub(super) struct ArmKeys {
     pub urdf: PathBuf,
     pub base_link: Option<String>,
     pub flange_link: String,
+    pub flange_rotation_deg: Option<Vec<f64>>,
+    pub mass_kg: Option<f64>,
+    pub mass_spread: Option<f64>,
+    #[serde(default)]
+    pub link_masses: Vec<LinkMassKeys>,
     #[serde(default)]
     pub packages: BTreeMap<String, PathBuf>,
     #[serde(default)]
@@ -98,6 +103,14 @@ pub(super) struct ArmKeys {
     pub seed_posture_deg: Option<Vec<f64>>,
     #[serde(default)]
     pub servo: ServoKeys,
+}
+
+/// `[[arm.link_masses]]`.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LinkMassKeys {
+    pub link: String,
+    pub mass_kg: f64,
 }
 
 /// `[[arm.limit_overrides]]`.

@@ -1,6 +1,6 @@
 //! From a scenario file to the checked scenario in SI. Each number's default and range stand here, in the key's own unit; scenarios/README.md repeats them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use glam::DVec3;
@@ -103,6 +103,18 @@ pub(super) fn arm(
             .map(|name| section.text("base_link", name))
             .transpose()?,
         flange_link: section.text("flange_link", &keys.flange_link)?,
+        flange_from_mount: section
+            .pose(
+                ("flange_position_mm", None),
+                ("flange_rotation_deg", keys.flange_rotation_deg.as_deref()),
+            )?
+            .rotation,
+        whole_mass: keys
+            .mass_kg
+            .map(|mass| section.number("mass_kg", mass, 0.1..=100_000.0))
+            .transpose()?,
+        mass_spread: section.number("mass_spread", keys.mass_spread.unwrap_or(0.5), 0.0..=1.0)?,
+        link_masses: link_masses(section.document(), &keys.link_masses)?,
         package_directories: keys.packages.iter().map(folder).collect::<Result<_, _>>()?,
         limit_overrides: limit_overrides(section.document(), &keys.limit_overrides)?,
         drives: drives(section.document(), &keys.drives)?,
@@ -115,6 +127,23 @@ pub(super) fn arm(
             .transpose()?,
         servo: servo(&Section::new(section.document(), "arm.servo"), &keys.servo)?,
     })
+}
+
+fn link_masses(
+    document: &Document<'_>,
+    masses: &[file::LinkMassKeys],
+) -> Result<BTreeMap<String, f64>, ScenarioError> {
+    let mut found = BTreeMap::new();
+    for (index, keys) in masses.iter().enumerate() {
+        let section = Section::new(document, format!("arm.link_masses[{index}]"));
+        let link = section.text("link", &keys.link)?;
+        let mass = section.number("mass_kg", keys.mass_kg, 0.001..=100_000.0)?;
+        if found.insert(link.clone(), mass).is_some() {
+            let expected = "each link once".to_owned();
+            return Err(section.refuse("link", format!("\"{link}\" again"), expected));
+        }
+    }
+    Ok(found)
 }
 
 fn limit_overrides(

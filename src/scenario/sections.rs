@@ -14,6 +14,7 @@ pub(crate) fn scenario_sections() -> Vec<Table> {
     let mut sections = vec![
         ("", keys::<file::ScenarioFile>()),
         ("arm", keys::<file::ArmKeys>()),
+        ("arm.link_masses", keys::<file::LinkMassKeys>()),
         ("arm.limit_overrides", keys::<file::LimitKeys>()),
         ("arm.drives", keys::<file::DriveKeys>()),
         ("arm.servo", keys::<file::ServoKeys>()),

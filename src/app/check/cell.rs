@@ -5,8 +5,9 @@ use std::path::Path;
 use super::super::error::AppError;
 use super::super::picture::{across_the_edge, in_the_middle};
 use super::report::{Report, shown};
-use crate::cell::Cell;
+use crate::cell::{Cell, EstimatedArm};
 use crate::metrics;
+use crate::quantity::significant;
 use crate::replay::LoadedCell;
 use crate::scenario::{
     ArmScenario, BurrScenario, Scenario, WorkpieceScenario, keys_given, load_recorded_cell,
@@ -28,6 +29,7 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     let scenario = &cell.scenario;
     let mut report = Report::new(&file, "a robot cell to simulate", Some(&scenario.title));
     arm(&mut report, &scenario.arm, cell.arm.chain.len());
+    estimated(&mut report, cell.estimated.as_ref())?;
     report.device(&scenario.device.parameters);
     overrides(&mut report, &file)?;
     if scenario.device.locked {
@@ -161,6 +163,33 @@ fn arm(report: &mut Report, arm: &ArmScenario, axes: usize) {
     );
     report.fact("arm", text);
     report.number("axes", axes);
+}
+
+/// Masses that are estimated, and the torques with what that leaves open of them.
+fn estimated(report: &mut Report, arm: Option<&EstimatedArm>) -> Result<(), AppError> {
+    let Some(arm) = arm else {
+        return Ok(());
+    };
+    let total: f64 = arm.links.iter().map(|link| link.mass_kg).sum();
+    let names: Vec<&str> = arm.links.iter().map(|link| link.link.as_str()).collect();
+    let text = format!(
+        "estimated from shapes, {} kg of {}: each within {} % taken",
+        significant(total, 2),
+        names.join(", "),
+        shown(arm.mass_spread_percent)
+    );
+    report.fact("masses", text);
+    for (index, joint) in arm.joints.iter().enumerate() {
+        let [least, greatest, limit] = [joint.least_n_m, joint.greatest_n_m, joint.limit_n_m]
+            .map(|torque| significant(torque, 2));
+        let text = format!(
+            "{}: {least} to {greatest} of {limit} N m at most",
+            joint.joint
+        );
+        report.fact(if index == 0 { "torques" } else { "" }, text);
+    }
+    report.number("estimated_masses", serde_json::to_value(arm)?);
+    Ok(())
 }
 
 /// Changes of the scenario to the device's model.

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::super::error::AppError;
 use super::super::files::{SUMMARY, Sketches};
+use super::estimated::estimated;
 use super::finished_edge::finished_edge;
 use super::judged::judged;
 use super::provenance::provenance_of;
@@ -128,6 +129,7 @@ fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
         joints(run),
         levels(run),
         metrics(run),
+        estimated(&run.document, SUMMARY),
         judged(&run.document, SUMMARY),
         Some(from(run)),
     ];

@@ -6,7 +6,7 @@ use super::super::error::AppError;
 use super::super::picture::{motion_of, scene_of};
 use super::super::viewer::{PART_INTERVAL, Watch};
 use super::source::Source;
-use crate::cell::Cell;
+use crate::cell::{Cell, EstimatedArm};
 use crate::metrics::{
     BoundCheck, EdgeLimits, Summary, SummaryLimits, Timing, summarise, summarise_edge,
 };
@@ -210,6 +210,9 @@ pub(super) struct SummaryDocument<'a> {
     joint_names: Vec<&'a str>,
     samples: usize,
     notes: &'a [String],
+    /// Masses of the arm that are estimated, and what that leaves open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    estimated_masses: Option<&'a EstimatedArm>,
     /// Values in use that nobody has measured in public.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     judged: Vec<&'a JudgedValue>,
@@ -243,6 +246,7 @@ impl<'a> SummaryDocument<'a> {
                 .collect(),
             samples: finished.recording.sample_count(),
             notes: &cell.notes,
+            estimated_masses: cell.estimated.as_ref(),
             judged: cell.scenario.judged_values().collect(),
             provenance: origin,
         }

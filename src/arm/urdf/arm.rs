@@ -1,7 +1,7 @@
 //! What is loaded from a URDF file, and what is chosen of it.
 
 use crate::arm::chain::KinematicChain;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use glamx::DPose3;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -17,6 +17,12 @@ pub struct ArmOptions {
     pub package_directories: BTreeMap<String, PathBuf>,
     /// Drive limits that replace those of the file, by joint name.
     pub limit_overrides: BTreeMap<String, LimitOverride>,
+    /// Masses that replace those of the file, by link name [kg].
+    pub link_masses: BTreeMap<String, f64>,
+    /// Mass of the whole robot with its base, of which links without a mass take the share of their volume [kg].
+    pub whole_mass: Option<f64>,
+    /// The frame on which something is mounted, in that of the tip link; turned, not moved.
+    pub tip_from_mount: DQuat,
     /// Whether to leave out everything that is only drawn, and what would meet other things.
     pub skip_visuals: bool,
 }
@@ -43,8 +49,23 @@ pub struct Arm {
     pub visuals: Vec<Visual>,
     /// Shapes that nothing may meet.
     pub collisions: Vec<CollisionShape>,
+    /// Links whose mass or its distribution is estimated, base first.
+    pub estimated: Vec<EstimatedMass>,
     /// Changes to the file's content that its reader may not expect, one sentence each.
     pub notes: Vec<String>,
+}
+
+/// A link of which the file does not say all that its weight does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EstimatedMass {
+    /// Joint that carries it, counted from 0.
+    pub joint: usize,
+    /// Name of the link behind that joint.
+    pub link: String,
+    /// Its mass with all that is fixed to it [kg].
+    pub mass: f64,
+    /// Whether the mass itself is estimated, not only where it lies.
+    pub by_volume: bool,
 }
 
 /// One shape to draw.

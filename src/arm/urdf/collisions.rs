@@ -7,17 +7,19 @@ use super::visuals::shapes;
 use super::{ArmOptions, CollisionShape, Refusal};
 use urdf_rs::{Geometry, Pose};
 
-/// Collision shapes of the base and of the moving links.
+/// Collision shapes of the base and of the moving links, each with the place in the tree of the link of the file that it belongs to.
 pub(super) fn load(
     tree: &Tree,
     folder: &Path,
     options: &ArmOptions,
     notes: &mut Vec<String>,
-) -> Result<Vec<CollisionShape>, Refusal> {
+) -> Result<Vec<(usize, CollisionShape)>, Refusal> {
     let mut found = Vec::new();
     let mut without = Vec::new();
     let mut unusable: Vec<(&str, Refusal)> = Vec::new();
-    for placed in &tree.placed {
+    for (place, placed) in tree.placed.iter().enumerate() {
+        let here =
+            |shapes: Vec<CollisionShape>| shapes.into_iter().map(move |shape| (place, shape));
         let link = placed.link;
         let own: Vec<_> = (link.collision.iter())
             .map(|collision| (&collision.origin, &collision.geometry))
@@ -27,17 +29,29 @@ pub(super) fn load(
             .collect();
         if own.is_empty() {
             // The colours and axes of what is drawn have been noted already.
-            found.extend(of_link(placed, &drawn, folder, options, &mut Vec::new())?);
+            found.extend(here(of_link(
+                placed,
+                &drawn,
+                folder,
+                options,
+                &mut Vec::new(),
+            )?));
             if !drawn.is_empty() {
                 without.push(link.name.as_str());
             }
             continue;
         }
         match of_link(placed, &own, folder, options, notes) {
-            Ok(shapes) => found.extend(shapes),
+            Ok(shapes) => found.extend(here(shapes)),
             Err(refusal @ Refusal::Mesh { .. }) if !drawn.is_empty() => {
                 unusable.push((link.name.as_str(), refusal));
-                found.extend(of_link(placed, &drawn, folder, options, &mut Vec::new())?);
+                found.extend(here(of_link(
+                    placed,
+                    &drawn,
+                    folder,
+                    options,
+                    &mut Vec::new(),
+                )?));
             }
             Err(refusal) => return Err(refusal),
         }

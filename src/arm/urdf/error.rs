@@ -21,6 +21,28 @@ pub enum ArmError {
         /// Its fault, in words.
         fault: &'static str,
     },
+    /// The file holds at a line what URDF does not have.
+    #[error("{file}:{line}: not a valid URDF file: {fault}")]
+    Faulty {
+        /// The URDF file.
+        file: PathBuf,
+        /// The line, counted from 1.
+        line: u32,
+        /// The fault, in words.
+        fault: String,
+    },
+    /// Macros in the file that cannot be evaluated.
+    #[error("{file}:{line}: {why}, which is for the program xacro to evaluate: {reason}; by hand: xacro {file} -o {}", file.with_extension("expanded.urdf").display())]
+    Xacro {
+        /// The file.
+        file: PathBuf,
+        /// Line of the first macro.
+        line: u32,
+        /// What stands there.
+        why: String,
+        /// Why xacro did not help.
+        reason: String,
+    },
     /// The file is not URDF.
     #[error("{file}: not a valid URDF file: {source}")]
     Malformed {
@@ -30,10 +52,12 @@ pub enum ArmError {
         source: urdf_rs::UrdfError,
     },
     /// The file holds something that cannot be honoured.
-    #[error("{file}: {refusal}")]
+    #[error("{file}{}: {refusal}", line.map_or(String::new(), |line| format!(":{line}")))]
     Refused {
         /// The URDF file.
         file: PathBuf,
+        /// Line of the link or joint, counted from 1.
+        line: Option<u32>,
         /// The refused part and the reason.
         refusal: Box<Refusal>,
     },
@@ -61,18 +85,34 @@ pub enum Refusal {
         first: String,
         second: String,
     },
-    #[error("the base link is not given and the file has not exactly one root link but {roots}")]
+    #[error(
+        "the base link is not given and the file has not exactly one root link but {roots}; arm.base_link in the scenario chooses one"
+    )]
     NoSingleRoot { roots: String },
+    #[error(
+        "every link is the child of a joint ({links}): the joints form a ring; expected a base link from which the arm starts"
+    )]
+    Ring { links: String },
+    #[error(
+        "line {line}: <loop_joint> `{joint}` closes a chain between links `{first}` and `{second}`, which move against each other; expected a serial arm: linkages are not simulated"
+    )]
+    Loop {
+        joint: String,
+        line: u32,
+        first: String,
+        second: String,
+    },
     #[error("tip link `{tip}` is not reached from base link `{base}`")]
     TipNotReached { base: String, tip: String },
     #[error(
-        "the path from `{base}` to `{tip}` has {count} moving joints ({names}); expected 5 to 7"
+        "the path from `{base}` to `{tip}` has {count} moving joints{names}; expected 5 to 7{hint}"
     )]
     JointCount {
         base: String,
         tip: String,
         count: usize,
         names: String,
+        hint: &'static str,
     },
     #[error("joint `{joint}` is {kind}; expected revolute, continuous, prismatic or fixed")]
     JointType { joint: String, kind: &'static str },
@@ -89,11 +129,12 @@ pub enum Refusal {
     #[error("joint `{joint}` has axis ({axis}); expected a vector of non-zero length")]
     Axis { joint: String, axis: String },
     #[error(
-        "joint `{joint}` has {limit} limit {value}; expected a positive number from the file or from a limit override"
+        "joint `{joint}` has {limit} limit {value}; expected a positive number: [[arm.limit_overrides]] in the scenario gives one (joint, {key}), and `idc new cell --urdf` writes one that suits the arm's size"
     )]
     DriveLimit {
         joint: String,
         limit: &'static str,
+        key: &'static str,
         value: f64,
     },
     #[error(
@@ -120,6 +161,16 @@ pub enum Refusal {
         context: &'static str,
     },
     #[error(
+        "link `{link}` has no mass ({why}); expected a positive mass: [[arm.link_masses]] in the scenario gives one (link, mass_kg), or arm.mass_kg, the robot's whole mass, of which the link then takes the share of its volume; `idc new cell --urdf` writes one that suits the arm's size"
+    )]
+    NoMass { link: String, why: &'static str },
+    #[error("a mass is given for link `{link}`, which {why}")]
+    MassUnknown { link: String, why: &'static str },
+    #[error(
+        "the robot's whole mass is given as {whole} kg, but its links with masses weigh {known:.1} kg together; expected more"
+    )]
+    WholeMass { whole: f64, known: f64 },
+    #[error(
         "link `{link}` has principal inertias {moments} kg m2{context}; expected {expected} ones"
     )]
     Inertia {
@@ -144,4 +195,28 @@ pub enum Refusal {
         mesh: String,
         reason: String,
     },
+}
+
+impl Refusal {
+    /// The link or joint that it is about.
+    pub(super) fn subject(&self) -> Option<(&'static str, &str)> {
+        match self {
+            Self::DanglingJoint { joint, .. }
+            | Self::JointType { joint, .. }
+            | Self::MimicOnPath { joint, .. }
+            | Self::Mimic { joint, .. }
+            | Self::Axis { joint, .. }
+            | Self::DriveLimit { joint, .. }
+            | Self::PositionLimits { joint, .. }
+            | Self::JointDynamics { joint, .. } => Some(("joint", joint)),
+            Self::TwoParents { second, .. } => Some(("joint", second)),
+            Self::Duplicate { what, name } => Some((what, name)),
+            Self::Mass { link, .. }
+            | Self::NoMass { link, .. }
+            | Self::Inertia { link, .. }
+            | Self::ShapeSize { link, .. }
+            | Self::Mesh { link, .. } => Some(("link", link)),
+            _ => None,
+        }
+    }
 }

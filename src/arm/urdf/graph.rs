@@ -67,10 +67,37 @@ impl<'a> Graph<'a> {
         let roots: Vec<_> = self.links.keys().filter(no_joint_above).copied().collect();
         match roots.as_slice() {
             [only] => self.link(only, "base"),
+            [] => Err(Refusal::Ring {
+                links: self.links.keys().copied().collect::<Vec<_>>().join(", "),
+            }),
             _ => Err(Refusal::NoSingleRoot {
                 roots: format!("{} ({})", roots.len(), roots.join(", ")),
             }),
         }
+    }
+
+    /// All joints above a link, the root's first.
+    pub fn above(&self, link: &Link) -> Vec<&'a Joint> {
+        let mut above: Vec<&Joint> = Vec::new();
+        let mut name = link.name.as_str();
+        while let Some(joint) = self.joint_above.get(name) {
+            // A ring of joints has no end.
+            if above.len() > self.joints.len() {
+                break;
+            }
+            above.push(joint);
+            name = &joint.parent.link;
+        }
+        above.reverse();
+        above
+    }
+
+    /// The root from which a link hangs.
+    pub fn root_above(&self, link: &Link) -> String {
+        let above = self.above(link);
+        above
+            .first()
+            .map_or_else(|| link.name.clone(), |joint| joint.parent.link.clone())
     }
 
     /// All joints between base and tip, base first.

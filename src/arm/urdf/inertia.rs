@@ -1,50 +1,89 @@
 //! Masses of the file's links, welded together to one body a moving link.
 
-use super::Refusal;
+use super::masses::Masses;
 use super::tree::{Placed, Tree, pose_of};
+use super::{EstimatedMass, Refusal};
 use crate::arm::chain::BodyInertia;
 use glam::{DMat3, DVec3};
 use nalgebra::Matrix3;
 
-/// One body for each moving joint, in the frame of the link behind it.
+/// One body for each moving joint, in the frame of the link behind it, and which of them are estimated.
 pub(super) fn merged_bodies(
     tree: &Tree,
+    masses: &Masses,
     notes: &mut Vec<String>,
-) -> Result<Vec<BodyInertia>, Refusal> {
-    let mut bodies = vec![BodyInertia::ZERO; tree.moving.len()];
-    for placed in &tree.placed {
-        // The base stands still: its mass does nothing.
-        if placed.link_index == 0 {
-            continue;
-        }
-        let body = link_body(placed, notes)?;
-        let merged = &mut bodies[placed.link_index - 1];
-        *merged = merged.welded_to(&body.seen_from(&placed.moving_from_link));
+) -> Result<(Vec<BodyInertia>, Vec<EstimatedMass>), Refusal> {
+    let mut own = Vec::with_capacity(tree.placed.len());
+    for (place, placed) in tree.placed.iter().enumerate() {
+        // The base stands still: its mass does nothing but count.
+        let body = if placed.link_index == 0 {
+            BodyInertia {
+                mass: placed.link.inertial.mass.value.max(0.0),
+                ..BodyInertia::ZERO
+            }
+        } else {
+            link_body(placed, notes)?
+        };
+        own.push(masses.given(place, placed, body)?);
     }
+    let groups = masses.estimate(tree, &own)?;
+    let mut bodies = vec![BodyInertia::ZERO; tree.moving.len()];
+    for (placed, (body, _)) in tree.placed.iter().zip(&own) {
+        if placed.link_index > 0 {
+            let merged = &mut bodies[placed.link_index - 1];
+            *merged = merged.welded_to(&body.seen_from(&placed.moving_from_link));
+        }
+    }
+    let mut estimated = Vec::new();
     let context = ", with all that is fixed to it";
-    for (body, joint) in bodies.iter().zip(tree.path_joints()) {
+    for (index, (merged, joint)) in bodies.iter_mut().zip(tree.path_joints()).enumerate() {
         let link = &joint.child.link;
-        if body.mass <= 0.0 {
-            return Err(Refusal::Mass {
+        let by_volume = groups[index].is_some();
+        if let Some(body) = groups[index] {
+            *merged = body;
+        }
+        let here = |placed: &Placed| placed.link_index == index + 1;
+        let mut of_group = tree.placed.iter().zip(&own);
+        let by_shape = of_group.any(|(placed, (_, by_shape))| here(placed) && *by_shape);
+        if by_volume || by_shape {
+            estimated.push(EstimatedMass {
+                joint: index,
                 link: link.clone(),
-                mass: body.mass,
-                context,
+                mass: merged.mass,
+                by_volume,
             });
         }
-        let moments = principal_moments(&body.inertia);
-        if moments.x <= 0.0 {
-            return Err(refused_inertia(link, moments, context, "positive"));
-        }
-        // The largest principal moment of real matter is at most the sum of the others.
-        if moments.z > (moments.x + moments.y) * (1.0 + 1e-6) {
-            notes.push(format!(
-                "link {link}: no distribution of mass has the principal inertias {} kg m2 ({}); taken as written",
-                written(moments),
-                "the largest exceeds the sum of the others"
-            ));
-        }
+        check(link, merged, context, notes)?;
     }
-    Ok(bodies)
+    Ok((bodies, estimated))
+}
+
+fn check(
+    link: &str,
+    body: &BodyInertia,
+    context: &'static str,
+    notes: &mut Vec<String>,
+) -> Result<(), Refusal> {
+    if body.mass <= 0.0 {
+        return Err(Refusal::Mass {
+            link: link.to_owned(),
+            mass: body.mass,
+            context,
+        });
+    }
+    let moments = principal_moments(&body.inertia);
+    if moments.x <= 0.0 {
+        return Err(refused_inertia(link, moments, context, "positive"));
+    }
+    // The largest principal moment of real matter is at most the sum of the others.
+    if moments.z > (moments.x + moments.y) * (1.0 + 1e-6) {
+        notes.push(format!(
+            "link {link}: no distribution of mass has the principal inertias {} kg m2 ({}); taken as written",
+            written(moments),
+            "the largest exceeds the sum of the others"
+        ));
+    }
+    Ok(())
 }
 
 /// Mass properties of one link of the file, in its own frame.

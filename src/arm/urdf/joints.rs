@@ -30,6 +30,10 @@ pub(super) fn path_joint(
             Err(Refusal::DriveLimit {
                 joint: source.name.clone(),
                 limit,
+                key: match limit {
+                    "effort" => "effort_n_m",
+                    _ => "velocity_deg_per_s",
+                },
                 value,
             })
         }

@@ -62,13 +62,27 @@ impl<'a> Tree<'a> {
         tree.tip_from_last = tip_placed.map_or(DPose3::IDENTITY, |p| p.moving_from_link);
         if !(5..=7).contains(&tree.moving.len()) {
             let names: Vec<_> = tree.path_joints().map(|j| j.name.as_str()).collect();
+            let hint = match names.len() {
+                4 => {
+                    "; an arm of four axes, as palletisers and SCARAs are, cannot lean a tool as edges ask for"
+                }
+                8.. => {
+                    "; arm.base_link in the scenario lets the arm begin behind a track or a turntable, which then stands still"
+                }
+                _ => "",
+            };
             return Err(Refusal::JointCount {
                 base: base.name.clone(),
                 tip: tip.name.clone(),
                 count: names.len(),
-                names: names.join(", "),
+                names: match names.len() {
+                    0 => String::new(),
+                    _ => format!(" ({})", names.join(", ")),
+                },
+                hint,
             });
         }
+        tree.note_weightless(notes);
         let matters = |link: &&Link| link.inertial.mass.value != 0.0 || !link.visual.is_empty();
         let outside = robot.links.iter().filter(|link| !tree.holds(&link.name));
         let outside = outside.filter(matters);
@@ -94,6 +108,35 @@ impl<'a> Tree<'a> {
         std::iter::once(self.base.to_string())
             .chain(behind)
             .collect()
+    }
+
+    /// Notes links with a shape, but no mass, on others that have one.
+    fn note_weightless(&self, notes: &mut Vec<String>) {
+        let heavy = |index: usize| {
+            let mut own = self.placed.iter().filter(|other| other.link_index == index);
+            own.any(|other| other.link.inertial.mass.value > 0.0)
+        };
+        let weightless = self.placed.iter().filter(|placed| {
+            let link = placed.link;
+            let has_shape = !link.visual.is_empty() || !link.collision.is_empty();
+            let index = placed.link_index;
+            index > 0 && has_shape && link.inertial.mass.value == 0.0 && heavy(index)
+        });
+        let names: Vec<&str> = weightless.map(|placed| placed.link.name.as_str()).collect();
+        if !names.is_empty() {
+            notes.push(format!(
+                "links that have a shape but no mass, fixed to others that have one, weigh nothing: {}; [[arm.link_masses]] gives them one",
+                names.join(", ")
+            ));
+        }
+    }
+
+    /// Link behind a moving joint, by its index, with which a link of the file moves.
+    pub fn index_of(&self, link: &str) -> Option<usize> {
+        let mut placed = self.placed.iter();
+        placed
+            .find(|placed| placed.link.name == link)
+            .map(|placed| placed.link_index)
     }
 
     fn holds(&self, link: &str) -> bool {

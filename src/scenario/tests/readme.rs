@@ -90,6 +90,8 @@ fn beside(key: &str) -> String {
             "[[arm.limit_overrides]]\njoint = 'a'\nvelocity_deg_per_s = 90".into()
         }
         ("arm.limit_overrides", _) => "[[arm.limit_overrides]]\njoint = 'a'\neffort_n_m = 9".into(),
+        ("arm.link_masses", "link") => "[[arm.link_masses]]\nmass_kg = 2".into(),
+        ("arm.link_masses", _) => "[[arm.link_masses]]\nlink = 'a'".into(),
         ("arm.drives", "backlash_deg") => {
             "[[arm.drives]]\njoint = 'a'\nstiffness_n_m_per_rad = 1e6".into()
         }
