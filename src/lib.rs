@@ -12,6 +12,7 @@
 //! - [`sensing`]: the chain between controller and device: converters, amplifiers, filters, sensors
 //! - [`control`]: joint servo and force controllers
 //! - [`estimation`]: contact force without a load cell, with its uncertainty
+//! - [`shell`]: paths as a shell takes them
 //! - [`scenario`]: the file that says what to simulate, checked
 //! - [`cell`]: all of it assembled and checked
 //! - [`place`]: where the part of a cell can lie
@@ -81,6 +82,7 @@ pub mod report;
 pub mod rig;
 pub mod scenario;
 pub mod sensing;
+pub mod shell;
 pub mod simulation;
 #[cfg(feature = "cli")]
 pub mod tasks;

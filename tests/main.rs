@@ -46,6 +46,7 @@ mod removal;
 mod removal_table;
 mod report;
 mod rig_file;
+mod scenario_comments;
 mod schemas;
 mod settings;
 mod source;

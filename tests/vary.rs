@@ -418,6 +418,124 @@ fn dask_and_snakemake_make_the_same_table_with_and_without_a_shared_folder() {
     }
 }
 
+// Catches: a seed that does nothing told to drive the force, a length between whole ends that has three values, bounds kept that nobody set.
+#[test]
+fn what_does_nothing_is_not_named_and_between_whole_ends_a_length_is_any_number() {
+    let bench = plate();
+    let text = std::fs::read_to_string(bench.path("scenario.toml")).unwrap();
+    let unbounded = text.split("[expect]").next().unwrap();
+    bench.write("scenario.toml", unbounded.to_owned());
+    let words = [
+        "vary",
+        "scenario.toml",
+        "--out",
+        "out",
+        "--sample",
+        "latin:40",
+        "--set",
+        "process.force_n=120..180",
+        "--set",
+        "workpiece.misplacement.shift_mm=-1..1",
+        "--set",
+        "simulation.seed=1..200",
+    ];
+    let outcome = bench.idc(&words, &[]);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    for said in [
+        "40 runs, all to their end; the scenario sets no bounds.",
+        "varied: workpiece.misplacement.shift_mm, -",
+        " mm, any number between\n",
+        "varied: simulation.seed, ",
+        ", whole numbers\n",
+        "driven by force 100 % (",
+    ] {
+        assert!(outcome.out.contains(said), "{said}: {}", outcome.out);
+    }
+    assert!(!outcome.out.contains("driven by seed"), "{}", outcome.out);
+    let table = columns(&bench, "out/runs.parquet");
+    let shifts = numbers(&table, "workpiece.misplacement.shift_mm");
+    assert!(
+        shifts
+            .iter()
+            .all(|shift| shift.fract() != 0.0 && shift.abs() < 1.0)
+    );
+    assert!(
+        numbers(&table, "simulation.seed")
+            .iter()
+            .all(|seed| seed.fract() == 0.0)
+    );
+    let grid = [
+        "vary",
+        "scenario.toml",
+        "--out",
+        "grid",
+        "--set",
+        "process.force_n=120..180",
+    ];
+    let refused = bench.idc(&grid, &[]);
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused.err.contains("process.force_n=a..b:COUNT"),
+        "{}",
+        refused.err
+    );
+}
+
+/// A command that is suggested is one that a shell takes as it stands.
+#[test]
+fn suggested_commands_run_whatever_the_folder_is_called() {
+    let bench = plate();
+    let folder = bench.path("my cell's \"$HOME\"");
+    std::fs::create_dir(&folder).unwrap();
+    let paths = ["device.toml", "arm.urdf", "part.stl", "scenario.toml"];
+    for name in paths.into_iter().filter(|name| bench.path(name).exists()) {
+        std::fs::copy(bench.path(name), folder.join(name)).unwrap();
+    }
+    let file = folder.join("scenario.toml").display().to_string();
+    let checked = bench.idc(&["check", &file], &[]);
+    assert_eq!(checked.code, 0, "{}", checked.err);
+    let next = checked
+        .out
+        .lines()
+        .find_map(|line| line.strip_prefix("next: idc "))
+        .unwrap();
+    let told = Command::new("sh")
+        .args(["-c", &format!("printf '%s\\n' {next}")])
+        .output()
+        .unwrap();
+    let words = String::from_utf8(told.stdout).unwrap();
+    assert_eq!(words.lines().collect::<Vec<_>>(), ["run", &file]);
+}
+
+/// What stands in a cell is seen in the picture of places, by name.
+#[test]
+fn the_picture_of_places_has_robot_obstacles_and_part() {
+    let bench = plate();
+    let text = std::fs::read_to_string(bench.path("scenario.toml")).unwrap();
+    let rack = "\n[[obstacle]]\nname = \"tool rack\"\nbox_mm = [200, 200, 600]\nposition_mm = [300, 700, 300]\n";
+    bench.write("scenario.toml", text + rack);
+    let range = [
+        "--x-mm",
+        "700..800:2",
+        "--y-mm",
+        "0..0:1",
+        "--out",
+        "place.svg",
+    ];
+    let outcome = bench.idc(&[&["place", "scenario.toml"][..], &range].concat(), &[]);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let svg = std::fs::read_to_string(bench.path("place.svg")).unwrap();
+    for word in ["tool rack", "robot", "part now", "part, best"] {
+        assert!(svg.contains(word), "{word}");
+    }
+    // Obstacle, base, six links with device and tool, part twice.
+    assert!(
+        svg.matches("<polygon").count() >= 9,
+        "{}",
+        svg.matches("<polygon").count()
+    );
+}
+
 /// Paths of what is read stay what they are: the plan leads to them from its own folder.
 #[test]
 fn a_plan_that_stands_elsewhere_leads_to_the_same_files() {

@@ -4,8 +4,9 @@
 /// After the list of commands.
 pub(super) const PROGRAM: &str = "\
 The usual order:
-  look       idc run scenarios/plate_edge.toml, then report.html in a browser
-             and recording.rrd in Rerun; idc compare sets runs side by side
+  look       idc run scenarios/deburred_edge.toml, then report.html in a
+             browser and recording.rrd in Rerun; idc compare sets runs side by
+             side
   own cell   idc new cell, idc check, idc run, idc vary, idc design
   own rig    idc new import, idc import, idc new rig, idc check, idc diagnose,
              idc fleet
@@ -28,7 +29,9 @@ Exit codes:
 From a clone to the diagnosis of your own log: docs/FIRST-DIAGNOSIS.md
 
 Examples:
-  # The nominal job: 300 mm of edge at 150 N.
+  # The job itself: a burr ground off in two passes, a chamfer left.
+  idc run scenarios/deburred_edge.toml
+  # The force alone: 280 mm of edge ridden at 150 N.
   idc run scenarios/plate_edge.toml
   # What a command does, and how.
   idc help run";

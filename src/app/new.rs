@@ -13,6 +13,7 @@ use crate::cell::CellError;
 use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
 use crate::scenario::removal_table::REMOVAL_TABLE;
+use crate::shell::word;
 use crate::workpiece::load_mesh;
 
 /// For the help.
@@ -122,9 +123,9 @@ impl Kind {
         let folder = file
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.unwrap_or(Path::new(".")).display();
+        let folder = word(folder.unwrap_or(Path::new(".")));
         let is_case = file.ends_with(RIG);
-        let file = file.display();
+        let file = word(file);
         match self {
             Self::Cell => format!("idc run {file}"),
             Self::Rig => format!("idc check {file}"),
@@ -188,7 +189,7 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
     let paths = written.iter().map(|(path, _)| path.display().to_string());
     let paths: Vec<String> = paths.collect();
     let next = match (&drafted, logs.first()) {
-        (Some(_), Some(log)) => format!("idc import {} {}", file.display(), log.display()),
+        (Some(_), Some(log)) => format!("idc import {} {}", word(&file), word(log)),
         _ => kind.next(&file),
     };
     if arguments.json {

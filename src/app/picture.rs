@@ -288,6 +288,7 @@ pub fn finished_edge(cell: &Cell, profile: &EdgeProfile) -> FinishedEdge {
         chamfer_leg: profile.chamfer_leg.clone(),
         leg_limits: chamfer.leg,
         burr_limit: chamfer.residual_burr,
+        course: Vec::new(),
     }
 }
 

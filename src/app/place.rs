@@ -11,9 +11,10 @@ use super::files::{Standing, prepare_file};
 use super::output::say;
 use super::progress;
 use crate::cell::Setup;
-use crate::place::{PlaceGrid, TriedPlace, best_places, svg, tried_places};
+use crate::place::{PlaceGrid, TriedPlace, best_places, footprints, svg, tried_places};
 use crate::recording::atomic::write_text;
 use crate::scenario::load;
+use crate::shell::word;
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -147,7 +148,8 @@ pub(super) fn run(arguments: &PlaceArguments) -> Result<ExitCode, AppError> {
     bar.finish_and_clear();
     if let Some(out) = &arguments.out {
         let robot = setup.scenario.arm.world_from_base.translation;
-        let picture = svg(&setup.scenario.title, &grid, &tried, (robot, part));
+        let bodies = footprints(&setup, best_places(&tried).into_iter().next());
+        let picture = svg(&setup.scenario.title, &grid, &tried, (robot, part), &bodies);
         write_text(out, &picture.map_err(AppError::Picture)?)?;
     }
     if let Some(csv) = &arguments.csv {
@@ -261,7 +263,7 @@ fn text(arguments: &PlaceArguments, tried: &[TriedPlace]) -> String {
             text,
             "\nthe best, to paste into the scenario:\n\n[workpiece]\nposition_mm = [{x}, {y}, {z}]\n\n[process]\nroll_deg = {roll}\n\n\
              run it: idc run {} --set 'workpiece.position_mm=[{x}, {y}, {z}]' --set process.roll_deg={roll}\n",
-            arguments.scenario.display()
+            word(&arguments.scenario)
         );
     }
     if let Some(out) = &arguments.out {

@@ -15,4 +15,4 @@ pub(super) use command::{RunArguments, put_in, run};
 pub(super) use numbers::{Numbers, can_run, metric_names, numbers};
 pub(super) use settings::blamed;
 pub(super) use source::Source;
-pub(super) use table::most_telling;
+pub(super) use table::{FINISHED, most_telling};

@@ -7,6 +7,7 @@ use crate::arm::urdf::ArmError;
 use crate::collision::ModelError;
 use crate::path::PlanError;
 use crate::scenario::{Scenario, ScenarioError};
+use crate::shell::word;
 use crate::workpiece::WorkpieceError;
 
 /// A cell that is refused before anything moves.
@@ -41,7 +42,7 @@ pub enum CellError {
     },
     /// The chosen edge is not there.
     #[error("{}: `workpiece.edge` is {chosen}, which does not exist; the part has edges 0 to {} and loops 0 to {} (list them with `idc edges {}`)",
-        file.display(), *edges as isize - 1, *loops as isize - 1, mesh.display())]
+        file.display(), *edges as isize - 1, *loops as isize - 1, word(mesh))]
     EdgeUnknown {
         /// Scenario file.
         file: PathBuf,
@@ -56,7 +57,7 @@ pub enum CellError {
     },
     /// The chosen edge is not one that a tool can ride.
     #[error("{}: `workpiece.edge` is {chosen}, {convexity}; expected one that sticks out everywhere, as a tool can ride it from outside (side convex in `idc edges {}`)",
-        file.display(), mesh.display())]
+        file.display(), word(mesh))]
     EdgeNotConvex {
         /// Scenario file.
         file: PathBuf,

@@ -29,7 +29,7 @@ mod tests;
 
 pub use ball::RiddenEdge;
 pub use body::{Body, Mount, Solid, SolidError};
-pub use model::{CollisionModel, ModelError, ModelRequest, Pair, Role};
+pub use model::{CollisionModel, ModelError, ModelRequest, Pair, PlacedBody, Role};
 pub use motion::JointMotion;
 pub use sweep::{Meeting, Place};
 pub use watch::ClearanceWatch;

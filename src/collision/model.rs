@@ -103,6 +103,19 @@ impl Pair {
     }
 }
 
+/// A body where it is in the world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedBody<'a> {
+    /// What it is in the cell.
+    pub role: Role,
+    /// Its name.
+    pub name: &'a str,
+    /// Whether a joint moves it.
+    pub moves: bool,
+    /// Corners of its surface in the world [m]; of round shapes those of an inscribed one.
+    pub corners: Vec<DVec3>,
+}
+
 /// The bodies of a cell and the pairs of them that are checked.
 #[derive(Clone)]
 pub struct CollisionModel {
@@ -191,6 +204,29 @@ impl CollisionModel {
     /// Its bodies, and what each is in the cell.
     pub fn bodies_with_roles(&self) -> impl Iterator<Item = &(Role, Body)> {
         self.bodies.iter()
+    }
+
+    /// Its bodies in the world with the joints at positions; without, those that stand.
+    pub fn standing_at(&self, positions: Option<&[f64]>) -> Vec<PlacedBody<'_>> {
+        let mut all = [0.0; MAX_JOINTS];
+        for (joint, position) in all.iter_mut().zip(positions.unwrap_or_default()) {
+            *joint = *position;
+        }
+        let links = self.links(&all);
+        let shown = self.bodies.iter();
+        let shown = shown.filter(|(_, body)| positions.is_some() || body.mount.joints() == 0);
+        shown
+            .map(|(role, body)| {
+                let pose = body.mount.pose(&links);
+                let solids = body.solids.iter().flat_map(|solid| solid.triangles().0);
+                PlacedBody {
+                    role: *role,
+                    name: &body.name,
+                    moves: body.mount.joints() > 0,
+                    corners: solids.map(|corner| pose.transform_point(corner)).collect(),
+                }
+            })
+            .collect()
     }
 
     /// All joints at zero, or at the limit nearest to it.

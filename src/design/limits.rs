@@ -91,6 +91,27 @@ impl Limit {
         }
     }
 
+    /// What a tenth is taken of where the limit is loosened [its unit]: the bound, or where that is 0 ten units, of a share that is a hundredth of the whole.
+    pub(super) fn slack(&self) -> f64 {
+        if self.bound == 0.0 {
+            10.0 * self.scale()
+        } else {
+            self.scale()
+        }
+    }
+
+    /// The bound loosened by a step [its unit].
+    pub(super) fn loosened(&self, step: f64) -> f64 {
+        match (&self.quantity, self.side) {
+            (LimitQuantity::Force, Side::Min) | (LimitQuantity::Metric(_), Side::Max) => {
+                self.bound + step
+            }
+            (LimitQuantity::Force, Side::Max) | (LimitQuantity::Metric(_), Side::Min) => {
+                self.bound - step
+            }
+        }
+    }
+
     /// Unit as it is printed.
     pub fn unit(&self) -> &'static str {
         symbol(self.key())

@@ -126,8 +126,10 @@ pub struct ActiveBound {
 pub struct ActiveLimit {
     /// `impact_peak_n at most 400 N`.
     pub limit: String,
-    /// Share of the bound by which it was loosened for the next number [%].
-    pub loosened_by_percent: f64,
+    /// What its bound was loosened to for the next number [`unit`].
+    pub loosened_to: f64,
+    /// Unit of the bound.
+    pub unit: String,
     /// Change of the objective when all continuous variables are chosen anew under the looser limit [%].
     pub objective_change_percent: Option<f64>,
 }

@@ -1,7 +1,7 @@
 //! Bounds of the chosen design, and its gain from more room.
 //!
 //! One-sided finite differences: each variable alone a tenth up and down, or to the next entry of its catalogue, also where that is beyond the
-//! study's bounds. For an active limit the multiplier as a finite difference: the limit is loosened by a tenth, and the continuous variables are
+//! study's bounds. For an active limit the multiplier as a finite difference: the limit is loosened by a tenth (one of nothing by a fixed step), and the continuous variables are
 //! chosen anew.
 
 use rayon::prelude::*;
@@ -166,7 +166,9 @@ pub(super) fn active_limits(
         .into_par_iter()
         .map(|index| {
             let mut looser = goal.clone();
-            looser.slack[index] = STEP;
+            let limit = &study.limits[index];
+            let step = STEP * limit.slack();
+            looser.slack[index] = step / limit.scale();
             let (found, _) = polish(archive, &looser, &places, RADIUS, each)?;
             let change = match &archive.at(&found.places).result {
                 Ok(better) if Goal::keeps(found.rank) => {
@@ -175,8 +177,9 @@ pub(super) fn active_limits(
                 _ => None,
             };
             Ok(ActiveLimit {
-                limit: study.limits[index].sentence(),
-                loosened_by_percent: 100.0 * STEP,
+                limit: limit.sentence(),
+                loosened_to: limit.loosened(step),
+                unit: limit.unit().to_owned(),
                 objective_change_percent: change,
             })
         })

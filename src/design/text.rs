@@ -1,4 +1,4 @@
-//! The result as a plain table for the terminal, in at most 80 columns.
+//! The result as a plain table for the terminal, in at most 80 columns; what is longer goes on below, and nothing is cut.
 
 mod robustness;
 
@@ -33,19 +33,43 @@ pub fn text(study: &Study, result: &StudyResult) -> String {
     out
 }
 
+/// A line; one that is too long goes on below between words, further in.
 fn line(out: &mut String, text: &str) {
-    let mut text = text.trim_end();
-    // Keys and titles are the user's: a long one is cut, not wrapped.
-    if let Some((end, _)) = text.char_indices().nth(WIDTH) {
-        text = &text[..end];
+    let text = text.trim_end();
+    let indent = text.len() - text.trim_start().len();
+    let mut left = text;
+    let mut before = String::new();
+    while before.chars().count() + left.chars().count() > WIDTH {
+        let room = WIDTH - before.chars().count();
+        let first = left.len() - left.trim_start().len();
+        let letters = left.char_indices().enumerate();
+        let mut gaps = letters.filter(|(_, (at, letter))| *letter == ' ' && *at > first);
+        let mut last = None;
+        // A word that is longer than a line stands on one of its own.
+        let beyond = gaps.find_map(|(place, (at, _))| match place <= room {
+            true => {
+                last = Some(at);
+                None
+            }
+            false => Some(at),
+        });
+        let Some(at) = last.or(beyond) else {
+            break;
+        };
+        out.push_str(before.as_str());
+        out.push_str(left[..at].trim_end());
+        out.push('\n');
+        left = left[at..].trim_start();
+        before = " ".repeat(indent + 4);
     }
-    out.push_str(text);
+    out.push_str(&before);
+    out.push_str(left);
     out.push('\n');
 }
 
 fn heading(out: &mut String, name: &str, columns: &str) {
     out.push('\n');
-    line(out, &format!("{name:<35}{columns}"));
+    named_line(out, name, 35, columns);
 }
 
 fn columns(names: [&str; 2], last: &str) -> String {
@@ -54,7 +78,17 @@ fn columns(names: [&str; 2], last: &str) -> String {
 
 fn row(out: &mut String, name: &str, values: [String; 2], last: &str) {
     let columns = columns([&values[0], &values[1]], last);
-    line(out, &format!("  {name:<33}{columns}"));
+    named_line(out, &format!("  {name}"), 35, &columns);
+}
+
+/// A name in a column of a width with the others beside it; below it, where it is wider.
+fn named_line(out: &mut String, name: &str, width: usize, others: &str) {
+    if name.chars().count() < width || others.trim().is_empty() {
+        line(out, &format!("{name:<width$}{others}"));
+    } else {
+        line(out, name);
+        line(out, &format!("{:<width$}{others}", ""));
+    }
 }
 
 fn variables(out: &mut String, study: &Study, result: &StudyResult) {
@@ -206,7 +240,7 @@ fn binding(out: &mut String, result: &StudyResult) {
             bound.side,
             number(bound.bound)
         );
-        line(out, &format!("  {beyond:<46} {}", past(bound, result)));
+        named_line(out, &format!("  {beyond}"), 49, &past(bound, result));
         any = true;
     }
     for limit in &result.active_limits {
@@ -214,13 +248,8 @@ fn binding(out: &mut String, result: &StudyResult) {
             .objective_change_percent
             .map_or_else(|| "not found".to_owned(), direction);
         let name = format!("limit {}", limit.limit);
-        line(
-            out,
-            &format!(
-                "  {name:<46} {:.0} % looser: {effect}",
-                limit.loosened_by_percent
-            ),
-        );
+        let looser = format!("at {} {}: {effect}", number(limit.loosened_to), limit.unit);
+        named_line(out, &format!("  {name}"), 49, &looser.replace(" : ", ": "));
         any = true;
     }
     if !any {

@@ -40,6 +40,8 @@ pub(super) fn measure(summary: &mut Summary, profile: &EdgeProfile, limits: &Edg
         summary.chamfer_leg_min_mm = Some(1e3 * least);
         summary.chamfer_leg_max_mm = Some(1e3 * most);
     }
+    let before = of(&profile.burr_before);
+    summary.burr_before_max_mm = largest(before.into_iter()).map(|burr| 1e3 * burr);
     summary.residual_burr_max_mm = largest(burrs.iter().copied()).map(|burr| 1e3 * burr);
     let count = legs.len() as f64;
     let left = burrs.iter().filter(|burr| **burr > limits.residual_burr);
@@ -143,6 +145,7 @@ mod tests {
             summary.chamfer_leg_mean_mm,
             (80.0 * 0.3 + 10.0 * 0.6) / 90.0,
         );
+        near(summary.burr_before_max_mm, 0.3);
         near(summary.residual_burr_max_mm, 0.1);
         near(summary.removed_volume_mm3, 100.0 * 0.07);
         near(summary.section_variation_percent, 0.0);

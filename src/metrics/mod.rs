@@ -87,7 +87,8 @@ mod tests {
     }
 
     /// Metrics of a tool that turns.
-    const OF_TURNING: [&str; 15] = [
+    const OF_TURNING: [&str; 16] = [
+        "burr_before_max_mm",
         "chamfer_leg_mean_mm",
         "chamfer_leg_standard_deviation_mm",
         "chamfer_leg_min_mm",

@@ -69,6 +69,9 @@ pub struct Summary {
     pub most_loaded_joint: Option<String>,
     /// Largest gap in the balance of the air in the chambers, of their mass, over the run [1].
     pub air_mass_balance_relative: Option<f64>,
+    /// Height of the highest burr before the first pass [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub burr_before_max_mm: Option<f64>,
     /// Mean leg of the chamfer along the edge [mm]; of a turning tool.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chamfer_leg_mean_mm: Option<f64>,
@@ -145,6 +148,20 @@ pub struct ForceTenth {
     pub force_mean_n: Option<f64>,
     /// Population standard deviation of the contact force [N].
     pub force_standard_deviation_n: Option<f64>,
+}
+
+impl ForceTenth {
+    /// One of its ends with the decimals that tell tenths apart, however short the edge [mm].
+    #[must_use]
+    pub fn end_text(&self, end_mm: f64) -> String {
+        let decimals = match (self.to_mm - self.from_mm).abs() {
+            length if length >= 10.0 => 0,
+            length if length >= 1.0 => 1,
+            length if length >= 0.1 => 2,
+            _ => 3,
+        };
+        format!("{end_mm:.decimals$}")
+    }
 }
 
 /// Duration of a run's computation.

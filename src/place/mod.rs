@@ -1,11 +1,13 @@
 //! Where to put the part: over a grid of positions, with the flange turned about the tool's axis in steps, whether the whole job can be done.
 
+mod footprint;
 mod picture;
 
 use glam::DVec3;
 use glamx::DPose3;
 use rayon::prelude::*;
 
+pub use footprint::{Footprint, FootprintKind, footprints};
 pub use picture::svg;
 
 use crate::cell::{Setup, Stance};

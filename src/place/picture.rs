@@ -1,4 +1,5 @@
-//! The tried positions seen from above: how comfortable the job is where it can be done, and what is in its way where it cannot.
+//! The tried positions seen from above: how comfortable the job is where it can be done, and what is in its way where it cannot; over them the robot, the
+//! obstacles and the part.
 //!
 //! The drawing library counts in whole units; a unit is a tenth of a pixel here.
 
@@ -7,9 +8,9 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::{Hindrance, PlaceGrid, TriedPlace, best_places};
+use super::{Footprint, FootprintKind, Hindrance, PlaceGrid, TriedPlace, best_places};
 
 const PX: i32 = 10;
 const WIDTH: i32 = 900 * PX;
@@ -20,6 +21,8 @@ const TEXT: i32 = 17 * PX;
 const LARGE: i32 = 22 * PX;
 const DARK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const GREY: RGBColor = RGBColor(0x77, 0x77, 0x77);
+const ROBOT: RGBColor = RGBColor(0xE6, 0x9F, 0x00);
+const OBSTACLE: RGBColor = RGBColor(0xC8, 0xBE, 0xAA);
 /// Comfort from 0 to 1: from yellow over green to deep blue (viridis, reversed), which the colour-blind tell apart and a printer too.
 const COMFORT: [RGBColor; 5] = [
     RGBColor(0xFD, 0xE7, 0x25),
@@ -33,7 +36,7 @@ type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The picture as SVG; `robot` and `part` are where the arm's base and the part of the scenario stand [m].
+/// The picture as SVG; `robot` and `part` are where the arm's base and the part of the scenario stand [m], `bodies` what stands there.
 ///
 /// # Errors
 /// The drawing library refuses; in its words.
@@ -42,12 +45,25 @@ pub fn svg(
     grid: &PlaceGrid,
     tried: &[TriedPlace],
     (robot, part): (DVec3, DVec3),
+    bodies: &[Footprint],
 ) -> Result<String, String> {
     let mut text = String::new();
-    draw(&mut text, title, grid, tried, (robot, part)).map_err(|error| error.to_string())?;
+    let standing = Standing {
+        robot,
+        part,
+        bodies,
+    };
+    draw(&mut text, title, grid, tried, &standing).map_err(|error| error.to_string())?;
     let size = format!("width=\"{WIDTH}\" height=\"{HEIGHT}\"");
     let shown = format!("width=\"{}\" height=\"{}\"", WIDTH / PX, HEIGHT / PX);
     Ok(text.replacen(&size, &shown, 1))
+}
+
+/// What stands in the cell.
+struct Standing<'a> {
+    robot: DVec3,
+    part: DVec3,
+    bodies: &'a [Footprint],
 }
 
 /// Half of a grid's step [mm].
@@ -63,7 +79,7 @@ fn draw(
     title: &str,
     grid: &PlaceGrid,
     tried: &[TriedPlace],
-    (robot, part): (DVec3, DVec3),
+    standing: &Standing<'_>,
 ) -> Drawn {
     let root = SVGBackend::with_string(text, (WIDTH as u32, HEIGHT as u32)).into_drawing_area();
     root.fill(&WHITE)?;
@@ -81,6 +97,7 @@ fn draw(
         (ends[0] - half, ends[1] + half)
     };
     let (across, up) = (span(&grid.x, half[0]), span(&grid.y, half[1]));
+    let (across, up) = with_room(across, up, standing);
     let (across, up) = of_equal_scale(across, up);
     let mut chart = ChartBuilder::on(&root)
         .margin_top(52 * PX)
@@ -114,7 +131,8 @@ fn draw(
         };
         chart.draw_series([Rectangle::new(corners, colour.filled())])?;
     }
-    marks(&mut chart, tried, [across, up], (robot, part))?;
+    outlines(&mut chart, [across, up], standing.bodies)?;
+    marks(&mut chart, tried, [across, up], standing)?;
     legend(&root, tried)?;
     root.present()
 }
@@ -124,7 +142,7 @@ fn marks(
     chart: &mut Chart<'_, '_>,
     tried: &[TriedPlace],
     [across, up]: [(f64, f64); 2],
-    (robot, part): (DVec3, DVec3),
+    standing: &Standing<'_>,
 ) -> Drawn {
     let left = Pos::new(HPos::Left, VPos::Center);
     let style = |size: i32| (FONT, size).into_font().color(&DARK).pos(left);
@@ -146,13 +164,131 @@ fn marks(
         (across.0..across.1).contains(&(1e3 * at.x)) && (up.0..up.1).contains(&(1e3 * at.y))
     };
     let best = best_places(tried).first().map(|(position, _)| *position);
-    let marks = [(Some(robot), "robot"), (Some(part), "now"), (best, "best")];
+    let (robot, part) = (standing.robot, standing.part);
+    let marks = [
+        (Some(robot), "robot"),
+        (Some(part), "part now"),
+        (best, "part, best"),
+    ];
     for (at, word) in marks {
         if let Some(at) = at.filter(inside) {
             chart.draw_series([mark(at, word)])?;
         }
     }
+    for body in standing.bodies {
+        if body.kind == FootprintKind::Obstacle {
+            let seen = clipped(&body.outline, [across, up]);
+            if !seen.is_empty() {
+                let middle = seen.iter().sum::<DVec2>() / seen.len() as f64;
+                let name = body.name.replace(char::is_control, " ");
+                let style = style(TEXT).pos(Pos::new(HPos::Center, VPos::Center));
+                chart.draw_series([Text::new(name, (middle.x, middle.y), style)])?;
+            }
+        }
+    }
     Ok(())
+}
+
+/// The bodies' outlines: obstacles and the part filled, the arm shaded over the map.
+fn outlines(chart: &mut Chart<'_, '_>, within: [(f64, f64); 2], bodies: &[Footprint]) -> Drawn {
+    let order = [
+        FootprintKind::Obstacle,
+        FootprintKind::Base,
+        FootprintKind::Link,
+        FootprintKind::PartNow,
+        FootprintKind::PartBest,
+    ];
+    for kind in order {
+        for body in bodies.iter().filter(|body| body.kind == kind) {
+            let seen = clipped(&body.outline, within);
+            if seen.len() < 3 {
+                continue;
+            }
+            let corners: Vec<(f64, f64)> = seen.iter().map(|at| (at.x, at.y)).collect();
+            let (filled, line, width) = match kind {
+                FootprintKind::Obstacle => (OBSTACLE.mix(0.9), DARK.mix(0.8), 2),
+                FootprintKind::Base => (ROBOT.mix(0.75), DARK.mix(0.9), 2),
+                FootprintKind::Link => (ROBOT.mix(0.3), DARK.mix(0.5), 1),
+                FootprintKind::PartNow => (WHITE.mix(0.25), GREY.mix(1.0), 2),
+                FootprintKind::PartBest => (WHITE.mix(0.45), DARK.mix(1.0), 3),
+            };
+            let closed = corners.iter().chain(corners.first()).copied();
+            let closed: Vec<(f64, f64)> = closed.collect();
+            chart.draw_series([Polygon::new(corners, filled.filled())])?;
+            let style = line.stroke_width(width * PX as u32);
+            chart.draw_series([PathElement::new(closed, style)])?;
+        }
+    }
+    Ok(())
+}
+
+/// What of an outline [m] is seen within a frame, both in millimetres then (I. E. Sutherland and G. W. Hodgman, Communications of the ACM 17, 1974).
+fn clipped(outline: &[DVec2], [across, up]: [(f64, f64); 2]) -> Vec<DVec2> {
+    let sides = [
+        (DVec2::X, across.0),
+        (-DVec2::X, -across.1),
+        (DVec2::Y, up.0),
+        (-DVec2::Y, -up.1),
+    ];
+    let mut seen: Vec<DVec2> = outline.iter().map(|corner| 1e3 * *corner).collect();
+    for (inward, from) in sides {
+        let beyond = |at: DVec2| inward.dot(at) - from;
+        let mut kept = Vec::new();
+        for (index, &corner) in seen.iter().enumerate() {
+            let before = seen[(index + seen.len() - 1) % seen.len()];
+            let (last, own) = (beyond(before), beyond(corner));
+            if (last < 0.0) != (own < 0.0) {
+                kept.push(before.lerp(corner, last / (last - own)));
+            }
+            if own >= 0.0 {
+                kept.push(corner);
+            }
+        }
+        seen = kept;
+    }
+    seen
+}
+
+/// Ranges widened so that the robot is seen, and of the obstacles those that stand about it and the tried positions.
+fn with_room(
+    across: (f64, f64),
+    up: (f64, f64),
+    standing: &Standing<'_>,
+) -> ((f64, f64), (f64, f64)) {
+    let own = |kinds: &[FootprintKind]| -> Vec<DVec2> {
+        let bodies = standing
+            .bodies
+            .iter()
+            .filter(|body| kinds.contains(&body.kind));
+        bodies
+            .flat_map(|body| &body.outline)
+            .map(|at| 1e3 * *at)
+            .collect()
+    };
+    let mut seen = [across, up];
+    widen(&mut seen, &[1e3 * standing.robot.truncate()]);
+    widen(&mut seen, &own(&[FootprintKind::Base, FootprintKind::Link]));
+    let about = seen;
+    // Beyond as much again only their near part is seen.
+    let near = about.map(|(low, high)| (low - 0.5 * (high - low), high + 0.5 * (high - low)));
+    for body in standing
+        .bodies
+        .iter()
+        .filter(|b| b.kind == FootprintKind::Obstacle)
+    {
+        widen(&mut seen, &clipped(&body.outline, near));
+    }
+    (seen[0], seen[1])
+}
+
+/// Widens ranges [mm] to points, with some room about these.
+fn widen(ranges: &mut [(f64, f64); 2], points: &[DVec2]) {
+    const ROOM: f64 = 30.0;
+    for at in points {
+        for (range, value) in ranges.iter_mut().zip([at.x, at.y]) {
+            *range = (range.0.min(value - ROOM), range.1.max(value + ROOM));
+        }
+    }
 }
 
 /// The end of the colours: the largest comfort, at least 1.

@@ -17,6 +17,19 @@ const LARGEST_DRAWN: f64 = 0.06;
 /// Steps of a decade among which the factor is chosen.
 const STEPS: [f64; 3] = [1.0, 2.0, 5.0];
 
+/// An edge at a moment while it is worked.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct EdgeMoment {
+    /// Number of the sample.
+    pub sample: usize,
+    /// Stations of the edge that are drawn of it.
+    pub stations: Vec<usize>,
+    /// Height of the burr that stands there [m].
+    pub burr: Vec<f64>,
+    /// Leg of the chamfer so far [m].
+    pub leg: Vec<f64>,
+}
+
 /// One value a station in each list.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FinishedEdge {
@@ -36,6 +49,8 @@ pub struct FinishedEdge {
     pub leg_limits: [f64; 2],
     /// Largest burr that may be left [m].
     pub burr_limit: f64,
+    /// The edge while it is worked, from before any work to after all of it; empty where that is not known.
+    pub course: Vec<EdgeMoment>,
 }
 
 impl FinishedEdge {
@@ -133,12 +148,16 @@ impl FinishedEdge {
             (false, true) => format!("at most {most} mm"),
             (false, false) => "any leg".to_owned(),
         };
+        let standing = match self.course.is_empty() {
+            true => "",
+            false => "| `/cell/edge/burr` | bronze: height of the burr that stands at the time |\n",
+        };
         format!(
             "## The edge before and after\n\n\
              Drawn {factor} times as large as it is.\n\n\
              | entity | what it shows |\n| --- | --- |\n\
              | `/cell/edge/before` | grey: height of the burr before any work |\n\
-             | `/cell/edge/after` | leg of the chamfer, on either face. Green: within the tolerance, {tolerance}. Blue: too little, full where there is no \
+             {standing}| `/cell/edge/after` | leg of the chamfer, on either face. Green: within the tolerance, {tolerance}. Blue: too little, full where there is no \
              chamfer. Orange: too much, full at twice the largest |\n\
              | `/cell/edge/residual_burr` | purple: height of the burr that is left where it is more than {} mm |\n",
             1e3 * self.burr_limit
@@ -161,6 +180,7 @@ mod tests {
             chamfer_leg: vec![0.5e-3; 11],
             leg_limits: [0.2e-3, 0.6e-3],
             burr_limit: 0.02e-3,
+            course: Vec::new(),
         }
     }
 

@@ -76,8 +76,7 @@ fn tenths(out: &mut String, tenths: &[ForceTenth]) {
     row(out, &["from mm", "to mm", "mean N", "standard deviation N"]);
     row(out, &["---:", "---:", "---:", "---:"]);
     for ((tenth, mean), spread) in tenths.iter().zip(&means).zip(&spreads) {
-        let from = format!("{:.0}", tenth.from_mm);
-        let to = format!("{:.0}", tenth.to_mm);
+        let [from, to] = [tenth.from_mm, tenth.to_mm].map(|end| tenth.end_text(end));
         row(out, &[&from, &to, mean, spread]);
     }
 }

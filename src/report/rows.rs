@@ -4,10 +4,11 @@ use crate::metrics::{BoundCheck, Metric, NARROW_BAND, Summary, WIDE_BAND, metric
 use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
 /// Metrics that only a run with a tool that turns has.
-const OF_A_TURNING_TOOL: [&str; 8] = [
+const OF_A_TURNING_TOOL: [&str; 9] = [
+    "burr_before_max_mm",
+    "residual_burr_max_mm",
     "chamfer_leg_mean_mm",
     "chamfer_leg_standard_deviation_mm",
-    "residual_burr_max_mm",
     "out_of_tolerance_share_percent",
     "section_variation_percent",
     "removed_volume_mm3",
@@ -15,8 +16,10 @@ const OF_A_TURNING_TOOL: [&str; 8] = [
     "tool_wear_kj",
 ];
 
-/// Parts of a report and the metrics in each, by key.
-const PARTS: [(&str, &[&str]); 7] = [
+/// Parts of a report and the metrics in each, by key: what the job is for, then how it was done.
+const PARTS: [(&str, &[&str]); 8] = [
+    ("Edge", &OF_A_TURNING_TOOL),
+    ("Time", &["duration_s"]),
     (
         "Force",
         &[
@@ -45,14 +48,12 @@ const PARTS: [(&str, &[&str]); 7] = [
         "Path",
         &["path_length_mm", "path_error_rms_um", "path_error_max_um"],
     ),
-    ("Edge", &OF_A_TURNING_TOOL),
     (
         "Run",
         &[
             "friction_force_mean_n",
             "joint_torque_share_percent",
             "air_mass_balance_relative",
-            "duration_s",
             "real_time_factor",
         ],
     ),
@@ -249,7 +250,7 @@ mod tests {
             tool_wear_kj: Some(1.0),
             ..Summary::default()
         };
-        assert_eq!(rows(&Summary::default()).len(), count - 9);
+        assert_eq!(rows(&Summary::default()).len(), count - 10);
         let timed = Summary {
             timing: Some(Timing::new(1.0, 1.0)),
             ..untimed.clone()

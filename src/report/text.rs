@@ -104,7 +104,7 @@ fn tenths(out: &mut String, tenths: &[ForceTenth], style: Style) {
     let ends = cells(
         tenths
             .iter()
-            .map(|tenth| format!("{:.0}", tenth.to_mm))
+            .map(|tenth| tenth.end_text(tenth.to_mm))
             .collect(),
     );
     let means = column(|tenth| tenth.force_mean_n);

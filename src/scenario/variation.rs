@@ -123,6 +123,23 @@ impl ScenarioTemplate {
         Ok(document.to_string())
     }
 
+    /// Whether a key is a count: it takes a whole number, and none half way to the next. The other edits come first.
+    #[must_use]
+    pub fn is_count(&self, key: &str, whole: i64, others: &[KeyValue]) -> bool {
+        let tried = |value: f64| {
+            let own = KeyValue::number(key, value);
+            let all: Vec<KeyValue> = others.iter().cloned().chain([own]).collect();
+            self.with(&all)
+        };
+        let whole = whole as f64;
+        match (tried(whole), tried(whole + 0.5)) {
+            (Ok(_), Err(_)) => true,
+            // What goes with other values alone may be refused for them; a value of the wrong kind is refused first, by its own key.
+            (Err(whole), Err(half)) => whole.key() != half.key(),
+            (_, Ok(_)) => false,
+        }
+    }
+
     /// Advice on a key that a scenario of its kind does not have: the nearest one with its table.
     #[must_use]
     pub fn advice(&self, key: &str) -> String {
@@ -259,6 +276,23 @@ mod tests {
             message.contains("`bench.duration_s` is no table"),
             "{message}"
         );
+    }
+
+    #[test]
+    fn a_count_is_told_from_a_number() {
+        let cell = ScenarioTemplate::read(&shipped("deburred_edge")).unwrap();
+        for (key, whole, expected) in [
+            ("simulation.seed", 1, true),
+            ("workpiece.burr.seed", 1, true),
+            ("workpiece.edge.edge", 0, true),
+            ("device.override.cylinder_count", 1, true),
+            ("workpiece.misplacement.shift_mm", -1, false),
+            ("process.force_n", 30, false),
+            ("pass[1].force_n", 30, false),
+            ("process.feed_mm_per_s", 20, false),
+        ] {
+            assert_eq!(cell.is_count(key, whole, &[]), expected, "{key}");
+        }
     }
 
     /// Every shipped scenario, put elsewhere, is the same scenario.

@@ -83,6 +83,7 @@ class CellRun(Run):
         step = np.diff(self.time)
         power, rate = self.column("spindle_power_w")[1:], self.column("removal_rate_m3_per_s")[1:]
         return {
+            "burr_before_max_mm": judged.burr_before_mm.max(),
             "chamfer_leg_mean_mm": leg.mean(),
             "chamfer_leg_standard_deviation_mm": leg.std(ddof=0),
             "chamfer_leg_min_mm": leg.min(),

@@ -37,8 +37,8 @@ CELL_LABELS = {
     "stroke_used_mm": ("stroke used", "mm"), "stroke_min_mm": ("smallest stroke", "mm"), "stroke_max_mm": ("largest stroke", "mm"),
     "stroke_margin_mm": ("stroke margin", "mm"), "path_error_rms_um": ("lateral error, RMS", "µm"), "path_error_max_um": ("lateral error, largest", "µm"),
     "path_length_mm": ("length followed", "mm"), "feed_mean_mm_per_s": ("feed, mean", "mm/s"), "follow_duration_s": ("time of following", "s"),
-    "joint_torque_share_percent": ("joint torque / limit", "%"), "air_mass_balance_relative": ("air balance, largest gap", ""), "duration_s": ("simulated time", "s"),
-    "wall_time_s": ("wall time", "s"), "real_time_factor": ("real-time factor", ""),
+    "joint_torque_share_percent": ("joint torque / limit", "%"), "air_mass_balance_relative": ("air balance, largest gap", ""), "duration_s": ("cycle time", "s"),
+    "wall_time_s": ("wall time", "s"), "real_time_factor": ("real-time factor", ""), "burr_before_max_mm": ("burr before, highest", "mm"),
     "chamfer_leg_mean_mm": ("chamfer leg, mean", "mm"), "chamfer_leg_standard_deviation_mm": ("chamfer leg, spread", "mm"), "chamfer_leg_min_mm": ("chamfer leg, least", "mm"),
     "chamfer_leg_max_mm": ("chamfer leg, largest", "mm"), "residual_burr_max_mm": ("burr left, highest", "mm"), "residual_burr_share_percent": ("burr left", "%"),
     "out_of_tolerance_share_percent": ("out of tolerance", "%"), "section_removed_mean_mm2": ("section removed, mean", "mm2"), "section_variation_percent": ("section, variation", "%"),
@@ -380,12 +380,14 @@ class Job:
             self.checked.fact(where, text.endswith(kept), True)
             self.far(where, text.removesuffix(kept) if kept else text)
         else:
-            said = ["{force_mean_n} N on average where {desired_force_n} N is desired, standard deviation {force_standard_deviation_n} N",
+            edge = "of {chamfer_leg_mean_mm} mm on average, {out_of_tolerance_share_percent} % of the edge out of tolerance, in {duration_s} s"
+            said = ["Burr of up to {burr_before_max_mm} mm before, {residual_burr_max_mm} mm after; chamfer " + edge, "Chamfer " + edge,
+                    "{force_mean_n} N on average where {desired_force_n} N is desired, standard deviation {force_standard_deviation_n} N",
                     "{force_mean_n} N on average where {desired_force_n} N is desired", "{force_mean_n} N in contact", "Done"]
             self.checked.fact(where, text.endswith(kept), True)
             self.checked.sentence(where, text.removesuffix(kept) if kept else text, said, self.numbers)
             off = self.numbers.get("force_rms_error_percent") if self.numbers.get("desired_force_n") else None
-            self.checked.fact(f"{where}: a force that is off is said so", off is not None and off > 5.0, False)
+            self.checked.fact(f"{where}: a force that is off is said so", off is not None and off > 5.0 and "chamfer_leg_mean_mm" not in self.numbers, False)
 
     def facts(self, page):
         names = {full_label(key, label): (key, unit) for key, (label, unit) in self.labels.items()}
@@ -408,6 +410,16 @@ class Job:
                 most = max(phases, key=phases.get)
                 self.checked.sentence(where, value, ["{most} N"], {"most": phases[most]})
                 self.checked.fact(where, remark, f"of all phases, in {most}")
+            elif name == "chamfer leg, mean":
+                self.checked.sentence(where, value, ["{chamfer_leg_mean_mm} mm"], n)
+                chamfer = self.run.scenario["workpiece"].get("chamfer", {})
+                told = n | {"low": chamfer.get("leg_min_mm", 0.0), "high": chamfer.get("leg_max_mm")}
+                along = "{chamfer_leg_min_mm} to {chamfer_leg_max_mm} mm along the edge"
+                self.checked.sentence(where, remark, [along + "; tolerance {low} to {high} mm", along], told)
+                self.checked.fact(f"{where}: tolerance", "tolerance" in remark, bool(chamfer))
+            elif name == "burr left, highest":
+                self.checked.sentence(where, value, ["{residual_burr_max_mm} mm"], n)
+                self.checked.sentence(where, remark, ["of up to {burr_before_max_mm} mm before"], n)
             elif name in names:
                 # Two numbers may share a name; the unit tells them apart.
                 unit = value.partition(" ")[2]

@@ -7,6 +7,7 @@ use crate::metrics;
 use crate::rig::Rig;
 use crate::scenario::BenchScenario;
 use crate::scenario::bench::{CommandScenario, LoadScenario};
+use crate::shell::word;
 
 /// Bytes of a sample in recording.rrd and samples.parquet together, from runs of the shipped scenarios.
 const BYTES: f64 = 320.0;
@@ -42,7 +43,7 @@ pub(super) fn bench(scenario: BenchScenario) -> Result<Report, AppError> {
     let (duration, step) = (scenario.duration, scenario.step);
     report.extent(duration, step, (duration / step - 1e-9).ceil() + 1.0, BYTES);
     report.bounds(&scenario.expect);
-    report.next(format!("idc run {}", file.display()));
+    report.next(format!("idc run {}", word(&file)));
     Ok(report)
 }
 

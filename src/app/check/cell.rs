@@ -7,11 +7,14 @@ use super::super::picture::{across_the_edge, in_the_middle};
 use super::report::{Report, shown};
 use crate::cell::{Cell, EstimatedArm};
 use crate::metrics;
+use crate::path::Pass;
 use crate::quantity::significant;
+use crate::removal::ToolShape;
 use crate::replay::LoadedCell;
 use crate::scenario::{
     ArmScenario, BurrScenario, Scenario, WorkpieceScenario, keys_given, load_recorded_cell,
 };
+use crate::shell::word;
 use crate::workpiece::EdgeCurve;
 
 /// Bytes of a sample in recording.rrd and samples.parquet together, and what each axis of the arm adds, from runs of the shipped scenarios.
@@ -37,16 +40,9 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     }
     part(&mut report, &scenario.workpiece, &cell.part.edge);
     let process = &scenario.process;
-    report.fact(
-        "job",
-        format!(
-            "{} N at {} mm/s, working stroke {} mm",
-            shown(process.force),
-            shown(process.feed * 1e3),
-            shown(process.working_stroke * 1e3)
-        ),
-    );
+    job(&mut report, &cell);
     tool(&mut report, &cell);
+    grinding(&mut report, &cell);
     report.drawing = Some(across_the_edge(&cell));
     report.number("force_n", process.force);
     report.number("feed_mm_per_s", process.feed * 1e3);
@@ -65,8 +61,86 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     for note in &cell.notes {
         report.note(note.as_str());
     }
-    report.next(format!("idc run {}", file.display()));
+    report.next(format!("idc run {}", word(&file)));
     Ok(report)
+}
+
+/// Force and feed of each pass along the edge.
+fn job(report: &mut Report, cell: &Cell) {
+    let stroke = shown(cell.scenario.process.working_stroke * 1e3);
+    let told = |pass: &Pass| format!("{} N at {} mm/s", shown(pass.force), shown(pass.feed * 1e3));
+    let count = cell.passes.len();
+    for (index, pass) in cell.passes.iter().enumerate() {
+        let told = told(pass);
+        match (count, index) {
+            (1, _) => report.fact("job", format!("{told}, working stroke {stroke} mm")),
+            (_, 0) => {
+                report.fact("job", format!("{count} passes, working stroke {stroke} mm"));
+                report.fact("", format!("pass 1: {told}"));
+            }
+            _ => report.fact("", format!("pass {}: {told}", index + 1)),
+        }
+    }
+    report.number("passes", count);
+}
+
+/// The tool that turns, what each pass takes off by its law, and what the edge should be like.
+fn grinding(report: &mut Report, cell: &Cell) {
+    let scenario = &cell.scenario;
+    let Some(turning) = &scenario.tool else {
+        return;
+    };
+    let reference = in_the_middle(cell);
+    let tool = &turning.tool;
+    let millimetres = |metres: f64| format!("{} mm", shown(metres * 1e3));
+    let shape = match tool.shape {
+        ToolShape::Ball { radius } => format!("ball of {} radius", millimetres(radius)),
+        ToolShape::Cone { half_angle, .. } => {
+            format!("cone of {} deg", shown((2.0 * half_angle).to_degrees()))
+        }
+        ToolShape::Belt { wheel_radius } => {
+            format!("belt over a wheel of {} radius", millimetres(wheel_radius))
+        }
+    };
+    let spindle = tool.spindle_axis(reference.axis, reference.normal, reference.tangent);
+    let radius = tool.contact_radius(spindle, reference.normal);
+    let speed = turning.spindle.free_speed * radius;
+    let lead = match tool.lead {
+        0.0 => String::new(),
+        lead => format!(", leading by {} deg", shown(lead.to_degrees())),
+    };
+    report.fact(
+        "spindle",
+        format!(
+            "{shape} at {} rpm{lead}; cuts at {} from its axis, {}",
+            shown(turning.spindle.free_speed * 30.0 / std::f64::consts::PI),
+            format_args!("{} mm", significant(radius * 1e3, 3)),
+            format_args!("{} m/s", significant(speed, 3))
+        ),
+    );
+    if let Some(removal) = &scenario.removal {
+        for (index, pass) in cell.passes.iter().enumerate() {
+            let (area, wear) = (removal.contact_area, removal.wear_at_start);
+            let rate = removal.law.removal_rate(pass.force, speed, area, wear);
+            let text = format!(
+                "pass {}: {} mm3/s as the spindle runs free, a section of {} mm2",
+                index + 1,
+                significant(rate * 1e9, 3),
+                significant(rate / pass.feed * 1e6, 3)
+            );
+            report.fact(if index == 0 { "removal" } else { "" }, text);
+        }
+    }
+    let chamfer = &scenario.workpiece.chamfer;
+    let leg = match chamfer.leg {
+        [low, high] if high.is_finite() => {
+            format!("leg of {} to {}, ", shown(low * 1e3), millimetres(high))
+        }
+        [low, _] if low > 0.0 => format!("leg of at least {}, ", millimetres(low)),
+        _ => String::new(),
+    };
+    let burr = millimetres(chamfer.residual_burr);
+    report.fact("chamfer", format!("{leg}burr of at most {burr} left"));
 }
 
 /// How the tool stands to the edge, in words.
@@ -150,7 +224,7 @@ pub(super) fn recorded(file: &Path) -> Result<Report, AppError> {
     files(&mut report, &scenario.arm, &scenario.workpiece);
     report.next(format!(
         "idc diagnose RECORDINGS --all --scenario {} --out DIR",
-        file.display()
+        word(file)
     ));
     Ok(report)
 }

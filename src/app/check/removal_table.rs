@@ -6,6 +6,7 @@ use super::super::error::AppError;
 use super::report::{Report, shown};
 use crate::case::{RIG, RemovalCase};
 use crate::quantity::counted;
+use crate::shell::word;
 
 /// The file, or the folder with it.
 pub(super) fn removal_table(path: &Path) -> Result<Report, AppError> {
@@ -62,7 +63,7 @@ pub(super) fn removal_table(path: &Path) -> Result<Report, AppError> {
         false => folder,
     };
     report.next(match file.ends_with(RIG) {
-        true => format!("idc diagnose {}", folder.display()),
+        true => format!("idc diagnose {}", word(folder)),
         false => format!("idc diagnose FOLDER, in which it stands as {RIG}"),
     });
     Ok(report)

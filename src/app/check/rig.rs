@@ -11,6 +11,7 @@ use crate::plant::{Chain, InitialState};
 use crate::recording::csv::median_step;
 use crate::recording::thousandfold::thousandfold;
 use crate::scenario::rig_file::{RigFile, load_rig};
+use crate::shell::word;
 
 /// Share by which a recording's rate may differ from the sheet's.
 const OTHER_RATE: f64 = 0.05;
@@ -34,7 +35,7 @@ pub(super) fn rig(file: &Path) -> Result<Report, AppError> {
     if rig.fit.is_empty() {
         report.note("`recordings.fit` names no recording; idc diagnose asks for one at least");
     }
-    report.next(format!("idc predict {} RECORDING", file.display()));
+    report.next(format!("idc predict {} RECORDING", word(file)));
     Ok(report)
 }
 
@@ -58,7 +59,7 @@ pub(super) fn case(folder: &Path) -> Result<Report, AppError> {
     if let Some(input) = Case::from_folder(folder)?.input() {
         conditions(&mut report, input)?;
     }
-    report.next(format!("idc diagnose {} --out DIR", folder.display()));
+    report.next(format!("idc diagnose {} --out DIR", word(folder)));
     Ok(report)
 }
 

@@ -9,6 +9,7 @@ use crate::import::load_map;
 use crate::import::map::{Clock, Form};
 use crate::quantity::counted;
 use crate::scenario::{load_any, load_device};
+use crate::shell::word;
 
 /// A design study.
 pub(super) fn study(file: &Path) -> Result<Report, AppError> {
@@ -58,7 +59,7 @@ pub(super) fn study(file: &Path) -> Result<Report, AppError> {
         load_any(scenario)?;
         report.file("scenario", scenario);
     }
-    report.next(format!("idc design {}", file.display()));
+    report.next(format!("idc design {}", word(file)));
     Ok(report)
 }
 
@@ -103,7 +104,7 @@ pub(super) fn map(file: &Path) -> Result<Report, AppError> {
         report.fact("constant", format!("{}, {value}", constant.quantity));
     }
     report.number("logs", map.files.len());
-    report.next(format!("idc import {} LOGS", file.display()));
+    report.next(format!("idc import {} LOGS", word(file)));
     Ok(report)
 }
 

@@ -21,6 +21,7 @@ use crate::plant::LawText;
 use crate::recording::scene::Scene;
 use crate::replay::LoadedCell;
 use crate::scenario::removal_table::is_removal_table;
+use crate::shell::word;
 
 /// What can be diagnosed.
 enum Subject {
@@ -105,7 +106,7 @@ impl Prepared {
             prediction,
         } = case.diagnose()?;
         if !diagnosis.effects.is_empty() {
-            let file = self.folder.path().join(IMPROVED).display().to_string();
+            let file = word(&self.folder.path().join(IMPROVED));
             let how = format!(
                 "`idc predict {file} TABLE.csv` predicts the runs of another table with what was found."
             );
@@ -144,8 +145,7 @@ impl Prepared {
             shape = picture(diagnosis)?;
             fit = fit_picture::picture(diagnosis)?;
             if !diagnosis.best().finds_nothing() {
-                let file = self.folder.path().join(IMPROVED).display().to_string();
-                let how = how_to_run(case.cell(), &file);
+                let how = how_to_run(case.cell(), &self.folder.path().join(IMPROVED));
                 answer.details.account.add(SectionKind::HowToRun, vec![how]);
             }
         }
@@ -163,7 +163,8 @@ impl Prepared {
 }
 
 /// Next steps with the improved file.
-fn how_to_run(cell: Option<&LoadedCell>, improved: &str) -> String {
+fn how_to_run(cell: Option<&LoadedCell>, file: &Path) -> String {
+    let improved = word(file);
     match cell {
         Some(cell) if cell.scenario.has_job => format!(
             "`idc run {improved}` runs the cell with what was found, on the job of the scenario file; `idc compare` tells its run from others."
@@ -172,7 +173,8 @@ fn how_to_run(cell: Option<&LoadedCell>, improved: &str) -> String {
             "`idc diagnose RUNS --scenario {improved}` takes what was found as believed. The file has no job, so `idc run` does not take it."
         ),
         None => format!(
-            "`idc predict {improved} INPUTS.csv` predicts a recording with what was found; a bench runs it as its device, with `device.model = \"{improved}\"`."
+            "`idc predict {improved} INPUTS.csv` predicts a recording with what was found; a bench runs it as its device, with `device.model = {:?}`.",
+            file.display().to_string()
         ),
     }
 }

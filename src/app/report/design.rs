@@ -266,11 +266,12 @@ fn binding<'a>(document: &Value) -> PageSection<'a> {
         ]
     });
     let limits = list(&document["active_limits"]).map(|limit| {
-        let looser = limit["loosened_by_percent"].as_f64().unwrap_or_default();
+        let looser = limit["loosened_to"].as_f64().map_or(String::new(), number);
+        let unit = text(&limit["unit"]);
         [
             limit_words(text(&limit["limit"])),
             "limit".to_owned(),
-            format!("{looser:.0} % looser, chosen anew"),
+            format!("at {looser} {unit}, chosen anew").replace(" ,", ","),
             changed(&limit["objective_change_percent"]),
         ]
     });

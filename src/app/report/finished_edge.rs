@@ -20,8 +20,9 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
         stroke,
         stepwise: false,
     };
-    let chart = |title: &str, label: &str, series, bands| {
+    let chart = |title: &str, label: &str, series, bands, within| {
         Block::Chart(Chart {
+            within,
             panel: Panel {
                 title: title.to_owned(),
                 vertical_label: label.to_owned(),
@@ -41,12 +42,16 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
         from: bound("leg_min_mm").unwrap_or(0.0),
         to: high,
     });
+    // From nothing on, with the whole tolerance.
+    let most = profile.chamfer_leg.iter().map(|leg| 1e3 * leg);
+    let most = most.chain(bound("leg_max_mm")).fold(0.0, f64::max);
     let leg = series("leg", &profile.chamfer_leg, Role::Force, Stroke::Plain);
     let mut blocks = vec![chart(
         "Leg of the chamfer",
         "leg [mm]",
         vec![leg],
         band.into_iter().collect(),
+        (most > 0.0).then_some([0.0, 1.08 * most]),
     )];
     if profile.burr_before.iter().any(|height| *height > 0.0) {
         let burrs = vec![
@@ -63,6 +68,7 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
             "height [mm]",
             burrs,
             Vec::new(),
+            None,
         ));
     }
     let told = "The burr comes off first, from its tip, then the edge is chamfered. A secondary burr, pushed over by the tool, is not modelled.";

@@ -122,8 +122,8 @@ fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
     let said = |far: &String| !verdict.contains(far.as_str());
     let far = far(run).filter(said).map(|far| format!("{far}."));
     let sections = [
-        pictures(run),
         (run.profile.as_ref()).map(|profile| finished_edge(profile, &run.document)),
+        pictures(run),
         signals(run),
         along_the_path(run),
         joints(run),
@@ -182,17 +182,49 @@ fn verdict(run: &RunResult<'_>) -> (String, Tone) {
             Tone::Bad,
         );
     }
-    let force = far(run).unwrap_or_else(|| reached(run));
+    let near = if all.is_empty() {
+        Tone::Plain
+    } else {
+        Tone::Good
+    };
+    let (said, tone) = match finished(run) {
+        Some(said) => (said, tone_of_edge(run, near)),
+        None => (
+            far(run).unwrap_or_else(|| reached(run)),
+            tone_of_force(run, near),
+        ),
+    };
     match all.len() {
-        0 => (format!("{force}."), tone_of_force(run, Tone::Plain)),
-        1 => (
-            format!("{force}. Its bound is kept."),
-            tone_of_force(run, Tone::Good),
+        0 => (format!("{said}."), tone),
+        1 => (format!("{said}. Its bound is kept."), tone),
+        count => (format!("{said}. All {count} bounds are kept."), tone),
+    }
+}
+
+/// Burr and chamfer of a finished edge.
+fn finished(run: &RunResult<'_>) -> Option<String> {
+    let of = |key: &str, unit| run.metric(key).map(|value| with_unit(value, unit));
+    let leg = of("chamfer_leg_mean_mm", "mm")?;
+    let burr = match run.metric("burr_before_max_mm") {
+        Some(before) if before > 0.0 => format!(
+            "Burr of up to {} before, {} after; chamfer",
+            with_unit(before, "mm"),
+            of("residual_burr_max_mm", "mm")?
         ),
-        count => (
-            format!("{force}. All {count} bounds are kept."),
-            tone_of_force(run, Tone::Good),
-        ),
+        _ => "Chamfer".to_owned(),
+    };
+    Some(format!(
+        "{burr} of {leg} on average, {} of the edge out of tolerance, in {}",
+        of("out_of_tolerance_share_percent", "%")?,
+        of("duration_s", "s")?
+    ))
+}
+
+/// What is out of tolerance is open where no bound says how much may be.
+fn tone_of_edge(run: &RunResult<'_>, near: Tone) -> Tone {
+    match (near, run.metric("out_of_tolerance_share_percent")) {
+        (Tone::Plain, Some(share)) if share > 0.0 => Tone::Open,
+        _ => near,
     }
 }
 
@@ -245,6 +277,8 @@ const FACTS: [&str; 7] = [
     "force_peak_n",
     "stroke_margin_mm",
 ];
+/// Facts about the force beside those about a finished edge.
+const FORCE_BESIDE: usize = 2;
 /// Phases of a job and the key of the largest force of each.
 const PEAKS: [(&str, &str); 4] = [
     ("approach", "force_peak_approach_n"),
@@ -264,8 +298,63 @@ fn facts(run: &RunResult<'_>) -> Vec<Fact> {
         })
     };
     let others = FACTS.iter().filter_map(|key| fact(key)).take(4);
+    let edge = [
+        chamfer(run),
+        fact("out_of_tolerance_share_percent"),
+        burr(run),
+        cycle(run),
+    ];
     let first = desired(run).into_iter().chain(mean(run));
-    first.chain(others).chain(peak(run)).collect()
+    let force = first.chain(others).chain(peak(run));
+    let count = if edge[0].is_some() {
+        FORCE_BESIDE
+    } else {
+        usize::MAX
+    };
+    edge.into_iter()
+        .flatten()
+        .chain(force.take(count))
+        .collect()
+}
+
+/// The chamfer's leg with its tolerance.
+fn chamfer(run: &RunResult<'_>) -> Option<Fact> {
+    let mean = run.metric("chamfer_leg_mean_mm")?;
+    let ends = ["chamfer_leg_min_mm", "chamfer_leg_max_mm"].map(|key| run.metric(key));
+    let [low, high] = [ends[0]?, ends[1]?].map(|end| shown(Some(end), "mm"));
+    let asked = &run.document["chamfer"];
+    let tolerance = match (asked["leg_min_mm"].as_f64(), asked["leg_max_mm"].as_f64()) {
+        (low, Some(high)) => format!("; tolerance {} to {high} mm", low.unwrap_or(0.0)),
+        (Some(low), None) if low > 0.0 => format!("; tolerance from {low} mm"),
+        _ => String::new(),
+    };
+    Some(Fact {
+        name: "chamfer leg, mean".to_owned(),
+        value: with_unit(mean, "mm"),
+        remark: format!("{low} to {high} mm along the edge{tolerance}"),
+    })
+}
+
+/// The burr that is left, beside what there was.
+fn burr(run: &RunResult<'_>) -> Option<Fact> {
+    let before = run
+        .metric("burr_before_max_mm")
+        .filter(|before| *before > 0.0)?;
+    Some(Fact {
+        name: "burr left, highest".to_owned(),
+        value: with_unit(run.metric("residual_burr_max_mm")?, "mm"),
+        remark: format!("of up to {} before", with_unit(before, "mm")),
+    })
+}
+
+/// How long a job takes that finishes an edge.
+fn cycle(run: &RunResult<'_>) -> Option<Fact> {
+    run.metric("chamfer_leg_mean_mm")?;
+    Some(Fact {
+        name: "cycle time".to_owned(),
+        value: with_unit(run.metric("duration_s")?, "s"),
+        remark: "approach to retract".to_owned(),
+    })
 }
 
 /// The command: a force, or a pressure.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::super::edge_course::edge_course;
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{
     DRAWING, EDGE, EDGE_PROFILE, FIGURES, LEAN, OutputFolder, Picture, RECORDING, RunOutput,
@@ -17,6 +18,7 @@ use super::source::Source;
 use crate::cell::Cell;
 use crate::metrics::{self, BoundCheck, MetricsError};
 use crate::recording::csv::EdgeProfile;
+use crate::recording::finished_edge::FinishedEdge;
 use crate::recording::provenance::Provenance;
 use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::recording::scene::Scene;
@@ -170,8 +172,13 @@ fn perform_cell(
             .map_err(|source| unmeasured(&cell.scenario.path, source))?;
         let title = &cell.scenario.title;
         let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
+        let course = edge_course(cell, &finished.recording)?;
+        let worked = (finished.edge.as_ref()).map(|edge| FinishedEdge {
+            course,
+            ..finished_edge(cell, edge)
+        });
         let scene = Scene {
-            finished_edge: (finished.edge.as_ref()).map(|edge| finished_edge(cell, edge)),
+            finished_edge: worked,
             ..scene_of(cell, &finished.recording, &finished.frames)?
         };
         let summary = markdown(title, &finished.summary, &verdicts);

@@ -16,16 +16,26 @@ const WIDTH: usize = 80;
 const NARROW: usize = 9;
 const LONGEST: usize = 24;
 /// Numbers of a cell and of a bench, what matters most first; those that no run determines, and those for which there is no room, are left out.
-static OF_CELL: [&str; 7] = [
+const OF_CELL: [&str; 8] = [
     "force_mean_n",
     "coefficient_of_variation_percent",
     "largest_deviation_n",
     "engagement_peak_n",
     "stroke_margin_mm",
     "settling_time_s",
+    "duration_s",
     "path_error_rms_um",
 ];
-static OF_BENCH: [&str; 7] = [
+/// What a job that finishes an edge is for, before all that.
+const OF_EDGE: [&str; 4] = [
+    "chamfer_leg_mean_mm",
+    "residual_burr_max_mm",
+    "out_of_tolerance_share_percent",
+    "duration_s",
+];
+/// The metric that only a finished edge has.
+pub(in super::super) const FINISHED: &str = "chamfer_leg_mean_mm";
+const OF_BENCH: [&str; 7] = [
     "force_mean_n",
     "coefficient_of_variation_percent",
     "force_rms_error_percent",
@@ -35,9 +45,14 @@ static OF_BENCH: [&str; 7] = [
     "regulator_delay_s",
 ];
 
-/// Metrics of a cell or a bench that matter most, the first ones most.
-pub(in super::super) fn most_telling(is_bench: bool) -> &'static [&'static str] {
-    if is_bench { &OF_BENCH } else { &OF_CELL }
+/// Metrics of a bench, or of a cell that finishes an edge or follows one, that matter most, the first ones most.
+pub(in super::super) fn most_telling(is_bench: bool, is_finished: bool) -> Vec<&'static str> {
+    if is_bench {
+        return OF_BENCH.to_vec();
+    }
+    let edge = if is_finished { &OF_EDGE[..] } else { &[] };
+    let others = OF_CELL.into_iter().filter(|name| !edge.contains(name));
+    edge.iter().copied().chain(others).collect()
 }
 
 /// A variant that has been run.
@@ -175,7 +190,8 @@ fn varied(runs: &[Done]) -> Vec<Column> {
 /// A column for each number that a run determines.
 fn metrics(runs: &[Done]) -> Vec<Column> {
     let bench = runs.iter().any(|run| run.document["kind"] == "bench");
-    let names = if bench { OF_BENCH } else { OF_CELL };
+    let finished = |run: &Done| run.document["summary"][FINISHED].is_number();
+    let names = most_telling(bench, runs.iter().any(finished));
     let heading = |name: &str| {
         let of_bench = BENCH_METRICS.iter().find(|metric| metric.name == name);
         let of_bench = of_bench.map(|metric| (metric.full_label(), metric.unit));

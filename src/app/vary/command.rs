@@ -20,13 +20,14 @@ use crate::vary::{Points, Sampling, Variable, VaryError};
 
 /// For the help.
 pub(in super::super) const EXAMPLES: &str = "\
-VALUES are 30,60 or 1e5..3e5:5 (so many, evenly) or 1..200 (whole numbers) or
-1.5..2.5 (any number between; for samples). Each is checked by its key before
-anything is run. A combination that cannot be run is a result as well: the table
+VALUES are 30,60 or 1e5..3e5:5 (so many, evenly) or 1..200: any number between,
+for samples; of a key that is a count, as a seed, each whole number. Each is
+checked by its key before anything is run. A combination that cannot be run is a result as well: the table
 says why. What stands is known by its content (program, files, values): --resume
 does what is missing, also after the sweep has grown or the engine has died.
 How much of a number goes with one variable is its first-order (Sobol) index,
-estimated from the runs in groups, with a bootstrap interval at 95 %.
+with a bootstrap interval at 95 %, after what the other variables do is taken
+away; it is named where the interval lies above what a shuffled variable gets.
 
 Exit codes: 0 done, whatever the runs came to; 2 bad input, or runs that came to
 nothing (the others are kept).
@@ -99,15 +100,16 @@ fn sampling(text: &str) -> Result<Sampling, String> {
 /// Plans, runs, and writes what came of it.
 pub(in super::super) fn run(arguments: &VaryArguments) -> Result<ExitCode, AppError> {
     let template = ScenarioTemplate::read(&arguments.scenario)?;
+    let fixed = put_in(&arguments.effects, &template)?;
     let points = match &arguments.points {
         Some(file) => Points::table(file)?,
-        None => Points::new(
-            arguments.variables.clone(),
-            arguments.sample,
-            arguments.seed,
-        )?,
+        None => {
+            let is_count = |key: &str, whole| template.is_count(key, whole, &fixed);
+            let variables = arguments.variables.iter().cloned();
+            let variables = variables.map(|variable| variable.of_key(is_count));
+            Points::new(variables.collect(), arguments.sample, arguments.seed)?
+        }
     };
-    let fixed = put_in(&arguments.effects, &template)?;
     let sweep = Sweep {
         template,
         fixed,

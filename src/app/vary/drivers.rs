@@ -7,21 +7,25 @@ use serde::{Deserialize, Serialize};
 
 use super::super::error::AppError;
 use super::super::report::Label;
+use super::super::run::FINISHED;
 use super::page::page;
 use super::planned::Sweep;
 use super::table::RUNS;
+use crate::design::{number, spoken};
 use crate::page::html;
-use crate::quantity::{column, counted, number};
+use crate::quantity::{column, counted};
 use crate::recording::RecordingError;
 use crate::recording::long_table::{LongColumn, read_columns};
 use crate::recording::provenance::SourceFile;
 use crate::tasks::Head;
-use crate::vary::{QUANTILES, quantiles, rank_correlation, share_of_variance};
+use crate::vary::{QUANTILES, Varied, quantiles, rank_correlation, shares_of_variance};
 
 /// The document.
 pub(in super::super) const SWEEP: &str = "vary.json";
 /// Refusals that are told with their run.
 const TOLD: usize = 3;
+/// Share from which a driver stands in a terminal's line [1].
+const TELLING: f64 = 0.01;
 /// Drivers of a terminal's line.
 const NAMED: usize = 2;
 
@@ -36,6 +40,9 @@ pub(in super::super) struct Swept {
     /// How the points lie.
     pub points: String,
     pub runs: usize,
+    /// Whether the scenario sets bounds on results.
+    #[serde(default)]
+    pub bounded: bool,
     /// Number of runs by exit code.
     pub codes: BTreeMap<u8, usize>,
     /// The first runs that were refused or stopped: their numbers, and why.
@@ -55,6 +62,9 @@ pub(in super::super) struct VariedKey {
     pub values: usize,
     /// Least and greatest, of numbers.
     pub ends: Option<[f64; 2]>,
+    /// Which values it may have, in words.
+    #[serde(default)]
+    pub which: String,
 }
 
 /// A metric over all runs.
@@ -76,16 +86,39 @@ pub(in super::super) struct Driver {
     /// First-order share of the metric's variance [1], with its interval at 95 %.
     pub share: f64,
     pub interval: [f64; 2],
+    /// What the same values shuffled among the runs get at most, 95 times of 100 [1].
+    #[serde(default)]
+    pub shuffled: f64,
     /// Correlation of ranks, from -1 to 1; none of names.
     pub rank_correlation: Option<f64>,
+}
+
+impl Driver {
+    /// Whether its share is told from chance.
+    pub(super) fn is_sure(&self) -> bool {
+        self.interval[0] > self.shuffled
+    }
+}
+
+impl VariedKey {
+    /// Its values, for a terminal.
+    fn words(&self) -> String {
+        let unit = match spoken(short(&self.key)).1 {
+            unit if unit.is_empty() => unit,
+            unit => format!(" {unit}"),
+        };
+        let ends = match self.ends {
+            Some([low, high]) => format!("{} to {}{unit}", number(low), number(high)),
+            None => counted(self.values, "value"),
+        };
+        format!("{}, {ends}, {}", self.key, self.which)
+    }
 }
 
 impl MetricOfRuns {
     /// Drivers of which it is sure.
     pub(super) fn sure(&self) -> impl Iterator<Item = &Driver> {
-        self.drivers
-            .iter()
-            .filter(|driver| driver.interval[0] > 0.0)
+        self.drivers.iter().filter(|driver| driver.is_sure())
     }
 
     /// Whether it is another number in some run.
@@ -122,7 +155,7 @@ fn as_numbers(column: &LongColumn) -> Vec<f64> {
     }
 }
 
-fn varied(key: &str, column: &LongColumn) -> VariedKey {
+fn varied(key: &str, which: &str, column: &LongColumn) -> VariedKey {
     let mut values = as_numbers(column);
     values.sort_by(f64::total_cmp);
     values.dedup();
@@ -132,6 +165,7 @@ fn varied(key: &str, column: &LongColumn) -> VariedKey {
         key: key.to_owned(),
         values: values.len(),
         ends: ends.filter(|_| matches!(column, LongColumn::Numbers(_))),
+        which: which.to_owned(),
     }
 }
 
@@ -165,8 +199,16 @@ impl Swept {
             runs: head.tasks,
             codes,
             stopped,
-            variables: (keys.iter())
-                .filter_map(|key| Some(varied(key, variables.get(*key)?)))
+            bounded: sweep.is_bounded(),
+            variables: (sweep.points.variables().iter())
+                .filter_map(|v| {
+                    let which = if sweep.points.is_table() {
+                        "those of a table"
+                    } else {
+                        v.words()
+                    };
+                    Some(varied(&v.key, which, variables.get(&v.key)?))
+                })
                 .collect(),
             metrics: metrics.into_iter().filter(|m| m.runs > 0).collect(),
             program: head.program.clone(),
@@ -187,7 +229,8 @@ impl Swept {
             .filter_map(|(code, words)| Some(format!("{} {words}", self.codes.get(&code)?)))
             .collect();
         text += &match told.is_empty() {
-            true => ", all to their end and within the bounds".to_owned(),
+            true if self.bounded => ", all to their end and within the bounds".to_owned(),
+            true => ", all to their end; the scenario sets no bounds".to_owned(),
             false => format!(": {}", told.join(", ")),
         };
         text + "."
@@ -197,25 +240,24 @@ impl Swept {
     pub(super) fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.title, self.verdict());
         let labels = self.labels();
+        for variable in &self.variables {
+            text += &format!("varied: {}\n", variable.words());
+        }
         for (label, metric) in self.told() {
             let ends = [0.05, 0.5, 0.95].map(|share| metric.quantile(share));
             let cells = column(&ends, label.unit);
             let drivers: Vec<String> = metric
                 .sure()
+                .filter(|driver| driver.share >= TELLING)
                 .take(NAMED)
                 .map(|driver| {
-                    let name = crate::design::spoken(short(&driver.key)).0;
-                    format!(
-                        "{name} {} %",
-                        number(100.0 * driver.share.min(1.0), "")
-                            .split('.')
-                            .next()
-                            .unwrap_or("0")
-                    )
+                    let name = spoken(short(&driver.key)).0;
+                    let [low, high] = driver.interval.map(percent);
+                    format!("{name} {} % ({low} to {high})", percent(driver.share))
                 })
                 .collect();
             let drivers = match drivers.is_empty() {
-                true => "nothing for sure".to_owned(),
+                true => "nothing that is told from chance".to_owned(),
                 false => drivers.join(", "),
             };
             let unit = match label.unit {
@@ -236,10 +278,11 @@ impl Swept {
     /// Metrics that differ and matter most.
     pub(super) fn told(&self) -> impl Iterator<Item = (Label, &MetricOfRuns)> {
         let labels = self.labels();
-        let names = super::super::run::most_telling(self.is_bench);
-        names.iter().filter_map(move |name| {
-            let metric = self.metrics.iter().find(|metric| metric.name == *name)?;
-            let label = labels.iter().find(|label| label.key == *name)?;
+        let is_finished = self.metrics.iter().any(|metric| metric.name == FINISHED);
+        let names = super::super::run::most_telling(self.is_bench, is_finished);
+        names.into_iter().filter_map(move |name| {
+            let metric = self.metrics.iter().find(|metric| metric.name == name)?;
+            let label = labels.iter().find(|label| label.key == name)?;
             metric.varies().then(|| (label.clone(), metric))
         })
     }
@@ -255,15 +298,31 @@ pub(super) fn short(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
 }
 
+/// A share in percent, as it is told.
+pub(super) fn percent(share: f64) -> String {
+    match 100.0 * share {
+        percent if percent > 0.0 && percent < 0.5 => "<1".to_owned(),
+        percent => format!("{percent:.0}"),
+    }
+}
+
 fn metric(name: &str, values: &[f64], variables: &[(&str, bool, Vec<f64>)]) -> MetricOfRuns {
     let found = quantiles(values, &QUANTILES).unwrap_or_default();
-    let mut drivers: Vec<Driver> = (variables.iter().enumerate())
-        .filter_map(|(place, (key, names, x))| {
-            let share = share_of_variance(x, values, place as u64)?;
+    let varied: Vec<Varied<'_>> = (variables.iter())
+        .map(|(_, names, values)| Varied {
+            values,
+            names: *names,
+        })
+        .collect();
+    let shares = shares_of_variance(&varied, values, 0);
+    let mut drivers: Vec<Driver> = (variables.iter().zip(shares))
+        .filter_map(|((key, names, x), share)| {
+            let share = share?;
             Some(Driver {
                 key: (*key).to_owned(),
                 share: share.value,
                 interval: share.interval,
+                shuffled: share.shuffled,
                 rank_correlation: if *names {
                     None
                 } else {

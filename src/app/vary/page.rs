@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::report::{Label, sources};
-use super::drivers::{MetricOfRuns, Swept, columns, short};
+use super::drivers::{MetricOfRuns, Swept, columns, percent, short};
 use super::table::RUNS;
 use crate::design::{number as plain, spoken};
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
@@ -69,42 +69,43 @@ fn differing(swept: &Swept) -> Vec<(Label, &MetricOfRuns)> {
 }
 
 fn drivers(swept: &Swept) -> PageSection<'static> {
-    let percent = |share: f64| format!("{:.0}", 100.0 * share);
     let rows = differing(swept).into_iter().flat_map(|(label, metric)| {
-        let name = named(&label);
-        metric
-            .drivers
-            .iter()
-            .enumerate()
-            .map(move |(place, driver)| {
-                let [low, high] = driver.interval;
-                let sure = low > 0.0;
-                vec![
-                    TableCell::from(if place == 0 {
-                        name.clone()
-                    } else {
-                        String::new()
-                    }),
-                    TableCell::from(spoken(short(&driver.key)).0),
-                    TableCell::from(percent(driver.share)),
-                    TableCell::from(format!("{} to {}", percent(low), percent(high))),
-                    TableCell::Interval([0.0, low, driver.share, high, 1.0]),
-                    TableCell::from(match driver.rank_correlation {
-                        Some(correlation) if sure => format!("{correlation:.2}"),
-                        _ => UNKNOWN.to_owned(),
-                    }),
-                ]
-            })
+        let sure = metric.sure().map(|driver| {
+            let [low, high] = driver.interval;
+            vec![
+                TableCell::from(spoken(short(&driver.key)).0),
+                TableCell::from(percent(driver.share)),
+                TableCell::from(format!("{} to {}", percent(low), percent(high))),
+                TableCell::Interval([0.0, low, driver.share, high, 1.0]),
+                TableCell::from(percent(driver.shuffled)),
+                TableCell::from(match driver.rank_correlation {
+                    Some(correlation) => format!("{correlation:.2}"),
+                    None => UNKNOWN.to_owned(),
+                }),
+            ]
+        });
+        let mut rows: Vec<Vec<TableCell>> = sure.chain(unsure(metric)).collect();
+        for (place, row) in rows.iter_mut().enumerate() {
+            let name = if place == 0 {
+                named(&label)
+            } else {
+                String::new()
+            };
+            row.insert(0, TableCell::from(name));
+        }
+        rows
     });
     let rows: Vec<Vec<TableCell>> = rows.collect();
     let words = "Share of a number's variance over the runs that goes with one variable alone (first-order index), with its interval at 95 %; what is missing \
-                 to 100 % is due to variables together, and to what is drawn at random. Rank correlation: 1 where the number only grows with the variable, -1 where it only falls.";
+                 to 100 % is due to variables together, and to what is drawn at random. By chance: what the same values get at most, 95 times of 100, where they are shuffled \
+                 among the runs; a share is named where its whole interval lies above that. Rank correlation: 1 where the number only grows with the variable, -1 where it only falls.";
     let columns = [
         "number",
         "driven by",
         "#share [%]",
         "#interval [%]",
         "",
+        "#by chance [%]",
         "#rank correlation",
     ];
     let block = match rows.is_empty() {
@@ -117,6 +118,37 @@ fn drivers(swept: &Swept) -> PageSection<'static> {
         "Which variable drives which number",
         vec![Block::Hint(words.to_owned()), block],
     )
+}
+
+/// The variables of which a number's shares are not told from chance, in a row, with how large one of them may be all the same.
+fn unsure(metric: &MetricOfRuns) -> Option<Vec<TableCell>> {
+    let others: Vec<_> = metric
+        .drivers
+        .iter()
+        .filter(|driver| !driver.is_sure())
+        .collect();
+    let names: Vec<String> = others
+        .iter()
+        .map(|driver| spoken(short(&driver.key)).0)
+        .collect();
+    let most = others
+        .iter()
+        .map(|driver| driver.interval[1])
+        .fold(0.0, f64::max);
+    let chance = others
+        .iter()
+        .map(|driver| driver.shuffled)
+        .fold(0.0, f64::max);
+    (!others.is_empty()).then(|| {
+        vec![
+            TableCell::from(format!("no more than chance: {}", names.join(", "))),
+            TableCell::from(UNKNOWN),
+            TableCell::from(format!("each at most {}", percent(most))),
+            TableCell::from(""),
+            TableCell::from(percent(chance)),
+            TableCell::from(UNKNOWN),
+        ]
+    })
 }
 
 fn distribution(swept: &Swept) -> PageSection<'static> {
@@ -156,13 +188,14 @@ fn varied(swept: &Swept) -> PageSection<'static> {
             variable.key.clone(),
             ends,
             unit,
+            variable.which.clone(),
             variable.values.to_string(),
         ]
         .map(TableCell::from)
         .to_vec()
     });
     let caption = format!("The points are {}.", swept.points);
-    let columns = ["key", "#values", "unit", "#different"];
+    let columns = ["key", "#values", "unit", "which", "#different"];
     let table = PageTable::new(&caption, &columns, rows.collect());
     PageSection::new("What was varied", vec![Block::PageTable(table)])
 }
@@ -171,7 +204,9 @@ fn varied(swept: &Swept) -> PageSection<'static> {
 fn pictures(swept: &Swept, table: &Path) -> Result<Option<PageSection<'static>>, AppError> {
     let mut blocks = Vec::new();
     for (label, metric) in swept.told().take(DRAWN) {
-        let key = metric.drivers.first().map(|driver| driver.key.clone());
+        // The first is the largest share; of a number that nothing drives for sure, the run's own scatter is drawn over it all the same.
+        let first = metric.sure().next().or(metric.drivers.first());
+        let key = first.map(|driver| driver.key.clone());
         let wanted: Vec<&str> = key.iter().map(String::as_str).chain([label.key]).collect();
         let mut read = columns(table, &wanted)?;
         let Some(LongColumn::Numbers(values)) = read.remove(label.key) else {

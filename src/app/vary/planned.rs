@@ -59,6 +59,16 @@ impl Sweep {
         }
     }
 
+    /// Whether the runs are held to bounds, with the values of the first.
+    pub(super) fn is_bounded(&self) -> bool {
+        let first = self.template.with(&self.edits(&self.points.at(0)));
+        match first.or_else(|_| self.with(&[])) {
+            Ok(AnyScenario::Cell(cell)) => !cell.expect.is_empty(),
+            Ok(AnyScenario::Bench(bench)) => !bench.expect.is_empty(),
+            Err(_) => false,
+        }
+    }
+
     fn with(&self, edits: &[KeyValue]) -> Result<AnyScenario, ScenarioError> {
         let all: Vec<KeyValue> = self.fixed.iter().chain(edits).cloned().collect();
         self.template.with(&all)

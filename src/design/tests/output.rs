@@ -18,13 +18,38 @@ fn the_table_fits_a_terminal_and_says_what_binds() {
     for part in [
         "AT ITS MAX 6",
         "limit impact_peak_n at most 200 N",
-        "10 % looser: lower by 12 %",
+        "at 220 N: lower by 12 %",
         "JUST KEPT, was broken",
         "rod_mm",
         "tool left the workpiece",
     ] {
         assert!(table.contains(part), "{part} in:\n{table}");
     }
+}
+
+// Catches: words cut at the terminal's width, into a file as well.
+#[test]
+fn what_is_longer_than_a_line_goes_on_below_whole() {
+    let study = read(STUDY).unwrap();
+    let mut result = run(&study, &Surrogate, &|_, _| ()).unwrap();
+    let title = "How stiff \u{fc}ber alles may the spring of the second regulator be before the impact at touch exceeds what a thin edge bears?";
+    title.clone_into(&mut result.title);
+    let reason = "the tool leaves the workpiece at the third corner of the outline, where the feed is lowered too late for so heavy a slide";
+    result.infeasible.insert(reason.to_owned(), 3);
+    let limit = "a_metric_of_a_name_that_is_longer_than_its_column_percent at most 0 %";
+    if let Some(active) = result.active_limits.first_mut() {
+        limit.clone_into(&mut active.limit);
+    }
+    let table = text(&study, &result);
+    let words: Vec<&str> = table.split_whitespace().collect();
+    let whole = words.join(" ");
+    for text in [title, reason, limit] {
+        assert!(whole.contains(text), "{text} in:\n{table}");
+    }
+    assert!(
+        table.lines().all(|line| line.chars().count() <= 80),
+        "{table}"
+    );
 }
 
 #[test]

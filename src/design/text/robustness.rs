@@ -3,7 +3,7 @@
 use super::super::label::number;
 use super::super::result::StudyResult;
 use super::super::robustness::KeptShare;
-use super::{columns, heading, line, row};
+use super::{columns, heading, line, named_line, row};
 
 pub(super) fn robustness(out: &mut String, result: &StudyResult) {
     let Some(robustness) = &result.robustness else {
@@ -32,11 +32,6 @@ pub(super) fn robustness(out: &mut String, result: &StudyResult) {
 
 fn shared(out: &mut String, name: &str, share: &KeptShare) {
     let [low, high] = share.interval_percent;
-    line(
-        out,
-        &format!(
-            "  {name:<46} {:>5.0} %  {low:.0} to {high:.0} %",
-            share.share_percent
-        ),
-    );
+    let told = format!("{:>5.0} %  {low:.0} to {high:.0} %", share.share_percent);
+    named_line(out, &format!("  {name}"), 49, &told);
 }

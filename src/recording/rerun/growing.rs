@@ -127,8 +127,8 @@ impl GrowingRrd {
         plots: &[Plot],
     ) -> Result<[Vec<u8>; 2], RrdError> {
         cell::write_edge_path(&mut self.rrd, &scene.edge_path)?;
-        write_finished_edge(&mut self.rrd, scene.finished_edge.as_ref())?;
         let axes = Axes::of(recording, 0.0);
+        write_finished_edge(&mut self.rrd, scene.finished_edge.as_ref(), Some(&axes))?;
         for plot in plots {
             signals::write_looks(&mut self.rrd, plot)?;
             signals::write_guides(&mut self.rrd, plot, &axes)?;

@@ -31,6 +31,8 @@ const BEFORE: f64 = -1.0;
 const CELL_EYE_RADII: f64 = 1.8;
 /// Distance of the eye from the edge: with room for the tool above it.
 const EDGE_EYE_RADII: f64 = 3.2;
+/// The same of an edge whose burr and chamfer are to be seen.
+const WORKED_EYE_RADII: f64 = 2.2;
 
 pub(super) fn write_layout(
     rrd: &mut RrdWriter,
@@ -46,6 +48,7 @@ pub(super) fn write_layout(
         scale: known.then(|| ErrorScale::of(&scene.edge_path)),
         cell: cell_box(scene),
         edge: ViewBox::around(scene.edge_path.points_in_world.iter().copied()),
+        is_worked: scene.finished_edge.is_some(),
         eye_direction: options.eye_direction,
         has_phases: !recording.phases().is_empty(),
         has_summary: !options.summary_markdown.is_empty() || scene.finished_edge.is_some(),
@@ -58,6 +61,8 @@ pub(super) struct LayoutInput<'a> {
     pub(super) plots: &'a [Plot],
     /// Box of the cell's bodies.
     pub(super) cell: Option<ViewBox>,
+    /// Whether a burr and a chamfer are drawn on it.
+    pub(super) is_worked: bool,
     /// Box of the edge path.
     pub(super) edge: Option<ViewBox>,
     /// Colours of the edge path; none while its force errors are not known.
@@ -169,6 +174,9 @@ fn plot_view(plot: &Plot) -> Panel {
     })
 }
 
+/// Heading of the view of an edge that is worked.
+const WORKED_HEADING: &str = "Burr bronze; chamfer green, too small blue, too large orange";
+
 /// Heading of the edge's view: how to read the colours of the path.
 pub(super) fn edge_heading(scale: Option<ErrorScale>) -> String {
     match scale.map(ErrorScale::percent) {
@@ -185,8 +193,11 @@ fn spatial_views(input: &LayoutInput) -> (Panel, Option<Panel>) {
     };
     let eye_on_cell = input.cell.map(|cell| eye_on(&cell, CELL_EYE_RADII));
     let edge = input.edge.map(|edge| {
-        let eye_on_edge = eye_on(&edge, EDGE_EYE_RADII);
-        spatial_view(&edge_heading(input.scale), Some(eye_on_edge), 0.05)
+        let (radii, heading) = match input.is_worked {
+            true => (WORKED_EYE_RADII, WORKED_HEADING.to_owned()),
+            false => (EDGE_EYE_RADII, edge_heading(input.scale)),
+        };
+        spatial_view(&heading, Some(eye_on(&edge, radii)), 0.05)
     });
     (spatial_view("Cell", eye_on_cell, 0.25), edge)
 }

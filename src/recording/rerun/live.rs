@@ -152,7 +152,7 @@ impl LiveRecording {
     pub fn end(mut self, scene: &Scene, summary_markdown: &str) -> Result<(), RecordingError> {
         let mut finish = || -> Result<(), RrdError> {
             cell::write_edge_path(&mut self.rrd, &scene.edge_path)?;
-            write_finished_edge(&mut self.rrd, scene.finished_edge.as_ref())?;
+            write_finished_edge(&mut self.rrd, scene.finished_edge.as_ref(), None)?;
             write_summary(&mut self.rrd, summary_markdown, scene)?;
             if !self.phase.is_empty() {
                 self.phase.clear();
