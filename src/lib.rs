@@ -5,6 +5,7 @@
 //! - [`quantity`]: numbers with their units as people read them
 //! - [`physics`]: the pneumatic equations, one effect a file
 //! - [`device`]: the device made of them
+//! - [`mesh_file`]: STL, OBJ, COLLADA, PLY and glTF files as triangles
 //! - [`arm`]: the robot arm from URDF: kinematics, dynamics
 //! - [`workpiece`]: mesh, edges, burrs, where a ball touches
 //! - [`collision`]: bodies that must not meet, checked along a motion
@@ -63,6 +64,7 @@ pub mod fleet;
 pub mod import;
 #[cfg(feature = "cli")]
 pub mod laboratory;
+pub mod mesh_file;
 pub mod metrics;
 #[cfg(feature = "cli")]
 pub mod page;

@@ -19,7 +19,7 @@
   // Bodies lie back by half a line's width, so that of lines on their edges the whole width is seen.
   const back = (ratio) => ({ polygonOffset: true, polygonOffsetFactor: 5 * ratio, polygonOffsetUnits: 4 });
   // Triangles up to which normals are smoothed; of more, a facet is smaller than can be seen.
-  const SMOOTHED = 60000;
+  const SMOOTHED = 120000;
 
   const drawings = [];
 
@@ -514,7 +514,10 @@
     overlay() {
       for (const label of this.labels) {
         const place = this.project(typeof label.sample === "function" ? label.sample() : label.sample);
-        const [x, y] = place.map((value, axis) => value + label.aside[axis]);
+        // Words stay within the drawing, whole.
+        const half = label.line ? [0, 0] : [label.chip.offsetWidth / 2 + 2, label.chip.offsetHeight / 2 + 2];
+        const within = (value, axis) => label.line ? value : Math.min(Math.max(value, half[axis]), this.size[axis] - half[axis]);
+        const [x, y] = place.map((value, axis) => within(value + label.aside[axis], axis));
         label.chip.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
         if (label.line) label.box = [x - 6 - 4 * label.line.label.length, y - 10, x + 6 + 4 * label.line.label.length, y + 10];
       }

@@ -1,5 +1,6 @@
 //! `idc edges`: what edges a part has, as a list or as a page to pick one from.
 
+mod faults;
 mod page;
 
 use std::path::PathBuf;
@@ -12,21 +13,22 @@ use super::output::say;
 use super::progress;
 use crate::recording::atomic::write_text;
 use crate::workpiece::{
-    Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, list_edges, load_mesh,
+    Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, MeshFault, PartFile, TriangleMesh,
+    WorkpieceError, list_edges,
 };
 use glam::DVec3;
 
 #[derive(Debug, Args)]
 pub(super) struct EdgesArguments {
-    /// Mesh file: STL, OBJ or COLLADA.
+    /// Mesh file: STL, OBJ, COLLADA, PLY or glTF.
     mesh: PathBuf,
-    /// Unit of the mesh file: mm, m or inch.
-    #[arg(long, default_value = "mm")]
-    unit: MeshUnit,
-    /// Dihedral angle above which an edge counts as sharp [deg].
+    /// Unit of the mesh file: mm, m or inch [default: the one that COLLADA and glTF state, which is m here; else mm].
+    #[arg(long)]
+    unit: Option<MeshUnit>,
+    /// By how much two faces turn from one to the other for their edge to count as sharp: 180 less the angle between them [deg].
     #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
     sharp_angle_deg: f64,
-    /// File for a page with the part in 3D, on which edges are picked; its lines go into a scenario.
+    /// File for a page with the part in 3D, on which edges are picked; its lines go into a scenario. Of a part that is refused it shows the faulty edges.
     #[arg(long, value_name = "PAGE.html", help_heading = "Output")]
     out: Option<PathBuf>,
     /// Put the page in place of a file that --out names.
@@ -45,6 +47,15 @@ enum MeshUnit {
 }
 
 impl MeshUnit {
+    /// Its length [m].
+    fn length(self) -> f64 {
+        match self {
+            Self::Mm => 1e-3,
+            Self::M => 1.0,
+            Self::Inch => 0.0254,
+        }
+    }
+
     /// As `mesh_unit` of a scenario has it.
     fn name(self) -> &'static str {
         match self {
@@ -56,11 +67,6 @@ impl MeshUnit {
 }
 
 pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
-    let scale = match arguments.unit {
-        MeshUnit::Mm => 1e-3,
-        MeshUnit::M => 1.0,
-        MeshUnit::Inch => 0.0254,
-    };
     let angle = arguments.sharp_angle_deg;
     if !(1.0..=170.0).contains(&angle) {
         return Err(AppError::Option {
@@ -77,7 +83,18 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
         });
     }
     let spinner = progress::spinner("looking for edges", arguments.json);
-    let mesh = load_mesh(&arguments.mesh, scale)?;
+    let file = PartFile::read(&arguments.mesh)?;
+    let unit = arguments.unit.unwrap_or(match file.states_unit {
+        true => MeshUnit::M,
+        false => MeshUnit::Mm,
+    });
+    let mesh = match file.mesh(unit.length()) {
+        Ok(mesh) => mesh,
+        Err(fault) => {
+            spinner.finish_and_clear();
+            return refused(arguments, &file, unit, fault);
+        }
+    };
     let search = EdgeSearch {
         sharp_angle: angle.to_radians(),
         ..EdgeSearch::default()
@@ -86,12 +103,13 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     spinner.finish_and_clear();
     if let Some(out) = &arguments.out {
         prepare_file(out, "--out", Standing::of(arguments.force))?;
-        write_text(out, &page::page(arguments, &mesh, &list))?;
+        write_text(out, &page::page(arguments, unit, &mesh, &list))?;
     }
     say(&if arguments.json {
-        json(arguments, &list)
+        json(arguments, &mesh, &list)
     } else {
-        list.table()
+        let notes = mesh.notes().iter().map(|note| format!("note: {note}\n"));
+        list.table() + &notes.collect::<String>()
     })?;
     if let (Some(out), false) = (&arguments.out, arguments.json) {
         say(&format!("page written to {}\n", out.display()))?;
@@ -99,11 +117,41 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
+/// A part that has no edges to list; where its surface has faults, the page shows them.
+fn refused(
+    arguments: &EdgesArguments,
+    file: &PartFile,
+    unit: MeshUnit,
+    fault: MeshFault,
+) -> Result<ExitCode, AppError> {
+    if let (Some(out), MeshFault::NotClosed { edges }) = (&arguments.out, &fault) {
+        prepare_file(out, "--out", Standing::of(arguments.force))?;
+        let page = faults::page(&arguments.mesh, file, unit.length(), (&fault, edges));
+        write_text(out, &page)?;
+        if !arguments.json {
+            say(&format!(
+                "page of the faulty edges written to {}\n",
+                out.display()
+            ))?;
+        }
+    }
+    let file = arguments.mesh.clone();
+    Err(WorkpieceError::Mesh { file, fault }.into())
+}
+
 /// The list for a program, in the part's frame.
-fn json(arguments: &EdgesArguments, list: &EdgeList) -> String {
+fn json(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeList) -> String {
+    let mended = mesh.mended().iter().map(|mended| {
+        let places = mended.places.iter();
+        let places: Vec<_> = places.map(|place| (*place * 1e3).to_array()).collect();
+        serde_json::json!({ "note": mended.note(), "places_mm": places })
+    });
     let document = serde_json::json!({
         "mesh": arguments.mesh.display().to_string(),
         "sharp_angle_deg": arguments.sharp_angle_deg,
+        "volume_mm3": mesh.volume() * 1e9,
+        "notes": mesh.notes(),
+        "mended": mended.collect::<Vec<_>>(),
         "edges": list.edges.iter().map(described).collect::<Vec<_>>(),
         "loops": list.loops.iter().map(described).collect::<Vec<_>>(),
     });
@@ -133,7 +181,7 @@ fn described(curve: &EdgeCurve) -> serde_json::Value {
         "kind": kind(curve),
         "length_mm": curve.length * 1e3,
         // Smallest and largest.
-        "angle_deg": curve.dihedral_range().map(f64::to_degrees),
+        "angle_deg": curve.face_angle_range().map(f64::to_degrees),
         "start_mm": millimetres(curve.points.first()),
         "end_mm": millimetres(curve.points.last()),
         "convexity": convexity(curve),

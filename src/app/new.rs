@@ -14,7 +14,7 @@ use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
 use crate::scenario::removal_table::REMOVAL_TABLE;
 use crate::shell::word;
-use crate::workpiece::load_mesh;
+use crate::workpiece::{PartFile, WorkpieceError};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -283,11 +283,20 @@ fn without_drives(text: &str) -> String {
     kept.join("\n\n")
 }
 
-/// The unit with which a mesh is read as a part of a usual size; millimetres first.
+/// The unit with which a mesh is read as a part of a usual size: the one that its file states, else millimetres first.
 fn likely_unit(part: &Path) -> Result<&'static str, AppError> {
+    let file = PartFile::read(part)?;
+    let units = [("mm", 1e-3), ("m", 1.0), ("inch", 0.0254)];
+    let stated = units
+        .iter()
+        .filter(|(unit, _)| !file.states_unit || *unit == "m");
     let mut refused = None;
-    for (unit, scale) in [("mm", 1e-3), ("m", 1.0), ("inch", 0.0254)] {
-        match load_mesh(part, scale) {
+    for &(unit, scale) in stated {
+        let mesh = file.mesh(scale).map_err(|fault| WorkpieceError::Mesh {
+            file: part.to_owned(),
+            fault,
+        });
+        match mesh {
             Ok(_) => return Ok(unit),
             Err(error) => {
                 refused.get_or_insert(error);

@@ -10,8 +10,8 @@ use crate::recording::scene::{Colour, Scene};
 
 /// Millimetres a metre.
 pub(super) const MILLIMETRES: f64 = 1e3;
-/// Triangles of a cell at most, so that its page stays small.
-const MOST_TRIANGLES: usize = 30_000;
+/// Triangles of a cell at most: about 1.4 MB of a page of less than 3 MB.
+const MOST_TRIANGLES: usize = 60_000;
 /// From the direction in which the edge looks longest, so that the part looks solid too [rad].
 const TURN: f64 = 0.4;
 /// Shades of a legend.

@@ -40,7 +40,7 @@ pub(super) fn model(
     })?;
     bodies.push((Role::Part, standing("part", world_from_part, surface)));
     for obstacle in &scenario.collision.obstacles {
-        bodies.push((Role::Obstacle, body_of(obstacle, scenario)?));
+        bodies.push((Role::Obstacle, body_of(obstacle, scenario, notes)?));
     }
     bodies.extend(floor(scenario, &bodies, notes));
     let centre = glam::DVec3::new(0.0, 0.0, scenario.device.tool_centre);
@@ -147,7 +147,11 @@ fn robot<'a>(
     Ok(Some((role, body)))
 }
 
-fn body_of(obstacle: &Obstacle, scenario: &Scenario) -> Result<Body, CellError> {
+fn body_of(
+    obstacle: &Obstacle,
+    scenario: &Scenario,
+    notes: &mut Vec<String>,
+) -> Result<Body, CellError> {
     let (pose, name) = (obstacle.world_from_obstacle, &obstacle.name);
     let refused = |source| CellError::CollisionModel {
         file: scenario.path.clone(),
@@ -160,7 +164,12 @@ fn body_of(obstacle: &Obstacle, scenario: &Scenario) -> Result<Body, CellError> 
         ObstacleShape::Box(size) => {
             Solid::convex(&VisualShape::Box { size: *size }, DPose3::IDENTITY)
         }
-        ObstacleShape::Mesh { path, scale } => Solid::surface(&load_mesh(path, *scale)?),
+        ObstacleShape::Mesh { path, scale } => {
+            let mesh = load_mesh(path, *scale)?;
+            let said = mesh.notes().iter();
+            notes.extend(said.map(|note| format!("{}: {note}", path.display())));
+            Solid::surface(&mesh)
+        }
     };
     Ok(standing(name, pose, solid.map_err(refused)?))
 }

@@ -71,6 +71,13 @@ impl Setup {
         let bodies = with_slide(&arm.chain, &scenario, plant.device.moving_mass);
         let part = Part::load(&scenario)?;
         let mut notes = std::mem::take(&mut arm.notes);
+        let mesh = scenario.workpiece.mesh.display();
+        notes.extend(
+            part.mesh
+                .notes()
+                .iter()
+                .map(|note| format!("{mesh}: {note}")),
+        );
         let collision = collision::model(&scenario, &arm, &arm_with_slide, &part, &mut notes)?;
         Ok(Self {
             passes: passes(&scenario),

@@ -6,6 +6,7 @@ mod faces;
 mod numbered;
 mod png;
 mod raster;
+mod simplify;
 mod solids;
 mod svg;
 mod view;
@@ -160,7 +161,10 @@ fn ends(svg: &mut Svg, path: &EdgePath, camera: &Camera) {
     svg.dot(start, 5.0);
     let word = start + 34.0 * aside;
     svg.text(
-        [word.x.clamp(30.0, SIZE[0] as f64 - 30.0), word.y.max(16.0)],
+        [
+            word.x.clamp(30.0, SIZE[0] as f64 - 30.0),
+            word.y.clamp(16.0, SIZE[1] as f64 - 8.0),
+        ],
         "middle",
         "start",
     );

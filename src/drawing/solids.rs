@@ -5,12 +5,11 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::faces::{Face, faces};
+use super::simplify::{Bodies, simplify};
 use crate::recording::scene::{Colour, Scene};
 
-/// Cells along the longest side of what is simplified, at first.
-const FINEST: f64 = 1024.0;
-/// Triangles that a body keeps in any case.
-const LEAST: usize = 50;
+/// Corners within this are one, as fine as the page's numbers [m].
+const ONE: f64 = 1e-8;
 
 /// A body at a moment, of one colour.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,50 +26,79 @@ pub struct Solid {
     pub whole: usize,
 }
 
-/// The bodies at a frame; where they have more triangles than `most` together, each is simplified to its share.
+/// The bodies at a frame; where they have more triangles than `most` together, those are left out that are seen least.
 pub(super) fn solids(scene: &Scene, frame: usize, most: usize) -> Vec<Solid> {
     let mut groups: BTreeMap<(u16, Colour), Vec<Face>> = BTreeMap::new();
-    let all = faces(scene, frame, |_| true);
-    let share = most as f64 / all.len().max(1) as f64;
-    for face in all {
+    for face in faces(scene, frame, |_| true) {
         let own = groups.entry((face.body, face.colour));
         own.or_default().push(face);
     }
-    let solid = |((body, colour), faces): ((u16, Colour), Vec<Face>)| {
-        let most = (share * faces.len() as f64) as usize;
-        let (corners, triangles, whole) = simplified(&faces, most.max(LEAST));
+    let mut bodies = Bodies {
+        corners: Vec::new(),
+        triangles: Vec::new(),
+        sizes: Vec::new(),
+    };
+    // Of each group where its corners begin, and its triangles.
+    let mut ranges = Vec::new();
+    for faces in groups.values() {
+        let (low, high) = bounds(faces);
+        let (corners, triangles) = merged(faces, low, ONE);
+        let first = bodies.corners.len() as u32;
+        ranges.push((first, triangles.len()));
+        let size = (high - low).max_element().max(ONE);
+        bodies
+            .sizes
+            .extend(std::iter::repeat_n(size, corners.len()));
+        bodies.corners.extend(corners);
+        let shifted = triangles
+            .iter()
+            .map(|triangle| triangle.map(|corner| first + corner));
+        bodies.triangles.extend(shifted);
+    }
+    let mut kept = vec![Vec::new(); ranges.len()];
+    for triangle in simplify(&bodies, most) {
+        let group = ranges.partition_point(|(first, _)| *first <= triangle[0]) - 1;
+        kept[group].push(triangle);
+    }
+    let solid = |(((body, colour), (_, whole)), triangles): (
+        (&(u16, Colour), (u32, usize)),
+        Vec<[u32; 3]>,
+    )| {
+        let (corners, triangles) = compact(&bodies.corners, &triangles);
         Solid {
-            entity: scene.bodies[usize::from(body) - 1].entity.clone(),
-            colour,
+            entity: scene.bodies[usize::from(*body) - 1].entity.clone(),
+            colour: *colour,
             corners,
             triangles,
             whole,
         }
     };
-    groups.into_iter().map(solid).collect()
+    groups.keys().zip(ranges).zip(kept).map(solid).collect()
 }
 
-/// Triangles over shared corners; where there are too many, corners in one cell of a grid become one. Beside them how many there are.
-fn simplified(faces: &[Face], most: usize) -> (Vec<DVec3>, Vec<[u32; 3]>, usize) {
+/// Opposite corners of the box about triangles.
+fn bounds(faces: &[Face]) -> (DVec3, DVec3) {
     let corners = || faces.iter().flat_map(|face| face.corners);
     let start = corners().next().unwrap_or_default();
-    let (low, high) = corners().fold((start, start), |(low, high), corner| {
+    corners().fold((start, start), |(low, high), corner| {
         (low.min(corner), high.max(corner))
+    })
+}
+
+/// Triangles over the corners that they use.
+fn compact(corners: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let mut known: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut used = Vec::new();
+    let numbered = triangles.iter().map(|triangle| {
+        triangle.map(|corner| {
+            *known.entry(corner).or_insert_with(|| {
+                used.push(corners[corner as usize]);
+                used.len() as u32 - 1
+            })
+        })
     });
-    // As fine as the page's numbers, so that equal corners are one.
-    let (corners, triangles) = merged(faces, low, 1e-8);
-    let whole = triangles.len();
-    if whole <= most {
-        return (corners, triangles, whole);
-    }
-    let mut cell = (high - low).max_element() / FINEST;
-    loop {
-        let (corners, triangles) = merged(faces, low, cell);
-        if triangles.len() <= most {
-            return (corners, triangles, whole);
-        }
-        cell *= 1.5;
-    }
+    let numbered = numbered.collect();
+    (used, numbered)
 }
 
 /// The first corner in each cell stands for all in it; triangles that lose their area by it are left out.
@@ -134,8 +162,52 @@ mod tests {
         assert_eq!([exact.corners.len(), exact.triangles.len()], [482, 960]);
         assert_eq!(exact.whole, 960);
         let few = &solids(&scene, 0, 300)[0];
-        assert!((100..=300).contains(&few.triangles.len()) && few.whole == 960);
+        assert!((200..=300).contains(&few.triangles.len()) && few.whole == 960);
         assert!((volume(few) / volume(exact) - 1.0).abs() < 0.1);
         assert_eq!(few.entity, "ball");
+        // All on the ball still, and all round it.
+        assert!(
+            few.corners
+                .iter()
+                .all(|corner| (corner.length() - 0.3).abs() < 1e-9)
+        );
+        let sum: DVec3 = few.corners.iter().sum();
+        assert!(sum.length() / few.corners.len() as f64 <= 0.02, "{sum}");
+    }
+
+    #[test]
+    fn a_bore_keeps_its_radius_and_its_corners_where_plane_faces_lose_theirs() {
+        // A plate of 100 x 100 mm in squares of 2 mm, with a tube of 96 sides in it.
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for i in 0..=50_u32 {
+            for j in 0..=50_u32 {
+                vertices.push(DVec3::new(2e-3 * f64::from(i), 2e-3 * f64::from(j), 0.0));
+                if i < 50 && j < 50 {
+                    let at = |i: u32, j: u32| 51 * i + j;
+                    triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                    triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+        let first = vertices.len() as u32;
+        for side in 0..96_u32 {
+            let angle = std::f64::consts::TAU * f64::from(side) / 96.0;
+            let rim = DVec3::new(0.05 + 0.01 * angle.cos(), 0.05 + 0.01 * angle.sin(), 0.0);
+            vertices.extend([rim, rim - DVec3::Z * 0.02]);
+            let [here, next] = [side, (side + 1) % 96].map(|side| first + 2 * side);
+            triangles.push([here, here + 1, next + 1]);
+            triangles.push([here, next + 1, next]);
+        }
+        let mut scene = ball(0.1);
+        scene.bodies[0].shapes[0].geometry = SceneGeometry::Mesh {
+            vertices,
+            triangles,
+        };
+        let solid = &solids(&scene, 0, 300)[0];
+        assert!(solid.triangles.len() <= 300 && solid.whole == 5192);
+        let radius = |corner: &DVec3| (corner.truncate() - glam::DVec2::splat(0.05)).length();
+        let on_tube = |corner: &&DVec3| (radius(corner) - 0.01).abs() < 1e-9 && corner.z < -0.01;
+        let kept = solid.corners.iter().filter(on_tube).count();
+        assert!(kept >= 90, "{kept} of 96 corners of the bore's far rim");
     }
 }

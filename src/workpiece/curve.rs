@@ -135,15 +135,16 @@ impl EdgeCurve {
         })
     }
 
-    /// Angle between the outward normals of the two faces of a segment [rad]: 0 on a flat face.
-    pub fn dihedral_angle(&self, segment: usize) -> f64 {
+    /// Angle between the two faces of a segment [rad]: of the part's material at a convex edge, of the free space at a concave one.
+    /// Pi on a flat face, less the sharper the edge.
+    pub fn angle_between_faces(&self, segment: usize) -> f64 {
         let (normal_a, normal_b) = self.normals[segment];
-        normal_a.angle_between(normal_b)
+        std::f64::consts::PI - normal_a.angle_between(normal_b)
     }
 
     /// The smallest and the largest of these angles [rad].
-    pub fn dihedral_range(&self) -> [f64; 2] {
-        let angles = (0..self.normals.len()).map(|segment| self.dihedral_angle(segment));
+    pub fn face_angle_range(&self) -> [f64; 2] {
+        let angles = (0..self.normals.len()).map(|segment| self.angle_between_faces(segment));
         angles.fold([f64::INFINITY, 0.0], |[low, high], angle| {
             [low.min(angle), high.max(angle)]
         })

@@ -79,7 +79,7 @@ fn table_line(curve: &EdgeCurve) -> String {
             .map(|metres| (metres * 1e6).round() / 1e3 + 0.0);
         format!("({x:.3} {y:.3} {z:.3})")
     };
-    let [low, high] = curve.dihedral_range().map(f64::to_degrees);
+    let [low, high] = curve.face_angle_range().map(f64::to_degrees);
     let angle = if high - low < 0.1 {
         format!("{low:.1}")
     } else {

@@ -329,7 +329,7 @@ fn lowest(points: &[DVec3]) -> DVec3 {
 mod tests {
     use super::super::curve::CurveKind;
     use super::super::mesh::shapes::{gridded_box, prism};
-    use super::super::mesh_file::load_mesh;
+    use super::super::part_file::load_mesh;
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
     use std::path::Path;
@@ -376,7 +376,7 @@ mod tests {
         for edge in &list.edges {
             assert_eq!(edge.kind, CurveKind::Straight);
             assert_eq!(edge.convexity, Convexity::Convex);
-            assert!((edge.dihedral_angle(0) - FRAC_PI_2).abs() < 1e-12);
+            assert!((edge.angle_between_faces(0) - FRAC_PI_2).abs() < 1e-12);
             assert!(!edge.closed);
             check_orientation(edge);
         }

@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+use glam::DVec3;
+
+use crate::mesh_file::MeshFileError;
+
 /// Why a triangle mesh cannot stand for a part.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshFault {
@@ -26,22 +30,30 @@ pub enum MeshFault {
     },
     /// The triangles do not form a closed orientable surface.
     #[error(
-        "is not a closed surface: {open} open edges (one triangle only), {non_manifold} non-manifold edges \
-         (more than two triangles), {misoriented} edges whose two triangles wind against each other; expected 0 of each"
+        "is not a closed surface: {} open edges (one triangle only), {} non-manifold edges (more than two triangles), {} edges whose \
+         two triangles wind against each other; expected 0 of each, or so few and small that they can be mended; {}",
+        count(edges, EdgeFlaw::Open),
+        count(edges, EdgeFlaw::NonManifold),
+        count(edges, EdgeFlaw::Misoriented),
+        where_they_are(edges)
     )]
     NotClosed {
-        /// Edges with one triangle.
-        open: usize,
-        /// Edges with more than two triangles.
-        non_manifold: usize,
-        /// Edges whose two triangles have opposite winding.
-        misoriented: usize,
+        /// The faulty edges, in the part frame [m].
+        edges: Vec<EdgeFault<DVec3>>,
     },
     /// A triangle without area that could not be taken out of the surface.
-    #[error("triangle {triangle} has no area, so its face has no direction")]
+    #[error("triangle {triangle}, at {} mm, has no area, so its face has no direction", in_millimetres(*place))]
     NoArea {
         /// Triangle, counted from 0 after merging vertices.
         triangle: usize,
+        /// One of its corners, in the part frame [m].
+        place: DVec3,
+    },
+    /// The file can be drawn, but leaves open which solid it means.
+    #[error("does not say which solid it is: {reason}")]
+    Doubtful {
+        /// Why.
+        reason: String,
     },
     /// The surface is closed, but its normals point into the part, or it encloses nothing.
     #[error(
@@ -54,7 +66,7 @@ pub enum MeshFault {
     },
     /// The part is implausibly small or large.
     #[error(
-        "is {extent} m long when its unit is {scale} m, expected 0.001 m to 10 m; STL and OBJ carry no unit: {}",
+        "is {extent} m long when its unit is {scale} m, expected 0.001 m to 10 m; {}",
         units_that_fit(*extent / *scale)
     )]
     Implausible {
@@ -63,6 +75,69 @@ pub enum MeshFault {
         /// Scale that was applied [m per file unit].
         scale: f64,
     },
+}
+
+/// What is wrong with an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EdgeFlaw {
+    /// It has one triangle.
+    Open,
+    /// It has more than two triangles.
+    NonManifold,
+    /// Its two triangles have opposite winding.
+    Misoriented,
+}
+
+impl EdgeFlaw {
+    /// In words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Open => "open",
+            Self::NonManifold => "non-manifold",
+            Self::Misoriented => "wound against each other",
+        }
+    }
+}
+
+/// An edge that a closed surface cannot have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeFault<End> {
+    /// What is wrong with it.
+    pub flaw: EdgeFlaw,
+    /// Its ends.
+    pub ends: [End; 2],
+}
+
+fn count(edges: &[EdgeFault<DVec3>], flaw: EdgeFlaw) -> usize {
+    edges.iter().filter(|edge| edge.flaw == flaw).count()
+}
+
+/// The first few faulty edges, each by its middle.
+fn where_they_are(edges: &[EdgeFault<DVec3>]) -> String {
+    const NAMED: usize = 3;
+    let first = edges.iter().take(NAMED).map(|edge| {
+        let middle = 0.5 * (edge.ends[0] + edge.ends[1]);
+        format!("{} at {} mm", edge.flaw.name(), in_millimetres(middle))
+    });
+    let more = edges.len().saturating_sub(NAMED);
+    let more = if more > 0 {
+        format!(" and {more} more")
+    } else {
+        String::new()
+    };
+    format!(
+        "{}{more}; `idc edges` with --out PAGE.html shows them on the part",
+        first.collect::<Vec<_>>().join(", ")
+    )
+}
+
+/// A place in words, to a micrometre.
+pub(super) fn in_millimetres(place: DVec3) -> String {
+    let [x, y, z] = place
+        .to_array()
+        .map(|metres| (1e6 * metres).round() / 1e3 + 0.0);
+    format!("({x}, {y}, {z})")
 }
 
 /// Volume of rounding errors, far below that of anything whose largest side is a millimetre [m^3].
@@ -85,6 +160,7 @@ fn units_that_fit(size: f64) -> String {
         })
         .collect();
     match &fitting[..] {
+        _ if size == 0.0 => "all of its points lie in one place".to_owned(),
         [] => format!("its points span {size:.3e} units, which is no usual part in any of them"),
         fitting => fitting.join(", "),
     }
@@ -101,30 +177,9 @@ pub enum WorkpieceError {
         /// Message of the operating system.
         source: std::io::Error,
     },
-    /// The file's name does not end in a format that is read here.
-    #[error("{file}: unknown mesh format, expected a name that ends in .stl, .obj or .dae")]
-    Format {
-        /// File.
-        file: PathBuf,
-    },
-    /// The file is not a well-formed mesh of its format.
-    #[error("{file}: malformed mesh: {reason}")]
-    Malformed {
-        /// File.
-        file: PathBuf,
-        /// The fault.
-        reason: String,
-    },
-    /// The file states something that is not honoured, so that it is refused.
-    #[error("{file}: {feature} is not supported: {remedy}")]
-    Unsupported {
-        /// File.
-        file: PathBuf,
-        /// Feature that the file asks for.
-        feature: String,
-        /// The remedy.
-        remedy: &'static str,
-    },
+    /// A mesh file that is not read.
+    #[error(transparent)]
+    MeshFile(#[from] MeshFileError),
     /// The mesh was read but cannot stand for a part.
     #[error("{file}: mesh {fault}")]
     Mesh {

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::error::{MeshFault, NO_VOLUME};
+use super::error::{EdgeFault, MeshFault, NO_VOLUME};
+use super::mend::{Mended, mended};
 use super::repair::{connect, extent};
 use super::topology::Topology;
 
@@ -16,6 +17,8 @@ pub struct TriangleMesh {
     triangles: Vec<[u32; 3]>,
     face_normals: Vec<DVec3>,
     topology: Topology,
+    mended: Vec<Mended>,
+    notes: Vec<String>,
 }
 
 impl TriangleMesh {
@@ -28,7 +31,15 @@ impl TriangleMesh {
         if triangles.is_empty() {
             return Err(MeshFault::Empty);
         }
-        let topology = Topology::new(&triangles)?;
+        let topology = Topology::new(&triangles).map_err(|faults| {
+            let edge = |fault: EdgeFault<u32>| EdgeFault {
+                flaw: fault.flaw,
+                ends: fault.ends.map(|vertex| vertices[vertex as usize]),
+            };
+            MeshFault::NotClosed {
+                edges: faults.into_iter().map(edge).collect(),
+            }
+        })?;
         let face_normals = triangles
             .iter()
             .enumerate()
@@ -37,7 +48,7 @@ impl TriangleMesh {
                 (b - a)
                     .cross(c - a)
                     .try_normalize()
-                    .ok_or(MeshFault::NoArea { triangle })
+                    .ok_or(MeshFault::NoArea { triangle, place: a })
             })
             .collect::<Result<Vec<_>, _>>()?;
         let mesh = Self {
@@ -45,6 +56,8 @@ impl TriangleMesh {
             triangles,
             face_normals,
             topology,
+            mended: Vec::new(),
+            notes: Vec::new(),
         };
         let volume = mesh.volume();
         if volume < NO_VOLUME {
@@ -54,7 +67,7 @@ impl TriangleMesh {
     }
 
     /// Builds the surface from loose triangles in any unit: scales to metres, merges vertices, drops
-    /// triangles without area, and checks the result.
+    /// triangles without area, mends small flaws, and checks the result.
     ///
     /// # Errors
     /// The first fault of the surface.
@@ -81,7 +94,32 @@ impl TriangleMesh {
             .map(|triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2])
             .collect();
         let (vertices, connected) = connect(&used, &corners);
-        Self::new(vertices, connected)
+        let (vertices, connected, mended) = mended(&vertices, &connected);
+        let mesh = Self::new(vertices, connected)?;
+        let notes = mended.iter().map(Mended::note).collect();
+        Ok(Self {
+            mended,
+            notes,
+            ..mesh
+        })
+    }
+
+    /// The surface with notes on how its file was read before those on what was mended.
+    #[must_use]
+    pub(crate) fn with_notes(mut self, mut notes: Vec<String>) -> Self {
+        notes.append(&mut self.notes);
+        self.notes = notes;
+        self
+    }
+
+    /// What was mended of the file's surface, and where.
+    pub fn mended(&self) -> &[Mended] {
+        &self.mended
+    }
+
+    /// What a user should know of how the file was read and what of it was mended, a sentence each.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Vertices in the part frame [m].

@@ -3,7 +3,7 @@
 //! Everything here is geometry in the part frame, in SI units; nothing here knows of a physics
 //! engine, a scenario or a recording.
 //!
-//! - [`mesh`] reads STL, OBJ and COLLADA into a closed, outward-facing [`TriangleMesh`];
+//! - [`part_file`] reads a mesh file into a closed, outward-facing [`TriangleMesh`], with small flaws mended ([`mend`]);
 //! - [`edges`] finds sharp edges and face outlines, [`EdgeCurve`]s in an [`EdgeList`];
 //! - [`burr`] is a burr's height along an edge, [`ride`] what a ball makes of it;
 //! - [`surface`] finds the genuine contact points of a ball ([`ContactSurface`]).
@@ -18,8 +18,9 @@ pub mod curve;
 pub mod edge_list;
 pub mod edges;
 pub mod error;
+pub mod mend;
 pub mod mesh;
-pub mod mesh_file;
+pub mod part_file;
 pub mod ride;
 pub mod surface;
 #[cfg(test)]
@@ -29,8 +30,8 @@ pub use burr::BurrProfile;
 pub use curve::{Convexity, CurveKind, EdgeCurve, EdgePoint};
 pub use edge_list::EdgeList;
 pub use edges::{EdgeSearch, list_edges};
-pub use error::{MeshFault, WorkpieceError};
+pub use error::{EdgeFault, EdgeFlaw, MeshFault, WorkpieceError};
 pub use mesh::TriangleMesh;
-pub use mesh_file::load_mesh;
+pub use part_file::{PartFile, load_mesh};
 pub use ride::RiddenProfile;
 pub use surface::{ContactSurface, SurfaceContact, SurfaceFeature};

@@ -325,7 +325,7 @@ impl Stars {
 #[cfg(test)]
 mod tests {
     use super::super::mesh::shapes::{gridded_box, prism};
-    use super::super::mesh_file::load_mesh;
+    use super::super::part_file::load_mesh;
     use super::*;
     use std::path::Path;
 

@@ -3,7 +3,7 @@
 //! Half-edge `3 t + k` runs in triangle `t` from its vertex `k` to its vertex `k + 1`; its twin is
 //! the same edge seen from the neighbouring triangle, running the other way.
 
-use super::error::MeshFault;
+use super::error::{EdgeFault, EdgeFlaw};
 
 /// For each half-edge its twin.
 #[derive(Debug, Clone)]
@@ -33,8 +33,8 @@ pub(crate) fn end_of(triangles: &[[u32; 3]], half_edge: u32) -> u32 {
 }
 
 impl Topology {
-    /// Pairs all half-edges; fails unless each edge has exactly two triangles of matching winding.
-    pub(crate) fn new(triangles: &[[u32; 3]]) -> Result<Self, MeshFault> {
+    /// Pairs all half-edges; fails with the faulty edges unless each has exactly two triangles of matching winding.
+    pub(crate) fn new(triangles: &[[u32; 3]]) -> Result<Self, Vec<EdgeFault<u32>>> {
         let count = 3 * triangles.len() as u32;
         let mut sides: Vec<(u32, u32, u32)> = (0..count)
             .map(|half_edge| {
@@ -44,28 +44,28 @@ impl Topology {
             .collect();
         sides.sort_unstable();
         let mut twins = vec![u32::MAX; count as usize];
-        let (mut open, mut non_manifold, mut misoriented) = (0, 0, 0);
+        let mut faults = Vec::new();
         for edge in sides.chunk_by(|one, other| (one.0, one.1) == (other.0, other.1)) {
-            match *edge {
-                [_] => open += 1,
+            let flaw = match *edge {
+                [_] => Some(EdgeFlaw::Open),
                 [(_, _, first), (_, _, second)] => {
-                    if start_of(triangles, first) == start_of(triangles, second) {
-                        misoriented += 1;
-                    }
                     twins[first as usize] = second;
                     twins[second as usize] = first;
+                    let same = start_of(triangles, first) == start_of(triangles, second);
+                    same.then_some(EdgeFlaw::Misoriented)
                 }
-                _ => non_manifold += 1,
-            }
+                _ => Some(EdgeFlaw::NonManifold),
+            };
+            faults.extend(flaw.map(|flaw| EdgeFault {
+                flaw,
+                ends: [edge[0].0, edge[0].1],
+            }));
         }
-        if open + non_manifold + misoriented > 0 {
-            return Err(MeshFault::NotClosed {
-                open,
-                non_manifold,
-                misoriented,
-            });
+        if faults.is_empty() {
+            Ok(Self { twins })
+        } else {
+            Err(faults)
         }
-        Ok(Self { twins })
     }
 
     /// The same edge in the neighbouring triangle.
@@ -96,33 +96,24 @@ mod tests {
 
     #[test]
     fn faults_are_counted() {
-        let fault = |triangles: &[[u32; 3]]| Topology::new(triangles).unwrap_err();
-        assert_eq!(
-            fault(&TETRAHEDRON[..3]),
-            MeshFault::NotClosed {
-                open: 3,
-                non_manifold: 0,
-                misoriented: 0
-            }
-        );
+        let faults = |triangles: &[[u32; 3]]| {
+            let faults = Topology::new(triangles).unwrap_err();
+            [EdgeFlaw::Open, EdgeFlaw::NonManifold, EdgeFlaw::Misoriented]
+                .map(|flaw| faults.iter().filter(|fault| fault.flaw == flaw).count())
+        };
+        assert_eq!(faults(&TETRAHEDRON[..3]), [3, 0, 0]);
         let mut flipped = TETRAHEDRON;
         flipped[3].swap(0, 1);
-        assert_eq!(
-            fault(&flipped),
-            MeshFault::NotClosed {
-                open: 0,
-                non_manifold: 0,
-                misoriented: 3
-            }
-        );
+        assert_eq!(faults(&flipped), [0, 0, 3]);
         let mut fin = TETRAHEDRON.to_vec();
         fin.push([0, 1, 4]);
+        assert_eq!(faults(&fin), [2, 1, 0]);
+        let first = Topology::new(&fin).unwrap_err()[0];
         assert_eq!(
-            fault(&fin),
-            MeshFault::NotClosed {
-                open: 2,
-                non_manifold: 1,
-                misoriented: 0
+            first,
+            EdgeFault {
+                flaw: EdgeFlaw::NonManifold,
+                ends: [0, 1]
             }
         );
     }

@@ -1,13 +1,14 @@
 //! The page of a part's edges, from which one is picked for a scenario.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use glam::DVec3;
 use glamx::DPose3;
 
 use super::super::picture::PART;
 use super::super::space::{MILLIMETRES, body, floats};
-use super::{EdgesArguments, convexity, kind};
+use super::{EdgesArguments, MeshUnit, convexity, kind};
 use crate::drawing::{self, Numbered};
 use crate::page::{
     Block, Drawing, DrawnLine, DrawnView, Page, PageSection, PageTable, TableCell, html,
@@ -16,18 +17,23 @@ use crate::quantity::counted;
 use crate::recording::scene::{Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
 use crate::workpiece::{Convexity, CurveKind, EdgeCurve, EdgeList, TriangleMesh};
 
-/// Triangles of the part at most: about 5 MB.
-const MOST_TRIANGLES: usize = 200_000;
+/// Triangles of the part at most: about 2 MB of a page of less than 3 MB.
+pub(super) const MOST_TRIANGLES: usize = 80_000;
 /// The page's colours for lines.
 const COLOURS: usize = 5;
 /// How far an outline is drawn within the face that it bounds, so that outlines of neighbours lie apart: share of the part's size, and of its own length [1].
 const INSET: [f64; 2] = [0.012, 0.04];
 /// From where a part is looked at.
-const EYE: DVec3 = DVec3::new(0.6, -1.0, 0.7);
+pub(super) const EYE: DVec3 = DVec3::new(0.6, -1.0, 0.7);
 
 /// The page as a document.
-pub(super) fn page(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeList) -> String {
-    let scene = scene_of(mesh);
+pub(super) fn page(
+    arguments: &EdgesArguments,
+    unit: MeshUnit,
+    mesh: &TriangleMesh,
+    list: &EdgeList,
+) -> String {
+    let scene = scene_of(mesh.vertices().to_vec(), mesh.triangles().to_vec());
     let (solids, _) = drawing::solids(&scene, 0.0, MOST_TRIANGLES);
     let (low, high) = mesh.bounds();
     let size = high - low;
@@ -38,7 +44,7 @@ pub(super) fn page(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeL
             .map(|(curve, colour)| DrawnLine {
                 view: Some(view),
                 colour,
-                ..line(arguments, curve, size.length())
+                ..line((arguments, unit), curve, size.length())
             })
             .collect()
     };
@@ -73,14 +79,19 @@ pub(super) fn page(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeL
     let blocks = [Block::InSpace(&drawn, vec![picture])]
         .into_iter()
         .chain(kept)
+        .chain(
+            mesh.notes()
+                .iter()
+                .map(|note| Block::Hint(format!("{note}."))),
+        )
         .chain([Block::PageTable(table(list))]);
     html(&Page {
-        title: format!("Edges of {}", name_of(arguments)),
+        title: format!("Edges of {}", name_of(&arguments.mesh)),
         verdict: verdict(mesh, list),
         lead: vec![format!(
-            "Pick an edge: its lines take the place of a scenario's [workpiece.edge]. Sharp from {}° between two faces, file in {}.",
-            short(arguments.sharp_angle_deg),
-            arguments.unit.name()
+            "Pick an edge: its lines take the place of a scenario's [workpiece.edge]. An edge is one whose faces stand at an angle of at most {}°; file in {}.",
+            short(180.0 - arguments.sharp_angle_deg),
+            unit.name()
         )],
         sections: vec![PageSection::new("Part and edges", blocks.collect())],
         footer: "Made by idc edges.".to_owned(),
@@ -88,8 +99,8 @@ pub(super) fn page(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeL
     })
 }
 
-fn name_of(arguments: &EdgesArguments) -> String {
-    let name = arguments.mesh.file_name().unwrap_or_default();
+pub(super) fn name_of(mesh: &Path) -> String {
+    let name = mesh.file_name().unwrap_or_default();
     name.to_string_lossy().into_owned()
 }
 
@@ -118,15 +129,15 @@ fn verdict(mesh: &TriangleMesh, list: &EdgeList) -> String {
 }
 
 /// The part alone, in its own frame.
-fn scene_of(mesh: &TriangleMesh) -> Scene {
+pub(super) fn scene_of(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Scene {
     Scene {
         bodies: vec![SceneBody {
             entity: "workpiece".to_owned(),
             shapes: vec![SceneShape {
                 body_from_shape: DPose3::IDENTITY,
                 geometry: SceneGeometry::Mesh {
-                    vertices: mesh.vertices().to_vec(),
-                    triangles: mesh.triangles().to_vec(),
+                    vertices,
+                    triangles,
                 },
                 colour: PART,
             }],
@@ -136,7 +147,7 @@ fn scene_of(mesh: &TriangleMesh) -> Scene {
     }
 }
 
-fn line(arguments: &EdgesArguments, curve: &EdgeCurve, size: f64) -> DrawnLine {
+fn line(source: (&EdgesArguments, MeshUnit), curve: &EdgeCurve, size: f64) -> DrawnLine {
     let points = match curve.id.starts_with("loop") {
         true => within_its_face(curve, (INSET[0] * size).min(INSET[1] * curve.length)),
         false => curve.points.clone(),
@@ -156,7 +167,7 @@ fn line(arguments: &EdgesArguments, curve: &EdgeCurve, size: f64) -> DrawnLine {
         facts: told(curve),
         remark: remark.to_owned(),
         lines: match remark {
-            "" => to_paste(arguments, curve),
+            "" => to_paste(source, curve),
             _ => String::new(),
         },
         ..DrawnLine::default()
@@ -256,12 +267,12 @@ fn end(curve: &EdgeCurve) -> DVec3 {
 }
 
 /// Lines of a scenario that choose an edge.
-fn to_paste(arguments: &EdgesArguments, curve: &EdgeCurve) -> String {
+fn to_paste((arguments, unit): (&EdgesArguments, MeshUnit), curve: &EdgeCurve) -> String {
     let key = curve.id.split('-').next().unwrap_or_default();
     let mesh = arguments.mesh.display().to_string();
     let mut text = format!(
         "# of [workpiece] with mesh = {mesh:?}\n# and mesh_unit = \"{}\"\n[workpiece.edge]\n{key} = {}\n",
-        arguments.unit.name(),
+        unit.name(),
         number(curve),
     );
     if (arguments.sharp_angle_deg
@@ -306,7 +317,7 @@ fn table(list: &EdgeList) -> PageTable {
         cells.map(TableCell::from).to_vec()
     };
     let curves = list.edges.iter().chain(&list.loops);
-    let caption = "Edges, then outlines of faces (loops), in the part's frame. Angle: between the normals of the two faces. Convex ones can be ridden.";
+    let caption = "Edges, then outlines of faces (loops), in the part's frame. Angle: between the two faces, in the part at a convex edge and in the open at a concave one. Convex ones can be ridden.";
     PageTable::new(caption, &columns, curves.map(row).collect())
 }
 
@@ -315,19 +326,19 @@ fn length(curve: &EdgeCurve) -> String {
 }
 
 fn angle(curve: &EdgeCurve) -> String {
-    let [low, high] = curve.dihedral_range().map(f64::to_degrees);
+    let [low, high] = curve.face_angle_range().map(f64::to_degrees);
     match high - low < 0.1 {
         true => format!("{low:.1}°"),
         false => format!("{low:.1} to {high:.1}°"),
     }
 }
 
-fn place(point: DVec3) -> String {
+pub(super) fn place(point: DVec3) -> String {
     (MILLIMETRES * point).to_array().map(short).join(", ")
 }
 
 /// To a micrometre, or a thousandth of a degree, without zeros at its end.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     // Adding 0 turns -0 into 0.
     ((1e3 * value).round() / 1e3 + 0.0).to_string()
 }

@@ -1,11 +1,9 @@
 //! Finds and reads the mesh files that a URDF file names.
 
 use super::{ArmOptions, visuals};
+use crate::mesh_file::{self, Up};
 use glam::DVec3;
-use std::cell::Cell;
-use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::path::{Path, PathBuf};
-use std::sync::Once;
 
 /// Triangles of one colour.
 pub(super) struct MeshPart {
@@ -28,88 +26,49 @@ pub(super) fn load(
             scale.x, scale.y, scale.z
         ));
     }
-    let file = resolve(name, folder, options)?;
-    let bytes = std::fs::read(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-    if is_turned_collada(&file, &bytes) {
+    let path = resolve(name, folder, options)?;
+    let file = mesh_file::read(&path).map_err(|error| error.to_string())?;
+    let said = file.notes.iter().chain(&file.doubtful);
+    notes.extend(said.map(|note| format!("mesh {name}: {note}")));
+    if file.up != Up::Z {
         notes.push(format!(
-            "mesh {name}: its up axis is not Z_UP; it is drawn in the axes it is written in"
+            "mesh {name}: its up axis is {}; it is drawn in the axes it is written in",
+            file.up.axis()
         ));
     }
-    let loader = mesh_loader::Loader::default();
-    let scene = without_panic(|| loader.load_from_slice(&bytes, &file))
-        .ok_or_else(|| format!("{}: not a readable mesh", file.display()))?
-        .map_err(|error| format!("{}: {error}", file.display()))?;
-    let mut parts = Vec::new();
-    for (index, mesh) in scene.meshes.iter().enumerate() {
-        let diffuse = scene.materials.get(index).and_then(|m| m.color.diffuse);
-        let colour = diffuse.map(|rgba| visuals::bytes(rgba.map(f64::from)));
-        if let Some(part) = scaled_part(mesh, scale, colour, &file)? {
-            parts.push(part);
-        }
-    }
+    let parts = file
+        .parts
+        .into_iter()
+        .filter(|part| !part.triangles.is_empty());
+    let parts = parts.map(|part| scaled_part(part, scale, &path));
+    let parts = parts.collect::<Result<Vec<_>, String>>()?;
     if parts.is_empty() {
-        return Err(format!("{}: no triangles in it", file.display()));
+        return Err(format!("{}: no triangles in it", path.display()));
     }
     Ok(parts)
 }
 
-/// Runs `work`; none, and nothing printed, if it panics. The mesh loader indexes out of bounds on some broken
-/// COLLADA files.
-fn without_panic<T>(work: impl FnOnce() -> T) -> Option<T> {
-    thread_local! { static QUIET: Cell<bool> = const { Cell::new(false) } }
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let usual = take_hook();
-        set_hook(Box::new(move |panic| {
-            if !QUIET.get() {
-                usual(panic);
-            }
-        }));
-    });
-    QUIET.set(true);
-    let outcome = catch_unwind(AssertUnwindSafe(work));
-    QUIET.set(false);
-    outcome.ok()
-}
-
-/// One mesh of the file with the scale applied; none if it has no triangles.
-fn scaled_part(
-    mesh: &mesh_loader::Mesh,
-    scale: DVec3,
-    colour: Option<[u8; 4]>,
-    file: &Path,
-) -> Result<Option<MeshPart>, String> {
-    if mesh.faces.is_empty() {
-        return Ok(None);
+/// One part of the file with the scale applied.
+fn scaled_part(part: mesh_file::MeshPart, scale: DVec3, file: &Path) -> Result<MeshPart, String> {
+    let vertices: Vec<_> = part.points.iter().map(|point| *point * scale).collect();
+    if !vertices.iter().all(|point| point.is_finite()) {
+        return Err(format!(
+            "{}: a coordinate is not a finite number",
+            file.display()
+        ));
     }
-    let widened = mesh.vertices.iter().map(|point| point.map(f64::from));
-    let vertices: Vec<_> = widened.map(|p| DVec3::from_array(p) * scale).collect();
-    let count = vertices.len();
-    let mut triangles = mesh.faces.clone();
-    let inside = |triangle: &[u32; 3]| triangle.iter().all(|index| (*index as usize) < count);
-    if !triangles.iter().all(inside) || !vertices.iter().all(|point| point.is_finite()) {
-        return Err(format!("{}: broken vertices or indices", file.display()));
-    }
+    let mut triangles = part.triangles;
     // A mirrored mesh is inside out unless its triangles are wound the other way.
     if scale.x * scale.y * scale.z < 0.0 {
         for triangle in &mut triangles {
             triangle.swap(1, 2);
         }
     }
-    Ok(Some(MeshPart {
+    Ok(MeshPart {
         vertices,
         triangles,
-        colour,
-    }))
-}
-
-fn is_turned_collada(file: &Path, bytes: &[u8]) -> bool {
-    let extension = file.extension().and_then(|extension| extension.to_str());
-    let collada = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("dae"));
-    collada && {
-        let text = String::from_utf8_lossy(bytes);
-        text.contains("<up_axis>Y_UP") || text.contains("<up_axis>X_UP")
-    }
+        colour: part.colour.map(visuals::bytes),
+    })
 }
 
 /// The files that a robot's meshes lead to, each once.

@@ -1,27 +1,83 @@
-//! Reading a part's mesh from STL (binary or text), Wavefront OBJ or COLLADA (.dae).
-//!
-//! The formats are parsed by the `mesh-loader` crate, which keeps 32-bit coordinates. What it would
-//! pass over in silence is refused here: a binary STL of another length than its header says, OBJ
-//! faces that a fan may fold, and COLLADA node transforms and axes, which it does not apply reliably.
+//! Reading a part from a mesh file: one closed surface in metres, z up.
 
-use std::ffi::OsStr;
 use std::path::Path;
 
 use glam::DVec3;
-use mesh_loader::Scene;
 
-use super::error::{WorkpieceError, require};
+use super::error::{MeshFault, WorkpieceError, require};
 use super::mesh::TriangleMesh;
+use crate::mesh_file::{self, Up};
 
-/// Length of a binary STL's header with the triangle count, and of each triangle [bytes].
-const STL_HEADER: usize = 84;
-const STL_TRIANGLE: usize = 50;
+/// A part's file as it is read: loose triangles.
+#[derive(Debug, Clone)]
+pub struct PartFile {
+    /// Points with z up, in metres where the file states its unit, else in its unit.
+    pub points: Vec<DVec3>,
+    /// Triangles as indices of points.
+    pub triangles: Vec<[u32; 3]>,
+    /// Whether the file states its unit, as COLLADA and glTF do.
+    pub states_unit: bool,
+    /// What a user should know of how it was read.
+    notes: Vec<String>,
+    doubtful: Option<String>,
+}
 
-/// Most corners of an OBJ face: larger ones may be concave, and are split as fans.
-const OBJ_CORNERS: usize = 4;
+impl PartFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// It cannot be read, is malformed or of another format.
+    pub fn read(path: &Path) -> Result<Self, WorkpieceError> {
+        let file = mesh_file::read(path)?;
+        let (mut points, mut triangles) = (Vec::new(), Vec::new());
+        for part in &file.parts {
+            let base = points.len() as u32;
+            points.extend(part.points.iter().map(|point| file.up.z_up(*point)));
+            triangles.extend(
+                part.triangles
+                    .iter()
+                    .map(|triangle| triangle.map(|corner| base + corner)),
+            );
+        }
+        let mut notes = file.notes;
+        if file.up != Up::Z {
+            notes.push(format!(
+                "{} is up in it: turned so that z is",
+                file.up.axis()
+            ));
+        }
+        Ok(Self {
+            points,
+            triangles,
+            states_unit: file.in_metres,
+            notes,
+            doubtful: file.doubtful,
+        })
+    }
 
-/// Reads a part. `scale` is the length of the file's unit [m]: 0.001 for a file in millimetres.
-/// A COLLADA file states its unit; `scale` multiplies it, so it is normally 1 there.
+    /// The part. `scale` is the length of the file's unit [m]: 0.001 for a file in millimetres. It multiplies the unit that a file
+    /// states, so it is normally 1 there.
+    ///
+    /// # Errors
+    /// Its surface has a fault that cannot be mended.
+    pub fn mesh(&self, scale: f64) -> Result<TriangleMesh, MeshFault> {
+        if let Some(reason) = self.doubtful.clone() {
+            return Err(MeshFault::Doubtful { reason });
+        }
+        let mesh = TriangleMesh::from_loose_triangles(&self.points, &self.triangles, scale)?;
+        let mut notes = self.notes.clone();
+        if self.states_unit && scale != 1.0 {
+            let (low, high) = mesh.bounds();
+            notes.push(format!(
+                "its file states a unit of its own, which the unit given multiplies by {scale}: {:.3} mm long; `m` takes it as the file has it",
+                1e3 * (high - low).max_element()
+            ));
+        }
+        Ok(mesh.with_notes(notes))
+    }
+}
+
+/// Reads a part. `scale` is the length of the file's unit [m], as in [`PartFile::mesh`].
 ///
 /// # Errors
 /// The file cannot be read, is malformed or of another format, or its surface has a fault.
@@ -32,183 +88,17 @@ pub fn load_mesh(path: &Path, scale: f64) -> Result<TriangleMesh, WorkpieceError
         scale > 0.0,
         "a positive number",
     )?;
-    let extension = path
-        .extension()
-        .and_then(OsStr::to_str)
-        .map(str::to_ascii_lowercase)
-        .unwrap_or_default();
-    let parse = match extension.as_str() {
-        "stl" => parse_stl,
-        "obj" => parse_obj,
-        "dae" => parse_collada,
-        _ => {
-            return Err(WorkpieceError::Format {
-                file: path.to_owned(),
-            });
-        }
-    };
-    let bytes = std::fs::read(path).map_err(|source| WorkpieceError::Read {
-        file: path.to_owned(),
-        source,
-    })?;
-    let scene = parse(path, &bytes)?;
-    let (points, triangles) = flatten(path, &scene)?;
-    TriangleMesh::from_loose_triangles(&points, &triangles, scale).map_err(|fault| {
-        WorkpieceError::Mesh {
+    PartFile::read(path)?
+        .mesh(scale)
+        .map_err(|fault| WorkpieceError::Mesh {
             file: path.to_owned(),
             fault,
-        }
-    })
-}
-
-fn malformed(path: &Path, reason: impl ToString) -> WorkpieceError {
-    WorkpieceError::Malformed {
-        file: path.to_owned(),
-        reason: reason.to_string(),
-    }
-}
-
-fn unsupported(path: &Path, feature: impl ToString, remedy: &'static str) -> WorkpieceError {
-    WorkpieceError::Unsupported {
-        file: path.to_owned(),
-        feature: feature.to_string(),
-        remedy,
-    }
-}
-
-fn parse_stl(path: &Path, bytes: &[u8]) -> Result<Scene, WorkpieceError> {
-    // Binary headers may begin with "solid" too; a text file also names facets or ends at once.
-    let start = bytes.trim_ascii_start();
-    let head = &start[..start.len().min(1024)];
-    let has = |word: &[u8]| head.windows(word.len()).any(|window| window == word);
-    let is_text = start.starts_with(b"solid") && (has(b"facet") || has(b"endsolid"));
-    if !is_text {
-        let Some(count) = bytes.get(STL_HEADER - 4..STL_HEADER) else {
-            return Err(malformed(
-                path,
-                format!(
-                    "{} bytes are too few for an STL header of {STL_HEADER}",
-                    bytes.len()
-                ),
-            ));
-        };
-        let declared = u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize;
-        let present = bytes.len() - STL_HEADER;
-        if declared * STL_TRIANGLE != present {
-            return Err(malformed(
-                path,
-                format!(
-                    "the STL header announces {declared} triangles ({} bytes), but {present} bytes follow it",
-                    declared * STL_TRIANGLE
-                ),
-            ));
-        }
-    }
-    mesh_loader::stl::from_slice(bytes).map_err(|error| malformed(path, error))
-}
-
-fn parse_obj(path: &Path, bytes: &[u8]) -> Result<Scene, WorkpieceError> {
-    for (line, text) in bytes.split(|&byte| byte == b'\n').enumerate() {
-        let mut words = text
-            .split(u8::is_ascii_whitespace)
-            .filter(|word| !word.is_empty());
-        if words.next() == Some(b"f".as_slice()) && words.count() > OBJ_CORNERS {
-            return Err(unsupported(
-                path,
-                format!(
-                    "an OBJ face of more than {OBJ_CORNERS} corners (line {})",
-                    line + 1
-                ),
-                "export the part with triangles",
-            ));
-        }
-    }
-    // Materials are of no interest, so that their files are not opened.
-    let no_materials = |_: &Path| Err::<Vec<u8>, _>(std::io::ErrorKind::NotFound.into());
-    mesh_loader::obj::from_slice(bytes, None, no_materials).map_err(|error| malformed(path, error))
-}
-
-fn parse_collada(path: &Path, bytes: &[u8]) -> Result<Scene, WorkpieceError> {
-    let text = std::str::from_utf8(bytes).map_err(|error| malformed(path, error))?;
-    let up_axis = element_texts(text, "up_axis").next().map(str::trim);
-    if up_axis != Some("Z_UP") {
-        return Err(unsupported(
-            path,
-            format!("COLLADA up_axis {}", up_axis.unwrap_or("Y_UP (not stated)")),
-            "export the part with Z_UP, or as STL",
-        ));
-    }
-    for transform in ["translate", "rotate", "scale", "skew", "lookat", "matrix"] {
-        for values in element_texts(text, transform) {
-            if !is_identity(transform, values) {
-                return Err(unsupported(
-                    path,
-                    format!("COLLADA node transform <{transform}>"),
-                    "apply all transforms before exporting, or export as STL",
-                ));
-            }
-        }
-    }
-    // The parser indexes a malformed file's arrays unchecked.
-    std::panic::catch_unwind(|| mesh_loader::collada::from_slice(bytes))
-        .map_err(|_| malformed(path, "the COLLADA indices do not fit their arrays"))?
-        .map_err(|error| malformed(path, error))
-}
-
-/// The texts of all `<name ...>text</name>`.
-fn element_texts<'a>(text: &'a str, name: &'a str) -> impl Iterator<Item = &'a str> {
-    text.split('<').filter_map(move |piece| {
-        let rest = piece.strip_prefix(name)?;
-        let (attributes, content) = rest.split_once('>')?;
-        (attributes.is_empty() || attributes.starts_with(char::is_whitespace)).then_some(content)
-    })
-}
-
-/// Whether a COLLADA transform leaves everything where it is.
-fn is_identity(transform: &str, values: &str) -> bool {
-    let numbers: Vec<f64> = values
-        .split_whitespace()
-        .map(|word| word.parse().unwrap_or(f64::NAN))
-        .collect();
-    let is = |expected: &[f64]| numbers == expected;
-    match transform {
-        "translate" => is(&[0.0; 3]),
-        "scale" => is(&[1.0; 3]),
-        "rotate" => numbers.len() == 4 && numbers[3] == 0.0,
-        "matrix" => is(&[
-            1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-        ]),
-        _ => false,
-    }
-}
-
-/// All meshes of a scene as one list of points and triangles.
-fn flatten(path: &Path, scene: &Scene) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), WorkpieceError> {
-    let (mut points, mut triangles) = (Vec::new(), Vec::new());
-    for mesh in &scene.meshes {
-        let base = points.len() as u32;
-        points.extend(
-            mesh.vertices
-                .iter()
-                .map(|vertex| DVec3::from_array(vertex.map(f64::from))),
-        );
-        for face in &mesh.faces {
-            if let Some(vertex) = face.iter().find(|&&v| v as usize >= mesh.vertices.len()) {
-                return Err(malformed(
-                    path,
-                    format!("a face refers to the missing vertex {vertex}"),
-                ));
-            }
-            triangles.push(face.map(|vertex| base + vertex));
-        }
-    }
-    Ok((points, triangles))
+        })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::workpiece::error::MeshFault;
     use crate::workpiece::mesh::shapes::gridded_box;
     use std::fmt::Write as _;
     use std::path::PathBuf;
@@ -340,11 +230,16 @@ mod tests {
     #[test]
     fn broken_files_are_refused_with_the_reason() {
         let missing = load_mesh(&PathBuf::from("/nowhere/part.stl"), 1.0).unwrap_err();
-        assert!(matches!(missing, WorkpieceError::Read { .. }));
+        assert!(
+            missing
+                .to_string()
+                .contains("cannot read /nowhere/part.stl")
+        );
         let stl = binary_stl();
         let text = text_stl();
         for (name, bytes, expected) in [
-            ("part.step", stl.clone(), "unknown mesh format"),
+            ("part.step", stl.clone(), "a STEP file"),
+            ("part.text", stl.clone(), "unknown mesh format"),
             ("short.stl", stl[..60].to_vec(), "too few"),
             // Cut at a whole triangle: only the header's count tells.
             (
@@ -383,12 +278,29 @@ mod tests {
     }
 
     #[test]
-    fn open_non_finite_and_inverted_surfaces_are_refused() {
+    fn open_and_non_finite_surfaces_are_refused_and_inverted_ones_turned() {
         let message = |bytes: &[u8]| load("part.stl", bytes, 1e-3).unwrap_err().to_string();
-        let mut open = binary_stl();
-        open.truncate(open.len() - 50);
-        open[80..84].copy_from_slice(&107_u32.to_le_bytes());
-        assert!(message(&open).contains("3 open edges"));
+        // The side at the largest x is missing.
+        let open = binary_stl();
+        let kept = open[84..].chunks_exact(50).filter(|record| {
+            let x = |corner: usize| {
+                f32::from_le_bytes(
+                    record[12 + 12 * corner..16 + 12 * corner]
+                        .try_into()
+                        .unwrap(),
+                )
+            };
+            (0..3).any(|corner| x(corner) < 100.0)
+        });
+        let kept: Vec<u8> = kept.flatten().copied().collect();
+        let mut open = open[..80].to_vec();
+        open.extend((kept.len() as u32 / 50).to_le_bytes());
+        open.extend(kept);
+        let refused = message(&open);
+        assert!(
+            refused.contains("12 open edges") && refused.contains("open at (100.1, "),
+            "{refused}"
+        );
         let mut infinite = binary_stl();
         infinite[84 + 12..84 + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
         assert!(message(&infinite).contains("not a finite number"));
@@ -397,19 +309,35 @@ mod tests {
             let (first, rest) = triangle[12..48].split_at_mut(12);
             first.swap_with_slice(&mut rest[..12]);
         }
-        assert!(message(&inverted).contains("inside out"));
+        let turned = load("part.stl", &inverted, 1e-3).unwrap();
+        assert!((turned.volume() - 100e-3 * 20e-3 * 10e-3).abs() < 1e-11);
+        assert!(
+            turned.notes()[0].contains("108 faces, all wound inwards turned"),
+            "{:?}",
+            turned.notes()
+        );
     }
 
     #[test]
-    fn collada_axes_and_transforms_are_refused_by_name() {
-        let message = |text: String| {
-            load("part.dae", text.as_bytes(), 1.0)
-                .unwrap_err()
-                .to_string()
-        };
-        assert!(message(collada("Y_UP", IDENTITY)).contains("up_axis Y_UP"));
-        let moved = IDENTITY.replacen("1 0 0 0", "1 0 0 0.009", 1);
-        assert!(message(collada("Z_UP", &moved)).contains("<matrix>"));
+    fn axes_and_transforms_of_collada_are_honoured_and_a_unit_beside_its_own_is_told() {
+        let part = |text: String, scale| load("part.dae", text.as_bytes(), scale).unwrap();
+        let turned = part(collada("Y_UP", IDENTITY), 1.0);
+        let (low, _) = turned.bounds();
+        assert!(
+            low.distance(DVec3::new(0.1, -17.7, -3.3) * 1e-3) < 1e-8,
+            "{low}"
+        );
+        assert!(turned.notes()[0].contains("y is up"));
+        let moved = IDENTITY.replacen("1 0 0 0", "1 0 0 9", 1);
+        let moved = part(collada("Z_UP", &moved), 1.0);
+        assert!((moved.bounds().0.x - 9.1e-3).abs() < 1e-8);
+        assert!(moved.notes().is_empty());
+        let inches = part(collada("Z_UP", IDENTITY), 25.4);
+        assert!(
+            inches.notes()[0].contains("2540.000 mm long"),
+            "{:?}",
+            inches.notes()
+        );
     }
 
     #[test]

@@ -1,0 +1,316 @@
+//! The triangles of one COLLADA geometry.
+
+use glam::DVec3;
+use roxmltree::Node;
+
+use super::tree::{Tree, child, children, is};
+use crate::mesh_file::polygon::{fan, split, strip};
+use crate::mesh_file::scene::{Fault, MeshPart};
+
+/// A geometry by the symbols of its materials.
+pub(super) struct Geometry {
+    pub(super) parts: Vec<(String, MeshPart)>,
+    /// Faces that are not plane.
+    pub(super) bent: usize,
+    /// Why it leaves open which solid it means.
+    pub(super) doubtful: Option<String>,
+}
+
+pub(super) fn geometry<'a>(tree: &Tree<'a>, element: Node<'a, 'a>) -> Result<Geometry, Fault> {
+    let mut found = Geometry {
+        parts: Vec::new(),
+        bent: 0,
+        doubtful: None,
+    };
+    for other in ["convex_mesh", "brep"] {
+        if let Some(other) = child(element, other) {
+            return Err(Fault::unsupported(
+                format!("line {}: <{}>", tree.line(other), other.tag_name().name()),
+                "export the part as a mesh of triangles",
+            ));
+        }
+    }
+    let Some(mesh) = child(element, "mesh") else {
+        return Ok(found);
+    };
+    for primitive in mesh.children().filter(Node::is_element) {
+        let name = primitive.tag_name().name();
+        if !["triangles", "polylist", "polygons", "trifans", "tristrips"].contains(&name) {
+            // Sources, lines, what belongs to a program.
+            continue;
+        }
+        let Some((points, offset, stride)) = positions(tree, primitive)? else {
+            continue;
+        };
+        let corners = |p: Node| -> Result<Vec<u32>, Fault> {
+            let indices = tree.indices(p)?;
+            let own: Vec<u32> = indices
+                .chunks_exact(stride)
+                .map(|one| one[offset])
+                .collect();
+            match own.iter().find(|index| **index as usize >= points.len()) {
+                Some(index) => Err(tree.fault(
+                    p,
+                    format!(
+                        "a corner refers to the missing vertex {index} (there are {})",
+                        points.len()
+                    ),
+                )),
+                None if indices.len() % stride != 0 => Err(tree.fault(
+                    p,
+                    format!(
+                        "it has {} indices, expected a multiple of {stride}",
+                        indices.len()
+                    ),
+                )),
+                None => Ok(own),
+            }
+        };
+        let mut polygons = Polygons {
+            points: &points,
+            triangles: Vec::new(),
+            found: &mut found,
+        };
+        match name {
+            "triangles" => {
+                for p in children(primitive, "p") {
+                    let corners = corners(p)?;
+                    if corners.len() % 3 != 0 {
+                        return Err(tree.fault(
+                            p,
+                            format!("it has {} corners, expected a multiple of 3", corners.len()),
+                        ));
+                    }
+                    polygons.triangles.extend(
+                        corners
+                            .chunks_exact(3)
+                            .map(|three| [three[0], three[1], three[2]]),
+                    );
+                }
+            }
+            "polylist" => polylist(tree, primitive, &corners, &mut polygons)?,
+            "polygons" => {
+                for face in primitive
+                    .children()
+                    .filter(|face| is(*face, "p") || is(*face, "ph"))
+                {
+                    let outline = if is(face, "p") {
+                        Some(face)
+                    } else {
+                        child(face, "p")
+                    };
+                    let outline =
+                        outline.ok_or_else(|| tree.fault(face, "it has no outline <p>"))?;
+                    let holes = children(face, "h")
+                        .map(&corners)
+                        .collect::<Result<Vec<_>, Fault>>()?;
+                    polygons.add(tree, face, &corners(outline)?, &holes)?;
+                }
+            }
+            _ => {
+                for p in children(primitive, "p") {
+                    let corners = corners(p)?;
+                    polygons.triangles.extend(if name == "trifans" {
+                        fan(&corners)
+                    } else {
+                        strip(&corners)
+                    });
+                }
+            }
+        }
+        let triangles = polygons.triangles;
+        let symbol = primitive
+            .attribute("material")
+            .unwrap_or_default()
+            .to_owned();
+        found.parts.push((
+            symbol,
+            MeshPart {
+                points,
+                triangles,
+                colour: None,
+            },
+        ));
+    }
+    Ok(found)
+}
+
+/// Faces on their way to triangles.
+struct Polygons<'a> {
+    points: &'a [DVec3],
+    triangles: Vec<[u32; 3]>,
+    found: &'a mut Geometry,
+}
+
+impl Polygons<'_> {
+    fn add(
+        &mut self,
+        tree: &Tree,
+        face: Node,
+        corners: &[u32],
+        holes: &[Vec<u32>],
+    ) -> Result<(), Fault> {
+        let Some(split) = split(self.points, corners, holes) else {
+            return Err(tree.fault(
+                face,
+                "the sides of a face cross each other, expected a plane face, or triangles",
+            ));
+        };
+        self.found.bent += usize::from(split.off_plane.is_some());
+        if split.folded {
+            self.found.doubtful.get_or_insert_with(|| {
+                format!(
+                    "line {}: a face is far from plane, and split one way or the other it is another shape; expected plane faces: export the part with triangles",
+                    tree.line(face)
+                )
+            });
+        }
+        self.triangles.extend(split.triangles);
+        Ok(())
+    }
+}
+
+fn polylist(
+    tree: &Tree,
+    primitive: Node,
+    corners: &dyn Fn(Node) -> Result<Vec<u32>, Fault>,
+    polygons: &mut Polygons,
+) -> Result<(), Fault> {
+    let element = |name: &str| primitive.children().find(|child| is(*child, name));
+    let (Some(counts), Some(p)) = (element("vcount"), element("p")) else {
+        // Of no faces.
+        return Ok(());
+    };
+    let all = corners(p)?;
+    let mut rest = &all[..];
+    for count in tree.indices(counts)? {
+        let Some((own, others)) = rest.split_at_checked(count as usize) else {
+            return Err(tree.fault(
+                counts,
+                format!("it asks for more corners than the {} of <p>", all.len()),
+            ));
+        };
+        polygons.add(tree, p, own, &[])?;
+        rest = others;
+    }
+    if rest.is_empty() {
+        return Ok(());
+    }
+    Err(tree.fault(
+        counts,
+        format!("it asks for {} corners less than <p> has", rest.len()),
+    ))
+}
+
+/// A primitive's points, the place of their index among each corner's, and how many each corner has; none without faces.
+fn positions<'a>(
+    tree: &Tree<'a>,
+    primitive: Node<'a, 'a>,
+) -> Result<Option<(Vec<DVec3>, usize, usize)>, Fault> {
+    let offset = |input: Node| -> Result<usize, Fault> {
+        // `idx` is that of COLLADA 1.3.
+        let text = input
+            .attribute("offset")
+            .or_else(|| input.attribute("idx"))
+            .unwrap_or("0");
+        let parsed = text
+            .trim()
+            .parse::<usize>()
+            .ok()
+            .filter(|offset| *offset < 64);
+        parsed.ok_or_else(|| {
+            tree.fault(
+                input,
+                format!("its offset is `{text}`, expected a whole number from 0"),
+            )
+        })
+    };
+    let mut stride = 1;
+    let mut own = None;
+    for input in children(primitive, "input") {
+        let offset = offset(input)?;
+        stride = stride.max(offset + 1);
+        match input.attribute("semantic") {
+            Some("VERTEX") => {
+                let vertices = tree.target(input, "source", "vertices")?;
+                let position = children(vertices, "input")
+                    .find(|inner| inner.attribute("semantic") == Some("POSITION"));
+                let position =
+                    position.ok_or_else(|| tree.fault(vertices, "it has no POSITION"))?;
+                own = Some((tree.target(position, "source", "source")?, offset));
+            }
+            Some("POSITION") if own.is_none() => {
+                own = Some((tree.target(input, "source", "source")?, offset))
+            }
+            _ => {}
+        }
+    }
+    match own {
+        Some((source, offset)) => Ok(Some((points(tree, source)?, offset, stride))),
+        None if child(primitive, "p").is_none() => Ok(None),
+        None => Err(tree.fault(primitive, "it has no input VERTEX")),
+    }
+}
+
+/// Points of a source, as its accessor picks them from its array.
+fn points<'a>(tree: &Tree<'a>, source: Node<'a, 'a>) -> Result<Vec<DVec3>, Fault> {
+    let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
+    let accessor = accessor.ok_or_else(|| tree.fault(source, "it has no accessor"))?;
+    let array = match tree.target(accessor, "source", "float_array") {
+        Ok(array) => array,
+        Err(fault) => tree
+            .target(accessor, "source", "int_array")
+            .map_err(|_| fault)?,
+    };
+    let numbers = tree.numbers(array)?;
+    let whole = |name: &str, usual: usize| match accessor.attribute(name) {
+        None => Ok(usual),
+        Some(text) => text.trim().parse::<usize>().map_err(|_| {
+            tree.fault(
+                accessor,
+                format!("its {name} is `{text}`, expected a whole number from 0"),
+            )
+        }),
+    };
+    let params: Vec<Option<&str>> = children(accessor, "param")
+        .map(|param| param.attribute("name"))
+        .collect();
+    let (stride, offset) = (whole("stride", params.len().max(1))?, whole("offset", 0)?);
+    let named = |name: &str| params.iter().position(|param| *param == Some(name));
+    let axes = match (named("X"), named("Y"), named("Z")) {
+        (Some(x), Some(y), Some(z)) => [x, y, z],
+        // Without names of axes the first three.
+        (None, None, None) if params.is_empty() || params.len() >= 3 => [0, 1, 2],
+        _ => {
+            return Err(tree.fault(
+                accessor,
+                format!("its {} params do not name X, Y and Z", params.len()),
+            ));
+        }
+    };
+    if stride == 0 || axes.iter().any(|axis| *axis >= stride) {
+        return Err(tree.fault(
+            accessor,
+            format!("its stride is {stride}, expected 3 or more for X, Y and Z"),
+        ));
+    }
+    let count = whole("count", numbers.len() / stride)?;
+    let present = numbers.get(offset..).unwrap_or_default();
+    let entries = present
+        .chunks(stride)
+        .take_while(|entry| axes.iter().all(|axis| *axis < entry.len()));
+    let points: Vec<DVec3> = entries
+        .take(count)
+        .map(|entry| DVec3::from_array(axes.map(|axis| entry[axis])))
+        .collect();
+    if points.len() < count {
+        return Err(tree.fault(
+            accessor,
+            format!(
+                "it counts {count} points, and its array holds {}",
+                points.len()
+            ),
+        ));
+    }
+    Ok(points)
+}
