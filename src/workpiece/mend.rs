@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use self::sides::Sides;
 use super::error::{NO_VOLUME, in_millimetres};
-use super::repair::extent;
+use super::repair::{Connected, extent};
 
 /// Tolerances within which borders are joined: shares of the part's extent, the finest first [1].
 const JOINTS: [f64; 4] = [1e-6, 1e-5, 1e-4, 5e-4];
@@ -203,17 +203,16 @@ impl Surface {
 }
 
 /// A mended surface: vertices, triangles and what was done; as it was where that is not enough.
-pub(super) fn mended(
-    vertices: &[DVec3],
-    triangles: &[[u32; 3]],
-) -> (Vec<DVec3>, Vec<[u32; 3]>, Vec<Mended>) {
-    let as_it_was = || (vertices.to_vec(), triangles.to_vec(), Vec::new());
+pub(super) fn mended(connected: &Connected) -> (Vec<DVec3>, Vec<[u32; 3]>, Vec<Mended>) {
+    let (vertices, triangles) = (&connected.vertices, &connected.triangles);
+    let as_it_was = || (vertices.clone(), triangles.clone(), Vec::new());
     let mut surface = Surface {
-        vertices: vertices.to_vec(),
-        triangles: triangles.to_vec(),
+        vertices: vertices.clone(),
+        triangles: triangles.clone(),
         mended: Vec::new(),
         open_volume: 0.0,
     };
+    surface.record(Flaw::Needle, connected.needles.iter().copied());
     let size = extent(vertices);
     if !surface.is_closed() || surface.has_needles(size) {
         surface.take_out_twice();

@@ -93,9 +93,8 @@ impl TriangleMesh {
         let corners: Vec<[u32; 3]> = (0..triangles.len() as u32)
             .map(|triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2])
             .collect();
-        let (vertices, connected) = connect(&used, &corners);
-        let (vertices, connected, mended) = mended(&vertices, &connected);
-        let mesh = Self::new(vertices, connected)?;
+        let (vertices, triangles, mended) = mended(&connect(&used, &corners));
+        let mesh = Self::new(vertices, triangles)?;
         let notes = mended.iter().map(Mended::note).collect();
         Ok(Self {
             mended,

@@ -27,8 +27,16 @@ pub(crate) fn extent(points: &[DVec3]) -> f64 {
     (high - low).max_element()
 }
 
+/// A surface with shared vertices.
+pub(crate) struct Connected {
+    pub(crate) vertices: Vec<DVec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Where needles were.
+    pub(crate) needles: Vec<DVec3>,
+}
+
 /// Merges vertices and removes triangles without area.
-pub(crate) fn connect(points: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+pub(crate) fn connect(points: &[DVec3], triangles: &[[u32; 3]]) -> Connected {
     let tolerance = MERGE_SHARE * extent(points);
     let (vertices, index_of) = weld(points, tolerance);
     let mut connected: Vec<[u32; 3]> = triangles
@@ -36,8 +44,17 @@ pub(crate) fn connect(points: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<DVec3>, 
         .map(|triangle| triangle.map(|vertex| index_of[vertex as usize]))
         .filter(|[a, b, c]| a != b && b != c && c != a)
         .collect();
-    flip_needles(&vertices, &mut connected, tolerance);
-    (vertices, connected)
+    let needles = flip_needles(&vertices, &mut connected, tolerance);
+    let mut needles: Vec<DVec3> = needles
+        .iter()
+        .map(|apex| vertices[*apex as usize])
+        .collect();
+    needles.dedup();
+    Connected {
+        vertices,
+        triangles: connected,
+        needles,
+    }
 }
 
 /// The merged vertices, and for each point the vertex that stands for it.
@@ -100,11 +117,12 @@ fn needle(vertices: &[DVec3], triangle: [u32; 3], tolerance: f64) -> Option<(u32
     (doubled_area <= tolerance * length).then_some((from, to, apex))
 }
 
-/// Removes needles by flipping the edge that they share with their neighbour along the long side.
-fn flip_needles(vertices: &[DVec3], triangles: &mut [[u32; 3]], tolerance: f64) {
+/// Removes needles by flipping the edge that they share with their neighbour along the long side; returns their apexes.
+fn flip_needles(vertices: &[DVec3], triangles: &mut [[u32; 3]], tolerance: f64) -> Vec<u32> {
+    let mut apexes = Vec::new();
     let is_needle = |triangle| needle(vertices, triangle, tolerance).is_some();
     if !triangles.iter().any(|&triangle| is_needle(triangle)) {
-        return;
+        return apexes;
     }
     let mut owner: HashMap<(u32, u32), usize> = HashMap::new();
     let sides = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a)];
@@ -140,11 +158,13 @@ fn flip_needles(vertices: &[DVec3], triangles: &mut [[u32; 3]], tolerance: f64) 
                 owner.extend(sides(triangles[changed]).map(|side| (side, changed)));
             }
             flipped = true;
+            apexes.push(apex);
         }
         if !flipped {
             break;
         }
     }
+    apexes
 }
 
 #[cfg(test)]
@@ -185,7 +205,12 @@ mod tests {
             [2, 0, 3],
         ];
         Topology::new(&triangles).unwrap();
-        let (vertices, connected) = connect(&vertices, &triangles);
+        let Connected {
+            vertices,
+            triangles: connected,
+            needles,
+        } = connect(&vertices, &triangles);
+        assert_eq!(needles, [DVec3::new(0.4, 0.0, 0.0)]);
         assert_eq!(connected.len(), 6);
         Topology::new(&connected).unwrap();
         for &triangle in &connected {
@@ -202,7 +227,8 @@ mod tests {
     #[test]
     fn collapsed_triangles_are_dropped() {
         let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1e-9, 0.0, 0.0)];
-        let (_, connected) = connect(&points, &[[0, 1, 2], [0, 3, 2]]);
-        assert_eq!(connected, [[0, 1, 2]]);
+        let connected = connect(&points, &[[0, 1, 2], [0, 3, 2]]);
+        assert_eq!(connected.triangles, [[0, 1, 2]]);
+        assert!(connected.needles.is_empty());
     }
 }

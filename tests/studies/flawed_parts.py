@@ -151,14 +151,19 @@ def make(random_):
 KINDS = ["twice", "double sided", "turned", "on a side", "unwelded", "hole", "fin", "needle", "touching"]
 
 
-def spoil(points, faces, kind, random_, size):
-    """Spoils one face; returns the place."""
+def spoil(points, faces, kind, random_, size, used):
+    """Spoils one face whose corners no other flaw has; returns the place."""
     for _ in range(1000):
         index = random_.randrange(len(faces))
         a, b, c = faces[index]
+        if len(used & {a, b, c}) > 1:
+            continue
         longest = max(math.dist(points[p], points[q]) for p, q in ((a, b), (b, c), (c, a)))
         if math.dist(points[a], points[b]) > 0.01 * size and (kind != "hole" or longest < 0.6 * size):
             break
+    else:
+        return None
+    used |= {a, b, c}
     middle = tuple(sum(points[corner][axis] for corner in (a, b, c)) / 3 for axis in range(3))
     half = tuple((points[a][axis] + points[b][axis]) / 2 for axis in range(3))
     normal = cross(sub(points[b], points[a]), sub(points[c], points[a]))
@@ -194,10 +199,35 @@ def spoil(points, faces, kind, random_, size):
         faces.append((a, b, new))
         return half
     elif kind == "touching":
-        # A small prism whose one edge lies on a side of the part's, in its middle.
-        along = tuple(0.2 * value for value in sub(points[b], points[a]))
-        raise NotImplementedError(along)
+        return touch(points, faces, (a, b), normal, size)
     return middle
+
+
+def touch(points, faces, edge, normal, size):
+    """A narrow body of its own that shares one outer edge with the part; no place where the edge is no outer one."""
+    a, b = edge
+    other = next((face for face in faces if a in face and b in face and face[(face.index(b) + 1) % 3] == a), None)
+    if other is None:
+        return None
+    p, q, r = (points[corner] for corner in other)
+    beside = cross(sub(q, p), sub(r, p))
+    beside = tuple(value / math.sqrt(dot(beside, beside)) for value in beside)
+    apex = next(corner for corner in other if corner not in edge)
+    if dot(normal, beside) > 0.5 or dot(normal, sub(points[apex], points[a])) > -1e-6:
+        return None
+    up = tuple(x + y for x, y in zip(normal, beside))
+    along = sub(points[b], points[a])
+    aside = cross(along, up)
+    half = tuple((x + y) / 2 for x, y in zip(points[a], points[b]))
+    height, width = 0.02 * size / math.sqrt(dot(up, up)), 0.004 * size / math.sqrt(dot(aside, aside))
+    new = len(points)
+    for sign in (1, -1):
+        points.append(tuple(m + height * u + sign * width * s for m, u, s in zip(half, up, aside)))
+    body = [(a, b, new), (b, a, new + 1), (a, new, new + 1), (b, new + 1, new)]
+    if volume(points, body) < 0:
+        body = [(x, z, y) for x, y, z in body]
+    faces += body
+    return half
 
 
 def write(path, points, faces):
@@ -241,14 +271,21 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(arguments.keep or scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        kinds = [kind for kind in KINDS if kind != "touching"]
         for number in range(arguments.count):
             form, part = make(random_)
             points, faces = list(part.points), list(part.faces)
             truth = volume(points, faces)
             size = max(max(p[axis] for p in points) - min(p[axis] for p in points) for axis in range(3))
-            kind, count = kinds[number % len(kinds)], random_.randint(1, 5)
-            places = [spoil(points, faces, kind, random_, size) for _ in range(count)]
+            kind, count = KINDS[number % len(KINDS)], random_.randint(1, 5)
+            places, used = [], set()
+            for _ in range(200):
+                if len(places) == count:
+                    break
+                place = spoil(points, faces, kind, random_, size, used)
+                places += [place] if place else []
+            if kind == "touching":
+                # What touches belongs to the part.
+                truth = volume(points, faces)
             path = folder / f"part_{number:02}.stl"
             write(path, points, faces)
             verdict, words = judge(arguments.idc, path, truth, places, size)

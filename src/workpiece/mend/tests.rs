@@ -46,7 +46,11 @@ fn check(points: &[DVec3], triangles: &[[u32; 3]], flaw: Flaw, place: DVec3) -> 
 #[test]
 fn a_sound_surface_stays_as_it_is() {
     let (points, triangles) = part();
-    let (same, faces, mended) = mended(&points, &triangles);
+    let (same, faces, mended) = mended(&Connected {
+        vertices: points.clone(),
+        triangles: triangles.clone(),
+        needles: Vec::new(),
+    });
     assert!(same == points && faces == triangles && mended.is_empty());
 }
 
