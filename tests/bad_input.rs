@@ -205,16 +205,18 @@ fn meshes() {
             &["part.stl: malformed mesh", "12 triangles", "316 bytes"],
         ),
         refusal(
-            // The last triangle is left out.
+            // The two triangles of the last side are left out.
             |b| {
                 part(b, |bytes| {
-                    bytes.truncate(84 + 11 * 50);
-                    bytes[80] = 11;
+                    bytes.truncate(84 + 10 * 50);
+                    bytes[80] = 10;
                 });
             },
             &[
-                "part.stl: mesh is not a closed surface: 3 open edges",
+                "part.stl: mesh is not a closed surface: 4 open edges",
                 "expected 0 of each",
+                "open at (",
+                "--out PAGE.html",
             ],
         ),
         refusal(
@@ -264,10 +266,6 @@ fn obstacles() {
             &["thing.stl: mesh is not a closed surface: 3 open edges"],
         ),
         refusal(
-            |b| mesh(b, &[[A, B, C], [A, TOP, B], [B, TOP, C], [C, TOP, A]]),
-            &["thing.stl: mesh is inside out"],
-        ),
-        refusal(
             |b| obstacle(b, "name = \"post\""),
             &[
                 "scenario.toml",
@@ -285,6 +283,13 @@ fn obstacles() {
     mesh(&bench, &[[A, C, B], [A, B, TOP], [B, C, TOP], [C, A, TOP]]);
     let outcome = bench.idc(&["check", "scenario.toml"], &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
+    // Wound inwards it is turned, and that is told.
+    let bench = Bench::new("plate_edge_ideal");
+    mesh(&bench, &[[A, B, C], [A, TOP, B], [B, TOP, C], [C, TOP, A]]);
+    let outcome = bench.idc(&["check", "scenario.toml"], &[]);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let told = "thing.stl: mended: 4 faces, all wound inwards turned, at (";
+    assert!(outcome.out.contains(told), "{}", outcome.out);
 }
 
 #[test]

@@ -147,6 +147,125 @@ fn an_inside_edge_is_told_and_has_no_lines_to_paste() {
     assert!(page.contains("18 edges and 8 outlines of faces, of which a tool can ride 17 and 6."));
 }
 
+/// A convex profile in x and z [mm], 40 mm wide along y, as a text STL's triangles.
+fn prism(outline: &[[f64; 2]]) -> Vec<[[f64; 3]; 3]> {
+    let at = |[x, z]: [f64; 2], y: f64| [x, y, z];
+    let mut triangles = Vec::new();
+    for (index, &from) in outline.iter().enumerate() {
+        let to = outline[(index + 1) % outline.len()];
+        triangles.push([at(from, 0.0), at(to, 40.0), at(to, 0.0)]);
+        triangles.push([at(from, 0.0), at(from, 40.0), at(to, 40.0)]);
+    }
+    for two in outline[1..].windows(2) {
+        triangles.push([at(outline[0], 0.0), at(two[0], 0.0), at(two[1], 0.0)]);
+        triangles.push([at(outline[0], 40.0), at(two[1], 40.0), at(two[0], 40.0)]);
+    }
+    triangles
+}
+
+fn stl(triangles: &[[[f64; 3]; 3]]) -> String {
+    let corner = |[x, y, z]: &[f64; 3]| format!("vertex {x} {y} {z}\n");
+    let facet = |corners: &[[f64; 3]; 3]| {
+        let corners: String = corners.iter().map(corner).collect();
+        format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+    };
+    let facets: String = triangles.iter().map(facet).collect();
+    format!("solid prism\n{facets}endsolid prism\n")
+}
+
+/// Corners of 90, 90, 135, 135 and 90 degrees.
+const PROFILE: [[f64; 2]; 5] = [
+    [0.0, 0.0],
+    [40.0, 0.0],
+    [40.0, 10.0],
+    [30.0, 20.0],
+    [0.0, 20.0],
+];
+
+#[test]
+fn the_angle_between_faces_is_that_of_the_profile_wherever_it_is_shown() {
+    let bench = Bench::new("plate_edge_ideal");
+    bench.write("prism.stl", stl(&prism(&PROFILE)));
+    let words = ["edges", "prism.stl", "--out", "page.html"];
+    let table = bench.idc(&words, &[]);
+    assert_eq!((table.code, table.err.as_str()), (0, ""));
+    let page = fs::read_to_string(bench.path("page.html")).unwrap();
+    let drawing = drawn(&page);
+    let list = bench.idc(&["edges", "prism.stl", "--json"], &[]);
+    let list: Value = serde_json::from_str(&list.out).unwrap();
+    let mut seen = 0;
+    for edge in list["edges"].as_array().unwrap() {
+        let ends = ["start_mm", "end_mm"].map(|key| edge[key].as_array().unwrap().clone());
+        let number = |end: usize, axis: usize| ends[end][axis].as_f64().unwrap();
+        if (number(0, 1) - number(1, 1)).abs() < 1.0 {
+            continue;
+        }
+        // The angle of the profile at this corner, by its two sides.
+        let here = PROFILE
+            .iter()
+            .position(|[x, z]| (x - number(0, 0)).abs() < 1e-3 && (z - number(0, 2)).abs() < 1e-3);
+        let here = here.unwrap();
+        let to = |other: usize| {
+            let [x, z] = PROFILE[other % 5];
+            (z - PROFILE[here][1]).atan2(x - PROFILE[here][0])
+        };
+        let turned = (to(here + 4) - to(here + 1)).to_degrees();
+        let expected = turned.rem_euclid(360.0);
+        for end in edge["angle_deg"].as_array().unwrap() {
+            assert!((end.as_f64().unwrap() - expected).abs() < 1e-6, "{end}");
+        }
+        let id = edge["id"].as_str().unwrap();
+        let row = table
+            .out
+            .lines()
+            .find(|line| line.split(' ').next() == Some(id));
+        assert!(row.unwrap().contains(&format!(" {expected:.1} convex")));
+        let lines = drawing["lines"].as_array().unwrap();
+        let line = lines.iter().find(|line| line["id"] == id).unwrap();
+        assert_eq!(line["facts"][1][1], format!("{expected:.1}°"));
+        seen += 1;
+    }
+    assert_eq!(seen, 5);
+}
+
+#[test]
+fn small_flaws_are_mended_with_places_and_others_shown_on_the_page() {
+    let bench = Bench::new("plate_edge_ideal");
+    let sound = prism(&PROFILE);
+    let mut turned = sound.clone();
+    turned[2].swap(0, 1);
+    bench.write("turned.stl", stl(&turned));
+    let outcome = bench.idc(&["edges", "turned.stl"], &[]);
+    assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
+    let told = "note: mended: 1 face wound against its neighbours turned, at (40, ";
+    assert!(outcome.out.contains(told), "{}", outcome.out);
+    // Without the side at x = 40 mm.
+    let open: Vec<_> = sound
+        .iter()
+        .copied()
+        .filter(|t| t.iter().any(|c| c[0] < 40.0))
+        .collect();
+    bench.write("open.stl", stl(&open));
+    let outcome = bench.idc(&["edges", "open.stl", "--out", "faults.html"], &[]);
+    assert_eq!(outcome.code, 2);
+    assert!(
+        outcome.err.contains("open.stl") && outcome.err.contains("4 open edges"),
+        "{}",
+        outcome.err
+    );
+    assert!(outcome.err.contains("open at (40, "), "{}", outcome.err);
+    let drawing = drawn(&fs::read_to_string(bench.path("faults.html")).unwrap());
+    let lines = drawing["lines"].as_array().unwrap();
+    assert_eq!(lines.len(), 4);
+    for line in lines {
+        let points = floats(&line["points"]);
+        assert!((points[0] - 40.0).abs() < 1e-3 && (points[3] - 40.0).abs() < 1e-3);
+        assert_eq!(line["facts"][0][1], "open");
+    }
+    let none = bench.idc(&["edges", "open.stl", "--json"], &[]);
+    assert_eq!((none.code, none.out.as_str()), (2, ""));
+}
+
 #[test]
 fn a_page_goes_where_nothing_stands() {
     let bench = Bench::new("plate_edge_ideal");

@@ -2,6 +2,7 @@
 
 mod faults;
 mod page;
+mod part;
 
 use std::path::PathBuf;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::super::space::{MILLIMETRES, body, floats};
-use super::page::{EYE, MOST_TRIANGLES, name_of, place, scene_of, short};
+use super::part::{EYE, MOST_TRIANGLES, name_of, place, scene_of, short};
 use crate::drawing::{self, Numbered};
 use crate::page::{
     Block, Drawing, DrawnLine, DrawnView, Page, PageSection, PageTable, TableCell, html,

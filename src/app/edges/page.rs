@@ -1,31 +1,23 @@
 //! The page of a part's edges, from which one is picked for a scenario.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 use glam::DVec3;
-use glamx::DPose3;
 
-use super::super::picture::PART;
 use super::super::space::{MILLIMETRES, body, floats};
+use super::part::{EYE, MOST_TRIANGLES, name_of, place, scene_of, short};
 use super::{EdgesArguments, MeshUnit, convexity, kind};
 use crate::drawing::{self, Numbered};
 use crate::page::{
     Block, Drawing, DrawnLine, DrawnView, Page, PageSection, PageTable, TableCell, html,
 };
 use crate::quantity::counted;
-use crate::recording::scene::{Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
 use crate::workpiece::{Convexity, CurveKind, EdgeCurve, EdgeList, TriangleMesh};
 
-/// Triangles of the part at most: about 2 MB of a page of less than 3 MB.
-pub(super) const MOST_TRIANGLES: usize = 80_000;
 /// The page's colours for lines.
 const COLOURS: usize = 5;
 /// How far an outline is drawn within the face that it bounds, so that outlines of neighbours lie apart: share of the part's size, and of its own length [1].
 const INSET: [f64; 2] = [0.012, 0.04];
-/// From where a part is looked at.
-pub(super) const EYE: DVec3 = DVec3::new(0.6, -1.0, 0.7);
-
 /// The page as a document.
 pub(super) fn page(
     arguments: &EdgesArguments,
@@ -99,11 +91,6 @@ pub(super) fn page(
     })
 }
 
-pub(super) fn name_of(mesh: &Path) -> String {
-    let name = mesh.file_name().unwrap_or_default();
-    name.to_string_lossy().into_owned()
-}
-
 fn verdict(mesh: &TriangleMesh, list: &EdgeList) -> String {
     let (low, high) = mesh.bounds();
     let size = (MILLIMETRES * (high - low)).to_array().map(short);
@@ -126,25 +113,6 @@ fn verdict(mesh: &TriangleMesh, list: &EdgeList) -> String {
         ),
     };
     format!("{} mm: {can}.", size.join(" × "))
-}
-
-/// The part alone, in its own frame.
-pub(super) fn scene_of(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Scene {
-    Scene {
-        bodies: vec![SceneBody {
-            entity: "workpiece".to_owned(),
-            shapes: vec![SceneShape {
-                body_from_shape: DPose3::IDENTITY,
-                geometry: SceneGeometry::Mesh {
-                    vertices,
-                    triangles,
-                },
-                colour: PART,
-            }],
-            world_from_body: ScenePoses::Static(DPose3::IDENTITY),
-        }],
-        ..Scene::default()
-    }
 }
 
 fn line(source: (&EdgesArguments, MeshUnit), curve: &EdgeCurve, size: f64) -> DrawnLine {
@@ -331,14 +299,4 @@ fn angle(curve: &EdgeCurve) -> String {
         true => format!("{low:.1}°"),
         false => format!("{low:.1} to {high:.1}°"),
     }
-}
-
-pub(super) fn place(point: DVec3) -> String {
-    (MILLIMETRES * point).to_array().map(short).join(", ")
-}
-
-/// To a micrometre, or a thousandth of a degree, without zeros at its end.
-pub(super) fn short(value: f64) -> String {
-    // Adding 0 turns -0 into 0.
-    ((1e3 * value).round() / 1e3 + 0.0).to_string()
 }

@@ -13,6 +13,16 @@ pub enum ArmError {
         /// Message of the system.
         source: std::io::Error,
     },
+    /// A Git LFS pointer in the file's place.
+    #[error(
+        "{file}: this is a Git LFS pointer to a file of {size} bytes, not the file itself; expected the URDF: `git lfs pull` in its repository fetches it"
+    )]
+    Pointer {
+        /// The URDF file.
+        file: PathBuf,
+        /// Size of the file that it points to [bytes].
+        size: String,
+    },
     /// The file is no URDF, or not all of one.
     #[error("{file}: not a valid URDF file: {fault}")]
     Incomplete {

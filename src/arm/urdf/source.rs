@@ -24,6 +24,10 @@ impl Source {
             file: path.to_path_buf(),
             source,
         })?;
+        if let Some(size) = crate::mesh_file::pointer_size(&bytes) {
+            let file = path.to_path_buf();
+            return Err(ArmError::Pointer { file, size });
+        }
         let text = String::from_utf8(bytes).map_err(|error| {
             let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             ArmError::Faulty {

@@ -39,100 +39,104 @@ pub(super) fn geometry<'a>(tree: &Tree<'a>, element: Node<'a, 'a>) -> Result<Geo
             // Sources, lines, what belongs to a program.
             continue;
         }
-        let Some((points, offset, stride)) = positions(tree, primitive)? else {
+        let Some(input) = positions(tree, primitive)? else {
             continue;
         };
-        let corners = |p: Node| -> Result<Vec<u32>, Fault> {
-            let indices = tree.indices(p)?;
-            let own: Vec<u32> = indices
-                .chunks_exact(stride)
-                .map(|one| one[offset])
-                .collect();
-            match own.iter().find(|index| **index as usize >= points.len()) {
-                Some(index) => Err(tree.fault(
-                    p,
-                    format!(
-                        "a corner refers to the missing vertex {index} (there are {})",
-                        points.len()
-                    ),
-                )),
-                None if indices.len() % stride != 0 => Err(tree.fault(
-                    p,
-                    format!(
-                        "it has {} indices, expected a multiple of {stride}",
-                        indices.len()
-                    ),
-                )),
-                None => Ok(own),
-            }
+        let triangles = triangles(tree, primitive, &input, &mut found)?;
+        let symbol = primitive.attribute("material").unwrap_or_default();
+        let part = MeshPart {
+            points: input.points,
+            triangles,
+            colour: None,
         };
-        let mut polygons = Polygons {
-            points: &points,
-            triangles: Vec::new(),
-            found: &mut found,
-        };
-        match name {
-            "triangles" => {
-                for p in children(primitive, "p") {
-                    let corners = corners(p)?;
-                    if corners.len() % 3 != 0 {
-                        return Err(tree.fault(
-                            p,
-                            format!("it has {} corners, expected a multiple of 3", corners.len()),
-                        ));
-                    }
-                    polygons.triangles.extend(
-                        corners
-                            .chunks_exact(3)
-                            .map(|three| [three[0], three[1], three[2]]),
-                    );
-                }
-            }
-            "polylist" => polylist(tree, primitive, &corners, &mut polygons)?,
-            "polygons" => {
-                for face in primitive
-                    .children()
-                    .filter(|face| is(*face, "p") || is(*face, "ph"))
-                {
-                    let outline = if is(face, "p") {
-                        Some(face)
-                    } else {
-                        child(face, "p")
-                    };
-                    let outline =
-                        outline.ok_or_else(|| tree.fault(face, "it has no outline <p>"))?;
-                    let holes = children(face, "h")
-                        .map(&corners)
-                        .collect::<Result<Vec<_>, Fault>>()?;
-                    polygons.add(tree, face, &corners(outline)?, &holes)?;
-                }
-            }
-            _ => {
-                for p in children(primitive, "p") {
-                    let corners = corners(p)?;
-                    polygons.triangles.extend(if name == "trifans" {
-                        fan(&corners)
-                    } else {
-                        strip(&corners)
-                    });
-                }
-            }
-        }
-        let triangles = polygons.triangles;
-        let symbol = primitive
-            .attribute("material")
-            .unwrap_or_default()
-            .to_owned();
-        found.parts.push((
-            symbol,
-            MeshPart {
-                points,
-                triangles,
-                colour: None,
-            },
-        ));
+        found.parts.push((symbol.to_owned(), part));
     }
     Ok(found)
+}
+
+/// What a primitive's corners mean.
+struct Input {
+    points: Vec<DVec3>,
+    /// Place of a point's index among those of a corner.
+    offset: usize,
+    /// Indices of a corner.
+    stride: usize,
+}
+
+impl Input {
+    /// Corners of an element with indices, by their points.
+    fn corners(&self, tree: &Tree, p: Node) -> Result<Vec<u32>, Fault> {
+        let indices = tree.indices(p)?;
+        let (stride, count) = (self.stride, self.points.len());
+        if indices.len() % stride != 0 {
+            let length = indices.len();
+            let reason = format!("it has {length} indices, expected a multiple of {stride}");
+            return Err(tree.fault(p, reason));
+        }
+        let corners = indices.chunks_exact(stride).map(|one| one[self.offset]);
+        let corners: Vec<u32> = corners.collect();
+        match corners.iter().find(|index| **index as usize >= count) {
+            None => Ok(corners),
+            Some(index) => {
+                let reason =
+                    format!("a corner refers to the missing vertex {index} (there are {count})");
+                Err(tree.fault(p, reason))
+            }
+        }
+    }
+}
+
+/// The triangles of a primitive.
+fn triangles<'a>(
+    tree: &Tree<'a>,
+    primitive: Node<'a, 'a>,
+    input: &Input,
+    found: &mut Geometry,
+) -> Result<Vec<[u32; 3]>, Fault> {
+    let mut polygons = Polygons {
+        points: &input.points,
+        triangles: Vec::new(),
+        found,
+    };
+    match primitive.tag_name().name() {
+        "triangles" => {
+            for p in children(primitive, "p") {
+                let corners = input.corners(tree, p)?;
+                if corners.len() % 3 != 0 {
+                    let count = corners.len();
+                    let reason = format!("it has {count} corners, expected a multiple of 3");
+                    return Err(tree.fault(p, reason));
+                }
+                let triples = corners.chunks_exact(3);
+                let triples = triples.map(|three| [three[0], three[1], three[2]]);
+                polygons.triangles.extend(triples);
+            }
+        }
+        "polylist" => polylist(tree, primitive, input, &mut polygons)?,
+        "polygons" => {
+            let faces = primitive.children();
+            for face in faces.filter(|face| is(*face, "p") || is(*face, "ph")) {
+                let outline = match is(face, "p") {
+                    true => Some(face),
+                    false => child(face, "p"),
+                };
+                let outline = outline.ok_or_else(|| tree.fault(face, "it has no outline <p>"))?;
+                let holes = children(face, "h").map(|hole| input.corners(tree, hole));
+                let holes = holes.collect::<Result<Vec<_>, Fault>>()?;
+                polygons.add(tree, face, &input.corners(tree, outline)?, &holes)?;
+            }
+        }
+        strips => {
+            for p in children(primitive, "p") {
+                let corners = input.corners(tree, p)?;
+                polygons.triangles.extend(match strips {
+                    "trifans" => fan(&corners),
+                    _ => strip(&corners),
+                });
+            }
+        }
+    }
+    Ok(polygons.triangles)
 }
 
 /// Faces on their way to triangles.
@@ -173,7 +177,7 @@ impl Polygons<'_> {
 fn polylist(
     tree: &Tree,
     primitive: Node,
-    corners: &dyn Fn(Node) -> Result<Vec<u32>, Fault>,
+    input: &Input,
     polygons: &mut Polygons,
 ) -> Result<(), Fault> {
     let element = |name: &str| primitive.children().find(|child| is(*child, name));
@@ -181,7 +185,7 @@ fn polylist(
         // Of no faces.
         return Ok(());
     };
-    let all = corners(p)?;
+    let all = input.corners(tree, p)?;
     let mut rest = &all[..];
     for count in tree.indices(counts)? {
         let Some((own, others)) = rest.split_at_checked(count as usize) else {
@@ -202,11 +206,8 @@ fn polylist(
     ))
 }
 
-/// A primitive's points, the place of their index among each corner's, and how many each corner has; none without faces.
-fn positions<'a>(
-    tree: &Tree<'a>,
-    primitive: Node<'a, 'a>,
-) -> Result<Option<(Vec<DVec3>, usize, usize)>, Fault> {
+/// What a primitive's corners mean; none without faces.
+fn positions<'a>(tree: &Tree<'a>, primitive: Node<'a, 'a>) -> Result<Option<Input>, Fault> {
     let offset = |input: Node| -> Result<usize, Fault> {
         // `idx` is that of COLLADA 1.3.
         let text = input
@@ -246,7 +247,11 @@ fn positions<'a>(
         }
     }
     match own {
-        Some((source, offset)) => Ok(Some((points(tree, source)?, offset, stride))),
+        Some((source, offset)) => Ok(Some(Input {
+            points: points(tree, source)?,
+            offset,
+            stride,
+        })),
         None if child(primitive, "p").is_none() => Ok(None),
         None => Err(tree.fault(primitive, "it has no input VERTEX")),
     }

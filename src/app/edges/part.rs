@@ -1,0 +1,51 @@
+//! What the pages of a part's edges share: how it is drawn, how it and its places are called.
+
+use std::path::Path;
+
+use glam::DVec3;
+use glamx::DPose3;
+
+use super::super::picture::PART;
+use super::super::space::MILLIMETRES;
+use crate::recording::scene::{Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
+
+/// Triangles of the part at most: about 2 MB of a page of less than 3 MB.
+pub(super) const MOST_TRIANGLES: usize = 80_000;
+/// From where a part is looked at.
+pub(super) const EYE: DVec3 = DVec3::new(0.6, -1.0, 0.7);
+
+/// A part's name.
+pub(super) fn name_of(mesh: &Path) -> String {
+    let name = mesh.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}
+
+/// The part alone, in its own frame.
+pub(super) fn scene_of(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Scene {
+    Scene {
+        bodies: vec![SceneBody {
+            entity: "workpiece".to_owned(),
+            shapes: vec![SceneShape {
+                body_from_shape: DPose3::IDENTITY,
+                geometry: SceneGeometry::Mesh {
+                    vertices,
+                    triangles,
+                },
+                colour: PART,
+            }],
+            world_from_body: ScenePoses::Static(DPose3::IDENTITY),
+        }],
+        ..Scene::default()
+    }
+}
+
+/// A place [mm] in words.
+pub(super) fn place(point: DVec3) -> String {
+    (MILLIMETRES * point).to_array().map(short).join(", ")
+}
+
+/// To a micrometre, or a thousandth of a degree, without zeros at its end.
+pub(super) fn short(value: f64) -> String {
+    // Adding 0 turns -0 into 0.
+    ((1e3 * value).round() / 1e3 + 0.0).to_string()
+}
