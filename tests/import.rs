@@ -3,8 +3,10 @@
 mod bags;
 mod dialects;
 mod files;
+mod forms;
 mod real;
 mod refused;
+mod stored;
 
 use std::path::PathBuf;
 use std::process::Command;

@@ -63,6 +63,50 @@ fn folder() -> Bench {
     bench
 }
 
+/// Inputs of which nothing was recorded for a while before a sample.
+fn with_gap(sample: usize, seconds: f64) -> String {
+    let mut text = "time_s,set_pressure_pa,solenoid,surface_m\n".to_owned();
+    for i in 0..500 {
+        let time = 0.004 * i as f64 + if i < sample { 0.0 } else { seconds };
+        writeln!(text, "{time:.4},200000,1,0.02").unwrap();
+    }
+    text
+}
+
+#[test]
+fn a_gap_is_refused_with_where_it_is_and_what_to_do() {
+    let bench = folder();
+    bench.write(
+        "rig.toml",
+        format!("{RIG}\n[recordings]\nfit = [\"inputs.csv\"]\n"),
+    );
+    bench.write("inputs.csv", with_gap(200, 3600.0));
+    for command in [
+        &["predict", "rig.toml", "inputs.csv", "--out", "out.csv"][..],
+        &["check", "."],
+        &["diagnose", ".", "--out", "found"],
+    ] {
+        let outcome = bench.idc(command, &[]);
+        let line = outcome.only_line("error: ");
+        for words in [
+            "inputs.csv: nothing is recorded from 0.796 to 3600.800 s",
+            "the 200 samples before it and the 300 samples after it into a file each",
+            "`idc import --split`",
+        ] {
+            assert!(line.contains(words), "{line}\nlacks {words}");
+        }
+        assert_eq!(outcome.code, 2);
+        assert!(!bench.path("out.csv").exists() && !bench.path("found").exists());
+    }
+    // Some dropped samples are none.
+    bench.write("inputs.csv", with_gap(200, 0.9));
+    assert_eq!(predict(&bench).code, 0);
+    let parquet = ["predict", "rig.toml", "inputs.csv", "--out", "out.parquet"];
+    let outcome = bench.idc(&parquet, &[]);
+    assert!(outcome.only_line("error: ").contains("out.parquet"));
+    assert_eq!(outcome.code, 2);
+}
+
 fn predict(bench: &Bench) -> Outcome {
     bench.idc(
         &[

@@ -5,6 +5,7 @@ mod told;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -16,6 +17,8 @@ use super::output::say;
 use super::progress;
 use crate::import::findings::same_data;
 use crate::import::{ImportMap, Imported, LogNote, import, load_map};
+use crate::recording::csv::write_recording;
+use crate::recording::gaps::parts;
 use crate::recording::parquet::write_parquet;
 use told::{Copies, Job, name};
 
@@ -26,9 +29,12 @@ pub(super) struct ImportArguments {
     /// Logs in place of those that the map names, in its order; several times as many make several recordings.
     #[arg(value_name = "LOG")]
     logs: Vec<PathBuf>,
-    /// Recording to write, a Parquet file; or a folder, where each is named by its first log. Nothing is written without it.
+    /// Recording to write, .parquet or .csv; or a folder, where each is named by its first log. Nothing is written without it.
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    /// Write what stands between gaps as recordings of their own, numbered from 1; `idc diagnose` takes no recording with a gap.
+    #[arg(long, help_heading = "Output", requires = "out")]
+    split: bool,
     /// Put new results in place of old ones.
     #[arg(long, help_heading = "Output")]
     force: bool,
@@ -43,6 +49,9 @@ pub(super) struct ImportArguments {
 /// Imports logs, one recording for as many as the map has files; nothing is written before all of them have been read.
 pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     let map = load_map(&arguments.map)?;
+    if let Some(out) = &arguments.out {
+        check_ending(out)?;
+    }
     let each = map.files.len();
     if !arguments.logs.len().is_multiple_of(each) {
         return Err(AppError::Logs {
@@ -66,12 +75,20 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
         bar.inc(*size);
         let out = arguments.out.as_ref();
         let out = out.map(|out| destination(out, &imported, groups.len()));
-        jobs.push(Job { imported, out });
+        let whole = 0..imported.recording.sample_count();
+        let parts = match arguments.split {
+            true => parts(imported.recording.time()),
+            false => vec![whole],
+        };
+        jobs.push(Job {
+            outs: out.map_or(Vec::new(), |out| numbered(&out, parts)),
+            imported,
+        });
     }
     bar.finish_and_clear();
     drop(reading);
     check_destinations(&jobs)?;
-    for path in jobs.iter().filter_map(|job| job.out.as_ref()) {
+    for (path, _) in jobs.iter().flat_map(|job| &job.outs) {
         prepare_file(path, "--out", Standing::of(arguments.force))?;
     }
     let copies = copies(&jobs);
@@ -80,12 +97,14 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
         Interruptible::new(move |done| format!("{done} of {count} recordings are written and kept in {out}; the same command with --force writes all of them"))
     });
     for job in &jobs {
-        let Some(path) = &job.out else { continue };
-        write_parquet(
-            path,
-            &job.imported.recording,
-            &provenance(&job.imported, &map),
-        )?;
+        for (path, samples) in &job.outs {
+            let part = job.imported.recording.part(samples.clone())?;
+            if is_csv(path) {
+                write_recording(path, &part)?;
+            } else {
+                write_parquet(path, &part, &provenance(&job.imported, &map))?;
+            }
+        }
         interruptible.iter().for_each(Interruptible::one_more);
     }
     if arguments.json {
@@ -96,6 +115,48 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
+/// Whether a recording is written as comma-separated values, by the ending of its name.
+fn is_csv(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default();
+    ending.eq_ignore_ascii_case("csv")
+}
+
+/// Refuses a name whose ending is that of neither form, and of no folder.
+fn check_ending(out: &Path) -> Result<(), AppError> {
+    let is_parquet = |ending: &std::ffi::OsStr| ending.eq_ignore_ascii_case("parquet");
+    let is_known = out.extension().is_some_and(is_parquet) || is_csv(out);
+    if is_known || out.is_dir() || is_folder_name(out) || out.extension().is_none() {
+        return Ok(());
+    }
+    Err(AppError::OutputFile {
+        file: out.display().to_string(),
+        option: "--out",
+        reason: "the ending of its name says which form it has, and is neither .parquet nor .csv (the name of a folder ends in /)".to_owned(),
+    })
+}
+
+fn is_folder_name(out: &Path) -> bool {
+    out.as_os_str().to_string_lossy().ends_with('/')
+}
+
+/// Where the parts of a recording go: one alone as it is called, several numbered from 1.
+fn numbered(out: &Path, parts: Vec<Range<usize>>) -> Vec<(PathBuf, Range<usize>)> {
+    if parts.len() == 1 {
+        return parts
+            .into_iter()
+            .map(|part| (out.to_owned(), part))
+            .collect();
+    }
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = out.extension().unwrap_or_default().to_string_lossy();
+    let name = |index: usize| out.with_file_name(format!("{stem}-{}.{ending}", index + 1));
+    parts
+        .into_iter()
+        .enumerate()
+        .map(|(index, part)| (name(index), part))
+        .collect()
+}
+
 /// Size of logs together [bytes].
 fn bytes(logs: &[PathBuf]) -> u64 {
     let size = |log: &PathBuf| std::fs::metadata(log).map_or(0, |file| file.len());
@@ -104,7 +165,7 @@ fn bytes(logs: &[PathBuf]) -> u64 {
 
 /// Where a recording goes: into a folder, named by its first log, unless it is alone and the folder is none.
 fn destination(out: &Path, imported: &Imported, count: usize) -> PathBuf {
-    let is_folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with('/');
+    let is_folder = out.is_dir() || is_folder_name(out) || out.extension().is_none();
     if count == 1 && !is_folder {
         return out.to_owned();
     }
@@ -117,20 +178,21 @@ fn destination(out: &Path, imported: &Imported, count: usize) -> PathBuf {
 /// Refuses recordings that would take each other's place, or a log's.
 fn check_destinations(jobs: &[Job]) -> Result<(), AppError> {
     for (index, job) in jobs.iter().enumerate() {
-        let Some(out) = &job.out else { continue };
-        let same = jobs[..index].iter().find(|other| other.out == job.out);
-        if let Some(other) = same {
-            return Err(AppError::SameOutput {
-                one: other.imported.logs[0].file.clone(),
-                other: job.imported.logs[0].file.clone(),
-                out: out.clone(),
-            });
-        }
-        let mut logs = jobs.iter().flat_map(|job| &job.imported.logs);
-        if logs.any(|log| is_same(&log.file, out)) {
-            return Err(AppError::Overwrites {
-                file: out.display().to_string(),
-            });
+        for (out, _) in &job.outs {
+            let has = |other: &&Job| other.outs.iter().any(|(path, _)| path == out);
+            if let Some(other) = jobs[..index].iter().find(has) {
+                return Err(AppError::SameOutput {
+                    one: other.imported.logs[0].file.clone(),
+                    other: job.imported.logs[0].file.clone(),
+                    out: out.clone(),
+                });
+            }
+            let mut logs = jobs.iter().flat_map(|job| &job.imported.logs);
+            if logs.any(|log| is_same(&log.file, out)) {
+                return Err(AppError::Overwrites {
+                    file: out.display().to_string(),
+                });
+            }
         }
     }
     Ok(())
@@ -164,7 +226,7 @@ fn text(map: &ImportMap, jobs: &[Job], copies: &[Copies]) -> String {
             100.0 * share
         );
     }
-    for out in jobs.iter().filter_map(|job| job.out.as_ref()) {
+    for (out, _) in jobs.iter().flat_map(|job| &job.outs) {
         let _ = writeln!(text, "written to {}", out.display());
     }
     text

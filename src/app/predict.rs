@@ -93,6 +93,14 @@ fn prepare(arguments: &PredictArguments) -> Result<(), AppError> {
             });
         }
     }
+    let ending = arguments.out.extension();
+    if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("csv")) {
+        return Err(AppError::OutputFile {
+            file: arguments.out.display().to_string(),
+            option: "--out",
+            reason: "a prediction is written as comma-separated values, and its name ends otherwise than in .csv".to_owned(),
+        });
+    }
     prepare_file(&arguments.out, "--out", Standing::of(arguments.force))
 }
 

@@ -1,4 +1,4 @@
-//! Progress of a command: a bar with the time that is left, in a terminal and nowhere else, and only once a second has passed.
+//! Progress of a command: in a terminal a bar with the time that is left, only once a second has passed; elsewhere the stages of long work, a line each.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -83,6 +83,8 @@ pub(super) fn spinner(first: &str, hidden: bool) -> ProgressBar {
 /// A line for what has stages, of which it is known about what share of the work lies before each.
 pub(super) struct StagedLine {
     line: ProgressBar,
+    /// The stage that was printed last, where each is a line of its own; none where they are not.
+    printed: Option<Mutex<String>>,
     /// When the last mark was passed, and the share of the work that lay before it.
     mark: Arc<Mutex<Option<(Duration, f64)>>>,
 }
@@ -103,7 +105,11 @@ impl StagedLine {
         line.set_style(style.with_key("left", left));
         line.set_message(first.to_owned());
         show_later(&line, hidden);
-        Self { line, mark }
+        Self {
+            line,
+            printed: (!hidden && !is_terminal()).then(Mutex::default),
+            mark,
+        }
     }
 
     /// Shows other words; a share of the work [1] lies behind, if that is known.
@@ -111,6 +117,14 @@ impl StagedLine {
         if let Some(share) = share {
             let now = (self.line.elapsed(), share);
             *self.mark.lock().unwrap_or_else(PoisonError::into_inner) = Some(now);
+        }
+        if let Some(printed) = &self.printed {
+            let stage = words.split(',').next().unwrap_or_default();
+            let mut printed = printed.lock().unwrap_or_else(PoisonError::into_inner);
+            if *printed != stage {
+                eprintln!("{stage}");
+                stage.clone_into(&mut printed);
+            }
         }
         self.line.set_message(words);
     }
@@ -135,6 +149,18 @@ fn left(elapsed: Duration, mark: Option<(Duration, f64)>) -> String {
     format!(", about {:.0} s left", (left / digit).round() * digit)
 }
 
+/// Prints a line where no bar is drawn, as into a file or a pipe.
+pub(super) fn without_bar(words: &str, hidden: bool) {
+    if !hidden && !is_terminal() {
+        eprintln!("{words}");
+    }
+}
+
+fn is_terminal() -> bool {
+    use std::io::IsTerminal as _;
+    std::io::stderr().is_terminal()
+}
+
 /// Tells a bar how much is done.
 pub(super) fn tell(bar: &ProgressBar, done: usize, total: usize) {
     bar.set_length(total as u64);
@@ -143,9 +169,8 @@ pub(super) fn tell(bar: &ProgressBar, done: usize, total: usize) {
 
 /// Shows a bar once it has been waited for, and from then on also between its steps.
 fn show_later(bar: &ProgressBar, hidden: bool) {
-    use std::io::IsTerminal as _;
     // Its thread is for a terminal alone.
-    if hidden || !std::io::stderr().is_terminal() {
+    if hidden || !is_terminal() {
         return;
     }
     let waiting = bar.downgrade();

@@ -4,6 +4,8 @@ use super::flange::Run;
 use crate::plant::{
     CHANNELS, Chain, Channel, InitialState, InputError, MeasuredMotion, PlantInputs,
 };
+use crate::quantity::counted;
+use crate::recording::gaps::{Gap, longest_gap, longest_pause};
 use crate::recording::{Recording, RecordingError, schema};
 use std::sync::Arc;
 
@@ -59,6 +61,18 @@ pub enum RecordedError {
         /// The misfit.
         source: InputError,
     },
+    /// A time of which nothing was recorded.
+    #[error("{file}: nothing is recorded from {:.3} to {:.3} s, and what the device did in those {:.0} s is not known; expected no gap longer than {pause:.1} s: \
+        put the {} before it and the {} after it into a file each (`idc import --split` does so with a log)",
+        gap.from, gap.to, gap.to - gap.from, counted(gap.before, "sample"), counted(gap.after, "sample"))]
+    Gap {
+        /// File name.
+        file: String,
+        /// The gap.
+        gap: Gap,
+        /// Longest pause that is none [s].
+        pause: f64,
+    },
     /// Too short.
     #[error("{file}: {found} samples are too few to tell anything, expected at least {expected}")]
     TooShort {
@@ -108,7 +122,20 @@ pub fn check(file: &str, inputs: &PlantInputs) -> Result<(), RecordedError> {
     inputs.check().map_err(|source| RecordedError::Inputs {
         file: file.to_owned(),
         source,
-    })
+    })?;
+    check_gaps(file, &inputs.time)
+}
+
+/// Refuses a recording with a gap in it: a simulation would go through it, an hour for an hour, and know nothing of what happened there.
+fn check_gaps(file: &str, time: &[f64]) -> Result<(), RecordedError> {
+    match longest_gap(time) {
+        None => Ok(()),
+        Some(gap) => Err(RecordedError::Gap {
+            file: file.to_owned(),
+            gap,
+            pause: longest_pause(time),
+        }),
+    }
 }
 
 /// Takes a recording apart. Commands that were lost are held, a surface that is lost for a moment is filled in.
@@ -206,6 +233,7 @@ pub fn recorded_of(
 /// # Errors
 /// One of them is absent.
 pub fn run_of(file: &str, name: &str, recording: &Recording) -> Result<Run, RecordedError> {
+    check_gaps(file, recording.time())?;
     let values = |quantity: &str| {
         let mut values = values_of(file, recording, quantity)?;
         hold(&mut values);

@@ -13,6 +13,7 @@ use super::rows::{Remark, Rows};
 mod definition;
 mod field;
 pub(super) mod glance;
+mod listed;
 mod mcap_file;
 mod message;
 mod sqlite_file;
@@ -20,6 +21,7 @@ mod standard;
 mod store;
 mod topic;
 
+pub(super) use store::is_packed;
 use store::{Scan, Stores};
 use topic::topics;
 
@@ -27,7 +29,11 @@ use topic::topics;
 pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError> {
     let stores = open(path)?;
     let scan = Scan::of(&stores);
-    let mut remarks = Vec::new();
+    let mut remarks = stores.notes.clone();
+    remarks.extend(missing(path, map, &stores)?);
+    if stores.missing.is_empty() && scan.cause.is_none() {
+        remarks.extend(scan.lost(&stores).map(Remark::Note));
+    }
     if let Some(cause) = &scan.cause {
         let rest = scan.rest();
         if !map.accepts_truncated {
@@ -58,6 +64,28 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError>
         .into_iter()
         .map(|topic| topic.into_rows(path, map, &remarks))
         .collect()
+}
+
+/// Remark on files that the bag's own list has and its folder has not, where the map accepts that.
+fn missing(path: &Path, map: &FileMap, stores: &Stores) -> Result<Option<Remark>, ImportError> {
+    if stores.missing.is_empty() {
+        return Ok(None);
+    }
+    let found = format!(
+        "its metadata.yaml names {}, not there",
+        stores.missing.join(", ")
+    );
+    let rest = format!("{} of its files are", stores.count());
+    if map.accepts_truncated {
+        return Ok(Some(Remark::Truncated(format!("{found}; {rest}"))));
+    }
+    Err(ImportError::Truncated {
+        file: path.to_owned(),
+        found,
+        rest,
+        advice: "put them back, or `accept_truncated = true` in the map's [[file]] uses those that are there"
+            .to_owned(),
+    })
 }
 
 fn open(path: &Path) -> Result<Stores, ImportError> {

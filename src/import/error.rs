@@ -17,6 +17,18 @@ pub enum ImportError {
         /// Why.
         cause: String,
     },
+    /// A file of another form than the map says, or of one that is not read.
+    #[error("{} is {what}; expected {expected}: {advice}", file.display())]
+    Form {
+        /// The file.
+        file: PathBuf,
+        /// Its form.
+        what: String,
+        /// The form expected.
+        expected: String,
+        /// The remedy.
+        advice: String,
+    },
     /// A text whose encoding cannot be told, or is not the map's.
     #[error("the encoding of {} cannot be told: {seen}; `encoding` in the map's [[file]] names it: \
         encoding = \"windows-1252\", \"utf-8\", \"utf-16le\", \"windows-1251\", \"ibm866\" or another", file.display())]

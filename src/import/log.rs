@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::ImportError;
 use super::map::{FileMap, Form};
 use super::rows::{Remark, Rows, Times};
-use super::{bag, mat_log, parquet_log, text};
+use super::{bag, mat_log, parquet_log, spreadsheet, tdms_log, text};
 
 /// Times from here on count from 1970, not from a start [s]: over three years.
 const EPOCH: f64 = 1e8;
@@ -41,6 +41,11 @@ pub fn read_log(path: &Path, map: &FileMap) -> Result<Log, ImportError> {
         Form::Parquet => vec![parquet_log::read(path, map)?],
         Form::Mat5 => vec![mat_log::read(path, map)?],
         Form::Bag => bag::read(path, map)?,
+        Form::Tdms => tdms_log::read(path, map)?,
+        Form::Spreadsheet { sheet, text } => {
+            let content = spreadsheet::read(path, sheet.as_deref())?.text;
+            vec![text::read_content(path, &content, text, map)?]
+        }
     };
     let mut log = Log {
         series: vec![Series::default(); map.channels.len()],
@@ -68,29 +73,47 @@ pub fn read_log(path: &Path, map: &FileMap) -> Result<Log, ImportError> {
     Ok(log)
 }
 
-/// Times in seconds, and the whole seconds since 1970 that were taken off them.
+/// Times in seconds, and the whole seconds since 1970 that were taken off them. Among times since 1970 zero is none: NaN.
 fn seconds(map: &FileMap, times: Times) -> (Vec<f64>, f64) {
     match times {
         Times::Numbers(numbers) => {
             let unit = map.time.as_ref().and_then(|time| time.unit);
             let to_si = |number: &f64| unit.map_or(*number, |unit| unit.to_si(*number));
             let time: Vec<f64> = numbers.iter().map(to_si).collect();
-            let epoch = match time.first() {
-                Some(first) if first.abs() > EPOCH => first.floor(),
-                _ => 0.0,
-            };
-            (time.iter().map(|t| t - epoch).collect(), epoch)
+            match time.iter().find(|time| **time != 0.0) {
+                Some(first) if first.abs() > EPOCH => {
+                    let epoch = first.floor();
+                    let since = |t: &f64| if *t == 0.0 { f64::NAN } else { t - epoch };
+                    (time.iter().map(since).collect(), epoch)
+                }
+                _ => (time, 0.0),
+            }
         }
         // Taken off before they are numbers: a double has steps of 0.2 us by now.
-        Times::Nanoseconds(stamps) => {
-            let epoch = match stamps.first() {
-                Some(first) if *first as f64 > EPOCH * 1e9 => first.div_euclid(NANOSECONDS),
-                _ => 0,
-            };
-            let since = |stamp: &i64| (stamp - epoch * NANOSECONDS) as f64 * 1e-9;
-            (stamps.iter().map(since).collect(), epoch as f64)
-        }
+        Times::Nanoseconds(stamps) => match stamps.iter().find(|stamp| **stamp != 0) {
+            Some(first) if *first as f64 > EPOCH * 1e9 => {
+                let epoch = first.div_euclid(NANOSECONDS);
+                let since = |stamp: &i64| match stamp {
+                    0 => f64::NAN,
+                    stamp => (stamp - epoch * NANOSECONDS) as f64 * 1e-9,
+                };
+                (stamps.iter().map(since).collect(), epoch as f64)
+            }
+            _ => {
+                let since = |stamp: &i64| *stamp as f64 * 1e-9;
+                (stamps.iter().map(since).collect(), 0.0)
+            }
+        },
     }
+}
+
+/// Whether times fall and never rise.
+fn fall(time: &[f64], rows: &[usize]) -> bool {
+    let falls = |pair: &[usize]| time[pair[1]] <= time[pair[0]];
+    let [Some(first), Some(last)] = [rows.first(), rows.last()] else {
+        return false;
+    };
+    rows.len() > 2 && time[*last] < time[*first] && rows.windows(2).all(falls)
 }
 
 /// Ratio from which a time may have fallen by a thousand, less some steps.
@@ -127,6 +150,16 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
     }
     if first + last > 0 {
         remarks.push(Remark::Dropped([first, last]));
+    }
+    let (mut kept, unstamped): (Vec<usize>, Vec<usize>) =
+        kept.partition(|row| !time[*row].is_nan());
+    if !unstamped.is_empty() {
+        let lines = unstamped.iter().map(|row| lines[*row]).collect();
+        remarks.push(Remark::Unstamped(lines));
+    }
+    if fall(&time, &kept) {
+        kept.reverse();
+        remarks.push(Remark::Reversed);
     }
     let (mut taken, mut repeated, mut stamped) = (Vec::new(), Vec::new(), Vec::new());
     let same = |a: f64, b: f64| a == b || (a.is_nan() && b.is_nan());

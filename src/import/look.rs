@@ -8,9 +8,11 @@
 use std::path::{Path, PathBuf};
 
 use super::error::ImportError;
+use super::{bag, signature};
 
 mod assign;
 mod forms;
+mod joints;
 mod marks;
 mod names;
 mod seen;
@@ -50,13 +52,31 @@ pub fn draft(title: &str, paths: &[PathBuf]) -> Result<Draft, ImportError> {
     Ok(write::draft(title, &kinds))
 }
 
+/// Looks at a log, by what it begins with; by its name where that says nothing.
 fn look(path: &Path) -> Result<Looked, ImportError> {
+    if path.is_dir() {
+        return forms::bag(path);
+    }
     let ending = path.extension().unwrap_or_default().to_string_lossy();
-    match ending.to_lowercase().as_str() {
+    let by_name = match ending.to_lowercase().as_str() {
+        "parquet" => "parquet",
+        "mat" => "mat5",
+        "mcap" | "db3" => "bag",
+        _ => "text",
+    };
+    let form = match signature::of_file(path)? {
+        Some(found) => found
+            .form
+            .ok_or_else(|| found.refusal(path, signature::READ))?,
+        None => by_name,
+    };
+    match form {
         "parquet" => forms::parquet(path),
-        "mat" => forms::mat(path),
-        "mcap" | "db3" => forms::bag(path),
-        _ if path.is_dir() => forms::bag(path),
+        "mat5" => forms::mat(path),
+        "tdms" => forms::tdms(path),
+        "spreadsheet" => forms::spreadsheet(path),
+        "bag" => forms::bag(path),
+        _ if bag::is_packed(path) => forms::bag(path),
         _ => text::look(path),
     }
 }

@@ -50,7 +50,7 @@ pub struct FileMap {
     pub accepts_truncated: bool,
     /// Its clock.
     pub clock: Clock,
-    /// Its times; none for the times at which a bag's messages were logged.
+    /// Its times; none for those at which a bag's messages were logged, or that a TDMS file's waveforms say.
     pub time: Option<TimeMap>,
     /// Its channels.
     pub channels: Vec<ChannelMap>,
@@ -67,6 +67,15 @@ pub enum Form {
     Mat5,
     /// A bag of ROS 2 messages: MCAP or SQLite, a file or the folder of one.
     Bag,
+    /// TDMS of LabVIEW.
+    Tdms,
+    /// A sheet of a spreadsheet, read as the text that it would be exported as.
+    Spreadsheet {
+        /// Its name; none for the only one that holds anything.
+        sheet: Option<String>,
+        /// The form of that text.
+        text: TextForm,
+    },
 }
 
 /// Form of a text.

@@ -77,7 +77,8 @@ fn file_map(
         .as_ref()
         .map(|time| time_map(document, &table, keys.form, time))
         .transpose()?;
-    if time.is_none() && !matches!(keys.form, FormKey::Bag | FormKey::Mcap) {
+    let says_times = matches!(keys.form, FormKey::Bag | FormKey::Mcap | FormKey::Tdms);
+    if time.is_none() && !says_times {
         return Err(section.missing("time", "the column that holds the times, and its unit"));
     }
     if keys.channel.is_empty() {
@@ -122,6 +123,9 @@ fn file_map(
 }
 
 fn form(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
+    if keys.sheet.is_some() && !matches!(keys.form, FormKey::Spreadsheet) {
+        return Err(section.misplaced("sheet", "only a spreadsheet has it".to_owned()));
+    }
     let of_text = [
         ("encoding", keys.encoding.is_some()),
         ("thousands_mark", keys.thousands_mark.is_some()),
@@ -136,11 +140,30 @@ fn form(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
         FormKey::Parquet => Form::Parquet,
         FormKey::Mat5 => Form::Mat5,
         FormKey::Bag | FormKey::Mcap => Form::Bag,
+        FormKey::Tdms => Form::Tdms,
+        FormKey::Spreadsheet => return spreadsheet(section, keys),
     };
     match of_text.iter().find(|(_, given)| *given) {
         Some((key, _)) => Err(section.misplaced(key, "only a text has it".to_owned())),
         None => Ok(other),
     }
+}
+
+fn spreadsheet(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
+    let of_files = [
+        ("encoding", keys.encoding.is_some()),
+        ("separator", keys.separator.is_some()),
+        ("field_widths", keys.field_widths.is_some()),
+        ("decimal_mark", keys.decimal_mark.is_some()),
+        ("thousands_mark", keys.thousands_mark.is_some()),
+    ];
+    if let Some((key, _)) = of_files.iter().find(|(_, given)| *given) {
+        return Err(section.misplaced(key, "only a text has it".to_owned()));
+    }
+    Ok(Form::Spreadsheet {
+        sheet: keys.sheet.clone(),
+        text: text_form(section, keys)?,
+    })
 }
 
 fn text_form(section: &Section<'_>, keys: &FileKeys) -> Result<TextForm, ScenarioError> {
@@ -290,7 +313,11 @@ fn time_map(
         .into_iter()
         .chain(of_stamps)
     {
-        if given && !matches!(form, FormKey::Text) {
+        let has_texts = matches!(
+            form,
+            FormKey::Text | FormKey::Spreadsheet | FormKey::Parquet
+        );
+        if given && !has_texts {
             return Err(section.misplaced(key, "only a text has it".to_owned()));
         }
     }

@@ -16,6 +16,7 @@ use matfile::{MatFile, NumericData};
 use super::error::ImportError;
 use super::map::{Column, FileMap};
 use super::rows::{Remark, Rows, Times, places};
+use super::signature;
 
 const HEADER: usize = 128;
 const TAG: usize = 8;
@@ -50,6 +51,7 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
         file: path.to_owned(),
         cause,
     };
+    signature::check(path, "mat5", "a MAT file of version 5 to 7")?;
     let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
     let contents = contents(&bytes).map_err(fail)?;
     let names: Vec<String> = contents.columns.iter().map(|c| c.name.clone()).collect();

@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use super::error::ImportError;
-use super::map::{FileMap, TimeMap};
+use super::map::{ChannelMap, FileMap, TimeMap};
+use super::numbers::Marks;
 use super::rows::{Rows, Times, places};
-use super::units;
+use super::{signature, stamps, units, words};
 use crate::recording::Unit;
 use crate::recording::table::{Cells, Table};
 
 /// Reads the rows of a table.
 pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
+    signature::check(path, "parquet", "a Parquet table")?;
     let table = Table::open(path)?;
     let names = table.names();
     let (time_place, channel_places) = places(path, map, Some(&names), names.len())?;
@@ -21,11 +23,10 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
         // A Parquet's map has a time.
         _ => Times::default(),
     };
-    let columns: Vec<Vec<f64>> = cells.map(numbers).collect();
-    let count = match &time {
-        Times::Numbers(numbers) => numbers.len(),
-        Times::Nanoseconds(stamps) => stamps.len(),
-    };
+    let pairs = cells.zip(&map.channels);
+    let columns = pairs.map(|(cells, channel)| values(path, channel, cells));
+    let columns: Vec<Vec<f64>> = columns.collect::<Result<_, _>>()?;
+    let count = time.len();
     Ok(Rows {
         channels: (0..map.channels.len()).collect(),
         time,
@@ -35,18 +36,60 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
     })
 }
 
-/// Stamps are numbers too, as of when a valve was switched [s].
-fn numbers(cells: Cells) -> Vec<f64> {
+/// Values of a channel; numbers and words of two states may stand there as texts.
+fn values(path: &Path, channel: &ChannelMap, cells: Cells) -> Result<Vec<f64>, ImportError> {
+    let Cells::Texts(texts) = cells else {
+        return Ok(numbers(&cells));
+    };
+    let of_states = channel.unit.si == Unit::One;
+    let number = |(row, text): (usize, &Option<String>)| {
+        let text = text.as_deref().unwrap_or("").trim();
+        let number = if of_states {
+            PLAIN.number_or_word(text)
+        } else {
+            PLAIN.number(text)
+        };
+        number.ok_or_else(|| ImportError::Number {
+            file: path.to_owned(),
+            line: row as u64 + 1,
+            column: channel.column.clone(),
+            found: text.to_owned(),
+            expected: if of_states {
+                format!("a number or a word such as {}", words::EXAMPLES)
+            } else {
+                "a number".to_owned()
+            },
+        })
+    };
+    texts.iter().enumerate().map(number).collect()
+}
+
+/// Marks of numbers that stand as texts in a table.
+const PLAIN: Marks = Marks {
+    decimal: '.',
+    thousands: None,
+};
+
+/// Stamps are numbers too, as of when a valve was switched [s]; of texts those that are numbers.
+pub(super) fn numbers(cells: &Cells) -> Vec<f64> {
     match cells {
-        Cells::Numbers(numbers) => numbers,
+        Cells::Numbers(numbers) => numbers.clone(),
         Cells::Nanoseconds(stamps) => stamps
             .iter()
             .map(|stamp| stamp.map_or(f64::NAN, |stamp| stamp as f64 * 1e-9))
             .collect(),
+        Cells::Texts(texts) => {
+            let number = |text: &Option<String>| PLAIN.number_or_word(text.as_deref()?.trim());
+            texts
+                .iter()
+                .map(|text| number(text).unwrap_or(f64::NAN))
+                .collect()
+        }
     }
 }
 
-fn times(path: &Path, map: &TimeMap, cells: Cells) -> Result<Times, ImportError> {
+/// Times of a column that says its unit itself, or whose unit the map says.
+pub(super) fn times(path: &Path, map: &TimeMap, cells: Cells) -> Result<Times, ImportError> {
     let empty = |row: usize| ImportError::Number {
         file: path.to_owned(),
         line: row as u64 + 1,
@@ -55,6 +98,24 @@ fn times(path: &Path, map: &TimeMap, cells: Cells) -> Result<Times, ImportError>
         expected: "a time".to_owned(),
     };
     match cells {
+        Cells::Texts(texts) if map.unit.is_some() => {
+            times(path, map, Cells::Numbers(numbers(&Cells::Texts(texts))))
+        }
+        Cells::Texts(texts) => {
+            if let Some(row) = texts.iter().position(Option::is_none) {
+                return Err(empty(row));
+            }
+            let texts: Vec<String> = texts.into_iter().flatten().collect();
+            let read = stamps::nanoseconds(&texts, map.date_order, map.year);
+            read.map(Times::Nanoseconds)
+                .map_err(|unread| ImportError::Number {
+                    file: path.to_owned(),
+                    line: unread.index as u64 + 1,
+                    column: map.column.clone(),
+                    found: texts[unread.index].clone(),
+                    expected: unread.expected,
+                })
+        }
         Cells::Numbers(numbers) => {
             if map.unit.is_none() {
                 return Err(ImportError::TimeUnit {

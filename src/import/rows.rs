@@ -19,6 +19,12 @@ pub enum Remark {
     Stamped(Vec<u64>),
     /// It is cut off, and the map accepts what is left: what that is.
     Truncated(String),
+    /// Rows without a stamp, their time being zero among those that count from 1970.
+    Unstamped(Vec<u64>),
+    /// Its rows go back in time, the newest first, and were turned round.
+    Reversed,
+    /// Something about its files, a sentence.
+    Note(String),
     /// Its last line does not end, and its last number may have lost digits.
     Unended(u64),
 }
@@ -30,6 +36,16 @@ pub(super) enum Times {
     Numbers(Vec<f64>),
     /// Stamps [ns].
     Nanoseconds(Vec<i64>),
+}
+
+impl Times {
+    /// Their number.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(numbers) => numbers.len(),
+            Self::Nanoseconds(stamps) => stamps.len(),
+        }
+    }
 }
 
 impl Default for Times {

@@ -8,6 +8,7 @@ use super::encoding::{Told, decode};
 use super::error::ImportError;
 use super::map::{ChannelMap, Column, FileMap, Separator, TextForm, TimeMap};
 use super::numbers::{self, Marks};
+use super::packed::text_bytes;
 use super::rows::{Remark, Rows, Times, place, places};
 use super::{stamps, words};
 use crate::recording::Unit;
@@ -45,10 +46,7 @@ impl Sheet {
 
 /// A text's content in its encoding, its lines ended alike.
 pub(super) fn content(path: &Path, encoding: Option<&str>) -> Result<(String, Told), ImportError> {
-    let bytes = std::fs::read(path).map_err(|cause| ImportError::Read {
-        file: path.to_owned(),
-        cause: cause.to_string(),
-    })?;
+    let bytes = text_bytes(path)?;
     let (text, told) = decode(path, &bytes, encoding)?;
     // Of a line that ends with both, the reader counts the end to the next one.
     let text = text.replace("\r\n", "\n");
@@ -71,12 +69,22 @@ pub(super) fn fields(line: &str, separator: &Separator) -> Vec<String> {
 
 /// Reads the rows of a text.
 pub(super) fn read(path: &Path, form: &TextForm, map: &FileMap) -> Result<Rows, ImportError> {
+    let (text, _) = content(path, form.encoding.as_deref())?;
+    read_content(path, &text, form, map)
+}
+
+/// Reads the rows of a text that was taken from a file.
+pub(super) fn read_content(
+    path: &Path,
+    text: &str,
+    form: &TextForm,
+    map: &FileMap,
+) -> Result<Rows, ImportError> {
     let fail = |cause: String| ImportError::Read {
         file: path.to_owned(),
         cause,
     };
-    let (text, _) = content(path, form.encoding.as_deref())?;
-    let sheet = Sheet::of(&text, form.header_lines, &form.separator).map_err(fail)?;
+    let sheet = Sheet::of(text, form.header_lines, &form.separator).map_err(fail)?;
     let Some((_, first)) = sheet.rows.first() else {
         return Err(fail(format!(
             "no rows after {} header lines",

@@ -18,7 +18,7 @@ mod table;
 mod tests;
 
 pub use cell::{CellRecording, read_cell_csv};
-pub use columns::{median_step, plausible_range};
+pub use columns::{column_of, median_step, plausible_range};
 pub use edge_profile::EdgeProfile;
 pub use named::{NamedColumns, read_named};
 
@@ -91,6 +91,21 @@ pub fn write_csv(
     columns: &[(&str, &[f64])],
 ) -> Result<(), RecordingError> {
     write_atomic(path, |file| write_columns(file, time, columns))
+}
+
+/// Writes a recording as comma-separated values, its columns named as [`read_csv`] and [`read_cell_csv`] take them.
+///
+/// # Errors
+/// The file cannot be written; nothing is left in its place.
+pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), RecordingError> {
+    let channels = recording.channels();
+    let names: Vec<String> = channels
+        .iter()
+        .map(|channel| column_of(&channel.quantity, channel.unit))
+        .collect();
+    let values = channels.iter().map(|channel| channel.values.as_slice());
+    let columns: Vec<(&str, &[f64])> = names.iter().map(String::as_str).zip(values).collect();
+    write_csv(path, recording.time(), &columns)
 }
 
 /// As [`write_csv`], as a text.

@@ -10,6 +10,7 @@ pub mod csv;
 mod error;
 pub mod error_scale;
 pub mod finished_edge;
+pub mod gaps;
 #[cfg(feature = "parquet")]
 pub mod long_table;
 #[cfg(feature = "parquet")]
@@ -145,6 +146,19 @@ impl Recording {
     #[must_use]
     pub fn phase(&self, name: &str) -> Option<&PhaseSpan> {
         self.phases.iter().find(|phase| phase.name == name)
+    }
+
+    /// A stretch of it by itself, without its phases.
+    ///
+    /// # Errors
+    /// [`RecordingError::Empty`] if there is no sample in it.
+    pub fn part(&self, samples: Range<usize>) -> Result<Self, RecordingError> {
+        let cut = |values: &[f64]| values.get(samples.clone()).unwrap_or_default().to_vec();
+        let channels = self.channels.iter().map(|channel| RecordedChannel {
+            values: cut(&channel.values),
+            ..channel.clone()
+        });
+        Self::new(cut(&self.time), channels.collect(), Vec::new())
     }
 
     /// Indices of the samples that belong to a span.

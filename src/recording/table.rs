@@ -1,4 +1,5 @@
-//! Columns of any Parquet table, whatever they are called: numbers, and stamps of a clock.
+//! Columns of any Parquet table, whatever they are called: numbers, stamps of a clock, texts. Fields of structures and elements of lists are columns of their
+//! own: `wrench.force`, `force[2]`, counted from 0.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -6,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use ::parquet::arrow::ProjectionMask;
 use ::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
-use arrow::array::{Array, ArrayRef, AsArray, RecordBatch};
-use arrow::compute::{cast, concat_batches};
+use arrow::array::{Array, ArrayRef, AsArray, RecordBatch, UInt64Array};
+use arrow::compute::{cast, concat_batches, take};
 use arrow::datatypes::{DataType, Float64Type, Int64Type, TimeUnit};
 
 use super::RecordingError;
@@ -15,11 +16,35 @@ use super::RecordingError;
 /// First and last bytes of a Parquet file.
 const MAGIC: [u8; 4] = *b"PAR1";
 
+/// Elements of a list that are columns, at most, and rows that are looked at for the length of lists.
+const MOST_ELEMENTS: usize = 64;
+const LOOKED_AT: usize = 1024;
+/// Columns of a table, at most: lists in lists multiply.
+const MOST_COLUMNS: usize = 4096;
+
 /// A Parquet table, its columns not read yet.
 #[derive(Debug)]
 pub struct Table {
     path: PathBuf,
     builder: ParquetRecordBatchReaderBuilder<File>,
+    columns: Vec<Leaf>,
+}
+
+/// A column, or a part of one.
+#[derive(Debug, Clone)]
+struct Leaf {
+    name: String,
+    /// The column of the file.
+    root: usize,
+    /// The way into it.
+    steps: Vec<Step>,
+}
+
+/// A step into a column.
+#[derive(Debug, Clone)]
+enum Step {
+    Field(String),
+    Element(usize),
 }
 
 /// A column's values, as many as the table has rows.
@@ -29,6 +54,8 @@ pub enum Cells {
     Numbers(Vec<f64>),
     /// Stamps or durations [ns]; none where there is none.
     Nanoseconds(Vec<Option<i64>>),
+    /// Texts; none where there is none.
+    Texts(Vec<Option<String>>),
 }
 
 impl Table {
@@ -47,27 +74,34 @@ impl Table {
             ));
         }
         let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fail(&e))?;
+        let columns = leaves(path, &builder).map_err(|cause| fail(&cause))?;
         Ok(Self {
             path: path.to_owned(),
             builder,
+            columns,
         })
     }
 
     /// Names of its columns, in order.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
-        let fields = self.builder.schema().fields().iter();
-        fields.map(|field| field.name().clone()).collect()
+        self.columns.iter().map(|leaf| leaf.name.clone()).collect()
     }
 
     /// Reads columns by their place from 0, in the order asked for.
     ///
     /// # Errors
-    /// [`RecordingError::Column`] for one that holds neither numbers nor stamps; [`RecordingError::Read`] for a damaged file.
+    /// [`RecordingError::Column`] for one that holds neither numbers nor stamps nor texts; [`RecordingError::Read`] for a damaged file.
     pub fn read(self, places: &[usize]) -> Result<Vec<Cells>, RecordingError> {
-        let Self { path, builder } = self;
+        let Self {
+            path,
+            builder,
+            columns,
+        } = self;
         let fail = |cause: &dyn std::fmt::Display| RecordingError::read(&path, cause);
-        let mask = ProjectionMask::roots(builder.parquet_schema(), places.iter().copied());
+        let wanted: Vec<&Leaf> = places.iter().map(|place| &columns[*place]).collect();
+        let roots = wanted.iter().map(|leaf| leaf.root);
+        let mask = ProjectionMask::roots(builder.parquet_schema(), roots.clone());
         let batches: Vec<RecordBatch> = builder
             .with_projection(mask)
             .build()
@@ -79,21 +113,147 @@ impl Table {
         };
         let table = concat_batches(&first.schema(), &batches).map_err(|e| fail(&e))?;
         // Only the columns asked for are left, in the file's order.
-        let mut kept = places.to_vec();
+        let mut kept: Vec<usize> = roots.collect();
         kept.sort_unstable();
         kept.dedup();
-        let place = |wanted: &usize| {
-            let index = kept.partition_point(|own| own < wanted);
-            let schema = table.schema();
-            cells(table.column(index)).ok_or_else(|| RecordingError::Column {
+        let read = |leaf: &&Leaf| {
+            let index = kept.partition_point(|own| *own < leaf.root);
+            let column = descended(table.column(index), &leaf.steps);
+            let found = column.as_ref().and_then(cells);
+            found.ok_or_else(|| RecordingError::Column {
                 path: path.clone(),
-                column: schema.field(index).name().clone(),
-                found: format!("of {}", schema.field(index).data_type()),
-                expected: "numbers or stamps".to_owned(),
+                column: leaf.name.clone(),
+                found: format!("of {}", table.schema().field(index).data_type()),
+                expected: "numbers, stamps or texts".to_owned(),
             })
         };
-        places.iter().map(place).collect()
+        wanted.iter().map(read).collect()
     }
+}
+
+/// The columns of a table: those of structures by their fields, those of lists by their elements.
+fn leaves(
+    path: &Path,
+    builder: &ParquetRecordBatchReaderBuilder<File>,
+) -> Result<Vec<Leaf>, String> {
+    let schema = builder.schema().clone();
+    let nested: Vec<usize> = (0..schema.fields().len())
+        .filter(|root| schema.field(*root).data_type().is_nested())
+        .collect();
+    let first = if nested.is_empty() {
+        None
+    } else {
+        first_rows(path, &nested)?
+    };
+    let mut found = Vec::new();
+    for (root, field) in schema.fields().iter().enumerate() {
+        let leaf = Leaf {
+            name: field.name().clone(),
+            root,
+            steps: Vec::new(),
+        };
+        let place = nested.iter().position(|own| *own == root);
+        let column = place.and_then(|place| Some(first.as_ref()?.column(place)));
+        grow(leaf, column, &mut found);
+    }
+    Ok(found)
+}
+
+/// The first rows of some columns, to see how long their lists are.
+fn first_rows(path: &Path, roots: &[usize]) -> Result<Option<RecordBatch>, String> {
+    let file = File::open(path).map_err(|e| e.to_string())?;
+    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| e.to_string())?;
+    let mask = ProjectionMask::roots(builder.parquet_schema(), roots.iter().copied());
+    let reader = builder
+        .with_projection(mask)
+        .with_batch_size(LOOKED_AT)
+        .with_limit(LOOKED_AT)
+        .build();
+    let first = reader.map_err(|e| e.to_string())?.next();
+    first.transpose().map_err(|e| e.to_string())
+}
+
+/// Puts a column, or the parts of one, behind those found.
+fn grow(leaf: Leaf, column: Option<&ArrayRef>, found: &mut Vec<Leaf>) {
+    if found.len() >= MOST_COLUMNS {
+        return;
+    }
+    let Some(column) = column else {
+        found.push(leaf);
+        return;
+    };
+    let inner = |name: String, step: Step| Leaf {
+        name,
+        root: leaf.root,
+        steps: [leaf.steps.clone(), vec![step]].concat(),
+    };
+    if let Some(structure) = column.as_struct_opt() {
+        for (name, own) in structure
+            .column_names()
+            .into_iter()
+            .zip(structure.columns())
+        {
+            let next = inner(
+                format!("{}.{name}", leaf.name),
+                Step::Field(name.to_owned()),
+            );
+            grow(next, Some(own), found);
+        }
+        return;
+    }
+    match list_of(column) {
+        None => found.push(leaf),
+        Some((values, ranges)) => {
+            let longest = ranges.iter().flatten().map(ExactSizeIterator::len).max();
+            for index in 0..longest.unwrap_or(0).min(MOST_ELEMENTS) {
+                let next = inner(format!("{}[{index}]", leaf.name), Step::Element(index));
+                grow(next, Some(&values), found);
+            }
+        }
+    }
+}
+
+/// Values of all lists of a column, and where those of each row stand among them; none of a column of something else.
+fn list_of(column: &ArrayRef) -> Option<(ArrayRef, Vec<Option<std::ops::Range<usize>>>)> {
+    let rows = 0..column.len();
+    let there = |row: usize| column.is_valid(row);
+    if let Some(list) = column.as_fixed_size_list_opt() {
+        let size = usize::try_from(list.value_length()).ok()?;
+        let range = |row: usize| {
+            let start = usize::try_from(list.value_offset(row)).ok()?;
+            there(row).then_some(start..start + size)
+        };
+        return Some((list.values().clone(), rows.map(range).collect()));
+    }
+    if let Some(list) = column.as_list_opt::<i32>() {
+        let ends = list.value_offsets();
+        let range = |row: usize| there(row).then_some(ends[row] as usize..ends[row + 1] as usize);
+        return Some((list.values().clone(), rows.map(range).collect()));
+    }
+    let list = column.as_list_opt::<i64>()?;
+    let ends = list.value_offsets();
+    let range = |row: usize| there(row).then_some(ends[row] as usize..ends[row + 1] as usize);
+    Some((list.values().clone(), rows.map(range).collect()))
+}
+
+/// The part of a column that steps lead to.
+fn descended(column: &ArrayRef, steps: &[Step]) -> Option<ArrayRef> {
+    let mut column = column.clone();
+    for step in steps {
+        column = match step {
+            Step::Field(name) => column.as_struct_opt()?.column_by_name(name)?.clone(),
+            Step::Element(index) => {
+                let (values, ranges) = list_of(&column)?;
+                let at = |range: Option<std::ops::Range<usize>>| {
+                    let range = range?;
+                    (*index < range.len()).then(|| (range.start + index) as u64)
+                };
+                let places: UInt64Array = ranges.into_iter().map(at).collect();
+                take(&values, &places, None).ok()?
+            }
+        };
+    }
+    Some(column)
 }
 
 /// The first and the last bytes of a file.
@@ -120,12 +280,21 @@ fn cells(column: &ArrayRef) -> Option<Cells> {
             TimeUnit::Microsecond => 1_000,
             TimeUnit::Nanosecond => 1,
         }),
+        DataType::Date32 => Some(86_400_000_000_000),
+        DataType::Date64 => Some(1_000_000),
+        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => return texts(column),
+        DataType::Dictionary(_, inner) if inner.is_string() => return texts(column),
         DataType::Boolean => None,
         kind if kind.is_numeric() => None,
         _ => return None,
     };
     if let Some(factor) = factor {
-        let ticks = cast(column, &DataType::Int64).ok()?;
+        // Days are kept in 32 bits, and so are some times of the day.
+        let whole = match column.data_type() {
+            DataType::Date32 | DataType::Time32(_) => cast(column, &DataType::Int32).ok()?,
+            _ => column.clone(),
+        };
+        let ticks = cast(&whole, &DataType::Int64).ok()?;
         let ticks = ticks.as_primitive_opt::<Int64Type>()?;
         let all = ticks.iter().map(|tick| tick?.checked_mul(factor));
         return Some(Cells::Nanoseconds(all.collect()));
@@ -134,6 +303,15 @@ fn cells(column: &ArrayRef) -> Option<Cells> {
     let numbers = numbers.as_primitive_opt::<Float64Type>()?;
     Some(Cells::Numbers(
         numbers.iter().map(|v| v.unwrap_or(f64::NAN)).collect(),
+    ))
+}
+
+/// Texts of a column.
+fn texts(column: &ArrayRef) -> Option<Cells> {
+    let texts = cast(column, &DataType::Utf8).ok()?;
+    let texts = texts.as_string_opt::<i32>()?;
+    Some(Cells::Texts(
+        texts.iter().map(|text| text.map(str::to_owned)).collect(),
     ))
 }
 
@@ -188,8 +366,9 @@ mod tests {
             panic!("{read:?}")
         };
         assert!(ticks[0] == -7.0 && ticks[1].is_nan());
-        let error = Table::open(&path).unwrap().read(&[1]).unwrap_err();
-        assert!(error.to_string().contains("column `note`"), "{error}");
+        let texts = Table::open(&path).unwrap().read(&[1]).unwrap();
+        let both = vec![Some("a".to_owned()), Some("b".to_owned())];
+        assert_eq!(texts, [Cells::Texts(both)]);
     }
 
     #[test]

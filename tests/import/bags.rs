@@ -97,7 +97,7 @@ fn messages(row: usize) -> Vec<(usize, Vec<u8>)> {
 }
 
 /// Writes a bag with these rows.
-fn bag(folder: &Folder, name: &str, rows: std::ops::Range<usize>, with_definitions: bool) {
+pub fn bag(folder: &Folder, name: &str, rows: std::ops::Range<usize>, with_definitions: bool) {
     let mut connection = Connection::open(folder.path(name)).unwrap();
     connection.execute_batch(TABLES).unwrap();
     if with_definitions {
@@ -131,7 +131,7 @@ fn picked(quantity: &str, column: &str, unit: &str, key: &str) -> String {
     channel(quantity, column, unit) + key + "\n"
 }
 
-fn map() -> String {
+pub fn map() -> String {
     "form = \"bag\"\ntime = { column = \"header.stamp\" }\n".to_owned()
         + &picked(
             "stroke",
@@ -148,7 +148,7 @@ fn map() -> String {
         + "[[file.channel]]\nquantity = \"pressure_gauge\"\ncolumn = \"/regulator.fluid_pressure\"\nunit = \"Pa\"\npressure = \"absolute\"\n"
 }
 
-const PRESSURE: Planted = ("pressure_gauge", |t| t.pressure, 1e-12);
+pub const PRESSURE: Planted = ("pressure_gauge", |t| t.pressure, 1e-12);
 
 #[test]
 fn a_bag_in_sqlite_is_read_by_joint_frame_and_topic() {

@@ -74,12 +74,15 @@ pub(super) fn map(file: &Path) -> Result<Report, AppError> {
             Form::Parquet => "Parquet",
             Form::Mat5 => "MATLAB",
             Form::Bag => "a bag",
+            Form::Tdms => "TDMS",
+            Form::Spreadsheet { .. } => "a spreadsheet",
         };
         let clock = match &log.clock {
             Clock::Shared { .. } => "",
             Clock::Unknown { .. } => ", its clock off by what is to be found",
         };
         let time = match &log.time {
+            None if log.form == Form::Tdms => "times of its waveforms".to_owned(),
             None => "times at which messages were logged".to_owned(),
             Some(time) => format!("times in {}", time.column),
         };

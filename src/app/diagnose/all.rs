@@ -54,7 +54,10 @@ pub(super) fn run(
             if result.is_ok() {
                 interruptible.one_more();
             }
-            locked(&outcomes).push((index, Outcome { name, result }));
+            let mut done = locked(&outcomes);
+            let (count, all) = (done.len() + 1, names.len());
+            progress::without_bar(&format!("{count} of {all} cases: {name}"), silent);
+            done.push((index, Outcome { name, result }));
             bar.inc(1);
         }
     };

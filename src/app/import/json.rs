@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::told::{Copies, Job, remarks};
 use crate::import::ImportMap;
 use crate::import::findings::{Finding, findings};
+use crate::recording::gaps::parts;
 
 /// All of it.
 #[derive(Debug, Serialize)]
@@ -19,6 +20,11 @@ struct Report {
 #[derive(Debug, Serialize)]
 struct RecordingReport {
     written_to: Option<String>,
+    /// Files of its parts, where gaps part it and that was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parts_written_to: Vec<String>,
+    /// Number of stretches without a gap.
+    parts: usize,
     samples: usize,
     from_s: f64,
     to_s: f64,
@@ -103,8 +109,15 @@ fn recording(map: &ImportMap, job: &Job) -> RecordingReport {
             step_s: found.step,
         }),
     });
+    let outs = job.outs.iter().map(|(path, _)| path.display().to_string());
+    let outs: Vec<String> = outs.collect();
     RecordingReport {
-        written_to: job.out.as_ref().map(|path| path.display().to_string()),
+        written_to: match &outs[..] {
+            [only] => Some(only.clone()),
+            _ => None,
+        },
+        parts: parts(time).len(),
+        parts_written_to: if outs.len() > 1 { outs } else { Vec::new() },
         samples: time.len(),
         from_s: time[0],
         to_s: time[time.len() - 1],

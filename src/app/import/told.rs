@@ -1,10 +1,12 @@
 //! Interpretation of a log, for people.
 
 use std::fmt::Write;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::import::findings::{Finding, findings};
 use crate::import::{ImportMap, Imported, LogNote, Remark};
+use crate::recording::gaps::{longest_pause, parts};
 
 /// Gaps and rows that are listed, at most.
 const LISTED: usize = 3;
@@ -12,7 +14,8 @@ const LISTED: usize = 3;
 /// A recording to be, and where it goes.
 pub(super) struct Job {
     pub imported: Imported,
-    pub out: Option<PathBuf>,
+    /// Files, with the samples that go into each; none where nothing is written.
+    pub outs: Vec<(PathBuf, Range<usize>)>,
 }
 
 /// Two logs that are the same data.
@@ -65,6 +68,14 @@ pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
         for remark in remarks(log) {
             let _ = writeln!(text, "  {}: {remark}", name(&log.file));
         }
+    }
+    let several = parts(time).len();
+    if several > 1 {
+        let _ = writeln!(
+            text,
+            "  gaps part it into {several} recordings: `idc diagnose` takes none with a gap longer than {} s, `--split` writes each part by itself",
+            shown(longest_pause(time))
+        );
     }
     text + &gaps(&found)
 }
@@ -174,6 +185,14 @@ pub(super) fn remarks(log: &LogNote) -> Vec<String> {
                 "rows with the time of the one before them but other values were left out: {}",
                 rows(lines)
             ),
+            Remark::Unstamped(lines) => format!(
+                "rows whose stamp is 0, which is none, were left out: {}",
+                rows(lines)
+            ),
+            Remark::Reversed => {
+                "its rows go back in time, the newest first; they were turned round".to_owned()
+            }
+            Remark::Note(sentence) => sentence.clone(),
             Remark::Truncated(rest) => format!("{rest}; what is left was used, as the map accepts"),
             Remark::Unended(line) => {
                 format!("its last line, {line}, does not end, and may lack the last digits of its last number")

@@ -4,16 +4,21 @@ use std::path::Path;
 
 use super::definition::definition;
 use super::field::{Definition, Field, Kind, Picked};
+use super::message::There;
 use super::open;
-use super::store::Scan;
+use super::store::{Scan, Stores};
 use crate::import::error::ImportError;
 
 /// Overview of a bag.
 pub(in crate::import) struct Glance {
     /// Its fields.
     pub fields: Vec<FieldSeen>,
-    /// Whether every message has a stamp.
+    /// Whether every message has a header with a place for a stamp.
     pub stamped: bool,
+    /// Messages whose stamp is zero, and messages.
+    pub zero_stamps: [usize; 2],
+    /// What is to be told of it, each a part of a sentence.
+    pub notes: Vec<String>,
 }
 
 /// A field, or an element of a list by its joint.
@@ -40,6 +45,7 @@ struct Topic {
     message: String,
     definition: Definition,
     fields: Vec<(FieldSeen, Field, Picked)>,
+    stamp: Option<Field>,
     is_new: bool,
 }
 
@@ -48,32 +54,29 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
     let stores = open(path)?;
     let scan = Scan::of(&stores);
     let mut topics: Vec<Topic> = Vec::new();
+    let mut notes = notes(&stores, &scan);
     for there in &scan.there {
-        if let Ok(definition) = definition(there) {
-            let message = there.schema.as_ref().map(|(name, ..)| name.clone());
-            topics.push(Topic {
-                name: there.topic.clone(),
-                message: message.unwrap_or_default(),
-                definition,
-                fields: Vec::new(),
-                is_new: true,
-            });
+        match definition(there) {
+            Ok(definition) => topics.push(Topic::new(there, definition)),
+            Err(found) => notes.push(format!("{} cannot be read, {found}", there.topic)),
         }
     }
-    let stamped = |topic: &Topic| {
-        let stamp = topic.definition.field("header.stamp");
-        stamp.is_some_and(|(_, kind)| kind == Kind::Stamp)
-    };
-    let stamped = !topics.is_empty() && topics.iter().all(stamped);
+    let stamped = !topics.is_empty() && topics.iter().all(|topic| topic.stamp.is_some());
+    let mut zero_stamps = [0, 0];
     stores.visit(|message| -> Result<(), ImportError> {
         let of_message = |topic: &&mut Topic| topic.name == message.there.topic;
         let Some(topic) = topics.iter_mut().find(of_message) else {
             return Ok(());
         };
         // What does not fit its definition is told when it is imported.
-        let Ok(read) = topic.definition.decode(message.data) else {
+        let plain = message.plain().unwrap_or_default();
+        let Ok(read) = topic.definition.decode(&plain) else {
             return Ok(());
         };
+        if let Some(stamp) = &topic.stamp {
+            zero_stamps[0] += usize::from(read.stamp(stamp) == Some(0));
+            zero_stamps[1] += 1;
+        }
         if topic.is_new {
             topic.fields = fields(topic, &read.joints());
             topic.is_new = false;
@@ -98,7 +101,38 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
     Ok(Glance {
         fields: fields.filter(|seen| !seen.values.is_empty()).collect(),
         stamped,
+        zero_stamps,
+        notes,
     })
+}
+
+impl Topic {
+    fn new(there: &There, definition: Definition) -> Self {
+        let message = there.schema.as_ref().map(|(name, ..)| name.clone());
+        let stamp = definition.field("header.stamp");
+        let stamp = stamp.filter(|(_, kind)| *kind == Kind::Stamp);
+        Self {
+            name: there.topic.clone(),
+            message: message.unwrap_or_default(),
+            stamp: stamp.map(|(field, _)| field),
+            definition,
+            fields: Vec::new(),
+            is_new: true,
+        }
+    }
+}
+
+/// What is to be told of a bag's files.
+fn notes(stores: &Stores, scan: &Scan) -> Vec<String> {
+    let mut notes = Vec::new();
+    if !stores.missing.is_empty() {
+        let names = stores.missing.join(", ");
+        notes.push(format!("its metadata.yaml names {names}, not there"));
+    }
+    if let Some(cause) = &scan.cause {
+        notes.push(format!("it breaks off: {cause}"));
+    }
+    notes
 }
 
 /// Fields of a topic's messages: elements of joints by their names, others by their paths.
@@ -137,7 +171,7 @@ fn fields(topic: &Topic, joints: &[String]) -> Vec<(FieldSeen, Field, Picked)> {
             .any(|list| path.starts_with(&format!("{list}[")))
     };
     let noise = |path: &String| {
-        path.starts_with("header.") || path.contains("covariance") || path.contains("layout.")
+        path.starts_with("header.") || path.contains("variance") || path.contains("layout.")
     };
     for path in definition.numbers() {
         if in_list(&path) || noise(&path) {

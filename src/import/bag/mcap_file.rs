@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use mcap::parse_record;
 use mcap::records::Record;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use mcap::{McapError, parse_record};
 
 use super::message::{Message, There};
 
@@ -36,6 +36,12 @@ pub(super) fn visit<E>(
                 continue;
             }
             Ok(LinearReadEvent::Record { data, opcode }) => parse_record(opcode, data),
+            Err(McapError::UnexpectedEof) => {
+                return Ok(Some(
+                    "it ends before the record that closes it: it was not closed, or is cut off"
+                        .to_owned(),
+                ));
+            }
             Err(error) => return Ok(Some(error.to_string())),
         };
         match record {

@@ -1,7 +1,9 @@
 //! The messages of a SQLite bag (rosbag2_storage_sqlite3) one by one: tables `topics` and `messages`, and since ROS 2 Iron `message_definitions`.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, Error, OpenFlags};
 
@@ -19,11 +21,19 @@ pub(super) fn visit<E>(
     mut show: impl FnMut(&Message<'_>) -> Result<(), E>,
 ) -> Result<Option<String>, E> {
     let opened = open(path).and_then(|connection| {
+        if !is_bag(&connection)? {
+            return Ok(None);
+        }
         let topics = topics(&connection)?;
-        Ok((connection, topics))
+        Ok(Some((connection, topics)))
     });
     let (connection, topics) = match opened {
-        Ok(opened) => opened,
+        Ok(Some(opened)) => opened,
+        Ok(None) => {
+            return Ok(Some(
+                "it has no tables `topics` and `messages`, as a bag of ROS 2 has".to_owned(),
+            ));
+        }
         Err(error) => return Ok(Some(error.to_string())),
     };
     let mut statement = match connection.prepare(MESSAGES) {
@@ -64,14 +74,45 @@ pub(super) fn visit<E>(
     }
 }
 
-/// Opens a file to be read alone: nothing is written beside it, unless its last messages stand in a journal that must be read too.
+/// First bytes of a journal of which something is to be taken back; one that is done with begins with zeros.
+const HOT: &[u8] = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+
+/// Journals beside a file that was not closed: without them it is not whole, or not as it was last.
+pub(super) fn journals(path: &Path) -> Vec<PathBuf> {
+    let beside = |ending: &str| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    let (ahead, back) = (beside("-wal"), beside("-journal"));
+    let is_filled = std::fs::metadata(&ahead).is_ok_and(|about| about.len() > 0);
+    let mut start = Vec::new();
+    let read = File::open(&back).and_then(|file| file.take(8).read_to_end(&mut start));
+    let is_hot = read.is_ok() && start == HOT;
+    [(ahead, is_filled), (back, is_hot)]
+        .into_iter()
+        .filter_map(|(journal, counts)| counts.then_some(journal))
+        .collect()
+}
+
+/// Whether it has the tables of a bag.
+fn is_bag(connection: &Connection) -> Result<bool, Error> {
+    let own = "SELECT count(*) FROM sqlite_master WHERE name IN ('topics', 'messages')";
+    let count: i64 = connection.query_row(own, [], |row| row.get(0))?;
+    Ok(count == 2)
+}
+
+/// Opens a file to be read alone: nothing is written beside it. A copy whose journals were copied too is one that SQLite may mend.
 fn open(path: &Path) -> Result<Connection, Error> {
-    let mut journal = path.as_os_str().to_owned();
-    journal.push("-wal");
-    let has_journal = std::fs::metadata(journal).is_ok_and(|about| about.len() > 0);
+    if !journals(path).is_empty() {
+        return Connection::open_with_flags(
+            path,
+            OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX,
+        );
+    }
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     match path.to_str() {
-        Some(name) if !has_journal => {
+        Some(name) => {
             let escaped = name
                 .replace('%', "%25")
                 .replace('?', "%3f")
@@ -79,7 +120,7 @@ fn open(path: &Path) -> Result<Connection, Error> {
             let flags = flags | OpenFlags::SQLITE_OPEN_URI;
             Connection::open_with_flags(format!("file:{escaped}?immutable=1"), flags)
         }
-        _ => Connection::open_with_flags(path, flags),
+        None => Connection::open_with_flags(path, flags),
     }
 }
 

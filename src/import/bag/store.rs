@@ -1,52 +1,131 @@
-//! Where a bag's messages are kept: MCAP or SQLite, one file, or several in the folder that `ros2 bag record` writes.
+//! Where a bag's messages are kept: MCAP or SQLite, one file, or several in the folder that `ros2 bag record` writes; packed with zstd or gzip or not.
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use tempfile::TempDir;
+
+use super::listed::Listed;
 use super::message::{Message, There};
 use super::{mcap_file, sqlite_file};
+use crate::import::packed::{LARGEST_FILE, begins_packed, unpacked};
+use crate::import::rows::Remark;
+use crate::import::signature;
 
-/// Endings of files that are bags.
+/// Endings of files that are bags, and of those that are packed.
 const ENDINGS: [&str; 2] = ["mcap", "db3"];
+const PACKED: [&str; 3] = ["zstd", "zst", "gz"];
 /// Beginning of a SQLite file (its format, 1.3).
 const SQLITE: &[u8] = b"SQLite format 3\0";
 
 /// The files of a bag, in order.
-pub(super) struct Stores(Vec<Store>);
+pub(super) struct Stores {
+    all: Vec<Store>,
+    /// Files that its metadata name and that are not there.
+    pub missing: Vec<String>,
+    /// Messages that its metadata count.
+    counted: Option<u64>,
+    /// What is to be told of its files.
+    pub notes: Vec<Remark>,
+}
 
 /// One of them.
 enum Store {
     Mcap(Vec<u8>),
-    Sqlite(PathBuf),
+    /// A SQLite file, and the folder of the copy that it is, if it is one.
+    Sqlite(
+        PathBuf,
+        #[expect(dead_code, reason = "it is removed when the bag has been read")] Option<TempDir>,
+    ),
 }
 
 impl Stores {
     /// Opens a file, or all of a folder's.
     pub fn open(path: &Path) -> Result<Self, String> {
+        let mut stores = Self {
+            all: Vec::new(),
+            missing: Vec::new(),
+            counted: None,
+            notes: Vec::new(),
+        };
         if !path.is_dir() {
-            return Ok(Self(vec![Store::open(path)?]));
+            stores.add(path)?;
+            return Ok(stores);
         }
         let entries = std::fs::read_dir(path).map_err(|cause| cause.to_string())?;
         let mut files: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
+        files.retain(|file| is_named_as_bag(file));
         files.sort_by_key(|file| (number(file), file.clone()));
-        let ends = |file: &&PathBuf, endings: &[&str]| {
-            let ending = file.extension().and_then(|ending| ending.to_str());
-            ending.is_some_and(|ending| endings.contains(&ending))
-        };
-        let own: Vec<&PathBuf> = files.iter().filter(|file| ends(file, &ENDINGS)).collect();
-        if own.is_empty() {
-            let packed = files.iter().find(|file| ends(file, &["zstd", "zst"]));
-            return Err(match packed {
-                Some(file) => format!(
-                    "its file {} is packed: `zstd -d` unpacks it",
-                    file.display()
-                ),
-                None => "it is a folder without .mcap or .db3 files, and no bag".to_owned(),
+        match Listed::of(path) {
+            Ok(None) => {}
+            Ok(Some(listed)) => {
+                let (own, others) = listed.parted(files);
+                stores.missing = listed.missing(&own);
+                stores.counted = listed.messages;
+                stores.notes.extend(others.iter().map(|file| {
+                    Remark::Note(format!(
+                        "{} is not among the files that its metadata.yaml names, and was left out",
+                        short(file)
+                    ))
+                }));
+                files = own;
+            }
+            Err(cause) => stores.notes.push(Remark::Note(format!(
+                "its metadata.yaml cannot be read ({cause}), and says nothing of missing files"
+            ))),
+        }
+        if files.is_empty() {
+            return Err("it is a folder without .mcap or .db3 files, and no bag".to_owned());
+        }
+        for file in &files {
+            let added = stores.add(file);
+            added.map_err(|cause| format!("its file {}: {cause}", short(file)))?;
+        }
+        Ok(stores)
+    }
+
+    /// Opens a file as what it begins with says, whatever its name.
+    fn add(&mut self, path: &Path) -> Result<(), String> {
+        let bytes = std::fs::read(path).map_err(|cause| cause.to_string())?;
+        let plain = unpacked(&bytes, LARGEST_FILE)?;
+        let is_packed = plain.is_some();
+        let bytes = plain.unwrap_or(bytes);
+        if bytes.starts_with(mcap::MAGIC) {
+            self.all.push(Store::Mcap(bytes));
+            return Ok(());
+        }
+        if !bytes.starts_with(SQLITE) {
+            return Err(match signature::of_bytes(&bytes) {
+                Some(other) => format!("it is {}, and no bag in MCAP or SQLite", other.what),
+                None => "it is no MCAP and no SQLite bag: it does not start as one".to_owned(),
             });
         }
-        let stores = own.into_iter().map(|file| Store::open(file));
-        Ok(Self(stores.collect::<Result<_, _>>()?))
+        let journals = sqlite_file::journals(path);
+        if !is_packed && journals.is_empty() {
+            self.all.push(Store::Sqlite(path.to_owned(), None));
+            return Ok(());
+        }
+        let failed = |cause: std::io::Error| format!("it cannot be copied to be read: {cause}");
+        let folder = tempfile::tempdir().map_err(failed)?;
+        let copy = folder.path().join("bag.db3");
+        std::fs::write(&copy, bytes).map_err(failed)?;
+        for journal in journals {
+            let ending = if short(&journal).ends_with("-wal") {
+                "bag.db3-wal"
+            } else {
+                "bag.db3-journal"
+            };
+            std::fs::copy(&journal, folder.path().join(ending)).map_err(failed)?;
+            self.notes.push(Remark::Note(format!(
+                "it was not closed: its journal {} was read with it",
+                short(&journal)
+            )));
+        }
+        self.all.push(Store::Sqlite(copy, Some(folder)));
+        Ok(())
     }
 
     /// Shows every message, and answers with why the bag breaks off, if it does.
@@ -55,7 +134,7 @@ impl Stores {
         mut show: impl FnMut(&Message<'_>) -> Result<(), E>,
     ) -> Result<Option<String>, E> {
         let mut before = 0;
-        for store in &self.0 {
+        for store in &self.all {
             let mut last = before;
             let mut counted = |message: &Message<'_>| {
                 last = before + message.number;
@@ -66,7 +145,7 @@ impl Stores {
             };
             let cause = match store {
                 Store::Mcap(bytes) => mcap_file::visit(bytes, &mut counted)?,
-                Store::Sqlite(path) => sqlite_file::visit(path, &mut counted)?,
+                Store::Sqlite(path, _) => sqlite_file::visit(path, &mut counted)?,
             };
             if cause.is_some() {
                 return Ok(cause);
@@ -76,32 +155,61 @@ impl Stores {
         Ok(None)
     }
 
+    /// Number of its files.
+    pub fn count(&self) -> usize {
+        self.all.len()
+    }
+
     /// The command that repairs such a bag.
     pub fn repaired_by(&self) -> &'static str {
-        match self.0.first() {
-            Some(Store::Sqlite(_)) => "sqlite3 OLD.db3 .recover | sqlite3 NEW.db3",
+        match self.all.first() {
+            Some(Store::Sqlite(..)) => "sqlite3 OLD.db3 .recover | sqlite3 NEW.db3",
             _ => "mcap recover",
         }
     }
 }
 
-impl Store {
-    /// Opens a file as what it begins with says, whatever its name.
-    fn open(path: &Path) -> Result<Self, String> {
-        let bytes = std::fs::read(path).map_err(|cause| cause.to_string())?;
-        if bytes.starts_with(mcap::MAGIC) {
-            return Ok(Self::Mcap(bytes));
-        }
-        if bytes.starts_with(SQLITE) {
-            return Ok(Self::Sqlite(path.to_owned()));
-        }
-        Err("it is no MCAP and no SQLite bag: it does not start as one".to_owned())
+/// Name of a file, for people.
+fn short(file: &Path) -> String {
+    let name = file.file_name().unwrap_or(file.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+/// Whether a file's name is that of a bag's file, packed or not.
+fn is_named_as_bag(file: &Path) -> bool {
+    let name = short(&plain_name(file)).to_lowercase();
+    ENDINGS
+        .iter()
+        .any(|ending| name.ends_with(&format!(".{ending}")))
+}
+
+/// A file's name without the ending of what is packed.
+pub(super) fn plain_name(file: &Path) -> PathBuf {
+    let ending = file.extension().and_then(|ending| ending.to_str());
+    match ending {
+        Some(ending) if PACKED.contains(&ending) => file.with_extension(""),
+        _ => file.to_owned(),
     }
+}
+
+/// Whether a file is a bag that is packed.
+pub(in crate::import) fn is_packed(path: &Path) -> bool {
+    let start = || -> Option<Vec<u8>> {
+        let mut start = Vec::new();
+        let file = File::open(path).ok()?;
+        begins_packed(file)?
+            .take(SQLITE.len() as u64)
+            .read_to_end(&mut start)
+            .ok()?;
+        Some(start)
+    };
+    start().is_some_and(|start| start.starts_with(mcap::MAGIC) || start.starts_with(SQLITE))
 }
 
 /// The number that a bag's file ends with, by which they are in order: `ride_2.db3` before `ride_10.db3`.
 fn number(file: &Path) -> u64 {
-    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let plain = plain_name(file);
+    let stem = plain.file_stem().unwrap_or_default().to_string_lossy();
     let number = stem.rsplit('_').next().map(str::parse);
     number.and_then(Result::ok).unwrap_or(0)
 }
@@ -136,6 +244,17 @@ impl Scan {
         scan.cause = cause;
         scan.there = topics.into_values().collect();
         scan
+    }
+
+    /// Messages that were counted when it was written, where that is known and there are fewer.
+    pub fn lost(&self, stores: &Stores) -> Option<String> {
+        let counted = stores
+            .counted
+            .filter(|counted| *counted > self.messages as u64)?;
+        Some(format!(
+            "its metadata.yaml counts {counted} messages, and {} are there",
+            self.messages
+        ))
     }
 
     /// The readable part of it.

@@ -285,7 +285,8 @@ impl Topic {
                 message.number, self.name
             ),
         };
-        let reading = self.definition.decode(message.data).map_err(fail)?;
+        let plain = message.plain().map_err(fail)?;
+        let reading = self.definition.decode(&plain).map_err(fail)?;
         let nanoseconds = |ns: u64| i64::try_from(ns).unwrap_or(i64::MAX);
         let place = match reading.place_of(&self.picked) {
             Ok(place) => place,
@@ -343,6 +344,21 @@ impl Topic {
         }
     }
 
+    /// Refuses stamps that all are zero.
+    fn has_no_stamps(&self, path: &Path, map: &FileMap) -> ImportError {
+        let column = map.time.as_ref().map(|time| time.column.clone());
+        ImportError::TimeUnit {
+            file: path.to_owned(),
+            column: column.unwrap_or(Column::Name(LOG_TIME.to_owned())),
+            found: format!(
+                "0 in all {} messages of {}, which is no stamp",
+                self.rows.len(),
+                self.name
+            ),
+            expected: format!("stamps; `{LOG_TIME}` takes the times at which they were logged"),
+        }
+    }
+
     /// Its rows, in the order in which they were logged: within a file they may stand in another.
     pub fn into_rows(
         mut self,
@@ -369,6 +385,9 @@ impl Topic {
                     expected: "an element that their lists have, counted from 0".to_owned(),
                 });
             }
+        }
+        if matches!(self.time, TimeField::Stamp(_)) && self.rows.iter().all(|row| row.3 == 0) {
+            return Err(self.has_no_stamps(path, map));
         }
         let time = match self.time {
             TimeField::Number(_) => Times::Numbers(self.rows.iter().map(|row| row.2).collect()),

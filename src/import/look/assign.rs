@@ -1,5 +1,7 @@
 //! Which column is which quantity: by its name, its unit, or as the only one that can be.
 
+use std::borrow::Cow;
+
 use super::names::{self, Role, Said, Thing};
 use super::seen::{Because, Cells, Seen};
 use crate::import::map::Column;
@@ -14,12 +16,25 @@ const WEAK: i32 = 2;
 /// A column taken for a quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pick {
-    pub quantity: &'static str,
+    pub quantity: Cow<'static, str>,
     pub place: usize,
     pub because: Because,
     /// Unit in SI that it must have.
     pub kind: Unit,
     worth: i32,
+}
+
+impl Pick {
+    /// A column that is a quantity whatever the others are.
+    pub fn new(quantity: String, place: usize, because: Because, kind: Unit) -> Self {
+        Self {
+            quantity: quantity.into(),
+            place,
+            because,
+            kind,
+            worth: 0,
+        }
+    }
 }
 
 /// Quantities in the order of a map, with what asks for one that a log lacks.
@@ -138,7 +153,7 @@ fn pick(place: usize, column: &Seen) -> Option<Pick> {
         worth -= WEAK;
     }
     Some(Pick {
-        quantity,
+        quantity: quantity.into(),
         place,
         because,
         kind: *names::units_of(thing).first()?,
@@ -184,7 +199,7 @@ fn split_pressures(columns: &[Seen], all: &mut [Pick]) {
     if let [only] = of_held[..]
         && pressures.len() > 1
     {
-        all[only].quantity = schema::SET_PRESSURE_GAUGE;
+        all[only].quantity = schema::SET_PRESSURE_GAUGE.into();
         all[only].because = Because::likely(
             "of the pressures it is the one that is held and stepped, as a command is",
         );

@@ -1,13 +1,15 @@
-//! Logs that name their columns themselves, looked at: Parquet, MATLAB, bags of ROS 2 messages.
+//! Logs that name their columns themselves, looked at: Parquet, MATLAB, TDMS, spreadsheets, bags of ROS 2 messages.
 
 use std::path::Path;
 
 use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
-use super::{names, units};
+use super::time::toml_text;
+use super::{names, text, units};
+use crate::import::encoding::Told;
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Pressure};
 use crate::import::units::named;
-use crate::import::{bag, mat_log};
+use crate::import::{bag, mat_log, parquet_log, spreadsheet, stamps, tdms_log};
 use crate::recording::table::{self, Table};
 
 fn form(name: &str, why: &str) -> Vec<Line> {
@@ -27,20 +29,8 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
         let Ok(read) = Table::open(path)?.read(&[place]) else {
             continue;
         };
-        let cells = match read.into_iter().next() {
-            Some(table::Cells::Numbers(numbers)) => Cells::Numbers(numbers),
-            Some(table::Cells::Nanoseconds(stamps)) => {
-                let mut distinct: Vec<_> = stamps.clone();
-                distinct.dedup();
-                Cells::Stamps {
-                    has: [true, true],
-                    distinct: distinct.len(),
-                    rows: stamps.len(),
-                    because: Because::certain("stamps, which say their unit themselves"),
-                    problem: None,
-                }
-            }
-            None => continue,
+        let Some(cells) = read.into_iter().next().map(cells) else {
+            continue;
         };
         columns.push(Seen {
             column: Column::Name(name.clone()),
@@ -53,10 +43,111 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
     }
     Ok(Looked {
         path: path.to_owned(),
-        head: form("parquet", "it ends in .parquet and is one"),
+        head: form("parquet", "it begins as one"),
         columns,
         time: TimeSeen::Column,
     })
+}
+
+/// Cells of a table that knows their types.
+fn cells(read: table::Cells) -> Cells {
+    match read {
+        table::Cells::Numbers(numbers) => Cells::Numbers(numbers),
+        table::Cells::Nanoseconds(stamps) => {
+            let mut distinct: Vec<_> = stamps.clone();
+            distinct.dedup();
+            Cells::Stamps {
+                has: [true, true],
+                distinct: distinct.len(),
+                rows: stamps.len(),
+                because: Because::certain("stamps, which say their unit themselves"),
+                problem: None,
+            }
+        }
+        table::Cells::Texts(texts) => of_texts(texts),
+    }
+}
+
+/// Cells that hold texts: stamps or numbers, if nearly all of them are that.
+fn of_texts(texts: Vec<Option<String>>) -> Cells {
+    let filled: Vec<String> = texts.iter().flatten().cloned().collect();
+    let most = |count: usize| !filled.is_empty() && 10 * count >= 9 * filled.len();
+    let numbers = parquet_log::numbers(&table::Cells::Texts(texts));
+    if most(numbers.iter().filter(|number| number.is_finite()).count()) {
+        return Cells::Numbers(numbers);
+    }
+    if most(filled.iter().filter(|text| stamps::is_stamp(text)).count()) {
+        return text::stamped(&filled);
+    }
+    Cells::Other
+}
+
+/// Looks at the channels of a TDMS file.
+pub(super) fn tdms(path: &Path) -> Result<Looked, ImportError> {
+    let contents = tdms_log::contents(path)?;
+    let readable = contents
+        .channels
+        .iter()
+        .filter(|channel| channel.problem.is_none());
+    let waveforms = readable.clone().filter(|own| own.waveform.is_some());
+    let is_waveforms = waveforms.count() > 0;
+    let columns = readable
+        // Beside waveforms channels without times cannot be placed.
+        .filter(|channel| !is_waveforms || channel.waveform.is_some())
+        .map(|channel| {
+            let name = channel.column();
+            let said = channel.unit.as_deref().and_then(units::of_cell);
+            Seen {
+                unit: said.or_else(|| units::of_name(&name)),
+                column: Column::Name(name.clone()),
+                name,
+                joint: None,
+                frames: Vec::new(),
+                cells: cells(channel.cells.clone()),
+            }
+        });
+    let why = match is_waveforms {
+        true => "it begins as one; its channels are waveforms and say their times themselves",
+        false => "it begins as one",
+    };
+    Ok(Looked {
+        path: path.to_owned(),
+        head: form("tdms", why),
+        columns: columns.collect(),
+        time: match is_waveforms {
+            true => TimeSeen::Waveforms,
+            false => TimeSeen::Column,
+        },
+    })
+}
+
+/// Looks at the sheet of a spreadsheet that holds the most numbers.
+pub(super) fn spreadsheet(path: &Path) -> Result<Looked, ImportError> {
+    let sheet = spreadsheet::likely(path)?;
+    let told = Told {
+        name: "utf-8".to_owned(),
+        reason: "",
+        is_certain: true,
+    };
+    let mut looked = text::look_at(path, &sheet.text, &told)?;
+    looked.head.retain(|line| {
+        !["encoding", "separator", "decimal_mark", "thousands_mark"].contains(&line.key)
+    });
+    let because = match &sheet.others[..] {
+        [] => Because::certain("it alone holds anything"),
+        others => Because::likely(format!(
+            "it holds the most numbers; there are {} too",
+            others.join(", ")
+        )),
+    };
+    let own = Line {
+        key: "sheet",
+        value: toml_text(&sheet.name),
+        because,
+    };
+    let head = form("spreadsheet", "it begins as one");
+    looked.head = [head, vec![own], looked.head].concat();
+    Ok(looked)
 }
 
 /// Looks at a MAT file.
@@ -72,7 +163,7 @@ pub(super) fn mat(path: &Path) -> Result<Looked, ImportError> {
     };
     Ok(Looked {
         path: path.to_owned(),
-        head: form("mat5", "it ends in .mat and is of version 5 to 7"),
+        head: form("mat5", "it is of version 5 to 7"),
         columns: columns.into_iter().map(seen).collect(),
         time: TimeSeen::Column,
     })
@@ -102,14 +193,47 @@ pub(super) fn bag(path: &Path) -> Result<Looked, ImportError> {
             cells,
         }
     };
+    let why = [
+        vec!["it is a bag of ROS 2 messages".to_owned()],
+        glance.notes,
+    ]
+    .concat();
+    let (column, because) = times_of(glance.stamped, glance.zero_stamps);
     Ok(Looked {
         path: path.to_owned(),
-        head: form("bag", "it is a bag of ROS 2 messages"),
+        head: form("bag", &why.join("; ")),
         columns: glance.fields.into_iter().map(seen).collect(),
-        time: TimeSeen::Messages {
-            stamped: glance.stamped,
-        },
+        time: TimeSeen::Messages { column, because },
     })
+}
+
+/// Share of the messages that may lack their stamps for the others to be the times.
+const UNSTAMPED: f64 = 0.1;
+
+/// Times of a bag's messages: their stamps, if they have them; a stamp of zero is none.
+fn times_of(stamped: bool, [zero, all]: [usize; 2]) -> (&'static str, Because) {
+    const LOGGED: &str = "log_time";
+    if !stamped {
+        let why = "not every message has a stamp; this is when it was logged";
+        return (LOGGED, Because::certain(why));
+    }
+    if zero == 0 {
+        return (
+            "header.stamp",
+            Because::certain("every message has a stamp"),
+        );
+    }
+    if zero == all {
+        let why = "the stamps of all messages are 0, which is none; this is when they were logged";
+        return (LOGGED, Because::certain(why));
+    }
+    let found = format!("the stamps of {zero} of {all} messages are 0, which is none");
+    if zero as f64 > UNSTAMPED * all as f64 {
+        let why = format!("{found}; this is when they were logged");
+        return (LOGGED, Because::likely(why));
+    }
+    let why = format!("{found}: those are left out; `log_time` is when all were logged");
+    ("header.stamp", Because::likely(why))
 }
 
 /// Units that the definitions of the usual messages state (REP 103: SI throughout).

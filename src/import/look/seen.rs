@@ -133,8 +133,13 @@ pub(super) struct Looked {
 pub(super) enum TimeSeen {
     /// In a column.
     Column,
-    /// In the messages: all of them have a stamp, or when they were logged.
-    Messages { stamped: bool },
+    /// In the messages: the column, and why that.
+    Messages {
+        column: &'static str,
+        because: Because,
+    },
+    /// In the properties of waveforms.
+    Waveforms,
 }
 
 impl Looked {

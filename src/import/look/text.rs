@@ -6,6 +6,7 @@ use std::path::Path;
 use super::marks::marks;
 use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
 use super::{names, units};
+use crate::import::encoding::Told;
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Separator};
 use crate::import::numbers::{self, Marks};
@@ -41,16 +42,21 @@ enum Kind {
 /// Looks at a text.
 pub(super) fn look(path: &Path) -> Result<Looked, ImportError> {
     let (text, told) = content(path, None)?;
+    look_at(path, &text, &told)
+}
+
+/// Looks at a text that was taken from a file.
+pub(super) fn look_at(path: &Path, text: &str, told: &Told) -> Result<Looked, ImportError> {
     let fail = |cause: &str| ImportError::Read {
         file: path.to_owned(),
         cause: cause.to_owned(),
     };
     let (separator, name, share, kinds) =
-        separator(&text).ok_or_else(|| fail("no lines of numbers with something between them are in it; `idc import` reads texts, .parquet, .mat, .mcap, .db3"))?;
+        separator(text).ok_or_else(|| fail("no lines of numbers with something between them are in it; `idc import` reads texts, .parquet, .mat, .mcap, .db3"))?;
     let lines: Vec<&str> = text.lines().take(HEADER).collect();
     let first = first_row(&lines, &separator, &kinds)
         .ok_or_else(|| fail("none of its first 200 lines begins a table of numbers"))?;
-    let sheet = Sheet::of(&text, first, &separator).map_err(|cause| fail(&cause))?;
+    let sheet = Sheet::of(text, first, &separator).map_err(|cause| fail(&cause))?;
     let header: Vec<Vec<String>> = sheet.header.iter().map(|l| fields(l, &separator)).collect();
     let names_line = names_line(&header, kinds.len());
     let units_line = units_line(&header, kinds.len(), names_line);
@@ -303,7 +309,7 @@ fn columns(
 }
 
 /// A column of stamps.
-fn stamped(texts: &[String]) -> Cells {
+pub(super) fn stamped(texts: &[String]) -> Cells {
     let first = texts.first().map_or("", String::as_str);
     let distinct: BTreeSet<&String> = texts.iter().collect();
     Cells::Stamps {

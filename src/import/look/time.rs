@@ -51,18 +51,13 @@ pub(super) fn toml_text(text: &str) -> String {
 
 /// Chooses the times of a log, of which `logs` are there one behind the other; none where nothing looks like times.
 pub(super) fn choose(looked: &Looked, logs: usize) -> Option<TimeChoice> {
-    if let TimeSeen::Messages { stamped } = looked.time {
-        let (column, why) = if stamped {
-            ("header.stamp", "every message has a stamp")
-        } else {
-            (
-                "log_time",
-                "not every message has a stamp; this is when it was logged",
-            )
-        };
+    if looked.time == TimeSeen::Waveforms {
+        return None;
+    }
+    if let TimeSeen::Messages { column, because } = &looked.time {
         return Some(TimeChoice {
             keys: vec![("column", format!("{column:?}"))],
-            because: Because::certain(why),
+            because: because.clone(),
             open: None,
             places: Vec::new(),
         });
@@ -118,6 +113,11 @@ fn worth(place: usize, column: &Seen, logs: usize) -> Option<i32> {
 fn rises(values: &[f64], logs: usize) -> Option<(bool, f64)> {
     if values.iter().any(|value| !value.is_finite()) || values.len() < 3 {
         return None;
+    }
+    // The newest first.
+    if logs == 1 && values.windows(2).all(|pair| pair[1] < pair[0]) {
+        let turned: Vec<f64> = values.iter().rev().copied().collect();
+        return rises(&turned, logs);
     }
     let falls = values.windows(2).filter(|pair| pair[1] < pair[0]).count();
     let first = values.windows(2).position(|pair| pair[1] < pair[0]);

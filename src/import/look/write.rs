@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use super::assign::{Pick, QUANTITIES, assign, described};
+use super::joints::joints;
 use super::seen::{Because, Draft, Looked, Seen, TimeSeen};
 use super::time::{self, toml_text, written};
 use super::units::{self, shown};
@@ -149,7 +150,12 @@ fn file(
         .map(|(quantity, _)| quantity.clone())
         .collect();
     let mut picks = assign(&looked.columns, &taken);
-    picks.retain(|pick| !given.iter().any(|quantity| quantity == pick.quantity));
+    let of_device: Vec<usize> = picks.iter().map(|pick| pick.place).collect();
+    picks.extend(joints(
+        &looked.columns,
+        &[taken.clone(), of_device].concat(),
+    ));
+    picks.retain(|pick| !given.iter().any(|quantity| *quantity == pick.quantity));
     for pick in &picks {
         channel(
             page,
@@ -184,7 +190,7 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
         );
     }
     page.found
-        .push((pick.quantity.to_owned(), described(column)));
+        .push((pick.quantity.to_string(), described(column)));
     let said = column
         .unit
         .as_ref()

@@ -28,6 +28,7 @@ pub(super) struct MapFile {
 pub(super) struct FileKeys {
     pub path: Option<PathBuf>,
     pub form: FormKey,
+    pub sheet: Option<String>,
     pub encoding: Option<String>,
     pub separator: Option<String>,
     pub field_widths: Option<Vec<usize>>,
@@ -54,6 +55,8 @@ pub(super) enum FormKey {
     Parquet,
     Mat5,
     Bag,
+    Tdms,
+    Spreadsheet,
     /// As maps called a bag before it could be of SQLite.
     Mcap,
 }

@@ -1,7 +1,7 @@
 //! The columns of a real rig's recording.
 
-use super::super::schema;
-use super::super::unit::Unit;
+use super::super::schema::{self, JointSignal};
+use super::super::unit::{Unit, column_name};
 
 /// Column of the sample times.
 pub(super) const TIME: &str = "time_s";
@@ -68,6 +68,20 @@ pub fn plausible_range(quantity: &str) -> [f64; 2] {
         .iter()
         .find(|column| column.quantity == quantity)
         .map_or([f64::NEG_INFINITY, f64::INFINITY], |column| column.range)
+}
+
+/// Column that holds a quantity in a recording of a rig or a cell; one of the quantity and its unit where such recordings do not have it.
+#[must_use]
+pub fn column_of(quantity: &str, unit: Unit) -> String {
+    if let Some(column) = COLUMNS.iter().find(|column| column.quantity == quantity) {
+        return column.name.to_owned();
+    }
+    match schema::parse_joint_quantity(quantity) {
+        Some((joint, JointSignal::Reference)) => format!("joint_{joint}_command_rad"),
+        Some((joint, JointSignal::Encoder)) => format!("joint_{joint}_rad"),
+        _ if quantity == schema::PATH_LENGTH => "path_m".to_owned(),
+        _ => column_name(quantity, unit),
+    }
 }
 
 /// The median distance of increasing times [s]; 0 for less than two.

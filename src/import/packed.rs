@@ -1,0 +1,115 @@
+//! Files and messages that are packed with gzip or zstd, unpacked up to a bound: few bytes may stand for any number of them.
+
+use std::io::Read;
+use std::path::Path;
+
+use flate2::read::MultiGzDecoder;
+use zstd::stream::read::Decoder;
+
+use super::error::ImportError;
+use super::signature;
+
+/// Bytes of a file, and of a message, that are unpacked at most.
+pub(super) const LARGEST_FILE: u64 = 1 << 30;
+pub(super) const LARGEST_MESSAGE: u64 = 1 << 26;
+
+/// First bytes of what is packed.
+pub(super) const GZIP: &[u8] = b"\x1f\x8b";
+pub(super) const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
+
+/// Bytes unpacked, if they begin as packed ones do.
+///
+/// # Errors
+/// They are damaged or cut off, or come to more than `most`.
+pub(super) fn unpacked(bytes: &[u8], most: u64) -> Result<Option<Vec<u8>>, String> {
+    if bytes.starts_with(GZIP) {
+        return all(MultiGzDecoder::new(bytes), most, "gzip").map(Some);
+    }
+    if bytes.starts_with(ZSTD) {
+        let decoder = Decoder::with_buffer(bytes).map_err(|cause| cause.to_string())?;
+        return all(decoder, most, "zstd").map(Some);
+    }
+    Ok(None)
+}
+
+/// Bytes of a text, unpacked where they are packed.
+///
+/// # Errors
+/// It cannot be read or unpacked, or is known to be no text.
+pub(super) fn text_bytes(path: &Path) -> Result<Vec<u8>, ImportError> {
+    const EXPECTED: &str = "a text";
+    signature::check(path, "text", EXPECTED)?;
+    let fail = |cause: String| ImportError::Read {
+        file: path.to_owned(),
+        cause,
+    };
+    let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
+    let Some(plain) = unpacked(&bytes, LARGEST_FILE).map_err(fail)? else {
+        return Ok(bytes);
+    };
+    match signature::of_bytes(&plain) {
+        Some(inside) => Err(inside.refusal_inside(path, EXPECTED)),
+        None => Ok(plain),
+    }
+}
+
+/// What a file that is packed unpacks to, to be read as far as it is wanted.
+pub(super) fn begins_packed(file: std::fs::File) -> Option<Box<dyn Read>> {
+    use std::io::{BufRead, BufReader};
+    let mut file = BufReader::new(file);
+    let start = file.fill_buf().ok()?;
+    if start.starts_with(GZIP) {
+        return Some(Box::new(MultiGzDecoder::new(file)));
+    }
+    if start.starts_with(ZSTD) {
+        return Some(Box::new(Decoder::with_buffer(file).ok()?));
+    }
+    None
+}
+
+/// All that a decoder gives, up to a bound.
+fn all(decoder: impl Read, most: u64, what: &str) -> Result<Vec<u8>, String> {
+    let mut plain = Vec::new();
+    let mut bounded = decoder.take(most + 1);
+    bounded
+        .read_to_end(&mut plain)
+        .map_err(|cause| format!("it is packed with {what}, and damaged or cut off: {cause}"))?;
+    if plain.len() as u64 > most {
+        return Err(format!(
+            "it is packed with {what} and comes to more than {} MB; unpack it and import a part of it",
+            most >> 20
+        ));
+    }
+    Ok(plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    fn gzip(plain: &[u8]) -> Vec<u8> {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        encoder.write_all(plain).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn what_was_packed_comes_back_up_to_a_bound() {
+        let plain = vec![7u8; 5000];
+        let by_zstd = zstd::encode_all(&plain[..], 3).unwrap();
+        for packed in [
+            gzip(&plain),
+            by_zstd,
+            [gzip(&plain[..2000]), gzip(&plain[2000..])].concat(),
+        ] {
+            assert_eq!(unpacked(&packed, 5000), Ok(Some(plain.clone())));
+            let said = unpacked(&packed, 4999).unwrap_err();
+            assert!(said.contains("more than"), "{said}");
+            let said = unpacked(&packed[..packed.len() - 3], 5000).unwrap_err();
+            assert!(said.contains("damaged or cut off"), "{said}");
+        }
+        assert_eq!(unpacked(b"0.5 1.5\n", 5000), Ok(None));
+    }
+}
