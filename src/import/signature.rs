@@ -64,9 +64,10 @@ const PANDAS: &str = "save it as CSV or Parquet (Python: `pandas`)";
 const UNPACK: &str = "unpack it and import the file in it";
 const PICTURE: &str = "the log itself is asked for, not a picture of it";
 
+// Long enough that no text begins so.
 #[rustfmt::skip] // A table: a form a line. A longer signature stands before a shorter one that it begins with.
 const SIGNATURES: &[Signature] = &[
-    read_as("parquet", "a Parquet table", 0, b"PAR1"),
+    read_as("parquet", "a Parquet table", 0, b"PAR1\x15"),
     read_as("mat5", "a MAT file of version 5 to 7", 0, b"MATLAB 5.0 MAT-file"),
     read_as("bag", "a bag in MCAP", 0, b"\x89MCAP0\r\n"),
     read_as("bag", "a SQLite file", 0, b"SQLite format 3\0"),
@@ -84,9 +85,8 @@ const SIGNATURES: &[Signature] = &[
     other("an HDF5 file (HDF5, MATLAB 7.3, NetCDF 4)", 512, b"\x89HDF\r\n\x1a\n", H5),
     other("a NetCDF file", 0, b"CDF\x01", "save it as CSV or Parquet (Python: `xarray`)"),
     other("a NetCDF file", 0, b"CDF\x02", "save it as CSV or Parquet (Python: `xarray`)"),
-    other("an Arrow or Feather file", 0, b"ARROW1", "save it as Parquet (Python: `pyarrow.parquet.write_table(pyarrow.feather.read_table(FILE), ..)`)"),
-    other("a Feather file", 0, b"FEA1", "save it as Parquet (Python: `pandas.read_feather(FILE).to_parquet(..)`)"),
-    other("an ORC file", 0, b"ORC", "save it as Parquet (Python: `pandas.read_orc(FILE).to_parquet(..)`)"),
+    other("an Arrow or Feather file", 0, b"ARROW1\0\0", "save it as Parquet (Python: `pyarrow.parquet.write_table(pyarrow.feather.read_table(FILE), ..)`)"),
+    other("a Feather file", 0, b"FEA1\0", "save it as Parquet (Python: `pandas.read_feather(FILE).to_parquet(..)`)"),
     other("an Avro file", 0, b"Obj\x01", PANDAS),
     other("an array of NumPy", 0, b"\x93NUMPY", "save it as CSV (Python: `numpy.savetxt(FILE, array, delimiter=\",\")`) or Parquet"),
     other("a pickle of Python", 0, b"\x80\x03", PANDAS),
@@ -104,7 +104,7 @@ const SIGNATURES: &[Signature] = &[
     other("a PNG picture", 0, b"\x89PNG\r\n", PICTURE),
     other("a JPEG picture", 0, b"\xff\xd8\xff", PICTURE),
     other("a log of PX4 (ULog)", 0, b"ULog\x01\x12\x35", "`ulog2csv` (Python: `pyulog`) makes CSV of it, a file a topic"),
-    other("a log of a CAN bus (BLF)", 0, b"LOGG", "decode it with its DBC and export it as CSV (`asammdf`, or Python: `cantools` with `python-can`)"),
+    other("a log of a CAN bus (BLF)", 0, b"LOGG\x90\0\0\0", "decode it with its DBC and export it as CSV (`asammdf`, or Python: `cantools` with `python-can`)"),
     other("a capture of a network (pcap)", 0, b"\xd4\xc3\xb2\xa1", "the measured numbers as CSV are asked for; `tshark -T fields` exports them"),
     other("a capture of a network (pcapng)", 0, b"\x0a\x0d\x0d\x0a", "the measured numbers as CSV are asked for; `tshark -T fields` exports them"),
     other("a file of imc FAMOS", 0, b"|CF,", EXPORT),
@@ -285,6 +285,8 @@ mod tests {
             "{0.5 1}\n",
             "# <xml>\n1 2\n",
             "MDF;1\n",
+            "PAR1;PAR2\n0;1\n",
+            "LOGG,1\n",
             "BZ;1\n",
         ] {
             assert_eq!(of_bytes(text.as_bytes()), None, "{text}");

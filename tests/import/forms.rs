@@ -88,13 +88,16 @@ fn forms_that_are_not_read_are_known_by_their_first_bytes() {
         (padded(b"BZh9"), "bunzip2"),
         (tar.clone(), "tar"),
         (gzip(&tar), "packed, and holds an archive of tar"),
-        (gzip(b"PAR1 .. PAR1"), "packed, and holds a Parquet table"),
+        (
+            gzip(b"PAR1\x15 .. PAR1"),
+            "packed, and holds a Parquet table",
+        ),
         (
             b"{\"t\": 0, \"F\": 1.5}\n{\"t\": 1, \"F\": 1.5}\n".to_vec(),
             "jq -r",
         ),
         (b"<!DOCTYPE html>\n<html></html>\n".to_vec(), "a web page"),
-        (padded(b"PAR1"), "`form = \"parquet\"`"),
+        (padded(b"PAR1\x15"), "`form = \"parquet\"`"),
         (gzip(&csv())[..500].to_vec(), "damaged or cut off"),
     ] {
         folder.write("log.csv", &bytes);
