@@ -63,8 +63,8 @@ pub enum RecordedError {
     },
     /// A time of which nothing was recorded.
     #[error("{file}: nothing is recorded from {:.3} to {:.3} s, and what the device did in those {:.0} s is not known; expected no gap longer than {pause:.1} s: \
-        put the {} before it and the {} after it into a file each (`idc import --split` does so with a log)",
-        gap.from, gap.to, gap.to - gap.from, counted(gap.before, "sample"), counted(gap.after, "sample"))]
+        {}",
+        gap.from, gap.to, gap.to - gap.from, remedy(gap))]
     Gap {
         /// File name.
         file: String,
@@ -103,6 +103,18 @@ pub enum RecordedError {
         /// That of the rig file [SI].
         expected: f64,
     },
+}
+
+/// What to do about a gap: what stands on either side is a recording, if it is more than a sample.
+fn remedy(gap: &Gap) -> String {
+    let [before, after] = [gap.before, gap.after].map(|count| counted(count, "sample"));
+    match (gap.before, gap.after) {
+        (1, _) => format!("leave out the {before} before it"),
+        (_, 1) => format!("leave out the {after} after it"),
+        _ => format!(
+            "put the {before} before it and the {after} after it into a file each (`idc import --split` does so with a log)"
+        ),
+    }
 }
 
 /// Values of a channel that must be there.

@@ -75,7 +75,11 @@ fn missing(path: &Path, map: &FileMap, stores: &Stores) -> Result<Option<Remark>
         "its metadata.yaml names {}, not there",
         stores.missing.join(", ")
     );
-    let rest = format!("{} of its files are", stores.count());
+    let count = stores.count();
+    let rest = format!(
+        "{count} of its {} files are there",
+        count + stores.missing.len()
+    );
     if map.accepts_truncated {
         return Ok(Some(Remark::Truncated(format!("{found}; {rest}"))));
     }

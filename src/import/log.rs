@@ -8,7 +8,7 @@ use super::rows::{Remark, Rows, Times};
 use super::{bag, mat_log, parquet_log, spreadsheet, tdms_log, text};
 
 /// Times from here on count from 1970, not from a start [s]: over three years.
-const EPOCH: f64 = 1e8;
+pub(super) const EPOCH: f64 = 1e8;
 const NANOSECONDS: i64 = 1_000_000_000;
 
 /// Content of a log for a map's channels.
@@ -43,7 +43,7 @@ pub fn read_log(path: &Path, map: &FileMap) -> Result<Log, ImportError> {
         Form::Bag => bag::read(path, map)?,
         Form::Tdms => tdms_log::read(path, map)?,
         Form::Spreadsheet { sheet, text } => {
-            let content = spreadsheet::read(path, sheet.as_deref())?.text;
+            let content = spreadsheet::read(path, sheet.as_deref(), text.decimal_mark)?.text;
             vec![text::read_content(path, &content, text, map)?]
         }
     };

@@ -154,8 +154,6 @@ fn spreadsheet(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioE
         ("encoding", keys.encoding.is_some()),
         ("separator", keys.separator.is_some()),
         ("field_widths", keys.field_widths.is_some()),
-        ("decimal_mark", keys.decimal_mark.is_some()),
-        ("thousands_mark", keys.thousands_mark.is_some()),
     ];
     if let Some((key, _)) = of_files.iter().find(|(_, given)| *given) {
         return Err(section.misplaced(key, "only a text has it".to_owned()));
@@ -177,6 +175,7 @@ fn text_form(section: &Section<'_>, keys: &FileKeys) -> Result<TextForm, Scenari
             return Err(section.refuse("field_widths", format!("{widths:?}"), expected));
         }
         (None, Some(widths)) => Separator::Widths(widths.clone()),
+        (None, None) if matches!(keys.form, FormKey::Spreadsheet) => Separator::Character(b'\t'),
         (None, None) => Separator::Character(b','),
         (Some(name), None) => match name.as_str() {
             "whitespace" => Separator::Whitespace,

@@ -131,6 +131,12 @@ pub(super) fn columns(path: &Path) -> Result<Vec<(String, Vec<f64>)>, ImportErro
     };
     let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
     let contents = contents(&bytes).map_err(fail)?;
+    if contents.columns.is_empty() {
+        return Err(fail(format!(
+            "none of its {} arrays is one of real numbers (structures, cells, texts, int64 are not read); in MATLAB, save(file, '-struct', 'log', '-v7') writes the fields of a structure `log` as arrays",
+            contents.others
+        )));
+    }
     let columns = contents.columns.into_iter();
     Ok(columns.map(|column| (column.name, column.values)).collect())
 }
@@ -148,7 +154,10 @@ fn contents(bytes: &[u8]) -> Result<Contents, String> {
         Some([0, 1, b'I', b'M']) => u32::from_le_bytes,
         Some([1, 0, b'M', b'I']) => u32::from_be_bytes,
         _ => {
-            return Err("it is no MAT file of version 5: its header is not that of one".to_owned());
+            return Err(
+                "it is no MAT file of version 5 to 7: its header is not that of one, and those of version 4 are not read; in MATLAB, save(file, '-v7') writes one"
+                    .to_owned(),
+            );
         }
     };
     let header = &bytes[..HEADER];

@@ -1,5 +1,4 @@
-//! A sheet of a spreadsheet (xlsx, xlsb, xls, ods) as the text that it would be exported as: a row a line, commas between its cells, a point before
-//! decimals, dates and times as stamps. The rest is the reader of texts.
+//! A sheet of a spreadsheet (xlsx, xlsb, xls, ods) as the text that it would be exported as: a row a line, tabs between its cells, dates and times as stamps. The rest is the reader of texts.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -28,11 +27,15 @@ pub(super) struct SheetText {
     pub text: String,
 }
 
-/// Reads the sheet of a name; without one the only sheet that holds anything.
+/// Reads the sheet of a name, without one the only sheet that holds anything; its numbers get the mark that the map says of its texts.
 ///
 /// # Errors
 /// No spreadsheet, no such sheet, several to choose from.
-pub(super) fn read(path: &Path, name: Option<&str>) -> Result<SheetText, ImportError> {
+pub(super) fn read(
+    path: &Path,
+    name: Option<&str>,
+    decimal_mark: char,
+) -> Result<SheetText, ImportError> {
     let mut sheets = open(path)?;
     let names = sheets.sheet_names();
     let chosen = match name {
@@ -50,7 +53,7 @@ pub(super) fn read(path: &Path, name: Option<&str>) -> Result<SheetText, ImportE
     Ok(SheetText {
         name: chosen,
         others: Vec::new(),
-        text: text(&range, is_1904(&sheets)),
+        text: text(&range, is_1904(&sheets), decimal_mark),
     })
 }
 
@@ -87,7 +90,7 @@ pub(super) fn likely(path: &Path) -> Result<SheetText, ImportError> {
     let range = range(path, &mut sheets, name)?;
     Ok(SheetText {
         others: others.map(|(other, _)| other.clone()).collect(),
-        text: text(&range, is_1904(&sheets)),
+        text: text(&range, is_1904(&sheets), '.'),
         name: name.clone(),
     })
 }
@@ -203,14 +206,17 @@ fn is_1904(sheets: &Workbook) -> bool {
 }
 
 /// A sheet's rows as lines, from its first row on, so that a line is a row; empty ones are empty lines.
-fn text(range: &Range<Data>, is_1904: bool) -> String {
+fn text(range: &Range<Data>, is_1904: bool, decimal_mark: char) -> String {
     let (first_row, first_column) = range.start().unwrap_or_default();
     let mut text = "\n".repeat(first_row as usize);
     for row in range.rows() {
-        let cells: Vec<String> = row.iter().map(|data| cell(data, is_1904)).collect();
+        let cells: Vec<String> = row
+            .iter()
+            .map(|data| cell(data, is_1904, decimal_mark))
+            .collect();
         if cells.iter().any(|cell| !cell.is_empty()) {
-            text += &",".repeat(first_column as usize);
-            text += &cells.join(",");
+            text += &"\t".repeat(first_column as usize);
+            text += &cells.join("\t");
         }
         text.push('\n');
     }
@@ -218,11 +224,11 @@ fn text(range: &Range<Data>, is_1904: bool) -> String {
 }
 
 /// A cell as a field.
-fn cell(data: &Data, is_1904: bool) -> String {
+fn cell(data: &Data, is_1904: bool, decimal_mark: char) -> String {
     match data {
         Data::Empty => String::new(),
         Data::Int(number) => number.to_string(),
-        Data::Float(number) => number.to_string(),
+        Data::Float(number) => number.to_string().replace('.', &decimal_mark.to_string()),
         Data::Bool(true) => "TRUE".to_owned(),
         Data::Bool(false) => "FALSE".to_owned(),
         Data::DateTime(stamp) => serial(*stamp, is_1904),
@@ -232,7 +238,8 @@ fn cell(data: &Data, is_1904: bool) -> String {
             Some(duration) => format!("T#{}", duration.to_lowercase()),
             None => text.clone(),
         }),
-        Data::Error(error) => error.to_string(),
+        // What cannot be computed is no value.
+        Data::Error(_) => String::new(),
         Data::String(text) => quoted(text),
     }
 }
@@ -243,7 +250,7 @@ fn quoted(text: &str) -> String {
         .chars()
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
-    if text.contains([',', '"']) {
+    if text.contains('"') {
         return format!("\"{}\"", text.replace('"', "\"\""));
     }
     text

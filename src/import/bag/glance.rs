@@ -8,6 +8,7 @@ use super::message::There;
 use super::open;
 use super::store::{Scan, Stores};
 use crate::import::error::ImportError;
+use crate::import::log::EPOCH;
 
 /// Overview of a bag.
 pub(in crate::import) struct Glance {
@@ -62,7 +63,7 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
         }
     }
     let stamped = !topics.is_empty() && topics.iter().all(|topic| topic.stamp.is_some());
-    let mut zero_stamps = [0, 0];
+    let (mut zero_stamps, mut latest) = ([0, 0], 0);
     stores.visit(|message| -> Result<(), ImportError> {
         let of_message = |topic: &&mut Topic| topic.name == message.there.topic;
         let Some(topic) = topics.iter_mut().find(of_message) else {
@@ -73,9 +74,10 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
         let Ok(read) = topic.definition.decode(&plain) else {
             return Ok(());
         };
-        if let Some(stamp) = &topic.stamp {
-            zero_stamps[0] += usize::from(read.stamp(stamp) == Some(0));
+        if let Some(stamp) = topic.stamp.as_ref().and_then(|stamp| read.stamp(stamp)) {
+            zero_stamps[0] += usize::from(stamp == 0);
             zero_stamps[1] += 1;
+            latest = latest.max(stamp);
         }
         if topic.is_new {
             topic.fields = fields(topic, &read.joints());
@@ -96,6 +98,10 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
         }
         Ok(())
     })?;
+    // A simulated clock begins at zero.
+    if latest != 0 && (latest as f64) < EPOCH * 1e9 {
+        zero_stamps[0] = 0;
+    }
     let all = topics.into_iter().flat_map(|topic| topic.fields);
     let fields = all.map(|(seen, ..)| seen);
     Ok(Glance {

@@ -32,13 +32,26 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
         let Some(cells) = read.into_iter().next().map(cells) else {
             continue;
         };
+        let whole = name.split('[').next().unwrap_or(name);
         columns.push(Seen {
             column: Column::Name(name.clone()),
             name: name.clone(),
             joint: None,
             frames: Vec::new(),
-            unit: units::of_name(name),
+            // An element of a list has the list's.
+            unit: units::of_name(if name.ends_with(']') { whole } else { name })
+                .or_else(|| units::of_name(name)),
             cells,
+        });
+    }
+    if columns.iter().all(|column| column.cells == Cells::Other) {
+        let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+        return Err(ImportError::Read {
+            file: path.to_owned(),
+            cause: format!(
+                "its columns {} hold neither numbers nor stamps",
+                names.join(", ")
+            ),
         });
     }
     Ok(Looked {
@@ -110,9 +123,13 @@ pub(super) fn tdms(path: &Path) -> Result<Looked, ImportError> {
         true => "it begins as one; its channels are waveforms and say their times themselves",
         false => "it begins as one",
     };
+    let why = match &contents.torn {
+        Some(found) => format!("{why}; it is cut off: {found}"),
+        None => why.to_owned(),
+    };
     Ok(Looked {
         path: path.to_owned(),
-        head: form("tdms", why),
+        head: form("tdms", &why),
         columns: columns.collect(),
         time: match is_waveforms {
             true => TimeSeen::Waveforms,
@@ -130,9 +147,12 @@ pub(super) fn spreadsheet(path: &Path) -> Result<Looked, ImportError> {
         is_certain: true,
     };
     let mut looked = text::look_at(path, &sheet.text, &told)?;
-    looked.head.retain(|line| {
-        !["encoding", "separator", "decimal_mark", "thousands_mark"].contains(&line.key)
-    });
+    // Numbers have no marks there, unless they stand as texts.
+    let is_plain = |line: &Line| line.key == "decimal_mark" && line.value == "\".\"";
+    let of_files = ["encoding", "separator"];
+    looked
+        .head
+        .retain(|line| !of_files.contains(&line.key) && !is_plain(line));
     let because = match &sheet.others[..] {
         [] => Because::certain("it alone holds anything"),
         others => Because::likely(format!(
