@@ -1,5 +1,6 @@
 //! The numbers of a log, whatever its form: series against their own times, in SI.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::error::ImportError;
@@ -128,6 +129,26 @@ fn fallen(time: f64, before: f64) -> &'static str {
     }
 }
 
+/// Rows with a stamp, turned round where the newest stands first; says so.
+fn in_order(
+    time: &[f64],
+    rows: Range<usize>,
+    lines: &[u64],
+    remarks: &mut Vec<Remark>,
+) -> Vec<usize> {
+    let (mut kept, unstamped): (Vec<usize>, Vec<usize>) =
+        rows.partition(|row| !time[*row].is_nan());
+    if !unstamped.is_empty() {
+        let lines = unstamped.iter().map(|row| lines[*row]).collect();
+        remarks.push(Remark::Unstamped(lines));
+    }
+    if fall(time, &kept) {
+        kept.reverse();
+        remarks.push(Remark::Reversed);
+    }
+    kept
+}
+
 /// Rows in SI, those left out that the map drops or that say nothing new.
 fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
     let Rows {
@@ -151,16 +172,7 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
     if first + last > 0 {
         remarks.push(Remark::Dropped([first, last]));
     }
-    let (mut kept, unstamped): (Vec<usize>, Vec<usize>) =
-        kept.partition(|row| !time[*row].is_nan());
-    if !unstamped.is_empty() {
-        let lines = unstamped.iter().map(|row| lines[*row]).collect();
-        remarks.push(Remark::Unstamped(lines));
-    }
-    if fall(&time, &kept) {
-        kept.reverse();
-        remarks.push(Remark::Reversed);
-    }
+    let kept = in_order(&time, kept, &lines, &mut remarks);
     let (mut taken, mut repeated, mut stamped) = (Vec::new(), Vec::new(), Vec::new());
     let same = |a: f64, b: f64| a == b || (a.is_nan() && b.is_nan());
     for row in kept {
