@@ -142,8 +142,9 @@ fn robot_files() {
         refusal(
             |b| b.replace("arm.urdf", "effort=\"150\"", "effort=\"150"),
             &[
-                "arm.urdf:112: not a valid URDF file",
-                "joint `elbow` (begun on line 107)",
+                "arm.urdf:11",
+                "not a valid URDF file",
+                "joint `elbow` (begun on line 106)",
             ],
         ),
         refusal(
@@ -154,17 +155,17 @@ fn robot_files() {
                     &format!("{ELBOW}<mimic joint=\"shoulder_pan\"/>"),
                 );
             },
-            &["arm.urdf: joint `elbow`", "mimics joint `shoulder_pan`"],
+            &["arm.urdf:106: joint `elbow`", "mimics joint `shoulder_pan`"],
         ),
         refusal(
             |b| b.replace("arm.urdf", ELBOW, "<joint name=\"elbow\" type=\"planar\">"),
             &[
-                "arm.urdf: joint `elbow` is planar; expected revolute, continuous, prismatic or fixed",
+                "arm.urdf:106: joint `elbow` is planar; expected revolute, continuous, prismatic or fixed",
             ],
         ),
         refusal(
             |b| b.replace("arm.urdf", "effort=\"150\"", ""),
-            &["arm.urdf: joint `elbow` has effort limit 0; expected a positive number"],
+            &["arm.urdf:106: joint `elbow` has effort limit 0; expected a positive number"],
         ),
         refusal(
             |b| edit(b, "\"flange\"", "\"tool0\""),
