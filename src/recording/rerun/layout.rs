@@ -175,7 +175,7 @@ fn plot_view(plot: &Plot) -> Panel {
 }
 
 /// Heading of the view of an edge that is worked.
-const WORKED_HEADING: &str = "Burr bronze; chamfer green, too small blue, too large orange";
+const WORKED_HEADING: &str = "Burr bronze; chamfer green, blue −, orange +";
 
 /// Heading of the edge's view: how to read the colours of the path.
 pub(super) fn edge_heading(scale: Option<ErrorScale>) -> String {
