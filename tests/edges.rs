@@ -6,7 +6,7 @@ use base64::Engine as _;
 use idc_cell::recording::parquet::read_parquet;
 use serde_json::Value;
 
-use crate::common::project;
+use crate::common::{project, shared};
 use crate::program::Bench;
 
 /// Data of the drawing in a page.
@@ -264,6 +264,90 @@ fn small_flaws_are_mended_with_places_and_others_shown_on_the_page() {
     }
     let none = bench.idc(&["edges", "open.stl", "--json"], &[]);
     assert_eq!((none.code, none.out.as_str()), (2, ""));
+}
+
+#[test]
+fn mesh_files_that_people_have_are_read_as_their_formats_have_them() {
+    let Some(found) = shared("found") else {
+        return;
+    };
+    // Lowest and highest corners [mm], volume [mm3], by hand from the files' transforms.
+    let box_of = |low: [f64; 3], high: [f64; 3]| {
+        let sizes = (0..3).map(|axis| high[axis] - low[axis]);
+        (low, high, sizes.product::<f64>())
+    };
+    let (cube, plate) = ([-60.0, -60.0, 0.0], [100.0, 40.0, 10.0]);
+    let on = |up: f64| box_of([-60.0, -60.0, up], [60.0, 60.0, up + 60.0]);
+    let unit = |name: &'static str| (name, "m", box_of(cube, [60.0, 60.0, 60.0]));
+    let text = |name: &'static str| (name, "mm", box_of([0.0; 3], plate));
+    let arrow = 1100.0 * 10.0;
+    for (name, unit, (low, high, volume)) in [
+        ("urdf/d_libnodes.dae", "m", on(400.0)),
+        ("urdf/d_nested.dae", "m", on(400.0)),
+        (
+            "urdf/d_twice.dae",
+            "m",
+            (cube, [60.0, 60.0, 560.0], 2.0 * 120.0 * 120.0 * 60.0),
+        ),
+        (
+            "urdf/e_inst2.dae",
+            "m",
+            ([0.0; 3], [600.0, 700.0, 300.0], 2.0 * 6e6),
+        ),
+        // (x, y, z) to (x, -z, y), after the shift.
+        (
+            "urdf/e_two_R_T.dae",
+            "m",
+            box_of([100.0, -600.0, 200.0], [200.0, -300.0, 400.0]),
+        ),
+        (
+            "urdf/e_two_T_T.dae",
+            "m",
+            box_of([100.0, 200.0, 0.0], [200.0, 400.0, 300.0]),
+        ),
+        unit("urdf/u_instnode_unit.dae"),
+        unit("urdf/u_mm.dae"),
+        unit("urdf/u_no_name.dae"),
+        unit("urdf/u_noscene.dae"),
+        text("mesh/a_noname.stl"),
+        text("mesh/a_upper.stl"),
+        text("mesh/a_bom.stl"),
+        text("mesh/a_longname.stl"),
+        text("mesh/a_nan_ind.stl"),
+        ("mesh/mixed_concave.obj", "mm", ([0.0; 3], plate, arrow)),
+        // A third of the lifted corner's block more than the plate.
+        (
+            "mesh/nonplanar.obj",
+            "mm",
+            ([0.0; 3], [100.0, 40.0, 25.0], 4e4 + 1e4),
+        ),
+    ] {
+        let file = found.join(name);
+        let scale = if unit == "m" { 1.0 } else { 1e-3 };
+        let mesh = idc_cell::workpiece::load_mesh(&file, scale).unwrap();
+        let (lowest, highest) = mesh.bounds();
+        for axis in 0..3 {
+            assert!(
+                (1e3 * lowest[axis] - low[axis]).abs() < 1e-3,
+                "{name}: {lowest}"
+            );
+            assert!(
+                (1e3 * highest[axis] - high[axis]).abs() < 1e-3,
+                "{name}: {highest}"
+            );
+        }
+        assert!(
+            (1e9 * mesh.volume() / volume - 1.0).abs() < 1e-5,
+            "{name}: {}",
+            mesh.volume()
+        );
+    }
+    let pointer = idc_cell::workpiece::load_mesh(&found.join("mesh/lfs.stl"), 1e-3);
+    let message = pointer.unwrap_err().to_string();
+    assert!(
+        message.contains("Git LFS pointer to a file of 123456 bytes"),
+        "{message}"
+    );
 }
 
 #[test]
