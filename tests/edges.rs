@@ -315,7 +315,7 @@ fn mesh_files_that_people_have_are_read_as_their_formats_have_them() {
         text("mesh/a_longname.stl"),
         text("mesh/a_nan_ind.stl"),
         ("mesh/mixed_concave.obj", "mm", ([0.0; 3], plate, arrow)),
-        // A third of the lifted corner's block more than the plate.
+        // The corner lifted by 15 mm adds a third of that over one of the two triangles, along the shorter diagonal.
         (
             "mesh/nonplanar.obj",
             "mm",
