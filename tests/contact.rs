@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 use idc_cell::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
-use idc_cell::control::law::JointLaw;
+use idc_cell::control::law::{DriveLimit, JointLaw};
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::seal_friction::SealFriction;
 use idc_cell::plant::{ContactLaw, ContactParameters, ForceTerms, Periodic, Relief, StepContact};
@@ -126,6 +126,7 @@ impl Press {
         let carrier = SlideCarrier {
             beyond: 0.0,
             terms: ForceTerms::default(),
+            peak: None,
             contact: StepContact::plain(&self.contact),
             touches: &self.touches,
             start: self.time,
@@ -160,6 +161,7 @@ impl Press {
         let carrier = SlideCarrier {
             beyond: 0.0,
             terms: ForceTerms::default(),
+            peak: None,
             contact: StepContact::plain(&self.contact),
             touches: &self.touches,
             start: self.time,
@@ -272,6 +274,46 @@ fn hold_cross_slide(position: f64) -> JointLaw {
         rest: position,
         damping: 1e5,
     }
+}
+
+#[test]
+fn a_drive_beyond_its_limit_moves_its_joint_with_the_limit_and_one_within_it_as_its_law_says() {
+    let law = Law {
+        stiffness: 1e5,
+        damping: 100.0,
+        friction: 0.0,
+    };
+    let (wanted, mass) = (0.01, 3.0);
+    let speed_of = |effort: f64| {
+        let mut press = Press::new(&plate(), mass, law);
+        // Away from the part.
+        press.put(&[0.0, 0.5 * TOUCH]);
+        let losses = JointLaw {
+            damping: 40.0,
+            ..JointLaw::default()
+        };
+        let limit = DriveLimit { effort, losses };
+        let drive = hold_cross_slide(wanted);
+        let total = JointLaw {
+            damping: drive.damping + losses.damping,
+            ..drive
+        };
+        press.world.set_limits(&[Some(limit), None]);
+        press
+            .world
+            .set_laws(&[total, JointLaw::constant(-mass * GRAVITY)]);
+        press.world.step(&[], None);
+        (press.world.velocities()[0], press.world.drive(0))
+    };
+    // The cross slide of 20 kg carries the vertical one; from rest the losses are small.
+    let (speed, (force, cut)) = speed_of(50.0);
+    assert_eq!((force, cut), (50.0, true));
+    let expected = 50.0 / (20.0 + mass) * STEP;
+    assert!((speed / expected - 1.0).abs() < 2e-3, "{speed} {expected}");
+    let (free, (force, cut)) = speed_of(f64::INFINITY);
+    assert!(!cut && force > 1e4 && free > 10.0 * speed, "{force} {free}");
+    // A limit just above what the law takes changes nothing.
+    assert_eq!(speed_of(1.01 * force).0, free);
 }
 
 /// Presses with `force` beyond the ball's own weight until at rest.

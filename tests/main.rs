@@ -16,6 +16,7 @@ mod design;
 mod determinism;
 mod diagnose;
 mod drawn;
+mod drives;
 mod edges;
 mod effects;
 mod equations;

@@ -58,6 +58,7 @@ fn pass(force: f64, feed: f64) -> PassScenario {
     PassScenario {
         force: Some(force),
         feed: Some(feed),
+        expect: Vec::new(),
     }
 }
 

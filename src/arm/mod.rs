@@ -6,6 +6,7 @@ pub mod chain;
 pub mod dynamics;
 pub mod inverse_kinematics;
 pub mod kinematics;
+pub mod payload;
 pub mod urdf;
 
 #[cfg(test)]

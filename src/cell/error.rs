@@ -205,6 +205,40 @@ pub enum CellError {
         /// Least opposing pressure at which it can be had [Pa gauge].
         least_opposing: f64,
     },
+    /// A contact too fast for any step.
+    #[error("{}: [contact]: {stiffness} N/m and {damping} N s/m against a moving mass of {mass} kg change faster than the shortest part of a step, 1 us, can follow: expected stiffness_n_per_m at most {:.1e} and damping_n_s_per_m at most {:.1e} (device.override.end_stop_* likewise), or a larger moving_mass_kg",
+        file.display(), most_stiffness, most_damping)]
+    Unresolved {
+        /// Scenario file.
+        file: PathBuf,
+        /// Contact stiffness [N/m].
+        stiffness: f64,
+        /// Contact damping [N s/m].
+        damping: f64,
+        /// Moving mass [kg].
+        mass: f64,
+        /// The largest stiffness that can be followed [N/m].
+        most_stiffness: f64,
+        /// The largest damping [N s/m].
+        most_damping: f64,
+    },
+    /// More on the flange than the arm may carry.
+    #[error("{}: the flange carries {carried} kg, {housing} kg of housing and {moving} kg of slide and tool, but the arm at most {payload} kg ({origin}): expected a lighter device (moving_mass_kg, housing_mass_kg in [device.override]), an arm for more, or arm.payload_kg if it may carry more",
+        file.display())]
+    Payload {
+        /// Scenario file.
+        file: PathBuf,
+        /// Mass on the flange [kg].
+        carried: f64,
+        /// Mass of the device's housing [kg].
+        housing: f64,
+        /// Mass of its slide and tool [kg].
+        moving: f64,
+        /// What the arm may carry [kg].
+        payload: f64,
+        /// Who says so.
+        origin: String,
+    },
     /// The supply cannot give the force, or the command's way not the set pressure.
     #[error("{}: `process.force_n` is {force} N, which needs {:.2} bar gauge at the regulator at {:.1} mm along the edge; {giver} 0 to {:.2} bar, expected {:.1} to {:.1} N there",
         file.display(), needed / 1e5, 1e3 * edge_length, supply / 1e5, attainable[0].max(0.0), attainable[1])]

@@ -7,8 +7,10 @@ mod device_shape;
 mod error;
 mod estimated;
 mod part;
+mod payload;
 mod plant;
 mod remedy;
+mod resolution;
 mod setup;
 mod supply;
 
@@ -22,6 +24,8 @@ pub use device_shape::DeviceShape;
 pub use error::CellError;
 pub use estimated::{EstimatedArm, EstimatedLink, EstimatedTorque};
 pub use part::{Part, choose_edge, station};
+pub use payload::{FlangeLoad, with_housing};
+pub use resolution::Resolution;
 pub use setup::{Setup, Stance, arm_options};
 
 use crate::arm::chain::{KinematicChain, MAX_JOINTS};
@@ -50,6 +54,8 @@ pub struct Cell {
     pub transmissions: Vec<Option<TransmissionParameters>>,
     /// Its physics.
     pub plant: PlantParameters,
+    /// How finely a step of the simulation is cut.
+    pub resolution: Resolution,
     /// The middle of the followed edge, where the part is believed.
     pub middle: EdgeStation,
     /// The device.
@@ -89,6 +95,7 @@ impl Cell {
     /// Something is missing, refused or out of reach; the error names file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
         let setup = Setup::load(scenario)?;
+        let resolution = Resolution::of(&setup.scenario, &setup.plant)?;
         if let Some(Meeting { names, depth, .. }) = setup.collision.standing().into_iter().next() {
             return Err(CellError::Standing {
                 file: setup.scenario.path.clone(),
@@ -131,6 +138,7 @@ impl Cell {
         } = setup;
         notes.extend(estimated.as_ref().map(EstimatedArm::note));
         notes.extend(plan.notes.iter().cloned());
+        notes.extend(resolution.note(&scenario));
         let middle = station(
             &part.edge,
             scenario.workpiece.world_from_part,
@@ -143,6 +151,7 @@ impl Cell {
             bodies,
             transmissions,
             plant,
+            resolution,
             middle,
             device,
             controller,

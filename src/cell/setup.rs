@@ -6,6 +6,7 @@ use glamx::DPose3;
 use super::collision;
 use super::error::CellError;
 use super::part::Part;
+use super::payload::{FlangeLoad, with_housing};
 use super::plant;
 use super::supply;
 use crate::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
@@ -66,6 +67,8 @@ impl Setup {
         }
         let transmissions = plant::transmissions(&scenario, &arm.chain, &plant.cell);
         check_seed_posture(&scenario, &arm.chain)?;
+        let flange = FlangeLoad::of(&scenario, &arm);
+        flange.check(&scenario)?;
         let believed_mass = scenario.device.parameters.moving_mass;
         let arm_with_slide = with_slide(&arm.chain, &scenario, believed_mass);
         let bodies = with_slide(&arm.chain, &scenario, plant.device.moving_mass);
@@ -78,6 +81,7 @@ impl Setup {
                 .iter()
                 .map(|note| format!("{mesh}: {note}")),
         );
+        notes.extend(flange.notes());
         let collision = collision::model(&scenario, &arm, &arm_with_slide, &part, &mut notes)?;
         Ok(Self {
             passes: passes(&scenario),
@@ -242,11 +246,11 @@ fn check_seed_posture(scenario: &Scenario, arm: &KinematicChain) -> Result<(), C
     }
 }
 
-/// The arm's chain with the device's moving part, of a mass [kg], on a prismatic joint along the flange's z.
+/// The arm's chain with the device's housing on its flange and its moving part, of a mass [kg], on a prismatic joint along the flange's z.
 fn with_slide(arm: &KinematicChain, scenario: &Scenario, mass: f64) -> KinematicChain {
     let device = &scenario.device;
     let gyration = device.moving_radius_of_gyration;
-    let mut chain = arm.clone();
+    let mut chain = with_housing(arm, device);
     chain.joints.push(Joint {
         name: "device_slide".into(),
         kind: JointKind::Prismatic,

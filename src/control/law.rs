@@ -27,3 +27,23 @@ impl JointLaw {
         self.force - self.damping * speed - self.stiffness * (position - self.rest)
     }
 }
+
+/// Limit of the drive in a joint's law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DriveLimit {
+    /// Largest torque of the drive [N m]; infinite for none.
+    pub effort: f64,
+    /// Share of the law that is the joint's own losses, not the drive's: constant and damping.
+    pub losses: JointLaw,
+}
+
+impl DriveLimit {
+    /// A law in which the drive gives a torque [N m] whatever the joint does; the losses stay.
+    pub fn held(&self, torque: f64) -> JointLaw {
+        JointLaw {
+            force: torque + self.losses.force,
+            damping: self.losses.damping,
+            ..JointLaw::default()
+        }
+    }
+}

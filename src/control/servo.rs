@@ -7,10 +7,10 @@
 //!
 //! m the axis's own inertia at the start [kg m2], w natural frequency [rad/s], z damping ratio, T_i integral time [s]. tau_ff is the inverse dynamics of
 //! the reference with the device's moving mass, less the contact force's share.
-//! The proportional and derivative parts go to the engine as an implicit law, so a stiff servo is stable at any step; a law whose torque would leave the
-//! effort limit in the middle of the step is replaced by the constant torque at the limit, and the integral waits.
+//! The proportional and derivative parts go to the engine as an implicit law, so a stiff servo is stable at any step. What a drive gives is known only when
+//! the step is done: whoever takes it holds it to `limit` (`simulation::world`, `transmission`) and says so by `hold`, upon which the integral waits.
 
-use super::law::JointLaw;
+use super::law::{DriveLimit, JointLaw};
 use crate::arm::chain::KinematicChain;
 
 /// Gains of one axis.
@@ -106,23 +106,27 @@ impl Servo {
         }
         let constant =
             command.feed_forward + self.integrals[axis] + gains.derivative * command.velocity;
-        let foreseen = constant + gains.proportional * error - gains.derivative * velocity;
-        self.saturated[axis] = foreseen.abs() > gains.effort;
-        let mut law = if self.saturated[axis] {
-            JointLaw::constant(foreseen.clamp(-gains.effort, gains.effort))
-        } else {
-            JointLaw {
-                force: constant,
-                stiffness: gains.proportional,
-                rest: command.position,
-                damping: gains.derivative,
-            }
-        };
         let losses = self.joint_losses(axis, velocity);
-        law.force += losses.force;
-        law.damping += losses.damping;
         self.losses[axis] = losses;
-        law
+        JointLaw {
+            force: constant + losses.force,
+            stiffness: gains.proportional,
+            rest: command.position,
+            damping: gains.derivative + losses.damping,
+        }
+    }
+
+    /// Limit of an axis's drive under its last law.
+    pub fn limit(&self, axis: usize) -> DriveLimit {
+        DriveLimit {
+            effort: self.gains[axis].effort,
+            losses: self.losses[axis],
+        }
+    }
+
+    /// Says whether the limit of an axis's drive cut its last law; its integral waits as long as it does.
+    pub fn hold(&mut self, axis: usize, cut: bool) {
+        self.saturated[axis] = cut;
     }
 
     /// The joint's own viscous and dry friction, the latter linear about the present speed.
@@ -136,11 +140,6 @@ impl Servo {
             damping: gains.joint_damping + slope,
             ..JointLaw::default()
         }
-    }
-
-    /// Torque of the drive alone, from the last law's total at a speed [rad/s].
-    pub fn drive_torque(&self, axis: usize, total: f64, velocity: f64) -> f64 {
-        total - self.losses[axis].at(0.0, velocity)
     }
 }
 
@@ -187,35 +186,36 @@ mod tests {
     }
 
     #[test]
-    fn the_drive_torque_leaves_out_the_joint_losses_that_acted() {
+    fn the_integral_waits_while_the_limit_cuts_the_drive() {
         let mut servo = servo();
-        servo.gains[0].joint_damping = 3.0;
-        servo.gains[0].joint_friction = 2.0;
-        // Asked for more than it can; the joint speeds up during the step.
         let command = AxisCommand {
             position: 0.1,
             velocity: 0.0,
             feed_forward: 0.0,
         };
-        let law = servo.law(0, &command, 0.0, 2e-4, 1e-3);
-        let total = law.at(1e-5, 0.05);
-        assert!(total < 50.0 - 3.0 * 0.05);
-        assert!((servo.drive_torque(0, total, 0.05) - 50.0).abs() < 1e-12);
+        let first = servo.law(0, &command, 0.0, 0.0, 1e-3).force;
+        servo.hold(0, true);
+        for _ in 0..100 {
+            assert_eq!(servo.law(0, &command, 0.0, 0.0, 1e-3).force, first);
+        }
+        servo.hold(0, false);
+        assert!(servo.law(0, &command, 0.0, 0.0, 1e-3).force > first);
     }
 
     #[test]
-    fn the_torque_stays_at_the_limit_and_the_integral_waits() {
+    fn a_drive_held_at_its_limit_keeps_the_joint_s_losses() {
         let mut servo = servo();
+        servo.gains[0].joint_damping = 3.0;
+        servo.gains[0].joint_friction = 2.0;
         let command = AxisCommand {
             position: 0.1,
             velocity: 0.0,
             feed_forward: 0.0,
         };
-        let first = servo.law(0, &command, 0.0, 0.0, 1e-3);
-        assert_eq!((first.force, first.stiffness), (50.0, 0.0));
-        for _ in 0..100 {
-            servo.law(0, &command, 0.0, 0.0, 1e-3);
-        }
-        assert!(servo.integrals[0] <= 2e4 / 0.1 * 0.1 * 1e-3 * 1.001);
+        servo.law(0, &command, 0.0, 2e-4, 1e-3);
+        let limit = servo.limit(0);
+        let total = limit.held(limit.effort).at(1e-5, 0.05);
+        assert!(total < 50.0 - 3.0 * 0.05);
+        assert!((total - limit.losses.at(0.0, 0.05) - 50.0).abs() < 1e-12);
     }
 }

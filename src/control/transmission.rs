@@ -11,7 +11,7 @@
 //!
 //! The motor takes a step of the midpoint rule against the link as it moves now; the link then meets the spring with the motor in the middle of the step.
 
-use super::law::JointLaw;
+use super::law::{DriveLimit, JointLaw};
 
 /// Spring and play of one joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +36,8 @@ pub struct Motor {
     pub speed: f64,
     /// Angle [rad] and rate [rad/s] in the middle of the last step.
     pub middle: (f64, f64),
+    /// Torque of its drive over the last step [N m], and whether the drive's limit cut it.
+    pub drive: (f64, bool),
 }
 
 impl Motor {
@@ -54,12 +56,34 @@ impl Motor {
             angle,
             speed: 0.0,
             middle: (angle, 0.0),
+            drive: (torque, false),
         };
         (motor, link)
     }
 
-    /// Advances over `dt` [s] under the drive's law, the link being at an angle [rad] and a speed [rad/s]; gives the law of the link.
-    pub fn advance(&mut self, drive: &JointLaw, link: f64, link_speed: f64, dt: f64) -> JointLaw {
+    /// Advances over `dt` [s] under the drive's law within its limit, the link being at an angle [rad] and a speed [rad/s]; gives the law of the link.
+    pub fn advance(
+        &mut self,
+        (drive, limit): (&JointLaw, &DriveLimit),
+        (link, link_speed): (f64, f64),
+        dt: f64,
+    ) -> JointLaw {
+        let mut tried = *self;
+        let law = tried.follow(drive, (link, link_speed), dt);
+        let (angle, speed) = tried.middle;
+        let torque = drive.at(angle, speed) - limit.losses.at(0.0, speed);
+        tried.drive = (torque, false);
+        if torque.abs() <= limit.effort || !torque.is_finite() {
+            *self = tried;
+            return law;
+        }
+        let torque = limit.effort.copysign(torque);
+        self.drive = (torque, true);
+        self.follow(&limit.held(torque), (link, link_speed), dt)
+    }
+
+    /// Advances under a law of the drive, whatever torque it takes.
+    fn follow(&mut self, drive: &JointLaw, (link, link_speed): (f64, f64), dt: f64) -> JointLaw {
         let half = 0.5 * self.parameters.play;
         let wound = self.angle - link;
         let side = if half == 0.0 {
@@ -105,6 +129,16 @@ mod tests {
         damping_time: 2e-3,
         play: 4e-3,
     };
+    /// A drive without limit.
+    const FREE: DriveLimit = DriveLimit {
+        effort: f64::INFINITY,
+        losses: JointLaw {
+            force: 0.0,
+            stiffness: 0.0,
+            rest: 0.0,
+            damping: 0.0,
+        },
+    };
 
     /// A link of 5 kg m2 under a torque, its motor held by a stiff servo.
     fn settled(parameters: TransmissionParameters, torque: f64) -> f64 {
@@ -117,7 +151,7 @@ mod tests {
         };
         let (mut speed, dt, inertia) = (0.0, 1e-3, 5.0);
         for _ in 0..4000 {
-            let law = motor.advance(&servo, link, speed, dt);
+            let law = motor.advance((&servo, &FREE), (link, speed), dt);
             let pull = law.force - law.stiffness * (link - law.rest) + torque - 20.0 * speed;
             speed =
                 (inertia / dt * speed + pull) / (inertia / dt + law.damping + dt * law.stiffness);
@@ -148,8 +182,29 @@ mod tests {
             rest: 0.3,
             damping: 4e3,
         };
-        let law = motor.advance(&servo, link, 0.0, 1e-3);
+        let law = motor.advance((&servo, &FREE), (link, 0.0), 1e-3);
         assert!((law.at(link, 0.0) - 80.0).abs() < 1e-6);
         assert!(motor.speed.abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_drive_beyond_its_limit_turns_its_motor_with_the_limit() {
+        // Free of its link by the play; from rest the limit over the rotor's inertia is its acceleration.
+        let (mut motor, link) = Motor::at_rest(SPRING, 2.0, 0.3, 0.0);
+        let servo = JointLaw {
+            force: 0.0,
+            stiffness: 1e6,
+            rest: 0.4,
+            damping: 4e3,
+        };
+        let limit = DriveLimit {
+            effort: 90.0,
+            ..FREE
+        };
+        motor.advance((&servo, &limit), (link, 0.0), 1e-3);
+        assert_eq!(motor.drive, (90.0, true));
+        assert!((motor.speed - 90.0 / 2.0 * 1e-3).abs() < 1e-9);
+        motor.advance((&servo, &FREE), (link, 0.0), 1e-3);
+        assert!(motor.drive.0 > 90.0 && !motor.drive.1);
     }
 }

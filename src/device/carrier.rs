@@ -32,6 +32,9 @@ pub trait Carrier {
     /// Whether the load pushes on the piston.
     fn touches(&self, time: f64, motion: PistonMotion) -> bool;
 
+    /// Takes note of a sub-step that is done: its start and length [s], the motion at both ends.
+    fn note(&self, _start: f64, _length: f64, _ends: [PistonMotion; 2]) {}
+
     /// The fastest rate [1/s] of whatever hangs on the piston, for the choice of sub-steps.
     fn rate(&self) -> f64;
 

@@ -239,7 +239,7 @@ impl<C: Carrier> Surroundings<'_, C> {
             let mode = self.mode(from, flow.motion);
             let whole = self.step::<LEDGER>(flow, from, left, mode);
             if self.mode(from + left, whole.motion) == mode {
-                self.accept(flow, whole);
+                self.accept(flow, whole, [from, left]);
                 return;
             }
             let (mut before, mut after, mut there) = (0.0, left, whole);
@@ -252,7 +252,7 @@ impl<C: Carrier> Surroundings<'_, C> {
                     (after, there) = (middle, tried);
                 }
             }
-            self.accept(flow, there);
+            self.accept(flow, there, [from, after]);
             from += after;
             left -= after;
             if left <= 0.0 {
@@ -261,10 +261,13 @@ impl<C: Carrier> Surroundings<'_, C> {
         }
         let mode = self.mode(from, flow.motion);
         let rest = self.step::<LEDGER>(flow, from, left, mode);
-        self.accept(flow, rest);
+        self.accept(flow, rest, [from, left]);
     }
 
-    fn accept(&mut self, flow: &mut Flow, next: Flow) {
+    fn accept(&mut self, flow: &mut Flow, next: Flow, [start, length]: [f64; 2]) {
+        if C::LOADED {
+            self.carrier.note(start, length, [flow.motion, next.motion]);
+        }
         let device = self.device;
         if C::MOVES && device.parameters.seal_friction.is_dry() {
             let ends = [&*flow, &next].map(|flow| (&flow.air, flow.motion.stroke));

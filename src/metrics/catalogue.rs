@@ -110,6 +110,10 @@ pub const METRICS: &[Metric] = &[
         "tool tip beside planned path", |s| s.path_error_rms_um),
     entry("path_error_max_um", "µm", "lateral error, largest",
         "tool tip beside planned path", |s| s.path_error_max_um),
+    entry("path_lag_rms_um", "µm", "lag, RMS",
+        "tool tip behind its plan", |s| s.path_lag_rms_um),
+    entry("path_lag_max_um", "µm", "lag, largest",
+        "tool tip behind its plan", |s| s.path_lag_max_um),
     entry("path_length_mm", "mm", "length followed",
         "along the planned path", |s| s.path_length_mm),
     entry("feed_mean_mm_per_s", "mm/s", "feed, mean",
@@ -118,6 +122,8 @@ pub const METRICS: &[Metric] = &[
         "first to last sample of it", |s| s.follow_duration_s),
     entry("joint_torque_share_percent", "%", "joint torque / limit",
         "largest of all joints", |s| s.joint_torque_share_percent),
+    entry("drives_saturated_s", "s", "drives at their limit",
+        "time of the run", |s| s.drives_saturated_s),
     entry("air_mass_balance_relative", "1", "air balance, largest gap",
         "of the air in the chambers", |s| s.air_mass_balance_relative),
     entry("burr_before_max_mm", "mm", "burr before, highest",
@@ -136,6 +142,18 @@ pub const METRICS: &[Metric] = &[
         "share of the edge", |s| s.residual_burr_share_percent),
     entry("out_of_tolerance_share_percent", "%", "out of tolerance",
         "share of the edge", |s| s.out_of_tolerance_share_percent),
+    entry("ends_chamfer_leg_min_mm", "mm", "ends, leg, least",
+        "at the ends of the edge", |s| s.ends_chamfer_leg_min_mm),
+    entry("ends_chamfer_leg_max_mm", "mm", "ends, leg, largest",
+        "at the ends of the edge", |s| s.ends_chamfer_leg_max_mm),
+    entry("ends_residual_burr_max_mm", "mm", "ends, highest burr",
+        "at the ends of the edge", |s| s.ends_residual_burr_max_mm),
+    entry("ends_out_of_tolerance_share_percent", "%", "ends, out of tolerance",
+        "share of the ends", |s| s.ends_out_of_tolerance_share_percent),
+    entry("whole_edge_out_of_tolerance_share_percent", "%", "out of tolerance, whole",
+        "share of the whole edge", |s| s.whole_edge_out_of_tolerance_share_percent),
+    entry("ends_length_mm", "mm", "ends, length of each",
+        "a contact length", |s| s.ends_length_mm),
     entry("section_removed_mean_mm2", "mm2", "section removed, mean",
         "of burr and edge", |s| s.section_removed_mean_mm2),
     entry("section_variation_percent", "%", "section, variation",
@@ -174,7 +192,13 @@ mod tests {
     use super::*;
 
     /// Keys of summary.json that are no numbers to set bounds on.
-    const OTHER_KEYS: [&str; 4] = ["most_loaded_joint", "joints", "force_by_tenth", "timing"];
+    const OTHER_KEYS: [&str; 5] = [
+        "most_loaded_joint",
+        "joints",
+        "passes",
+        "force_by_tenth",
+        "timing",
+    ];
 
     #[test]
     fn the_list_is_the_file_key_by_key() {
@@ -206,7 +230,7 @@ mod tests {
             .filter_map(|m| text.find(&format!("\"{}\":", m.name)));
         let places: Vec<usize> = places.collect();
         // Timing, and what only a turning tool has.
-        assert_eq!(places.len(), METRICS.len() - 18);
+        assert_eq!(places.len(), METRICS.len() - 24);
         assert!(places.is_sorted());
     }
 

@@ -22,6 +22,7 @@ pub(super) fn measure(summary: &mut Summary, profile: &EdgeProfile, limits: &Edg
     let (Some(first), Some(last)) = (profile.place.first(), profile.place.last()) else {
         return;
     };
+    ends(summary, profile, limits);
     let (from, to) = (first + limits.ends, last - limits.ends);
     let judged: Vec<usize> = (0..profile.place.len())
         .filter(|&i| (from..=to).contains(&profile.place[i]))
@@ -46,10 +47,7 @@ pub(super) fn measure(summary: &mut Summary, profile: &EdgeProfile, limits: &Edg
     let count = legs.len() as f64;
     let left = burrs.iter().filter(|burr| **burr > limits.residual_burr);
     summary.residual_burr_share_percent = Some(100.0 * left.count() as f64 / count);
-    let out = legs.iter().zip(&burrs).filter(|(leg, burr)| {
-        !(limits.leg[0]..=limits.leg[1]).contains(*leg) || **burr > limits.residual_burr
-    });
-    summary.out_of_tolerance_share_percent = Some(100.0 * out.count() as f64 / count);
+    summary.out_of_tolerance_share_percent = out_of_tolerance(profile, limits, &judged);
     let (mean, deviation) = moments(&sections);
     summary.section_removed_mean_mm2 = Some(1e6 * mean);
     summary.section_variation_percent = (mean > 0.0).then(|| 100.0 * deviation / mean);
@@ -57,6 +55,33 @@ pub(super) fn measure(summary: &mut Summary, profile: &EdgeProfile, limits: &Edg
     let spacing = (last - first) / (profile.place.len() - 1).max(1) as f64;
     let volume = profile.section_removed.iter().sum::<f64>() * spacing;
     summary.removed_volume_mm3 = Some(1e9 * volume);
+}
+
+/// Share of stations out of tolerance, by leg or burr [%]; `None` of no station.
+fn out_of_tolerance(profile: &EdgeProfile, limits: &EdgeLimits, of: &[usize]) -> Option<f64> {
+    let is_out = |&&i: &&usize| {
+        let is_good = (limits.leg[0]..=limits.leg[1]).contains(&profile.chamfer_leg[i]);
+        !is_good || profile.burr_after[i] > limits.residual_burr
+    };
+    (!of.is_empty()).then(|| 100.0 * of.iter().filter(is_out).count() as f64 / of.len() as f64)
+}
+
+/// Fills in the numbers of both ends, which the others leave out, and of the edge as a whole.
+fn ends(summary: &mut Summary, profile: &EdgeProfile, limits: &EdgeLimits) {
+    let all: Vec<usize> = (0..profile.place.len()).collect();
+    summary.whole_edge_out_of_tolerance_share_percent = out_of_tolerance(profile, limits, &all);
+    let (first, last) = (profile.place[0], profile.place[all.len() - 1]);
+    let between = first + limits.ends..=last - limits.ends;
+    let is_end = |i: &usize| !between.contains(&profile.place[*i]);
+    let ends: Vec<usize> = all.into_iter().filter(is_end).collect();
+    summary.ends_out_of_tolerance_share_percent = out_of_tolerance(profile, limits, &ends);
+    let of = |values: &[f64]| -> Vec<f64> { ends.iter().map(|&i| 1e3 * values[i]).collect() };
+    if let Some((least, most)) = extent(&of(&profile.chamfer_leg)) {
+        summary.ends_chamfer_leg_min_mm = Some(least);
+        summary.ends_chamfer_leg_max_mm = Some(most);
+    }
+    summary.ends_residual_burr_max_mm = largest(of(&profile.burr_after));
+    summary.ends_length_mm = Some(1e3 * limits.ends);
 }
 
 /// Fills in what the tool and its spindle did over the whole run.
@@ -149,5 +174,36 @@ mod tests {
         near(summary.residual_burr_max_mm, 0.1);
         near(summary.removed_volume_mm3, 100.0 * 0.07);
         near(summary.section_variation_percent, 0.0);
+        // Ten stations are ends, one of them bad; twelve of all.
+        near(summary.ends_out_of_tolerance_share_percent, 10.0);
+        near(summary.whole_edge_out_of_tolerance_share_percent, 12.0);
+        near(summary.ends_chamfer_leg_max_mm, 2.0);
+        near(summary.ends_chamfer_leg_min_mm, 0.3);
+        near(summary.ends_residual_burr_max_mm, 0.0);
+        near(summary.ends_length_mm, 5.0);
+    }
+
+    #[test]
+    fn an_edge_that_is_all_ends_is_judged_by_them() {
+        let profile = EdgeProfile {
+            place: vec![0.0, 1e-3, 2e-3, 3e-3],
+            burr_before: vec![0.0; 4],
+            burr_after: vec![0.0, 0.0, 0.0, 0.1e-3],
+            chamfer_leg: vec![0.3e-3, 0.3e-3, 0.3e-3, 0.3e-3],
+            section_removed: vec![0.0; 4],
+        };
+        let limits = EdgeLimits {
+            leg: [0.2e-3, 0.5e-3],
+            residual_burr: 0.02e-3,
+            ends: 5e-3,
+        };
+        let mut summary = Summary::default();
+        measure(&mut summary, &profile, &limits);
+        assert_eq!(summary.out_of_tolerance_share_percent, None);
+        assert_eq!(summary.ends_out_of_tolerance_share_percent, Some(25.0));
+        assert_eq!(
+            summary.whole_edge_out_of_tolerance_share_percent,
+            Some(25.0)
+        );
     }
 }

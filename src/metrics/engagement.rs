@@ -33,7 +33,9 @@ pub(super) fn measure(
     if force.iter().any(|force| !force.is_finite()) {
         return Ok(());
     }
-    let peak = largest(force.iter().copied());
+    let between = raw(recording, schema::CONTACT_FORCE_PEAK, Unit::Newton)?;
+    let peaks = between.map_or(force, |peaks| &peaks[touch..end]);
+    let peak = largest(peaks.iter().copied());
     summary.engagement_peak_n = peak;
     summary.engagement_overshoot_percent =
         peak.map(|peak| (100.0 * (peak - desired) / desired).max(0.0));

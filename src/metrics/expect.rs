@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::MetricsError;
 use super::catalogue::Metric;
+use super::{METRICS, PASS_METRICS, Summary};
 use crate::scenario::Expectation;
 
 /// Whether a result kept its bounds.
@@ -11,6 +12,9 @@ use crate::scenario::Expectation;
 pub struct BoundCheck {
     /// Name of the metric as in summary.json.
     pub metric: &'static str,
+    /// The pass of which it is, from 1; none of a number of the whole run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pass: Option<usize>,
     /// Its unit.
     pub unit: &'static str,
     /// Its value in that unit; `None` if the run does not determine it.
@@ -37,6 +41,85 @@ pub fn validate<S>(
         .try_for_each(|expectation| find(metrics, expectation).map(|_| ()))
 }
 
+impl BoundCheck {
+    /// Its metric, of a pass with its number.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self.pass {
+            None => self.metric.to_owned(),
+            Some(pass) => format!("pass {pass}: {}", self.metric),
+        }
+    }
+}
+
+/// The bound that stands unless a scenario sets one on its number: no drive is at its limit.
+const STANDING: &str = "drives_saturated_s";
+
+/// As [`validate`], for a cell and each of its passes.
+///
+/// # Errors
+/// As [`validate`].
+pub fn validate_cell(
+    expectations: &[Expectation],
+    of_passes: &[Vec<Expectation>],
+) -> Result<(), MetricsError> {
+    validate(METRICS, expectations)?;
+    let mut of_passes = of_passes.iter();
+    of_passes.try_for_each(|expectations| validate(PASS_METRICS, expectations))
+}
+
+/// Compares the results of a cell with its bounds: those of the run, those of each pass, and where it is broken the one that stands without being set.
+///
+/// # Errors
+/// As [`validate`].
+pub fn check_cell(
+    summary: &Summary,
+    expectations: &[Expectation],
+    of_passes: &[Vec<Expectation>],
+) -> Result<Vec<BoundCheck>, MetricsError> {
+    let mut checks = check(METRICS, summary, expectations)?;
+    for (index, expectations) in of_passes.iter().enumerate() {
+        let number = index + 1;
+        let begun = summary.passes.iter().find(|pass| pass.pass == number);
+        let of_pass = match begun {
+            Some(pass) => check(PASS_METRICS, pass, expectations)?,
+            None => undetermined(expectations)?,
+        };
+        checks.extend(of_pass.into_iter().map(|check| BoundCheck {
+            pass: Some(number),
+            ..check
+        }));
+    }
+    let is_set = expectations.iter().any(|own| own.metric == STANDING);
+    let standing = Expectation {
+        metric: STANDING.to_owned(),
+        min: None,
+        max: Some(0.0),
+    };
+    if !is_set && summary.drives_saturated_s.is_some() {
+        let standing = check(METRICS, summary, &[standing])?;
+        checks.extend(standing.into_iter().filter(|check| !check.kept));
+    }
+    Ok(checks)
+}
+
+/// Bounds on a pass that was never begun.
+fn undetermined(expectations: &[Expectation]) -> Result<Vec<BoundCheck>, MetricsError> {
+    let unknown = |expectation: &Expectation| {
+        let metric = find(PASS_METRICS, expectation)?;
+        Ok(BoundCheck {
+            metric: metric.name,
+            pass: None,
+            unit: metric.unit,
+            value: None,
+            min: expectation.min,
+            max: expectation.max,
+            kept: false,
+        })
+    };
+    expectations.iter().map(unknown).collect()
+}
+
 /// Compares results with their bounds, in the order of the expectations.
 ///
 /// # Errors
@@ -57,6 +140,7 @@ pub fn check<S>(
             };
             Ok(BoundCheck {
                 metric: metric.name,
+                pass: None,
                 unit: metric.unit,
                 value,
                 min,
@@ -116,6 +200,53 @@ mod tests {
             min,
             max,
         }
+    }
+
+    #[test]
+    fn a_drive_at_its_limit_breaks_a_bound_that_nobody_set() {
+        let broken = |saturated, expectations: &[Expectation]| {
+            let summary = Summary {
+                drives_saturated_s: saturated,
+                ..Summary::default()
+            };
+            let checks = check_cell(&summary, expectations, &[]).unwrap();
+            checks.iter().filter(|check| !check.kept).count()
+        };
+        assert_eq!(broken(Some(0.0), &[]), 0);
+        assert_eq!(broken(Some(0.038), &[]), 1);
+        assert_eq!(broken(None, &[]), 0);
+        let lifted = expectation(STANDING, None, Some(0.1));
+        assert_eq!(broken(Some(0.038), std::slice::from_ref(&lifted)), 0);
+        assert_eq!(broken(Some(0.2), &[lifted]), 1);
+    }
+
+    #[test]
+    fn bounds_of_a_pass_are_held_against_that_pass() {
+        let pass = |pass, mean| super::super::PassSummary {
+            pass,
+            force_mean_n: Some(mean),
+            ..Default::default()
+        };
+        let summary = Summary {
+            passes: vec![pass(1, 100.0), pass(2, 50.0)],
+            ..Summary::default()
+        };
+        let own = |max| vec![expectation("force_mean_n", None, Some(max))];
+        let of_passes = [own(60.0), own(60.0), own(60.0)];
+        validate_cell(&[], &of_passes).unwrap();
+        let checks = check_cell(&summary, &[], &of_passes).unwrap();
+        let told = checks
+            .iter()
+            .map(|check| (check.pass, check.value, check.kept));
+        let expected = [
+            (Some(1), Some(100.0), false),
+            (Some(2), Some(50.0), true),
+            (Some(3), None, false),
+        ];
+        assert_eq!(told.collect::<Vec<_>>(), expected);
+        assert_eq!(checks[1].name(), "pass 2: force_mean_n");
+        let unknown = [vec![expectation("settling_time_s", None, Some(1.0))]];
+        assert!(validate_cell(&[], &unknown).is_err());
     }
 
     #[test]

@@ -50,14 +50,23 @@ pub(super) fn peaks(summary: &mut Summary, recording: &Recording) -> Result<(), 
         let Some(window) = Window::phase(recording, phase)? else {
             return Ok(None);
         };
-        let force = window.finite(schema::CONTACT_FORCE, Unit::Newton)?;
-        Ok(force.and_then(extent).map(|(_, most)| most))
+        largest_force(&window)
     };
     summary.force_peak_approach_n = peak("approach")?;
     summary.force_peak_engage_n = peak("engage")?;
     summary.force_peak_follow_n = peak(FOLLOW_PHASE)?;
     summary.force_peak_retract_n = peak("retract")?;
     Ok(())
+}
+
+/// Largest force in a window: of what happened between the samples too, where that was recorded.
+pub(super) fn largest_force(window: &Window) -> Result<Option<f64>, MetricsError> {
+    let between = window.finite(schema::CONTACT_FORCE_PEAK, Unit::Newton)?;
+    let force = match between {
+        None => window.finite(schema::CONTACT_FORCE, Unit::Newton)?,
+        recorded => recorded,
+    };
+    Ok(force.and_then(extent).map(|(_, most)| most))
 }
 
 fn tenths(travel: &Travel, force: &[f64]) -> Vec<ForceTenth> {

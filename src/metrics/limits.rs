@@ -16,6 +16,8 @@ pub const TOUCH_SHARE: f64 = 0.01;
 pub struct SummaryLimits {
     /// Desired contact force [N].
     pub desired_force: f64,
+    /// Those of the passes after the first [N].
+    pub later_forces: Vec<f64>,
     /// Lower and upper end of the stroke [m].
     pub stroke_limits: (f64, f64),
     /// Effort limit of each joint, base first [N m]; infinite if it has none.
@@ -33,9 +35,11 @@ impl SummaryLimits {
                 expected,
             })
         };
-        if !(self.desired_force.is_finite() && self.desired_force > 0.0) {
-            let value = format!("{} N", self.desired_force);
-            return limit("the desired force".into(), value, "a positive number");
+        for force in std::iter::once(&self.desired_force).chain(&self.later_forces) {
+            if !(force.is_finite() && *force > 0.0) {
+                let value = format!("{force} N");
+                return limit("the desired force".into(), value, "a positive number");
+            }
         }
         let (lower, upper) = self.stroke_limits;
         if !(lower.is_finite() && upper.is_finite() && lower < upper) {

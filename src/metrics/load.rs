@@ -23,6 +23,7 @@ pub(super) fn measure(
     }
     summary.joint_torque_share_percent = worst.map(|(_, share)| share);
     summary.most_loaded_joint = worst.map(|(joint, _)| joint.to_owned());
+    summary.drives_saturated_s = saturated(run, limits)?;
     summary.air_mass_balance_relative = air_mass_balance(run)?;
     Ok(())
 }
@@ -35,7 +36,13 @@ fn joints(run: &Window, limits: &SummaryLimits) -> Result<Vec<JointTorqueShare>,
             let quantity = schema::joint_quantity(index + 1, JointSignal::Torque);
             let torque = run.finite(&quantity, JointSignal::Torque.unit())?;
             let largest = torque.and_then(|torque| largest(torque.iter().copied()));
+            let (time, at) = (run.time(), |torque: &f64| is_at_limit(*torque, effort));
+            let first = torque.and_then(|torque| torque.iter().position(at));
             Ok(JointTorqueShare {
+                saturated_s: duration(time, |index| {
+                    torque.is_some_and(|torque| at(&torque[index]))
+                }),
+                saturated_from_s: first.map(|first| time[first]),
                 joint: name.clone(),
                 torque_share_percent: largest
                     .filter(|_| effort.is_finite())
@@ -43,6 +50,36 @@ fn joints(run: &Window, limits: &SummaryLimits) -> Result<Vec<JointTorqueShare>,
             })
         })
         .collect()
+}
+
+/// Share of a drive's limit from which it counts as being there [1]: less than one by what rounding takes.
+const AT_LIMIT: f64 = 1.0 - 1e-9;
+
+fn is_at_limit(torque: f64, effort: f64) -> bool {
+    torque.abs() >= AT_LIMIT * effort
+}
+
+/// Time of the samples of which something holds [s], each standing for the step before it.
+fn duration(time: &[f64], holds: impl Fn(usize) -> bool) -> f64 {
+    let steps = (1..time.len()).filter(|index| holds(*index));
+    steps.fold(0.0, |sum, index| sum + (time[index] - time[index - 1]))
+}
+
+/// Time for which any drive was at its limit [s].
+fn saturated(run: &Window, limits: &SummaryLimits) -> Result<Option<f64>, MetricsError> {
+    let mut torques = Vec::with_capacity(limits.joint_efforts.len());
+    for (index, &effort) in limits.joint_efforts.iter().enumerate() {
+        let quantity = schema::joint_quantity(index + 1, JointSignal::Torque);
+        let Some(torque) = run.finite(&quantity, JointSignal::Torque.unit())? else {
+            return Ok(None);
+        };
+        torques.push((torque, effort));
+    }
+    let any = |index: usize| {
+        let mut drives = torques.iter();
+        drives.any(|(torque, effort)| is_at_limit(torque[index], *effort))
+    };
+    Ok(Some(duration(run.time(), any)))
 }
 
 /// Largest |(entered - left) - (mass - mass at the start)| over the mass in the chambers; all
@@ -94,6 +131,24 @@ mod tests {
         let summary = summarise(&builder.build(), &unlimited).unwrap();
         assert_eq!(summary.joints[1].torque_share_percent, None);
         assert_eq!(summary.most_loaded_joint.as_deref(), Some("base"));
+    }
+
+    #[test]
+    fn a_drive_at_its_limit_is_told_with_its_time() {
+        let mut builder = Builder::nominal();
+        let summary = summarise(&builder.build(), &limits()).unwrap();
+        assert_eq!(summary.drives_saturated_s, Some(0.0));
+        assert_eq!(summary.joints[1].saturated_from_s, None);
+        // The wrist's 20 N m for three samples, the base's 200 N m for one of them.
+        builder.torques[1][100..103].fill(-20.0);
+        builder.torques[0][102] = 200.0;
+        let summary = summarise(&builder.build(), &limits()).unwrap();
+        assert_near(summary.drives_saturated_s, 3.0 * Builder::STEP, 1e-9);
+        let [base, wrist] = [&summary.joints[0], &summary.joints[1]];
+        assert_near(Some(base.saturated_s), Builder::STEP, 1e-9);
+        assert_near(Some(wrist.saturated_s), 3.0 * Builder::STEP, 1e-9);
+        assert_near(base.saturated_from_s, 102.0 * Builder::STEP, 1e-12);
+        assert_near(wrist.saturated_from_s, 100.0 * Builder::STEP, 1e-12);
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod force;
 mod limits;
 mod load;
 mod motion;
+mod passes;
 mod statistics;
 mod summary;
 #[cfg(test)]
@@ -27,8 +28,9 @@ pub use bench::{BENCH_METRICS, BenchLimits, BenchSummary, LevelSummary, summaris
 pub use catalogue::{METRICS, Metric, metric};
 pub use edge::EdgeLimits;
 pub use error::MetricsError;
-pub use expect::{BoundCheck, check, validate};
+pub use expect::{BoundCheck, check, check_cell, validate, validate_cell};
 pub use limits::{FOLLOW_PHASE, NARROW_BAND, SummaryLimits, TOUCH_SHARE, WIDE_BAND};
+pub use passes::{PASS_METRICS, PassSummary};
 pub use summary::{ForceTenth, JointTorqueShare, Summary, Timing};
 
 use crate::recording::Recording;
@@ -55,6 +57,7 @@ pub fn summarise(recording: &Recording, limits: &SummaryLimits) -> Result<Summar
         motion::measure(&mut summary, &follow, limits.stroke_limits)?;
     }
     load::measure(&mut summary, &run, limits)?;
+    summary.passes = passes::measure(recording, limits)?;
     edge::of_tool(&mut summary, &run)?;
     Ok(summary)
 }
@@ -87,7 +90,7 @@ mod tests {
     }
 
     /// Metrics of a tool that turns.
-    const OF_TURNING: [&str; 16] = [
+    const OF_TURNING: [&str; 22] = [
         "burr_before_max_mm",
         "chamfer_leg_mean_mm",
         "chamfer_leg_standard_deviation_mm",
@@ -96,6 +99,12 @@ mod tests {
         "residual_burr_max_mm",
         "residual_burr_share_percent",
         "out_of_tolerance_share_percent",
+        "ends_chamfer_leg_min_mm",
+        "ends_chamfer_leg_max_mm",
+        "ends_residual_burr_max_mm",
+        "ends_out_of_tolerance_share_percent",
+        "whole_edge_out_of_tolerance_share_percent",
+        "ends_length_mm",
         "section_removed_mean_mm2",
         "section_variation_percent",
         "removed_volume_mm3",

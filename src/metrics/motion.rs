@@ -23,6 +23,10 @@ pub(super) fn measure(
         summary.path_error_rms_um = root_mean_square(error).map(|error| 1e6 * error);
         summary.path_error_max_um = largest(error.iter().copied()).map(|error| 1e6 * error);
     }
+    if let Some(lag) = follow.finite(schema::PATH_LAG, Unit::Metre)? {
+        summary.path_lag_rms_um = root_mean_square(lag).map(|lag| 1e6 * lag);
+        summary.path_lag_max_um = largest(lag.iter().copied()).map(|lag| 1e6 * lag);
+    }
     let duration = follow.duration();
     summary.follow_duration_s = Some(duration);
     let path = follow.finite(schema::PATH_LENGTH, Unit::Metre)?;
@@ -68,6 +72,17 @@ mod tests {
         let unsigned = summarise(&builder.build(), &limits()).unwrap();
         assert_near(unsigned.path_error_rms_um, 30.0 / SQRT_2, 1e-9);
         assert_near(unsigned.path_error_max_um, 30.0, 1e-6);
+    }
+
+    #[test]
+    fn the_lag_along_the_path_is_a_number_of_its_own() {
+        let mut builder = Builder::nominal();
+        let wave = |share: f64| 40e-6 * (2.0 * PI * 5.0 * share).sin();
+        builder.fill_follow(wave, |builder| &mut builder.path_lag);
+        let summary = summarise(&builder.build(), &limits()).unwrap();
+        assert_near(summary.path_lag_rms_um, 40.0 / SQRT_2, 1e-9);
+        assert_near(summary.path_lag_max_um, 40.0, 1e-6);
+        assert_near(summary.path_error_rms_um, 10.0, 1e-9);
     }
 
     #[test]

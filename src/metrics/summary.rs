@@ -4,6 +4,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::PassSummary;
+
 /// The numbers of a run; keys are written in the order of the fields.
 ///
 /// All but `timing` follow from the recording alone, bit for bit.
@@ -57,6 +59,10 @@ pub struct Summary {
     pub path_error_rms_um: Option<f64>,
     /// Largest lateral path error while following [µm].
     pub path_error_max_um: Option<f64>,
+    /// Root mean square of the lag along the path while following [µm].
+    pub path_lag_rms_um: Option<f64>,
+    /// Largest lag along the path while following [µm].
+    pub path_lag_max_um: Option<f64>,
     /// Length followed [mm].
     pub path_length_mm: Option<f64>,
     /// Length followed over the time it took [mm/s].
@@ -67,6 +73,8 @@ pub struct Summary {
     pub joint_torque_share_percent: Option<f64>,
     /// Name of that joint.
     pub most_loaded_joint: Option<String>,
+    /// Time for which a drive was at its limit, over the run [s].
+    pub drives_saturated_s: Option<f64>,
     /// Largest gap in the balance of the air in the chambers, of their mass, over the run [1].
     pub air_mass_balance_relative: Option<f64>,
     /// Height of the highest burr before the first pass [mm]; of a turning tool.
@@ -93,6 +101,24 @@ pub struct Summary {
     /// Share of the edge out of tolerance, by leg or burr [%]; of a turning tool.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub out_of_tolerance_share_percent: Option<f64>,
+    /// Least leg at the ends of the edge [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends_chamfer_leg_min_mm: Option<f64>,
+    /// Largest leg at the ends [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends_chamfer_leg_max_mm: Option<f64>,
+    /// Height of the highest burr that is left at the ends [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends_residual_burr_max_mm: Option<f64>,
+    /// Share of the ends out of tolerance, by leg or burr [%]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends_out_of_tolerance_share_percent: Option<f64>,
+    /// Share of the whole edge out of tolerance, its ends included [%]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub whole_edge_out_of_tolerance_share_percent: Option<f64>,
+    /// Length of each end [mm]; of a turning tool.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends_length_mm: Option<f64>,
     /// Mean section that was taken, of burr and edge [mm2]; of a turning tool.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section_removed_mean_mm2: Option<f64>,
@@ -121,6 +147,9 @@ pub struct Summary {
     pub duration_s: f64,
     /// Each joint's largest torque, base first.
     pub joints: Vec<JointTorqueShare>,
+    /// Each pass along the edge, in order.
+    #[serde(default)]
+    pub passes: Vec<PassSummary>,
     /// The force in each tenth of the followed length; empty if nothing was followed.
     pub force_by_tenth: Vec<ForceTenth>,
     /// Duration of the computation; differs from run to run.
@@ -135,6 +164,12 @@ pub struct JointTorqueShare {
     pub joint: String,
     /// Its largest torque, of its effort limit [%]; undefined without limit or channel.
     pub torque_share_percent: Option<f64>,
+    /// Time for which its drive was at its limit [s].
+    #[serde(default)]
+    pub saturated_s: f64,
+    /// When it first was [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub saturated_from_s: Option<f64>,
 }
 
 /// The contact force in one tenth of the followed length.

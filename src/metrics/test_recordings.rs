@@ -8,6 +8,7 @@ use crate::recording::{PhaseSpan, RecordedChannel, Recording, Unit};
 pub(crate) fn limits() -> SummaryLimits {
     SummaryLimits {
         desired_force: 100.0,
+        later_forces: Vec::new(),
         stroke_limits: (0.0, 0.05),
         joint_efforts: vec![200.0, 20.0],
         joint_names: vec!["base".into(), "wrist".into()],
@@ -32,6 +33,7 @@ pub(crate) struct Builder {
     pub(crate) path: Vec<f64>,
     pub(crate) stroke: Vec<f64>,
     pub(crate) path_error: Vec<f64>,
+    pub(crate) path_lag: Vec<f64>,
     pub(crate) torques: [Vec<f64>; 2],
     /// Chamber 1, chamber 2, entered, left.
     pub(crate) air: [Vec<f64>; 4],
@@ -60,6 +62,7 @@ impl Builder {
             path: constant(0.0),
             stroke: constant(0.025),
             path_error: constant(10e-6),
+            path_lag: constant(50e-6),
             torques: [constant(20.0), constant(2.0)],
             air: [
                 by_time(|t| 1e-4 + 2e-5 * t),
@@ -133,6 +136,7 @@ impl Builder {
             newton(schema::FRICTION_FORCE, &friction),
             metre(schema::STROKE, &self.stroke),
             metre(schema::PATH_ERROR, &self.path_error),
+            metre(schema::PATH_LAG, &self.path_lag),
         ];
         let masses = [
             schema::CHAMBER_1_MASS,

@@ -45,6 +45,13 @@ impl<'a> Window<'a> {
         Ok((!range.is_empty()).then_some(Self { recording, range }))
     }
 
+    /// The samples of the first phase of a name; `None` if there are none.
+    pub(super) fn of(recording: &'a Recording, name: &str) -> Option<Self> {
+        let span = recording.phase(name)?;
+        let range = recording.samples_in(span);
+        (!range.is_empty()).then_some(Self { recording, range })
+    }
+
     /// Sample times [s].
     pub(super) fn time(&self) -> &'a [f64] {
         &self.recording.time()[self.range.clone()]

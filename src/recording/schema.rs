@@ -21,6 +21,8 @@ pub const CONTACT_FORCE_Y: &str = "contact_force_y";
 pub const CONTACT_FORCE_Z: &str = "contact_force_z";
 /// Size of the contact force's tangential part.
 pub const FRICTION_FORCE: &str = "friction_force";
+/// Largest contact force since the sample before.
+pub const CONTACT_FORCE_PEAK: &str = "contact_force_peak";
 /// Contact force that the scenario asks for.
 pub const DESIRED_FORCE: &str = "desired_force";
 /// Force of air and seals on the device's moving part.
@@ -47,8 +49,10 @@ pub const HOSE_MASS: &str = "hose_mass";
 pub const MASS_ENTERED: &str = "mass_entered";
 /// Air that has left the chambers.
 pub const MASS_LEFT: &str = "mass_left";
-/// Distance of the tool from the planned path across its axis.
+/// Distance of the tool beside the planned path, across path and contact normal.
 pub const PATH_ERROR: &str = "path_error";
+/// Distance by which the tool lags behind its plan along the path.
+pub const PATH_LAG: &str = "path_lag";
 /// Distance of the flange from its planned path along the tool's axis.
 pub const PATH_ERROR_AXIAL: &str = "path_error_axial";
 /// Speed of the tool along the edge.
@@ -146,11 +150,13 @@ const fn signal(
 
 /// Signals that exist once, in the order of the table's columns.
 #[rustfmt::skip]
-pub const SIGNALS: [SignalDefinition; 22] = [
+pub const SIGNALS: [SignalDefinition; 24] = [
     signal(PATH_LENGTH, Unit::Metre, None, "path length",
         "Length of planned path behind the tool."),
     signal(CONTACT_FORCE, Unit::Newton, Some(PlotGroup::Force), "contact force",
         "Force of the tool on the workpiece along the contact normal, positive when pressing."),
+    signal(CONTACT_FORCE_PEAK, Unit::Newton, None, "contact force, largest",
+        "Largest contact force since the sample before, as the contact is integrated between them."),
     signal(DESIRED_FORCE, Unit::Newton, Some(PlotGroup::Force), "desired force",
         "Contact force that the scenario asks for."),
     signal(CONTACT_FORCE_X, Unit::Newton, Some(PlotGroup::ForceBalance), "contact force x",
@@ -186,7 +192,9 @@ pub const SIGNALS: [SignalDefinition; 22] = [
     signal(MASS_LEFT, Unit::Kilogram, None, "air left",
         "Mass of air that has left the chambers since the start."),
     signal(PATH_ERROR, Unit::Metre, Some(PlotGroup::PathError), "lateral",
-        "Distance of the tool tip from the planned path, across the tool's axis; lag along the edge included."),
+        "Distance of the tool tip beside the planned path, across path and contact normal, positive to the left of travel."),
+    signal(PATH_LAG, Unit::Metre, Some(PlotGroup::PathError), "lag",
+        "Distance by which the tool tip lags behind the planned one along the path."),
     signal(PATH_ERROR_AXIAL, Unit::Metre, Some(PlotGroup::PathError), "axial",
         "Distance of the flange from its planned path along the tool's axis, positive towards the part."),
     signal(FEED, Unit::MetrePerSecond, None, "feed",

@@ -3,7 +3,7 @@
 use super::{Commands, ReplayCell};
 use crate::arm::chain::JointKind;
 use crate::arm::load_arm;
-use crate::cell::{CellError, arm_options, choose_edge, station};
+use crate::cell::{CellError, arm_options, choose_edge, station, with_housing};
 use crate::plant::{
     ArmTrajectory, CellParameters, EdgeStation, MOST_JOINTS, PlantParameters, SharpEdge,
 };
@@ -71,7 +71,7 @@ impl LoadedCell {
             sharp,
             observed: scenario.observed,
             encoder_noise: scenario.joint_noise,
-            chain: arm.chain,
+            chain: with_housing(&arm.chain, device),
             world_from_base: scenario.arm.world_from_base,
             gravity: scenario.gravity,
             moving_mass: device.parameters.moving_mass,

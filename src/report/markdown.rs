@@ -2,9 +2,9 @@
 //!
 //! Timing is left out, so that the same scenario gives the same text.
 
-use super::rows::{ReportRow, comparison, rows, tally};
+use super::rows::{PASSES, ReportRow, comparison, rows, shown, tally};
 use super::text::far_of;
-use crate::metrics::{BoundCheck, ForceTenth, Summary};
+use crate::metrics::{BoundCheck, ForceTenth, PassSummary, Summary};
 use crate::quantity::column;
 
 /// The results of a run as Markdown, with the scenario's expectations first.
@@ -26,6 +26,7 @@ pub fn markdown(title: &str, summary: &Summary, verdicts: &[BoundCheck]) -> Stri
     for part in rows.chunk_by(|before, after| before.part == after.part) {
         results(&mut out, part);
     }
+    passes(&mut out, &untimed.passes);
     tenths(&mut out, &untimed.force_by_tenth);
     out
 }
@@ -63,6 +64,29 @@ fn results(out: &mut String, part: &[ReportRow]) {
     }
 }
 
+/// A row a pass, where there are several.
+fn passes(out: &mut String, passes: &[PassSummary]) {
+    if passes.len() < 2 {
+        return;
+    }
+    out.push_str("\n## Passes\n\n");
+    let names = PASSES
+        .iter()
+        .map(|column| format!("{}, {}", column.name, column.unit));
+    let heads: Vec<String> = std::iter::once("pass".to_owned()).chain(names).collect();
+    row(out, &heads.iter().map(String::as_str).collect::<Vec<_>>());
+    row(out, &["---:"; PASSES.len() + 1]);
+    for pass in passes {
+        let values = PASSES
+            .iter()
+            .map(|column| escape(&shown((column.value)(pass), column.unit)));
+        let cells: Vec<String> = std::iter::once(pass.pass.to_string())
+            .chain(values)
+            .collect();
+        row(out, &cells.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+}
+
 fn tenths(out: &mut String, tenths: &[ForceTenth]) {
     if tenths.is_empty() {
         return;
@@ -87,7 +111,7 @@ fn expectations(out: &mut String, verdicts: &[BoundCheck]) {
     for verdict in verdicts {
         let word = if verdict.kept { "ok" } else { "**OUTSIDE**" };
         let (value, bound) = comparison(verdict);
-        row(out, &[word, &escape(verdict.metric), &value, &bound]);
+        row(out, &[word, &escape(&verdict.name()), &value, &bound]);
     }
 }
 

@@ -9,5 +9,5 @@ mod text;
 
 pub use bench::{LEVELS, LevelColumn, bench_markdown, bench_text};
 pub use markdown::markdown;
-pub use rows::{far_from_desired, shown};
+pub use rows::{PASSES, PassColumn, drives, far_from_desired, shown};
 pub use text::{Style, text};

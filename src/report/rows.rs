@@ -1,15 +1,20 @@
 //! The rows of the reports: which metrics, in which parts, with what beside them.
 
-use crate::metrics::{BoundCheck, Metric, NARROW_BAND, Summary, WIDE_BAND, metric};
+use crate::metrics::{
+    BoundCheck, JointTorqueShare, Metric, NARROW_BAND, PassSummary, Summary, WIDE_BAND, metric,
+};
 use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
 /// Metrics that only a run with a tool that turns has.
-const OF_A_TURNING_TOOL: [&str; 9] = [
+const OF_A_TURNING_TOOL: [&str; 12] = [
     "burr_before_max_mm",
     "residual_burr_max_mm",
     "chamfer_leg_mean_mm",
     "chamfer_leg_standard_deviation_mm",
     "out_of_tolerance_share_percent",
+    "ends_out_of_tolerance_share_percent",
+    "ends_chamfer_leg_max_mm",
+    "ends_residual_burr_max_mm",
     "section_variation_percent",
     "removed_volume_mm3",
     "spindle_power_max_w",
@@ -46,13 +51,20 @@ const PARTS: [(&str, &[&str]); 8] = [
     ("Stroke", &["stroke_used_mm", "stroke_margin_mm"]),
     (
         "Path",
-        &["path_length_mm", "path_error_rms_um", "path_error_max_um"],
+        &[
+            "path_length_mm",
+            "path_error_rms_um",
+            "path_error_max_um",
+            "path_lag_rms_um",
+            "path_lag_max_um",
+        ],
     ),
     (
         "Run",
         &[
             "friction_force_mean_n",
             "joint_torque_share_percent",
+            "drives_saturated_s",
             "air_mass_balance_relative",
             "real_time_factor",
         ],
@@ -180,10 +192,83 @@ fn fact(name: &str, summary: &Summary) -> Option<String> {
                 printable(summary.most_loaded_joint.as_ref()?)
             )
         }
+        "drives_saturated_s" => {
+            let first = summary
+                .joints
+                .iter()
+                .filter_map(|joint| Some((joint, joint.saturated_from_s?)));
+            let (joint, from) = first.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            format!("{}, {}", printable(&joint.joint), of(from, "s"))
+        }
+        "force_peak_follow_n" if summary.passes.len() > 1 => "of the first pass".to_owned(),
+        "out_of_tolerance_share_percent" => format!(
+            "with its ends {}",
+            of(summary.whole_edge_out_of_tolerance_share_percent?, "%")
+        ),
+        "ends_out_of_tolerance_share_percent" => {
+            format!("{} at either end", of(summary.ends_length_mm?, "mm"))
+        }
+        "ends_chamfer_leg_max_mm" => {
+            let (least, most) = (
+                summary.ends_chamfer_leg_min_mm?,
+                summary.ends_chamfer_leg_max_mm?,
+            );
+            format!(
+                "from {} to {}",
+                quantity::number(least, "mm"),
+                of(most, "mm")
+            )
+        }
         "duration_s" => format!("following {} of it", of(summary.follow_duration_s?, "s")),
         "real_time_factor" => format!("computed in {}", of(summary.timing?.wall_time_s, "s")),
         _ => return None,
     })
+}
+
+/// A column of the table of passes.
+pub struct PassColumn {
+    /// Its heading.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// A pass's value in that unit.
+    pub value: fn(&PassSummary) -> Option<f64>,
+}
+
+const fn pass(
+    name: &'static str,
+    unit: &'static str,
+    value: fn(&PassSummary) -> Option<f64>,
+) -> PassColumn {
+    PassColumn { name, unit, value }
+}
+
+/// What a run of several passes says of each, in a row.
+#[rustfmt::skip]
+pub const PASSES: [PassColumn; 7] = [
+    pass("desired", "N", |pass| Some(pass.desired_force_n)),
+    pass("mean", "N", |pass| pass.force_mean_n),
+    pass("SD", "N", |pass| pass.force_standard_deviation_n),
+    pass("RMS error", "%", |pass| pass.force_rms_error_percent),
+    pass("in 5 %", "%", |pass| pass.within_5_percent_share_percent),
+    pass("largest", "N", |pass| pass.force_peak_follow_n),
+    pass("feed", "mm/s", |pass| pass.feed_mean_mm_per_s),
+];
+
+/// Drives that were at their limit, with time and duration; none if none was.
+#[must_use]
+pub fn drives(summary: &Summary) -> Option<String> {
+    let one = |joint: &JointTorqueShare| {
+        let from = joint.saturated_from_s?;
+        Some(format!(
+            "{} from {} on for {}",
+            printable(&joint.joint),
+            with_unit(from, "s"),
+            with_unit(joint.saturated_s, "s")
+        ))
+    };
+    let all: Vec<String> = summary.joints.iter().filter_map(one).collect();
+    (!all.is_empty()).then(|| all.join(", "))
 }
 
 /// Value and bound of a verdict, with enough digits to tell them apart.
@@ -250,7 +335,7 @@ mod tests {
             tool_wear_kj: Some(1.0),
             ..Summary::default()
         };
-        assert_eq!(rows(&Summary::default()).len(), count - 10);
+        assert_eq!(rows(&Summary::default()).len(), count - 13);
         let timed = Summary {
             timing: Some(Timing::new(1.0, 1.0)),
             ..untimed.clone()
@@ -320,6 +405,7 @@ mod tests {
     fn a_value_just_outside_does_not_look_like_its_bound() {
         let verdict = |value, kept| BoundCheck {
             metric: "force_mean_n",
+            pass: None,
             unit: "N",
             value,
             min: None,

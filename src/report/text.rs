@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
-use super::rows::{ReportRow, comparison, far_from_desired, printable, rows, tally};
-use crate::metrics::{BoundCheck, ForceTenth, Summary};
+use super::rows::{
+    PASSES, PassColumn, ReportRow, comparison, far_from_desired, printable, rows, shown, tally,
+};
+use crate::metrics::{BoundCheck, ForceTenth, PassSummary, Summary};
 use crate::quantity::{UNKNOWN, column};
 
 const WIDTH: usize = 80;
@@ -52,6 +54,7 @@ pub fn text(title: &str, summary: &Summary, verdicts: &[BoundCheck], style: Styl
         line(&mut out, opening, row, style);
     }
     tenths(&mut out, &summary.force_by_tenth, style);
+    passes(&mut out, &summary.passes, style);
     if rows.iter().any(|row| row.value.is_none()) {
         let note = format!("{UNKNOWN} not determined by this run; see docs/METRICS.md");
         push(&mut out, &style.faint(&note));
@@ -115,6 +118,29 @@ fn tenths(out: &mut String, tenths: &[ForceTenth], style: Style) {
     push(out, &format!("{}{spreads}", name("SD N")));
 }
 
+/// A row a pass, where there are several: the numbers above are those of the first.
+fn passes(out: &mut String, passes: &[PassSummary], style: Style) {
+    if passes.len() < 2 {
+        return;
+    }
+    let cells =
+        |texts: Vec<String>| -> String { texts.iter().map(|text| format!("{text:>10}")).collect() };
+    let of = |value: fn(&PassColumn) -> &'static str| {
+        let texts = PASSES.iter().map(|column| value(column).to_owned());
+        style.faint(&cells(texts.collect()))
+    };
+    push(
+        out,
+        &format!("{}{}", style.heading("Pass   "), of(|column| column.name)),
+    );
+    push(out, &format!("{:<7}{}", "", of(|column| column.unit)));
+    for pass in passes {
+        let value = |column: &PassColumn| shown((column.value)(pass), column.unit);
+        let texts = PASSES.iter().map(value).collect();
+        push(out, &format!("{:<7}{}", pass.pass, cells(texts)));
+    }
+}
+
 fn expectations(out: &mut String, verdicts: &[BoundCheck], style: Style) {
     let lines: Vec<(&BoundCheck, String, String)> = verdicts
         .iter()
@@ -123,12 +149,16 @@ fn expectations(out: &mut String, verdicts: &[BoundCheck], style: Style) {
             (verdict, value, bound)
         })
         .collect();
-    let name_width = widest(verdicts.iter().map(|verdict| verdict.metric));
+    let name_width = verdicts
+        .iter()
+        .map(|verdict| verdict.name().len())
+        .max()
+        .unwrap_or_default();
     let value_width = widest(lines.iter().map(|(_, value, _)| value.as_str()));
     for (verdict, value, bound) in &lines {
         let word = if verdict.kept { "ok" } else { "OUTSIDE" };
         let word = style.verdict(verdict.kept, &format!("{word:<7}"));
-        let name = verdict.metric;
+        let name = verdict.name();
         let text = format!("{word} {name:<name_width$} {value:>value_width$}  {bound}");
         push(out, &text);
     }
@@ -219,6 +249,30 @@ mod tests {
         let out = text("x", &summary, &[], Style::Plain);
         let last = out.lines().last().unwrap_or_default();
         assert!(last.starts_with("Far from the desired force"), "{out}");
+    }
+
+    #[test]
+    fn several_passes_have_a_row_each_and_one_has_none() {
+        let mut summary = nominal();
+        let pass = |pass, mean| PassSummary {
+            pass,
+            desired_force_n: 40.0,
+            force_mean_n: Some(mean),
+            within_5_percent_share_percent: Some(99.996),
+            ..PassSummary::default()
+        };
+        summary.passes = vec![pass(1, 40.1)];
+        assert!(!text("x", &summary, &[], Style::Plain).contains("Pass"));
+        summary.passes.push(pass(2, 39.2));
+        let out = text("x", &summary, &[], Style::Plain);
+        let second = out
+            .lines()
+            .find(|line| line.starts_with("2 "))
+            .unwrap_or_default();
+        let cells: Vec<&str> = second.split_whitespace().collect();
+        assert_eq!(cells[..3], ["2", "40.00", "39.20"]);
+        assert!(cells.contains(&"<100"), "{second}");
+        assert!(out.lines().all(|line| line.chars().count() <= WIDTH));
     }
 
     #[test]

@@ -55,6 +55,13 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// Bounds that the results of each pass must keep.
+    #[must_use]
+    pub fn expect_of_passes(&self) -> Vec<Vec<Expectation>> {
+        let own = self.passes.iter().map(|pass| pass.expect.clone());
+        own.collect()
+    }
+
     /// Values in use that nobody has measured in public: of tool and edge, then of the device.
     pub fn judged_values(&self) -> impl Iterator<Item = &JudgedValue> {
         self.judged.iter().chain(&self.device.judged)
@@ -84,6 +91,8 @@ pub struct ArmScenario {
     pub limit_overrides: Vec<LimitOverride>,
     /// Base in the world.
     pub world_from_base: DPose3,
+    /// Mass that it may carry on its flange [kg]; its maker's, where that is known, when absent.
+    pub payload: Option<f64>,
     /// Joint positions near which a solution is sought first [rad]; found by search when absent.
     pub seed_posture: Option<Vec<f64>>,
     /// Joints whose drives are not as the URDF has them.
@@ -150,6 +159,10 @@ pub struct DeviceScenario {
     pub moving_centre_of_mass: f64,
     /// Radius of gyration of the moving mass about its centre [m].
     pub moving_radius_of_gyration: f64,
+    /// Mass of the housing on the flange, which does not move with the slide [kg]; 0 where it is not known.
+    pub housing_mass: f64,
+    /// Its centre from the flange, along the axis [m].
+    pub housing_centre_of_mass: f64,
     /// Centre of the tool's ball nose from the flange at zero stroke, along the axis [m].
     pub tool_centre: f64,
     /// Radius of the ball nose [m].
@@ -302,12 +315,14 @@ pub struct ProcessScenario {
 }
 
 /// A pass along the edge; what it does not say is the process's.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct PassScenario {
     /// Desired contact force along the contact normal [N].
     pub force: Option<f64>,
     /// Feed along the edge [m/s].
     pub feed: Option<f64>,
+    /// Bounds that its results must keep.
+    pub expect: Vec<Expectation>,
 }
 
 /// Feed lowered by what is measured: to the share limit over measured value, within bounds, first order.

@@ -58,6 +58,8 @@ pub(super) fn load_with_overrides(
         ideal,
         moving_centre_of_mass: model.number(&registry::MOVING_CENTRE)?,
         moving_radius_of_gyration: model.number(&registry::MOVING_GYRATION)?,
+        housing_mass: model.number(&registry::HOUSING_MASS)?,
+        housing_centre_of_mass: model.number(&registry::HOUSING_CENTRE)?,
         tool_centre: model.number(&registry::TOOL_CENTRE)?,
         tool_radius: model.number(&registry::TOOL_RADIUS)?,
         judged: judged::of_model(&text, |key| model.stands_above(key)),
@@ -99,8 +101,14 @@ impl<'a> Layers<'a> {
 
     /// A number within its range, in SI.
     fn number(&self, number: &Number) -> Result<f64, ScenarioError> {
-        // Younger than models that stand: one that does not name it has no second regulator.
-        if number.name == registry::OPPOSING_PRESSURE.name && self.given(number).is_err() {
+        // Younger than models that stand: one that does not name them has no second regulator, and a housing of which nobody has said the mass.
+        let younger = [
+            &registry::OPPOSING_PRESSURE,
+            &registry::HOUSING_MASS,
+            &registry::HOUSING_CENTRE,
+        ];
+        let is_younger = younger.iter().any(|young| young.name == number.name);
+        if is_younger && self.given(number).is_err() {
             return Ok(0.0);
         }
         let (section, key, value) = self.given(number)?;

@@ -100,6 +100,7 @@ pub(super) struct ArmKeys {
     pub drives: Vec<DriveKeys>,
     pub base_position_mm: Option<Vec<f64>>,
     pub base_rotation_deg: Option<Vec<f64>>,
+    pub payload_kg: Option<f64>,
     pub seed_posture_deg: Option<Vec<f64>>,
     #[serde(default)]
     pub servo: ServoKeys,
@@ -297,6 +298,8 @@ pub(super) struct ProcessKeys {
 pub(super) struct PassKeys {
     pub force_n: Option<f64>,
     pub feed_mm_per_s: Option<f64>,
+    #[serde(default)]
+    pub expect: BTreeMap<String, BoundKeys>,
 }
 
 /// `[tool]`: a tool on a spindle.

@@ -122,6 +122,10 @@ pub(super) fn arm(
             ("base_position_mm", keys.base_position_mm.as_deref()),
             ("base_rotation_deg", keys.base_rotation_deg.as_deref()),
         )?,
+        payload: keys
+            .payload_kg
+            .map(|mass| section.number("payload_kg", mass, 0.1..=3000.0))
+            .transpose()?,
         seed_posture: posture
             .map(|angles| section.numbers("seed_posture_deg", angles, -360.0..=360.0))
             .transpose()?,
@@ -334,6 +338,10 @@ fn passes(
         Ok(PassScenario {
             force: keys.force_n.map(force).transpose()?,
             feed: keys.feed_mm_per_s.map(feed).transpose()?,
+            expect: expectations(
+                &Section::new(document, format!("pass[{index}].expect")),
+                &keys.expect,
+            )?,
         })
     };
     file.pass.iter().enumerate().map(pass).collect()

@@ -77,6 +77,8 @@ pub(super) fn bench_device(
             // Of its tool a rig file says nothing; it is drawn as that of models/device.toml.
             moving_centre_of_mass: 0.1,
             moving_radius_of_gyration: 0.05,
+            housing_mass: 0.0,
+            housing_centre_of_mass: 0.0,
             tool_centre: 0.15,
             tool_radius: 0.005,
             judged: Vec::new(),

@@ -59,6 +59,8 @@ pub struct PartContact {
     tool_collider: ColliderHandle,
     step: f64,
     found: Vec<SurfaceContact>,
+    /// Whether a step has been made: before it the engine has no factorised mass matrix.
+    stepped: bool,
     jacobian: DVector<f64>,
     response: DVector<f64>,
 }
@@ -99,6 +101,7 @@ impl PartContact {
             tool_collider,
             step,
             found: Vec::new(),
+            stepped: false,
             jacobian: DVector::zeros(0),
             response: DVector::zeros(0),
         }
@@ -129,6 +132,11 @@ impl PartContact {
                 share: -normal.dot(axis),
             }
         }));
+    }
+
+    /// Sets the length of the steps to come [s].
+    pub(super) fn set_step(&mut self, step: f64) {
+        self.step = step;
     }
 
     /// Has the tool pressed with given forces [N] along normals over the coming step.
@@ -166,11 +174,12 @@ impl PartContact {
         let (multibody, _) = physics.multibody_joints.get(joint)?;
         let link = physics.multibody_joints.rigid_body_link(tool_body)?;
         let count = multibody.ndofs();
+        if !self.stepped {
+            return None;
+        }
         if self.jacobian.len() != count {
-            // There is no factorised mass matrix before the first step.
             self.jacobian = DVector::zeros(count);
             self.response = DVector::zeros(count);
-            return None;
         }
         let arm = point - physics.bodies[tool_body].mass_properties().world_com;
         let torque = arm.cross(direction);
@@ -191,6 +200,7 @@ impl PartContact {
 
     /// Reads the forces of the last step.
     pub(super) fn read(&mut self, physics: &PhysicsWorld) -> ContactReading {
+        self.stepped = true;
         let mut reading = ContactReading::default();
         let part = self.part_collider;
         for pair in physics.narrow_phase.contact_pairs_with(self.tool_collider) {

@@ -4,8 +4,8 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// The slide ran into an end of its stroke.
-    #[error("the stroke ran out at {time:.3} s in phase {phase}, {:.1} mm along the edge: the slide is at {:.2} mm of 0 to {:.1} mm; the part lies {} than the stroke allows",
-        1e3 * edge_length, 1e3 * stroke, 1e3 * full_stroke, if *stroke <= 0.0 { "nearer to the arm" } else { "farther from the arm" })]
+    #[error("the stroke ran out at {time:.3} s in phase {phase}, {:.1} mm along the edge: the slide is at {:.2} mm of 0 to {:.1} mm; {}",
+        1e3 * edge_length, 1e3 * stroke, 1e3 * full_stroke, why_the_stroke_ran_out(*stroke <= 0.0, *arm, *tip, *touched))]
     StrokeRanOut {
         /// When [s].
         time: f64,
@@ -17,6 +17,12 @@ pub enum SimulationError {
         stroke: f64,
         /// Full stroke [m].
         full_stroke: f64,
+        /// How far the arm stands nearer to the part than planned [m].
+        arm: f64,
+        /// How far the tool stands beyond its planned place, along its axis [m].
+        tip: f64,
+        /// Whether the tool has touched the part before.
+        touched: bool,
     },
     /// The tool left the edge sideways.
     #[error("the tool slipped off the edge at {time:.3} s, {:.1} mm along the edge: it stands {:.1} mm beside its path, its ball's radius is {:.1} mm, the contact force was {force:.0} N",
@@ -92,4 +98,44 @@ pub enum SimulationError {
         /// Phase of the job.
         phase: &'static str,
     },
+    /// A drive came to its limit, the arm did not find its path again, and that stopped the run.
+    #[error(
+        "the drive of joint {axis} came to its limit of {effort} N m at {time:.3} s in phase {phase} and lost its path; after that {stop}"
+    )]
+    Saturated {
+        /// The joint.
+        axis: String,
+        /// Limit of its drive [N m].
+        effort: f64,
+        /// When it came to it [s].
+        time: f64,
+        /// Phase of the job then.
+        phase: &'static str,
+        /// What stopped the run.
+        stop: Box<SimulationError>,
+    },
+}
+
+/// Why a slide stands at an end of its stroke, the inner one or the outer: where it stands is the sum of what arm and tool are off.
+fn why_the_stroke_ran_out(inner: bool, arm: f64, tip: f64, touched: bool) -> String {
+    let (arm, tip) = (1e3 * arm, 1e3 * tip);
+    let part = if inner { -tip } else { tip };
+    let drawn = if inner { arm } else { -arm };
+    if !inner && !touched {
+        return "the tool has not touched the part, which lies farther from the arm than the stroke allows, or beside its path".to_owned();
+    }
+    if drawn > part {
+        let side = if inner {
+            "nearer to the part"
+        } else {
+            "farther from the part"
+        };
+        return format!("the arm stands {drawn:.2} mm {side} than planned");
+    }
+    let side = if inner {
+        "nearer to the arm"
+    } else {
+        "farther from the arm"
+    };
+    format!("the tool finds the part {part:.2} mm {side} than planned")
 }

@@ -16,6 +16,8 @@ use crate::plant::{ForceTerms, StepContact};
 
 /// Share of its motion below which a slide says nothing of the force at a touch beside it [1].
 const LEAST_SHARE: f64 = 1e-6;
+/// Pieces of a sub-step in which the largest force of a contact that turns back is sought.
+const CULMINATION: u32 = 8;
 
 /// Loads on the slide over a step from outside the device.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +38,8 @@ pub struct SlideCarrier<'a> {
     pub beyond: f64,
     /// Further forces on the slide.
     pub terms: ForceTerms<'a>,
+    /// Where the largest contact force so far is noted [N].
+    pub peak: Option<&'a std::cell::Cell<f64>>,
 }
 
 impl SlideCarrier<'_> {
@@ -53,6 +57,16 @@ impl SlideCarrier<'_> {
     pub fn normal_force(&self, touch: &Touch, time: f64, motion: PistonMotion) -> f64 {
         let (penetration, rate) = self.penetration(touch, time, motion);
         self.contact.force(penetration, rate)
+    }
+
+    /// Notes the contact force at a time and motion.
+    fn note_force(&self, time: f64, motion: PistonMotion) {
+        let Some(peak) = self.peak else {
+            return;
+        };
+        let forces = self.touches.iter();
+        let force = forces.map(|touch| self.normal_force(touch, time, motion));
+        peak.set(peak.get().max(force.sum()));
     }
 }
 
@@ -87,6 +101,25 @@ impl Carrier for SlideCarrier<'_> {
         })
     }
 
+    fn note(&self, start: f64, length: f64, [from, to]: [PistonMotion; 2]) {
+        if self.touches.is_empty() {
+            return;
+        }
+        self.note_force(start + length, to);
+        let turns = |touch: &Touch| {
+            let before = self.penetration(touch, start, from).1;
+            before > 0.0 && self.penetration(touch, start + length, to).1 < 0.0
+        };
+        if self.touches.iter().any(turns) {
+            // The force culminates in between.
+            for place in 1..CULMINATION {
+                let share = f64::from(place) / f64::from(CULMINATION);
+                let between = between(from, to, length, share);
+                self.note_force(start + share * length, between);
+            }
+        }
+    }
+
     fn rate(&self) -> f64 {
         self.rate
     }
@@ -103,6 +136,18 @@ impl Carrier for SlideCarrier<'_> {
         } else {
             0.0
         }
+    }
+}
+
+/// Motion at a share of a sub-step of a length [s], of the cubic through both ends.
+fn between(from: PistonMotion, to: PistonMotion, length: f64, share: f64) -> PistonMotion {
+    let rest = 1.0 - share;
+    let travel = to.stroke - from.stroke;
+    let [early, late] = [from, to].map(|end| end.speed * length - travel);
+    let bend = rest * early - share * late;
+    PistonMotion {
+        stroke: from.stroke + share * (travel + rest * bend),
+        speed: (travel + (rest - share) * bend - share * rest * (early + late)) / length,
     }
 }
 
@@ -182,6 +227,9 @@ pub fn mean_load(
         speed: 0.0,
         ..motion
     };
+    for share in [0.0, 0.5, 1.0] {
+        carrier.note_force(share * dt, held);
+    }
     pressed.clear();
     pressed.extend(carrier.touches.iter().map(|touch| {
         let at = |share: f64| carrier.normal_force(touch, share * dt, held);

@@ -2,6 +2,7 @@
 
 mod checks;
 mod record;
+mod saturation;
 mod start;
 
 use std::time::{Duration, Instant};
@@ -9,6 +10,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use glamx::DPose3;
 
+use self::saturation::Saturation;
 use super::contact::Touch;
 use super::cutting::Cutting;
 use super::error::SimulationError;
@@ -22,7 +24,7 @@ use crate::cell::Cell;
 use crate::collision::ClearanceWatch;
 use crate::control::command_lag::CommandLag;
 use crate::control::force::{ForceController, ForceObservation};
-use crate::control::law::JointLaw;
+use crate::control::law::{DriveLimit, JointLaw};
 use crate::control::servo::{AxisCommand, Servo};
 use crate::control::transmission::Motor;
 use crate::device::{DeviceState, PistonMotion, PressureMap};
@@ -33,7 +35,7 @@ use crate::sensing::noise::{Noise, Stream};
 use crate::sensing::{Readings, SensorChain};
 
 /// Signals of a sample of a cell whose tool turns, those of its joints apart.
-const SIGNALS_OF_TURNING: usize = 30;
+const SIGNALS_OF_TURNING: usize = 32;
 /// Time between two frames of the picture [s].
 const FRAME_INTERVAL: f64 = 0.02;
 
@@ -60,8 +62,12 @@ pub struct Simulation<'a> {
     servo: Servo,
     /// Response of each axis's drive to its command, where the drives lag.
     lags: Vec<CommandLag>,
-    /// The motor of each axis that does not move with its link, with the law of its drive over the last step.
-    motors: Vec<Option<(Motor, JointLaw)>>,
+    /// The motor of each axis that does not move with its link.
+    motors: Vec<Option<Motor>>,
+    /// Torque of each axis's drive over the last step [N m], of a refined one the largest.
+    torques: [f64; MAX_JOINTS],
+    /// Drives at their limit, and the lasting loss of the path that came of it.
+    saturation: Saturation,
     /// Last reading of each encoder [rad], and their noise.
     encoders: [f64; MAX_JOINTS],
     encoder_noise: Noise,
@@ -86,6 +92,11 @@ pub struct Simulation<'a> {
     total_steps: usize,
     stopped: bool,
     laws: Vec<JointLaw>,
+    limits: Vec<Option<DriveLimit>>,
+    /// Whether the tool has touched the part.
+    touched: bool,
+    /// Largest contact force over the last step [N].
+    peak: std::cell::Cell<f64>,
     slide_force: f64,
     log: SampleLog,
     frames: FrameLog,
@@ -144,6 +155,8 @@ impl<'a> Simulation<'a> {
             servo,
             lags,
             motors,
+            torques: [0.0; MAX_JOINTS],
+            saturation: Saturation::default(),
             encoders: [0.0; MAX_JOINTS],
             encoder_noise: Noise::new(scenario.simulation.seed, Stream::Encoders),
             reference,
@@ -165,6 +178,9 @@ impl<'a> Simulation<'a> {
             total_steps,
             stopped: false,
             laws: vec![JointLaw::default(); count],
+            limits: vec![None; count],
+            touched: false,
+            peak: std::cell::Cell::new(0.0),
             slide_force: 0.0,
             log: SampleLog::new(count - 1, scenario.tool.is_some(), total_steps),
             frames: FrameLog::default(),
@@ -224,27 +240,41 @@ impl<'a> Simulation<'a> {
                 *clock = now;
             }
         };
-        let dt = self.cell.scenario.simulation.step;
-        let start = self.steps as f64 * dt;
-        let reference = self.lead(start, dt);
-        let middle = self.reference.middle(&reference, dt);
-        self.reference = reference;
-        let set_pressure = self.set_pressure(&reference);
-        lap(|t| &mut t.reference);
-        let slide = self.advance_slide(set_pressure, start, dt);
-        lap(|t| &mut t.slide);
-        let told = self.told(&middle, dt);
-        self.set_laws(&told, slide.device, dt);
-        lap(|t| &mut t.servo);
-        self.cut(dt);
-        self.move_bodies(&slide, dt);
+        let step = self.cell.scenario.simulation.step;
+        let begin = self.steps as f64 * step;
+        let near = !self.touches.is_empty();
+        let parts = self.cell.resolution.parts(near);
+        let dt = step / parts as f64;
+        self.world.set_step(dt);
+        self.peak.set(0.0);
+        self.torques = [0.0; MAX_JOINTS];
+        let mut set_pressure = 0.0;
+        for part in 0..parts {
+            let start = begin + part as f64 * dt;
+            let reference = self.lead(start, dt);
+            let middle = self.reference.middle(&reference, dt);
+            self.reference = reference;
+            if part == 0 {
+                set_pressure = self.set_pressure(&reference);
+            }
+            lap(|t| &mut t.reference);
+            let slide = self.advance_slide(set_pressure, start, dt);
+            lap(|t| &mut t.slide);
+            let told = self.told(&middle, dt);
+            self.set_laws(&told, slide.device, dt);
+            lap(|t| &mut t.servo);
+            self.cut(dt);
+            self.move_bodies(&slide, dt);
+            self.note_drives(&told, start, dt);
+            self.touch(&reference, dt);
+            lap(|t| &mut t.rigid_bodies);
+        }
         self.steps += 1;
-        self.touch(&reference);
-        lap(|t| &mut t.rigid_bodies);
+        let reference = self.reference;
         let result = self.sample(&reference, set_pressure);
         self.stopped = result.is_err();
         lap(|t| &mut t.sample);
-        result
+        result.map_err(|error| self.saturation.before(error))
     }
 
     fn slide(&self) -> usize {
@@ -331,6 +361,7 @@ impl<'a> Simulation<'a> {
             rate: contact.rate(mass),
             beyond: 0.0,
             terms: ForceTerms::default(),
+            peak: Some(&self.peak),
         }
     }
 
@@ -454,11 +485,16 @@ impl<'a> Simulation<'a> {
                 ..command
             };
             self.laws[axis] = match &mut self.motors[axis] {
-                None => self.servo.law(axis, &command, position, velocity, dt),
-                Some((motor, drive)) => {
+                None => {
+                    let law = self.servo.law(axis, &command, position, velocity, dt);
+                    self.limits[axis] = Some(self.servo.limit(axis));
+                    law
+                }
+                Some(motor) => {
                     let (angle, speed) = (motor.angle, motor.speed);
-                    *drive = self.servo.law(axis, &command, angle, speed, dt);
-                    motor.advance(drive, position, velocity, dt)
+                    let drive = self.servo.law(axis, &command, angle, speed, dt);
+                    let limit = self.servo.limit(axis);
+                    motor.advance((&drive, &limit), (position, velocity), dt)
                 }
             };
         }
@@ -474,7 +510,33 @@ impl<'a> Simulation<'a> {
         } else {
             JointLaw::constant(device)
         };
+        self.world.set_limits(&self.limits);
         self.world.set_laws(&self.laws);
+    }
+
+    /// What the drives gave over a part of the step that began at a time [s], and whether a limit cut them.
+    fn note_drives(&mut self, told: &Reference, start: f64, dt: f64) {
+        let time = start + dt;
+        let mut off: f64 = 0.0;
+        for axis in 0..self.slide() {
+            let (angle, (torque, cut)) = match &self.motors[axis] {
+                None => (self.world.positions()[axis], self.world.drive(axis)),
+                Some(motor) => (motor.angle, motor.drive),
+            };
+            if torque.abs() > self.torques[axis].abs() {
+                self.torques[axis] = torque;
+            }
+            self.servo.hold(axis, cut);
+            let offset = self.cell.plant.cell.encoder_offset[axis];
+            // Told is the middle of the step.
+            let commanded = told.position[axis] + 0.5 * dt * told.velocity[axis] - offset;
+            off = off.max((commanded - angle).abs());
+            if cut {
+                let joint = &self.cell.arm.chain.joints[axis];
+                self.saturation.note(joint, time, told.phase);
+            }
+        }
+        self.saturation.settle(off, time);
     }
 
     /// Torques that the reference needs, with the contact force that the device's own force implies.
@@ -509,16 +571,13 @@ impl<'a> Simulation<'a> {
     }
 
     /// Finds where the tool touches the part, on what stands out of it.
-    fn touch(&mut self, reference: &Reference) {
+    fn touch(&mut self, reference: &Reference, dt: f64) {
         // The ball is where the arm has really taken it: ahead of the reference's foot point by its error along the edge.
         let along = (self.world.tool_centre() - reference.centre).dot(reference.tangent);
         let place = reference.edge_length + along;
         let relief = match &mut self.cutting {
             None => self.cell.relief(place),
-            Some(cutting) => {
-                let dt = self.cell.scenario.simulation.step;
-                (self.cell).relief_ridden(place, Some(cutting.ride(place, dt)))
-            }
+            Some(cutting) => (self.cell).relief_ridden(place, Some(cutting.ride(place, dt))),
         };
         self.world.touches(&relief, &mut self.touches);
     }

@@ -18,7 +18,7 @@ use rapier3d::prelude::*;
 use super::contact::{ContactReading, PartContact, Touch};
 use crate::arm::chain::{JointKind, KinematicChain};
 use crate::cell::Cell;
-use crate::control::law::JointLaw;
+use crate::control::law::{DriveLimit, JointLaw};
 use crate::device::PistonMotion;
 use crate::plant::Relief;
 use crate::workpiece::TriangleMesh;
@@ -94,6 +94,8 @@ pub struct World {
     /// Each joint's own inertia where it was put last [kg m2 or kg].
     inertias: Vec<f64>,
     laws: Vec<JointLaw>,
+    /// Drive of each joint.
+    drives: Vec<Drive>,
     /// The theta of each law.
     moments: Vec<f64>,
     /// Force [N or N m] and speed of each joint at the moment of the last step in which its law acts.
@@ -104,6 +106,17 @@ pub struct World {
     positions: Vec<f64>,
     velocities: Vec<f64>,
     reading: ContactReading,
+}
+
+/// The drive in a joint's law.
+#[derive(Debug, Clone, Copy, Default)]
+struct Drive {
+    /// Its limit; none where nothing limits it.
+    limit: Option<DriveLimit>,
+    /// Its torque over the last step [N m], where it has a limit.
+    torque: f64,
+    /// Whether the limit cut it.
+    cut: bool,
 }
 
 /// Where in a step a law acts that decays by `z` in it.
@@ -156,11 +169,10 @@ impl World {
             axes.push(axis);
             parent = link;
         }
-        let tool_body = parent;
         let part_contact = PartContact::insert(
             &mut physics,
             part,
-            tool_body,
+            parent,
             description.part,
             description.tool,
             description.friction,
@@ -180,12 +192,13 @@ impl World {
             joints,
             axes,
             links,
-            tool_body,
+            tool_body: parent,
             tool: description.tool,
             slide_axis: description.chain.joints[count - 1].axis,
             step: description.step,
             inertias: vec![f64::INFINITY; count],
             laws: vec![JointLaw::default(); count],
+            drives: vec![Drive::default(); count],
             moments: vec![0.5; count],
             applied: vec![(0.0, 0.0); count],
             displacements: vec![0.0; count],
@@ -272,6 +285,20 @@ impl World {
         moved.fold(DVec3::ZERO, |sum, part| sum + part)
     }
 
+    /// Sets the length of the steps to come [s].
+    pub fn set_step(&mut self, step: f64) {
+        self.step = step;
+        self.physics.integration_parameters.dt = step;
+        self.part_contact.set_step(step);
+    }
+
+    /// Sets the limit of the drive in each degree of freedom's law from now on; none where nothing limits it.
+    pub fn set_limits(&mut self, limits: &[Option<DriveLimit>]) {
+        for (drive, limit) in self.drives.iter_mut().zip(limits) {
+            drive.limit = *limit;
+        }
+    }
+
     /// Sets the law of each degree of freedom for the next step.
     pub fn set_laws(&mut self, laws: &[JointLaw]) {
         self.laws.copy_from_slice(laws);
@@ -336,12 +363,20 @@ impl World {
         self.physics.step_with_events(&(), &());
         self.read_joints();
         self.reading = self.part_contact.read(&self.physics);
+        self.limit_drives();
         let h = self.step;
         let last = self.joints.len() - 1;
         for i in 0..=last {
-            let (q, v, theta) = (self.displacements[i], self.applied[i].1, self.moments[i]);
-            let speed = (1.0 - theta) * v + theta * self.velocities[i];
-            self.applied[i] = (self.laws[i].at(q + theta * h * speed, speed), speed);
+            let (force, speed) = self.at_moment(i);
+            let q = self.displacements[i];
+            self.applied[i] = match self.drives[i] {
+                Drive {
+                    limit: Some(limit),
+                    torque,
+                    cut: true,
+                } => (torque + limit.losses.at(0.0, speed), speed),
+                _ => (force, speed),
+            };
             let end = match slide {
                 Some(slide) if i == last => {
                     slide.stroke + 0.5 * h * (self.velocities[i] - slide.speed)
@@ -352,6 +387,95 @@ impl World {
         }
         self.displace();
         self.read_joints();
+    }
+
+    /// Force of a joint's law [N or N m] and its speed at the moment of the step in which it acts, as the step has left it.
+    fn at_moment(&self, i: usize) -> (f64, f64) {
+        let (q, v, theta) = (self.displacements[i], self.applied[i].1, self.moments[i]);
+        let speed = (1.0 - theta) * v + theta * self.velocities[i];
+        (self.laws[i].at(q + theta * self.step * speed, speed), speed)
+    }
+
+    /// Holds every drive within its limit. Laws act implicitly, so that what a drive gives is known after the step alone; where it is beyond the limit the
+    /// step is what it would have been with the limit in place of the law: with E its joint, A the step's mass matrix with all laws,
+    ///
+    /// ```text
+    /// dv = A^-1 E p,   p/h - theta (k_d + theta h k_p) dv = tau_limit - tau
+    /// ```
+    fn limit_drives(&mut self) {
+        let mut cut: Vec<(usize, f64)> = Vec::new();
+        let mut velocities = Vec::new();
+        loop {
+            let before = cut.len();
+            for i in 0..self.joints.len() {
+                let Some(limit) = self.drives[i].limit else {
+                    continue;
+                };
+                if cut.iter().any(|(joint, _)| *joint == i) {
+                    continue;
+                }
+                let (force, speed) = self.at_moment(i);
+                let torque = force - limit.losses.at(0.0, speed);
+                (self.drives[i].torque, self.drives[i].cut) = (torque, false);
+                if torque.abs() > limit.effort {
+                    cut.push((i, limit.effort.copysign(torque)));
+                }
+            }
+            if cut.len() == before {
+                return;
+            }
+            match before {
+                0 => velocities.clone_from(&self.velocities),
+                _ => self.velocities.copy_from_slice(&velocities),
+            }
+            self.cut_drives(&cut);
+        }
+    }
+
+    /// Makes the speeds of a step those that it has with drives of some joints at a torque [N m].
+    fn cut_drives(&mut self, cut: &[(usize, f64)]) {
+        let (h, count) = (self.step, self.joints.len());
+        let responses: Vec<nalgebra::DVector<f64>> = cut
+            .iter()
+            .map(|&(joint, _)| {
+                let mut response = nalgebra::DVector::zeros(count);
+                response[joint] = 1.0;
+                self.multibody()
+                    .inv_augmented_mass()
+                    .solve_mut(&mut response);
+                response
+            })
+            .collect();
+        let size = cut.len();
+        let mut equations = nalgebra::DMatrix::zeros(size, size);
+        let mut wanted = nalgebra::DVector::zeros(size);
+        for (row, &(joint, torque)) in cut.iter().enumerate() {
+            let (law, theta) = (self.laws[joint], self.moments[joint]);
+            let (force, speed) = self.at_moment(joint);
+            let drive = &mut self.drives[joint];
+            (drive.torque, drive.cut) = (torque, true);
+            let losses = drive
+                .limit
+                .map_or(JointLaw::default(), |limit| limit.losses);
+            let yielding = theta * (law.damping - losses.damping + theta * h * law.stiffness);
+            wanted[row] = torque - (force - losses.at(0.0, speed));
+            for (column, response) in responses.iter().enumerate() {
+                equations[(row, column)] = -yielding * response[joint];
+            }
+            equations[(row, row)] += 1.0 / h;
+        }
+        if let Some(impulses) = equations.lu().solve(&wanted) {
+            for (response, impulse) in responses.iter().zip(impulses.iter()) {
+                for (speed, gained) in self.velocities.iter_mut().zip(response.iter()) {
+                    *speed += impulse * gained;
+                }
+            }
+        }
+        let velocities = std::mem::take(&mut self.velocities);
+        self.multibody_mut()
+            .generalized_velocity_mut()
+            .copy_from_slice(&velocities);
+        self.velocities = velocities;
     }
 
     fn read_joints(&mut self) {
@@ -382,6 +506,11 @@ impl World {
     /// Force that a degree of freedom's law applied over the last step [N or N m], and its speed then [rad/s or m/s].
     pub fn applied(&self, joint: usize) -> (f64, f64) {
         self.applied[joint]
+    }
+
+    /// Torque of a limited drive over the last step [N m], and whether its limit cut it.
+    pub fn drive(&self, joint: usize) -> (f64, bool) {
+        (self.drives[joint].torque, self.drives[joint].cut)
     }
 
     /// Contact over the last step.

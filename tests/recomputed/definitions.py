@@ -7,6 +7,8 @@ import xml.etree.ElementTree as xml
 import numpy as np
 import pandas as pd
 
+from arm import Arm, path_errors
+
 ATMOSPHERE = 101_325.0
 REFERENCE_DENSITY = 1.185
 
@@ -58,17 +60,60 @@ class CellRun(Run):
         s["desired_force_n"] = desired
         s["duration_s"] = self.time[-1] - self.time[0]
         force, follow = self.column("contact_force_n"), self.phase("follow")
+        peaks = self.column("contact_force_peak_n")
         for name in self.PEAKS:
             rows = self.phase(name)
-            s[f"force_peak_{name}_n"] = force[rows].max() if len(rows) else None
+            s[f"force_peak_{name}_n"] = peaks[rows].max() if len(rows) else None
         self.touch(s, force, desired, follow)
         if len(follow):
             self.following(s, force[follow], desired, follow)
+        s["passes"] = self.passes()
         self.joints(s)
         s["air_mass_balance_relative"] = self.air_balance()
         if "tool" in self.scenario:
             s.update(self.finished_edge())
         return s
+
+    # What a row of a pass has of the numbers of the run.
+    OF_PASS = ("force_mean_n", "force_standard_deviation_n", "coefficient_of_variation_percent", "force_rms_error_n", "force_rms_error_percent", "largest_deviation_n",
+               "within_5_percent_share_percent", "within_10_percent_share_percent", "loss_of_contact_share_percent", "path_error_rms_um", "path_error_max_um",
+               "path_lag_rms_um", "path_lag_max_um", "path_length_mm", "feed_mean_mm_per_s", "follow_duration_s")
+
+    def passes(self):
+        process = self.scenario["process"]
+        listed = self.scenario.get("pass") or [{}] * process.get("passes", 1)
+        rows = []
+        for number, own in enumerate(listed, start=1):
+            follow = self.phase("follow" if number == 1 else f"follow_{number}")
+            if not len(follow):
+                continue
+            desired, s = float(own.get("force_n", process["force_n"])), {}
+            self.following(s, self.column("contact_force_n", follow), desired, follow)
+            row = {key: s[key] for key in self.OF_PASS}
+            rows.append(dict(row, **{"pass": number}, desired_force_n=desired, force_peak_follow_n=self.column("contact_force_peak_n", follow).max()))
+        return rows
+
+    def angles(self, signal, rows):
+        columns = []
+        while f"joint_{len(columns) + 1}_{signal}_rad" in self.samples:
+            columns.append(self.column(f"joint_{len(columns) + 1}_{signal}_rad", rows))
+        return np.column_stack(columns)
+
+    def path_errors(self):
+        """Largest distance [m] of the recorded lateral error and lag from what the joint angles and the URDF give, while following; and the samples compared."""
+        arm, rows = Arm(self.path, self.scenario, self.device), self.phase("follow")
+        stroke = self.column("stroke_m", rows)
+        lateral, lag, known = path_errors(arm, self.scenario["process"], self.angles("position", rows), self.angles("reference", rows), stroke)
+        off = [np.abs(own - self.column(name, rows))[known].max() for own, name in ((lateral, "path_error_m"), (lag, "path_lag_m"))]
+        return max(off), int(known.sum())
+
+    def holding(self):
+        """The drives' torques [N m] at the end of the dwell on the edge, where all stands still, and those that hold arm, housing, slide and force."""
+        arm, row = Arm(self.path, self.scenario, self.device), self.phase("engage")[-1:]
+        force = -np.array([self.column(f"contact_force_{axis}_n", row)[0] for axis in "xyz"])
+        held = arm.holding_torques(self.angles("position", row), self.column("stroke_m", row), force)
+        recorded = np.array([self.column(f"joint_{number}_torque_n_m", row)[0] for number in range(1, len(held) + 1)])
+        return recorded, held
 
     def finished_edge(self):
         """Chamfer and burr from edge_profile.csv, what the spindle did from the samples."""
@@ -76,7 +121,10 @@ class CellRun(Run):
         chamfer = self.scenario["workpiece"].get("chamfer", {})
         ends = self.scenario.get("removal", {}).get("contact_length_mm", 1.0 if "removal" in self.scenario else 0.0)
         place = edge.position_mm.to_numpy()
-        judged = edge[(place >= place[0] + ends) & (place <= place[-1] - ends)]
+        between = (place >= place[0] + ends) & (place <= place[-1] - ends)
+        judged, at_ends = edge[between], edge[~between]
+        is_out = (edge.chamfer_leg_mm < chamfer.get("leg_min_mm", 0.0)) | (edge.chamfer_leg_mm > chamfer.get("leg_max_mm", math.inf))
+        is_out |= edge.burr_after_mm > chamfer.get("residual_burr_max_mm", 0.02)
         leg, burr, section = judged.chamfer_leg_mm, judged.burr_after_mm, judged.section_removed_mm2
         left = burr > chamfer.get("residual_burr_max_mm", 0.02)
         outside = (leg < chamfer.get("leg_min_mm", 0.0)) | (leg > chamfer.get("leg_max_mm", math.inf)) | left
@@ -91,6 +139,12 @@ class CellRun(Run):
             "residual_burr_max_mm": burr.max(),
             "residual_burr_share_percent": 100 * left.mean(),
             "out_of_tolerance_share_percent": 100 * outside.mean(),
+            "ends_chamfer_leg_min_mm": at_ends.chamfer_leg_mm.min() if len(at_ends) else None,
+            "ends_chamfer_leg_max_mm": at_ends.chamfer_leg_mm.max() if len(at_ends) else None,
+            "ends_residual_burr_max_mm": at_ends.burr_after_mm.max() if len(at_ends) else None,
+            "ends_out_of_tolerance_share_percent": 100 * is_out[~between].mean() if len(at_ends) else None,
+            "whole_edge_out_of_tolerance_share_percent": 100 * is_out.mean(),
+            "ends_length_mm": ends,
             "section_removed_mean_mm2": section.mean(),
             "section_variation_percent": 100 * section.std(ddof=0) / section.mean(),
             "removed_volume_mm3": edge.section_removed_mm2.sum() * (place[-1] - place[0]) / (len(place) - 1),
@@ -108,7 +162,7 @@ class CellRun(Run):
         if not len(touching):
             return
         window = slice(touching[0], end)
-        peak = force[window].max()
+        peak = self.column("contact_force_peak_n", window).max()
         s["engagement_peak_n"] = peak
         s["engagement_overshoot_percent"] = max(0.0, 100 * (peak - desired) / desired)
         outside = np.flatnonzero(np.abs(force[window] - desired) > 0.05 * desired)
@@ -145,7 +199,7 @@ class CellRun(Run):
         self.tenths(s, force, steps, total)
         stroke = self.column("stroke_m", follow)
         low, high = self.stroke_ends()
-        path_error = self.column("path_error_m", follow)
+        path_error, lag = self.column("path_error_m", follow), self.column("path_lag_m", follow)
         duration = self.time[follow[-1]] - self.time[follow[0]]
         s.update(
             stroke_used_mm=1e3 * (stroke.max() - stroke.min()),
@@ -154,6 +208,8 @@ class CellRun(Run):
             stroke_margin_mm=1e3 * min(stroke.min() - low, high - stroke.max()),
             path_error_rms_um=1e6 * math.sqrt((path_error**2).mean()),
             path_error_max_um=1e6 * np.abs(path_error).max(),
+            path_lag_rms_um=1e6 * math.sqrt((lag**2).mean()),
+            path_lag_max_um=1e6 * np.abs(lag).max(),
             path_length_mm=1e3 * total,
             feed_mean_mm_per_s=1e3 * total / duration,
             follow_duration_s=duration,
@@ -182,14 +238,21 @@ class CellRun(Run):
             if joint.get("name") in moved:
                 chain.insert(0, joint)
             link = joint.find("parent").get("link")
-        shares = []
+        shares, any_at_limit = [], np.zeros(len(self.time), dtype=bool)
         for number, joint in enumerate(chain, start=1):
             torque = self.column(f"joint_{number}_torque_n_m")
             limit = joint.find("limit")
             effort = float(limit.get("effort")) if limit is not None else math.inf
             known = torque is not None and math.isfinite(effort)
-            shares.append(dict(joint=joint.get("name"), torque_share_percent=100 * np.abs(torque).max() / effort if known else None))
+            at_limit = np.abs(torque) >= effort * (1 - 1e-9) if known else np.zeros(len(self.time), dtype=bool)
+            any_at_limit |= at_limit
+            share = dict(joint=joint.get("name"), torque_share_percent=100 * np.abs(torque).max() / effort if known else None)
+            share["saturated_s"] = np.diff(self.time)[at_limit[1:]].sum()
+            if at_limit.any():
+                share["saturated_from_s"] = self.time[np.argmax(at_limit)]
+            shares.append(share)
         s["joints"] = shares
+        s["drives_saturated_s"] = np.diff(self.time)[any_at_limit[1:]].sum()
         known = [joint for joint in shares if joint["torque_share_percent"] is not None]
         most = max(known, key=lambda joint: joint["torque_share_percent"], default=None)
         s["joint_torque_share_percent"] = most and most["torque_share_percent"]

@@ -36,6 +36,10 @@ CELL_LABELS = {
     "engagement_peak_n": ("peak", "N"), "engagement_overshoot_percent": ("overshoot", "%"), "settling_time_s": ("settling time", "s"),
     "stroke_used_mm": ("stroke used", "mm"), "stroke_min_mm": ("smallest stroke", "mm"), "stroke_max_mm": ("largest stroke", "mm"),
     "stroke_margin_mm": ("stroke margin", "mm"), "path_error_rms_um": ("lateral error, RMS", "µm"), "path_error_max_um": ("lateral error, largest", "µm"),
+    "path_lag_rms_um": ("lag, RMS", "µm"), "path_lag_max_um": ("lag, largest", "µm"), "drives_saturated_s": ("drives at their limit", "s"),
+    "ends_chamfer_leg_min_mm": ("ends, leg, least", "mm"), "ends_chamfer_leg_max_mm": ("ends, leg, largest", "mm"),
+    "ends_residual_burr_max_mm": ("ends, highest burr", "mm"), "ends_out_of_tolerance_share_percent": ("ends, out of tolerance", "%"),
+    "whole_edge_out_of_tolerance_share_percent": ("out of tolerance, whole", "%"), "ends_length_mm": ("ends, length of each", "mm"),
     "path_length_mm": ("length followed", "mm"), "feed_mean_mm_per_s": ("feed, mean", "mm/s"), "follow_duration_s": ("time of following", "s"),
     "joint_torque_share_percent": ("joint torque / limit", "%"), "air_mass_balance_relative": ("air balance, largest gap", ""), "duration_s": ("cycle time", "s"),
     "wall_time_s": ("wall time", "s"), "real_time_factor": ("real-time factor", ""), "burr_before_max_mm": ("burr before, highest", "mm"),
@@ -69,6 +73,9 @@ NOTES = {
     "stroke_used_mm": ["from {stroke_min_mm} to {stroke_max_mm} mm"],
     "path_length_mm": ["at {feed_mean_mm_per_s} mm/s on average"],
     "chamfer_leg_mean_mm": ["from {chamfer_leg_min_mm} to {chamfer_leg_max_mm} mm"],
+    "out_of_tolerance_share_percent": ["with its ends {whole_edge_out_of_tolerance_share_percent} %"],
+    "ends_out_of_tolerance_share_percent": ["{ends_length_mm} mm at either end"],
+    "ends_chamfer_leg_max_mm": ["from {ends_chamfer_leg_min_mm} to {ends_chamfer_leg_max_mm} mm"],
     "residual_burr_max_mm": ["too much of it on {residual_burr_share_percent} %"],
     "removed_volume_mm3": ["at {removal_rate_mean_mm3_per_s} mm3/s while cutting"],
     "duration_s": ["following {follow_duration_s} s of it"],
@@ -115,10 +122,23 @@ class Job:
 
     def check(self):
         self.summary()
+        if not self.is_bench:
+            self.of_the_arm()
         self.table()
         self.viewer()
         self.page()
         return self.checked
+
+    def of_the_arm(self):
+        """What joint angles and the URDF say of the samples: lateral error and lag, and the torques that hold arm, housing, slide and force."""
+        off, compared = self.run.path_errors()
+        self.checked.fact("samples: lateral error and lag are those of the joint angles, to three micrometres", bool(off < 3e-6 and compared > 100), True)
+        recorded, held = self.run.holding()
+        allowed = 0.2 + 0.005 * np.abs(held).max()
+        self.checked.fact("samples: torques at rest are those that hold arm, housing, slide and force", bool(np.abs(recorded - held).max() < allowed), True)
+        flange = self.run.device.get("housing_mass_kg", 0.0) + self.run.device["moving_mass_kg"]
+        told = json.loads(common.run("check", self.run.path.relative_to(common.PROJECT), "--json"))["numbers"]
+        self.checked.exact("idc check: load on the flange", told["flange_load_kg"], flange, relative=1e-9)
 
     # summary.json
 
@@ -221,6 +241,8 @@ class Job:
             for number, (printed, tenth) in enumerate(zip(line[7:].split(), self.numbers["force_by_tenth"], strict=True)):
                 self.checked.number(f"{where}, tenth {number + 1}", printed, tenth[tenths[head]])
             return
+        if self.pass_line(where, line):
+            return
         label, printed, unit, note = line[8:32].strip(), line[33:42].strip(), line[43:47].strip(), line[49:].strip()
         key = by_label.get((label, unit))
         if key is None:
@@ -228,6 +250,28 @@ class Job:
             return
         self.value(where, key, printed)
         self.note(where, key, note)
+
+    # Columns of the table of passes.
+    PASSES = [("desired", "N", "desired_force_n"), ("mean", "N", "force_mean_n"), ("SD", "N", "force_standard_deviation_n"), ("RMS error", "%", "force_rms_error_percent"),
+              ("in 5 %", "%", "within_5_percent_share_percent"), ("largest", "N", "force_peak_follow_n"), ("feed", "mm/s", "feed_mean_mm_per_s")]
+
+    def pass_line(self, where, line):
+        """A line of the table of passes: heads, units, or a row."""
+        head, words = line[:7].strip(), line[7:].split()
+        if head == "Pass":
+            self.checked.fact(where, words, " ".join(name for name, _, _ in self.PASSES).split())
+        elif head == "" and words and words == [unit for _, unit, _ in self.PASSES]:
+            pass
+        elif head.isdigit() and len(words) == len(self.PASSES):
+            self.pass_row(f"{where}, pass {head}", int(head), words)
+        else:
+            return False
+        return True
+
+    def pass_row(self, where, number, printed):
+        row = next(row for row in self.numbers["passes"] if row["pass"] == number)
+        for text, (_, _, key) in zip(printed, self.PASSES, strict=True):
+            self.checked.number(f"{where}: {key}", text, row[key])
 
     def note(self, where, key, note):
         if key in TIMING or note in FIXED:
@@ -270,7 +314,7 @@ class Job:
                 self.far(where, line)
             elif found := re.fullmatch(r"Drawn (\d+) times as large as it is\.", line):
                 self.checked.fact(where, int(found[1]), self.enlarged())
-            elif line not in (self.document["title"], "Force along the path", "The edge before and after"):
+            elif line not in (self.document["title"], "Force along the path", "Passes", "The edge before and after"):
                 self.checked.uncovered("viewer", line)
         for head, *rows in tables:
             self.viewer_table(head, rows)
@@ -303,6 +347,8 @@ class Job:
                 tenth = self.numbers["force_by_tenth"][number]
                 for printed, key in zip(row, ["from_mm", "to_mm", "force_mean_n", "force_standard_deviation_n"], strict=True):
                     self.checked.number(where, printed, tenth[key])
+            elif head[0] == "pass":
+                self.pass_row(where, int(row[0]), row[1:])
             elif head[0] == "entity":
                 self.legend(where, row)
             elif head[0] == "at, s":
@@ -450,6 +496,9 @@ class Job:
             for number, row in enumerate(rows):
                 for printed, key in zip(row, ["from_mm", "to_mm", "force_mean_n", "force_standard_deviation_n"], strict=True):
                     self.checked.number(f"page: tenth {number + 1}, {key}", printed, self.numbers["force_by_tenth"][number][key])
+        elif head[0] == "pass":
+            for row in rows:
+                self.pass_row(f"page: pass {row[0]}", int(row[0]), row[1:])
         elif head[0] == "file":
             for name, size, digest in rows:
                 data = (common.PROJECT / name).read_bytes()

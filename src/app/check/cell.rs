@@ -5,7 +5,7 @@ use std::path::Path;
 use super::super::error::AppError;
 use super::super::picture::{across_the_edge, in_the_middle};
 use super::report::{Report, shown};
-use crate::cell::{Cell, EstimatedArm};
+use crate::cell::{Cell, EstimatedArm, FlangeLoad};
 use crate::metrics;
 use crate::path::Pass;
 use crate::quantity::significant;
@@ -24,7 +24,8 @@ const BYTES_PER_AXIS: f64 = 45.0;
 /// A cell that can be run.
 pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     let file = scenario.path.clone();
-    metrics::validate(metrics::METRICS, &scenario.expect).map_err(|source| AppError::Metrics {
+    let known = metrics::validate_cell(&scenario.expect, &scenario.expect_of_passes());
+    known.map_err(|source| AppError::Metrics {
         file: file.display().to_string(),
         source,
     })?;
@@ -34,6 +35,7 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     arm(&mut report, &scenario.arm, cell.arm.chain.len());
     estimated(&mut report, cell.estimated.as_ref())?;
     report.device(&scenario.device.parameters);
+    flange(&mut report, &FlangeLoad::of(scenario, &cell.arm));
     overrides(&mut report, &file)?;
     if scenario.device.locked {
         report.fact("", "its slide is clamped (device.locked)");
@@ -227,6 +229,29 @@ pub(super) fn recorded(file: &Path) -> Result<Report, AppError> {
         word(file)
     ));
     Ok(report)
+}
+
+/// What the arm carries on its flange.
+fn flange(report: &mut Report, load: &FlangeLoad) {
+    let may = match &load.payload {
+        Some((payload, origin)) => {
+            format!("of {} kg that it may carry ({origin})", shown(*payload))
+        }
+        None => "what the arm may carry is not known (arm.payload_kg)".to_owned(),
+    };
+    let text = format!(
+        "carries {} kg, housing {} and slide with tool {}; {may}; contact force at most {} N",
+        shown(load.mass()),
+        shown(load.housing),
+        shown(load.moving),
+        shown(load.force)
+    );
+    report.fact("flange", text);
+    report.number("flange_load_kg", load.mass());
+    report.number(
+        "payload_kg",
+        load.payload.as_ref().map(|(payload, _)| *payload),
+    );
 }
 
 fn arm(report: &mut Report, arm: &ArmScenario, axes: usize) {

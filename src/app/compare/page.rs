@@ -9,12 +9,13 @@ use crate::recording::schema;
 /// Names that a heading has room for.
 const NAMED: usize = 3;
 /// Signals that are drawn over one another.
-const SIGNALS: [&str; 6] = [
+const SIGNALS: [&str; 7] = [
     schema::CONTACT_FORCE,
     schema::STROKE,
     schema::REGULATOR_PRESSURE,
     schema::CHAMBER_1_PRESSURE,
     schema::PATH_ERROR,
+    schema::PATH_LAG,
     schema::PATH_ERROR_AXIAL,
 ];
 

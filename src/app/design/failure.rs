@@ -69,6 +69,7 @@ impl From<SimulationError> for Failure {
             SimulationError::Collision { .. } => "bodies collided",
             SimulationError::Stalled { .. } => "the spindle stalled",
             SimulationError::AxisLost { .. } => "an axis lost its path",
+            SimulationError::Saturated { .. } => "a drive came to its limit",
         };
         Self::new(reason, &error)
     }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
-use crate::figure::{Band, Horizontal, Panel, Role, Series, Stroke};
+use crate::figure::{Band, Horizontal, Marker, Panel, Role, Series, Stroke};
 use crate::page::{Block, Chart, PageSection};
 use crate::recording::csv::EdgeProfile;
 
@@ -20,6 +20,7 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
         stroke,
         stepwise: false,
     };
+    let ends = ends(&places, document["summary"]["ends_length_mm"].as_f64());
     let chart = |title: &str, label: &str, series, bands, within| {
         Block::Chart(Chart {
             within,
@@ -29,6 +30,7 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
                 horizontal: Horizontal::Quantity("length along the edge [mm]".to_owned()),
                 series,
                 bands,
+                markers: ends.clone(),
                 ..Panel::default()
             },
             group: "finished edge".to_owned(),
@@ -71,7 +73,26 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
             None,
         ));
     }
+    if !ends.is_empty() {
+        let told = "Between the two lines the tool has passed with its whole contact length; what lies outside them is told by the numbers of the ends.";
+        blocks.push(Block::Hint(told.to_owned()));
+    }
     let told = "The burr comes off first, from its tip, then the edge is chamfered. A secondary burr, pushed over by the tool, is not modelled.";
     blocks.push(Block::Hint(told.to_owned()));
     PageSection::new("Finished edge", blocks)
+}
+
+/// Where the ends begin that the numbers of the edge leave out: where the tool is set on and lifted off.
+fn ends(places: &[f64], length: Option<f64>) -> Vec<Marker> {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else {
+        return Vec::new();
+    };
+    let Some(length) = length.filter(|length| *length > 0.0) else {
+        return Vec::new();
+    };
+    let marker = |label: &str, at| Marker {
+        label: label.to_owned(),
+        at,
+    };
+    vec![marker("end", first + length), marker("end", last - length)]
 }

@@ -11,12 +11,14 @@ use super::finished_edge::finished_edge;
 use super::judged::judged;
 use super::provenance::provenance_of;
 use super::signals::{along_the_path, joints, signals};
-use crate::metrics::{BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, WIDE_BAND};
+use crate::metrics::{
+    BENCH_METRICS, LevelSummary, METRICS, Metric, NARROW_BAND, PassSummary, WIDE_BAND,
+};
 use crate::page::{Block, Drawing, Fact, Page, PageSection, PageTable, TableCell, Tone, html};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;
-use crate::report::{LEVELS, LevelColumn, far_from_desired, shown};
+use crate::report::{LEVELS, LevelColumn, PASSES, PassColumn, far_from_desired, shown};
 
 /// A run as its folder has it.
 pub(in super::super) struct RunResult<'a> {
@@ -128,6 +130,7 @@ fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
         along_the_path(run),
         joints(run),
         levels(run),
+        passes(run),
         metrics(run),
         estimated(&run.document, SUMMARY),
         judged(&run.document, SUMMARY),
@@ -246,14 +249,16 @@ fn reached(run: &RunResult<'_>) -> String {
 fn told(run: &RunResult<'_>, bound: &Value) -> Option<String> {
     let key = bound["metric"].as_str()?;
     let metrics = run.metrics();
-    let (label, value) = metrics.iter().find(|(label, _)| label.key == key)?;
+    let (label, _) = metrics.iter().find(|(label, _)| label.key == key)?;
+    let (value, pass) = (bound["value"].as_f64(), bound["pass"].as_u64());
+    let pass = pass.map_or(String::new(), |pass| format!("pass {pass}: "));
     let unit = match label.unit {
         "" => String::new(),
         unit => format!(" {unit}"),
     };
     let is = value.map_or("not determined".to_owned(), |v| with_unit(v, label.unit));
     Some(format!(
-        "{} is {is}, expected {}{unit}",
+        "{pass}{} is {is}, expected {}{unit}",
         label.name,
         ends(bound)
     ))
@@ -456,10 +461,34 @@ fn levels<'a>(run: &RunResult<'_>) -> Option<PageSection<'a>> {
     })
 }
 
+/// Each pass of a run of several.
+fn passes<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
+    let passes: Vec<PassSummary> =
+        serde_json::from_value(run.document["summary"]["passes"].clone()).ok()?;
+    if passes.len() < 2 {
+        return None;
+    }
+    let names = PASSES
+        .iter()
+        .map(|column| format!("#{}, {}", column.name, column.unit));
+    let names: Vec<String> = std::iter::once("#pass".to_owned()).chain(names).collect();
+    let row = |pass: &PassSummary| {
+        let value = |column: &PassColumn| TableCell::from(shown((column.value)(pass), column.unit));
+        let number = TableCell::from(pass.pass.to_string());
+        std::iter::once(number)
+            .chain(PASSES.iter().map(value))
+            .collect()
+    };
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let caption = "Each pass along the edge, against its own desired force; the other numbers of the force are those of the first.";
+    let table = PageTable::new(caption, &names, passes.iter().map(row).collect());
+    Some(PageSection::new("Passes", vec![Block::PageTable(table)]))
+}
+
 fn metrics<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let expectations = run.document["expectations"].as_array();
     let bounds = |key: &str| {
-        let own = |e: &&Value| e["metric"] == key;
+        let own = |e: &&Value| e["metric"] == key && e["pass"].is_null();
         let bound = expectations.into_iter().flatten().find(own)?;
         Some((ends(bound), bound["kept"] == true))
     };

@@ -19,7 +19,13 @@ pub(in super::super) struct Group {
 }
 
 const SEALS: [Line; 1] = [(schema::SEAL_FORCE, "seals", Role::Band, Stroke::Plain)];
-const PATH: [Line; 2] = [
+const PATH: [Line; 3] = [
+    (
+        schema::PATH_LAG,
+        "behind its plan",
+        Role::Regulator,
+        Stroke::Plain,
+    ),
     (
         schema::PATH_ERROR_AXIAL,
         "along the tool's axis",

@@ -185,6 +185,7 @@ fn limits(cell: &Cell) -> SummaryLimits {
     let joints = &cell.arm.chain.joints;
     SummaryLimits {
         desired_force: cell.passes[0].force,
+        later_forces: cell.passes[1..].iter().map(|pass| pass.force).collect(),
         stroke_limits: (0.0, cell.scenario.device.parameters.full_stroke),
         joint_efforts: joints.iter().map(|joint| joint.effort).collect(),
         joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),

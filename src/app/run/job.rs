@@ -16,13 +16,13 @@ use super::super::{bench, bench_figures, bench_picture};
 use super::cell_run::{Listener, SummaryDocument, run_heard};
 use super::source::Source;
 use crate::cell::Cell;
-use crate::metrics::{self, BoundCheck, MetricsError};
+use crate::metrics::{self, BoundCheck, MetricsError, Summary};
 use crate::recording::csv::EdgeProfile;
 use crate::recording::finished_edge::FinishedEdge;
 use crate::recording::provenance::Provenance;
 use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::recording::scene::Scene;
-use crate::report::{Style, bench_markdown, bench_text, markdown, text};
+use crate::report::{Style, bench_markdown, bench_text, drives as told_drives, markdown, text};
 use crate::rig::Rig;
 use crate::scenario::{AnyScenario, BenchScenario, Scenario, files_of_cell};
 
@@ -70,7 +70,7 @@ impl Job {
         };
         Ok(match scenario {
             AnyScenario::Cell(cell) => {
-                let known = metrics::validate(metrics::METRICS, &cell.expect);
+                let known = metrics::validate_cell(&cell.expect, &cell.expect_of_passes());
                 known.map_err(metrics_error(&cell.path))?;
                 Self::Cell(Box::new(Cell::new(*cell)?))
             }
@@ -167,8 +167,9 @@ fn perform_cell(
         let growing_too = growing.iter().map(GrowingFile::listener);
         let listeners = watching.into_iter().chain(growing_too).collect();
         let finished = run_heard(cell, told, listeners)?;
-        let expect = &cell.scenario.expect;
-        let verdicts = metrics::check(metrics::METRICS, &finished.summary, expect)
+        let scenario = &cell.scenario;
+        let of_passes = scenario.expect_of_passes();
+        let verdicts = metrics::check_cell(&finished.summary, &scenario.expect, &of_passes)
             .map_err(|source| unmeasured(&cell.scenario.path, source))?;
         let title = &cell.scenario.title;
         let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
@@ -211,7 +212,8 @@ fn perform_cell(
             sketches: &sketches,
             report: &report,
         })?;
-        let (code, told) = judged(finished.stop.as_ref(), &verdicts);
+        let (code, mut told) = judged(finished.stop.as_ref(), &verdicts);
+        told.extend(drives_at_their_limit(&finished.summary));
         Ok(Ended {
             table: text(title, &finished.summary, &verdicts, manner.style),
             document,
@@ -285,12 +287,20 @@ pub(super) fn judged(
     }
     let outside = verdicts.iter().filter(|verdict| !verdict.kept);
     let told: Vec<String> = outside
-        .map(|verdict| sentence(verdict.metric, verdict.value, [verdict.min, verdict.max]))
+        .map(|verdict| sentence(&verdict.name(), verdict.value, [verdict.min, verdict.max]))
         .collect();
     match told.is_empty() {
         true => (ExitCode::Done, told),
         false => (ExitCode::OutsideBounds, told),
     }
+}
+
+/// Which drives were at their limit, when and for how long.
+fn drives_at_their_limit(summary: &Summary) -> Option<String> {
+    let told = told_drives(summary)?;
+    Some(format!(
+        "drives at their limit: {told} ([expect] drives_saturated_s = {{ max = .. }} sets how long they may be)"
+    ))
 }
 
 /// A result that lies outside its bounds, from least to largest.

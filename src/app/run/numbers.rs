@@ -52,7 +52,8 @@ fn measured(job: Job) -> Result<Numbers, AppError> {
             // How long it took says nothing about the scenario.
             run.summary.timing = None;
             let scenario = &cell.scenario;
-            let verdicts = metrics::check(METRICS, &run.summary, &scenario.expect);
+            let verdicts =
+                metrics::check_cell(&run.summary, &scenario.expect, &scenario.expect_of_passes());
             let file = scenario.path.display().to_string();
             of(METRICS, &run.summary, run.stop.as_ref(), verdicts, file)
         }

@@ -233,7 +233,10 @@ pub(super) fn outside(document: &Value) -> Vec<String> {
         .map(|verdict| {
             let number = |key: &str| verdict[key].as_f64();
             let metric = verdict["metric"].as_str().unwrap_or_default();
-            super::job::sentence(metric, number("value"), [number("min"), number("max")])
+            let pass = verdict["pass"].as_u64();
+            let pass = pass.map_or(String::new(), |pass| format!("pass {pass}: "));
+            let metric = format!("{pass}{metric}");
+            super::job::sentence(&metric, number("value"), [number("min"), number("max")])
         })
         .collect()
 }

@@ -49,6 +49,10 @@ numbers! { PARTS:
     MOVING_CENTRE = "tool.moving_centre_of_mass_m" as "moving_centre_of_mass_mm", [0.0, 1.0], (nothing, keep);
     /// of the moving mass about its centre, the same about every axis
     MOVING_GYRATION = "tool.moving_radius_of_gyration_m" as "moving_radius_of_gyration_mm", [0.001, 0.5], (nothing, keep);
+    /// of the housing, which stands still on the flange: cylinders, guides, valve; 0 where it is not known
+    HOUSING_MASS = "tool.housing_mass_kg" as "housing_mass_kg", [0.0, 200.0], (nothing, keep);
+    /// centre of the housing's mass from the flange
+    HOUSING_CENTRE = "tool.housing_centre_of_mass_m" as "housing_centre_of_mass_mm", [0.0, 1.0], (nothing, keep);
     /// a way from here to there, which changes nothing by itself
     WAY = "way", super::ANY, (nothing, keep);
 }

@@ -10,7 +10,7 @@ use crate::simulation::error::SimulationError;
 const LOST: f64 = 0.05;
 
 impl Simulation<'_> {
-    /// The ball must stay on the edge: `off` is its distance from its path across the tool's axis [m].
+    /// The ball must stay on the edge: `off` is its distance from its path across travel and tool axis [m].
     pub(super) fn check_on_edge(
         &self,
         reference: &Reference,
@@ -124,11 +124,11 @@ impl Simulation<'_> {
         }
     }
 
-    /// The slide must never reach its inner end, and on the edge not its outer one either.
+    /// The slide must never reach its inner end, and on the edge not its outer one either; `tip` is how far the tool is beyond its place along its axis [m].
     pub(super) fn check_stroke(
         &self,
         reference: &Reference,
-        stroke: f64,
+        (stroke, tip): (f64, f64),
         time: f64,
     ) -> Result<(), SimulationError> {
         let scenario = &self.cell.scenario;
@@ -144,6 +144,9 @@ impl Simulation<'_> {
                 edge_length: reference.edge_length,
                 stroke,
                 full_stroke,
+                arm: tip - (stroke - scenario.process.working_stroke),
+                tip,
+                touched: self.touched,
             });
         }
         Ok(())

@@ -18,19 +18,11 @@ impl Simulation<'_> {
     fn joint_signals(&self, reference: &Reference) -> [[f64; JointSignal::ALL.len()]; MAX_JOINTS] {
         let mut joints = [[0.0; JointSignal::ALL.len()]; MAX_JOINTS];
         for (axis, joint) in joints.iter_mut().enumerate().take(self.slide()) {
-            let velocity = self.world.velocities()[axis];
-            let (applied, at_drive) = match &self.motors[axis] {
-                None => self.world.applied(axis),
-                Some((motor, drive)) => {
-                    let (angle, speed) = motor.middle;
-                    (drive.at(angle, speed), speed)
-                }
-            };
             *joint = [
                 self.world.positions()[axis],
                 reference.position[axis],
-                velocity,
-                self.servo.drive_torque(axis, applied, at_drive),
+                self.world.velocities()[axis],
+                self.torques[axis],
                 self.encoders[axis],
             ];
         }
@@ -102,10 +94,15 @@ impl Simulation<'_> {
         };
         self.read_sensors(time, &there, acceleration);
         let off = self.world.tool_centre() - reference.centre;
-        let across = off - reference.axis * off.dot(reference.axis);
+        let axial = off.dot(reference.axis);
+        let along = off.dot(reference.tangent);
+        let aside = reference.normal.cross(reference.tangent);
+        self.peak.set(self.peak.get().max(normal_force));
+        self.touched |= self.peak.get() > 0.0;
         let signals = [
             reference.edge_length,
             normal_force,
+            self.peak.get(),
             self.desired(reference),
             force_on_part.x,
             force_on_part.y,
@@ -123,8 +120,9 @@ impl Simulation<'_> {
             self.device.air.line_mass(),
             self.device.air.entered,
             self.device.air.left,
-            across.length(),
-            off.dot(reference.axis) - (stroke - cell.scenario.process.working_stroke),
+            off.dot(aside),
+            -along,
+            axial - (stroke - cell.scenario.process.working_stroke),
             reference.feed,
             gas.atmosphere + self.readings.regulator_pressure,
             self.readings.stroke,
@@ -138,10 +136,11 @@ impl Simulation<'_> {
             self.next_frame += FRAME_INTERVAL;
             self.check_clearance(reference, time)?;
         }
+        let across = off - reference.axis * axial - reference.tangent * along;
         self.check_on_edge(reference, across.length(), normal_force, time)?;
         self.check_spindle(reference, time)?;
         self.check_axes(&joints[..n], reference.phase, time)?;
-        self.check_stroke(reference, stroke, time)
+        self.check_stroke(reference, (stroke, axial), time)
     }
 
     /// Adds a sample, of a tool that turns with what it did.
@@ -169,7 +168,7 @@ impl Simulation<'_> {
         for axis in 0..self.slide() {
             let angle = match &self.motors[axis] {
                 None => self.world.positions()[axis],
-                Some((motor, _)) => motor.angle,
+                Some(motor) => motor.angle,
             };
             let offset = self.cell.plant.cell.encoder_offset[axis];
             self.encoders[axis] = angle + offset + noise * self.encoder_noise.normal();

@@ -4,7 +4,6 @@ use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::inverse_dynamics;
 use crate::cell::Cell;
 use crate::collision::ClearanceWatch;
-use crate::control::law::JointLaw;
 use crate::control::servo::{Servo, ServoParameters};
 use crate::control::transmission::Motor;
 
@@ -39,11 +38,7 @@ pub(super) fn to_array(positions: &[f64]) -> [f64; MAX_JOINTS] {
 const ROTOR_SHARE: f64 = 0.5;
 
 /// Motors at rest where the plan starts; moves the links of `positions` to where they hang on them.
-pub(super) fn motors(
-    cell: &Cell,
-    inertias: &[f64],
-    positions: &mut [f64],
-) -> Vec<Option<(Motor, JointLaw)>> {
+pub(super) fn motors(cell: &Cell, inertias: &[f64], positions: &mut [f64]) -> Vec<Option<Motor>> {
     let still = vec![0.0; positions.len()];
     let mut torques = still.clone();
     let scenario = &cell.scenario;
@@ -61,7 +56,7 @@ pub(super) fn motors(
         let parameters = (*parameters)?;
         let (motor, link) = Motor::at_rest(parameters, inertia, positions[axis], torques[axis]);
         positions[axis] = link;
-        Some((motor, JointLaw::default()))
+        Some(motor)
     };
     cell.transmissions.iter().enumerate().map(motor).collect()
 }

@@ -1,0 +1,206 @@
+//! The passes along the edge, each by the numbers of its own following phase and its own desired force.
+
+use serde::{Deserialize, Serialize};
+
+use super::catalogue::{Metric, entry};
+use super::window::Window;
+use super::{FOLLOW_PHASE, MetricsError, Summary, SummaryLimits, force, motion};
+use crate::recording::Recording;
+
+/// The numbers of one pass; each is defined as that of its name in [`Summary`], over this pass alone.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct PassSummary {
+    /// Number of the pass, from 1.
+    pub pass: usize,
+    /// Desired contact force [N].
+    pub desired_force_n: f64,
+    /// Mean contact force [N].
+    pub force_mean_n: Option<f64>,
+    /// Population standard deviation of it [N].
+    pub force_standard_deviation_n: Option<f64>,
+    /// Standard deviation over mean [%].
+    pub coefficient_of_variation_percent: Option<f64>,
+    /// Root mean square of contact force less desired force [N].
+    pub force_rms_error_n: Option<f64>,
+    /// That, of the desired force [%].
+    pub force_rms_error_percent: Option<f64>,
+    /// Largest distance of the contact force from the desired one [N].
+    pub largest_deviation_n: Option<f64>,
+    /// Share of the length on which the force is within 5 % of the desired one [%].
+    pub within_5_percent_share_percent: Option<f64>,
+    /// Share of the length on which it is within 10 % [%].
+    pub within_10_percent_share_percent: Option<f64>,
+    /// Share of the length on which the tool does not touch [%].
+    pub loss_of_contact_share_percent: Option<f64>,
+    /// Largest contact force [N].
+    pub force_peak_follow_n: Option<f64>,
+    /// Root mean square of the lateral path error [µm].
+    pub path_error_rms_um: Option<f64>,
+    /// Largest lateral path error [µm].
+    pub path_error_max_um: Option<f64>,
+    /// Root mean square of the lag along the path [µm].
+    pub path_lag_rms_um: Option<f64>,
+    /// Largest lag along the path [µm].
+    pub path_lag_max_um: Option<f64>,
+    /// Length followed [mm].
+    pub path_length_mm: Option<f64>,
+    /// Length followed over the time it took [mm/s].
+    pub feed_mean_mm_per_s: Option<f64>,
+    /// Time of following [s].
+    pub follow_duration_s: Option<f64>,
+}
+
+/// Every number of a pass, in the order of summary.json.
+#[rustfmt::skip]
+pub const PASS_METRICS: &[Metric<PassSummary>] = &[
+    entry("desired_force_n", "N", "desired force",
+        "what the pass asks for", |s| Some(s.desired_force_n)),
+    entry("force_mean_n", "N", "mean",
+        "over the pass", |s| s.force_mean_n),
+    entry("force_standard_deviation_n", "N", "standard deviation",
+        "about the mean", |s| s.force_standard_deviation_n),
+    entry("coefficient_of_variation_percent", "%", "coefficient of variation",
+        "standard deviation / mean", |s| s.coefficient_of_variation_percent),
+    entry("force_rms_error_n", "N", "RMS error",
+        "of force - desired", |s| s.force_rms_error_n),
+    entry("force_rms_error_percent", "%", "RMS error",
+        "of the desired force", |s| s.force_rms_error_percent),
+    entry("largest_deviation_n", "N", "largest deviation",
+        "largest |force - desired|", |s| s.largest_deviation_n),
+    entry("within_5_percent_share_percent", "%", "within 5 % of desired",
+        "share of the length followed", |s| s.within_5_percent_share_percent),
+    entry("within_10_percent_share_percent", "%", "within 10 % of desired",
+        "share of the length followed", |s| s.within_10_percent_share_percent),
+    entry("loss_of_contact_share_percent", "%", "contact lost",
+        "share of the length followed", |s| s.loss_of_contact_share_percent),
+    entry("force_peak_follow_n", "N", "largest",
+        "of the pass", |s| s.force_peak_follow_n),
+    entry("path_error_rms_um", "µm", "lateral error, RMS",
+        "tool tip beside planned path", |s| s.path_error_rms_um),
+    entry("path_error_max_um", "µm", "lateral error, largest",
+        "tool tip beside planned path", |s| s.path_error_max_um),
+    entry("path_lag_rms_um", "µm", "lag, RMS",
+        "tool tip behind its plan", |s| s.path_lag_rms_um),
+    entry("path_lag_max_um", "µm", "lag, largest",
+        "tool tip behind its plan", |s| s.path_lag_max_um),
+    entry("path_length_mm", "mm", "length followed",
+        "along the planned path", |s| s.path_length_mm),
+    entry("feed_mean_mm_per_s", "mm/s", "feed, mean",
+        "length followed / its time", |s| s.feed_mean_mm_per_s),
+    entry("follow_duration_s", "s", "time of following",
+        "first to last sample of it", |s| s.follow_duration_s),
+];
+
+/// The passes of a recording that were begun.
+pub(super) fn measure(
+    recording: &Recording,
+    limits: &SummaryLimits,
+) -> Result<Vec<PassSummary>, MetricsError> {
+    let forces = std::iter::once(limits.desired_force).chain(limits.later_forces.iter().copied());
+    let mut passes = Vec::new();
+    for (index, desired) in forces.enumerate() {
+        let number = index + 1;
+        let window = match number {
+            1 => Window::follow(recording)?,
+            later => Window::of(recording, &format!("{FOLLOW_PHASE}_{later}")),
+        };
+        if let Some(window) = window {
+            passes.push(of(&window, limits, (number, desired))?);
+        }
+    }
+    Ok(passes)
+}
+
+fn of(
+    follow: &Window,
+    limits: &SummaryLimits,
+    (pass, desired): (usize, f64),
+) -> Result<PassSummary, MetricsError> {
+    let mut all = Summary::default();
+    force::measure(&mut all, follow, desired)?;
+    motion::measure(&mut all, follow, limits.stroke_limits)?;
+    let peak = force::largest_force(follow)?;
+    Ok(PassSummary {
+        pass,
+        desired_force_n: desired,
+        force_mean_n: all.force_mean_n,
+        force_standard_deviation_n: all.force_standard_deviation_n,
+        coefficient_of_variation_percent: all.coefficient_of_variation_percent,
+        force_rms_error_n: all.force_rms_error_n,
+        force_rms_error_percent: all.force_rms_error_percent,
+        largest_deviation_n: all.largest_deviation_n,
+        within_5_percent_share_percent: all.within_5_percent_share_percent,
+        within_10_percent_share_percent: all.within_10_percent_share_percent,
+        loss_of_contact_share_percent: all.loss_of_contact_share_percent,
+        force_peak_follow_n: peak,
+        path_error_rms_um: all.path_error_rms_um,
+        path_error_max_um: all.path_error_max_um,
+        path_lag_rms_um: all.path_lag_rms_um,
+        path_lag_max_um: all.path_lag_max_um,
+        path_length_mm: all.path_length_mm,
+        feed_mean_mm_per_s: all.feed_mean_mm_per_s,
+        follow_duration_s: all.follow_duration_s,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_recordings::{Builder, assert_near, limits};
+    use super::*;
+    use crate::recording::PhaseSpan;
+
+    #[test]
+    fn every_pass_is_measured_against_its_own_force() {
+        let mut builder = Builder::nominal();
+        builder.follow_with(|share| if share < 0.5 { 100.0 } else { 53.0 });
+        let middle = 4.0;
+        builder.phases[2].end = middle;
+        builder.phases.insert(
+            3,
+            PhaseSpan {
+                name: "follow_2".into(),
+                start: middle,
+                end: 6.0,
+            },
+        );
+        let limits = SummaryLimits {
+            later_forces: vec![50.0, 40.0],
+            ..limits()
+        };
+        let summary = super::super::summarise(&builder.build(), &limits).unwrap();
+        // The third was never begun.
+        assert_eq!(summary.passes.len(), 2);
+        let [first, second] = [&summary.passes[0], &summary.passes[1]];
+        assert_eq!((first.pass, second.pass), (1, 2));
+        assert_eq!(first.force_mean_n, summary.force_mean_n);
+        assert_eq!(second.desired_force_n, 50.0);
+        assert_near(second.force_mean_n, 53.0, 1e-12);
+        assert_near(second.force_rms_error_percent, 6.0, 1e-9);
+        assert_eq!(second.within_5_percent_share_percent, Some(0.0));
+        assert_near(second.within_10_percent_share_percent, 100.0, 1e-12);
+        assert_near(second.force_peak_follow_n, 53.0, 1e-12);
+        assert_eq!(first.force_peak_follow_n, Some(100.0));
+    }
+
+    #[test]
+    fn the_list_is_a_row_of_the_file_key_by_key() {
+        let summary = super::super::summarise(&Builder::nominal().build(), &limits()).unwrap();
+        let row = serde_json::to_value(&summary.passes[0]).unwrap();
+        let keys: Vec<&str> = row
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .collect();
+        let listed = std::iter::once("pass").chain(PASS_METRICS.iter().map(|metric| metric.name));
+        let mut listed: Vec<&str> = listed.collect();
+        let mut keys = keys;
+        keys.sort_unstable();
+        listed.sort_unstable();
+        assert_eq!(keys, listed);
+        for metric in PASS_METRICS {
+            let value = (metric.value)(&summary.passes[0]);
+            assert_eq!(row[metric.name].as_f64(), value, "{}", metric.name);
+        }
+    }
+}
