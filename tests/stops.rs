@@ -174,6 +174,12 @@ fn a_device_out_of_all_proportion() {
         "[expect]",
         "[simulation]\nstep_ms = 5\n[expect]",
     );
+    // A servo so slow that steps off the part are not cut for its sake.
+    bench.replace(
+        "scenario.toml",
+        "[device]",
+        "[arm.servo]\nnatural_frequency_hz = 10\n[device]",
+    );
     let outcome = bench.run();
     let reason = stopped(&outcome);
     for words in [
