@@ -32,6 +32,7 @@ mod imports;
 mod laboratory;
 mod layers;
 mod manual;
+mod own_arm;
 mod own_cell;
 mod own_law;
 mod paper_deviation;

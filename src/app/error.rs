@@ -258,6 +258,16 @@ pub enum AppError {
         /// The part.
         part: String,
     },
+    /// An arm that does not reach the part anywhere.
+    #[error(
+        "the arm, with the device on its link `{arm}`, was found no place of the part at which it can work its edge, not even with the smallest device; the first trouble: {reason}"
+    )]
+    NoPlace {
+        /// The link.
+        arm: String,
+        /// What was in the way.
+        reason: String,
+    },
     /// Something of a cell for another kind of file.
     #[error("{option} is for a cell, a {kind} has none")]
     OfACell {

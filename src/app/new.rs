@@ -1,5 +1,7 @@
 //! `idc new`: a commented file to start from, which can be used as it stands. What a cell needs beside it (arm, device, part) comes with the program.
 
+mod arm;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -7,9 +9,8 @@ use clap::{Args, ValueEnum};
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
-use crate::arm::draft_of;
+use crate::arm::ArmDraft;
 use crate::case::RIG;
-use crate::cell::CellError;
 use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
 use crate::scenario::removal_table::REMOVAL_TABLE;
@@ -61,7 +62,7 @@ pub(super) struct NewArguments {
     /// Logs for the map to be drafted by looking at them: text, .parquet, .mat, .mcap, .db3 or a bag's folder. A last one that ends in .toml is FILE.
     #[arg(long, value_name = "LOG", num_args = 1.., help_heading = "Input")]
     from: Vec<PathBuf>,
-    /// URDF file of the arm of a cell, in place of the one that comes with the program.
+    /// URDF or xacro file of the arm of a cell, in place of the one that comes with the program. Masses and limits that it lacks are estimated, marked so in the file; a device that it can carry is chosen, and the part put where it reaches.
     #[arg(long, value_name = "FILE", help_heading = "Input")]
     urdf: Option<PathBuf>,
     /// Mesh of the part of a cell, in place of the plate.
@@ -170,8 +171,20 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
             kind: kind.name(),
         });
     }
+    let mut of_arm = String::new();
     let files = match &drafted {
-        None => with_own(files(kind, &file), arguments)?,
+        None => {
+            let (files, arm) = with_own(files(kind, &file), arguments)?;
+            let quiet = arguments.quiet || arguments.json;
+            match (arm, &arguments.part) {
+                (Some(arm), None) => {
+                    let (files, told) = arm::placed(files, &file, &arm, quiet)?;
+                    of_arm = told;
+                    files
+                }
+                _ => files,
+            }
+        }
         Some(draft) => vec![(file.clone(), draft.text.clone().into_bytes())],
     };
     // All are looked at before the first is written. What stands there as it would be written can stay.
@@ -199,9 +212,16 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
             document["found"] = serde_json::json!(draft.found);
             document["asked"] = serde_json::json!(draft.open);
         }
+        if !of_arm.is_empty() {
+            document["arm"] = serde_json::json!(of_arm);
+        }
         say(&format!("{document:#}\n"))?;
     } else if !arguments.quiet {
         let looked = drafted.as_ref().map_or(String::new(), told);
+        let looked = match of_arm.as_str() {
+            "" => looked,
+            told => format!("{looked}arm: {told}\n"),
+        };
         say(&format!(
             "{looked}written: {}\nnext: {next}\n",
             paths.join(", ")
@@ -226,7 +246,7 @@ fn told(draft: &Draft) -> String {
 fn with_own(
     mut files: Vec<(PathBuf, Vec<u8>)>,
     arguments: &NewArguments,
-) -> Result<Vec<(PathBuf, Vec<u8>)>, AppError> {
+) -> Result<(Vec<(PathBuf, Vec<u8>)>, Option<ArmDraft>), AppError> {
     let whole = |path: &Path| {
         std::fs::canonicalize(path).map_err(|error| AppError::OutputFile {
             file: path.display().to_string(),
@@ -235,8 +255,12 @@ fn with_own(
         })
     };
     let mut text = String::from_utf8_lossy(&files[0].1).into_owned();
-    if arguments.urdf.is_some() {
-        text = without_drives(&text);
+    let mut draft = None;
+    if let Some(urdf) = &arguments.urdf {
+        let (own, found) = arm::with_arm(&text, &whole(urdf)?)?;
+        text = own;
+        draft = Some(found);
+        files.retain(|(path, _)| !path.ends_with(BESIDE[0].0));
     }
     let mut put = |line: &str, value: &str| {
         let lines = text.lines().map(|old| match old.split_once(" = ") {
@@ -245,13 +269,6 @@ fn with_own(
         });
         text = lines.map(|line| line + "\n").collect();
     };
-    if let Some(urdf) = &arguments.urdf {
-        let urdf = whole(urdf)?;
-        let flange = draft_of(&urdf).map_err(CellError::from)?.mount.flange_link;
-        put("urdf", &format!("{:?}", urdf.display().to_string()));
-        put("flange_link", &format!("{flange:?}"));
-        files.retain(|(path, _)| !path.ends_with(BESIDE[0].0));
-    }
     if let Some(part) = &arguments.part {
         let part = whole(part)?;
         let unit = likely_unit(&part)?;
@@ -271,16 +288,7 @@ fn with_own(
         files.retain(|(path, _)| !path.ends_with(BESIDE[2].0));
     }
     files[0].1 = text.into_bytes();
-    Ok(files)
-}
-
-/// A cell's text without the springs of the arm that comes with the program: another arm's joints have other names.
-fn without_drives(text: &str) -> String {
-    let tables = text.split("\n\n");
-    let kept: Vec<&str> = tables
-        .filter(|table| !table.starts_with("[[arm.drives]]"))
-        .collect();
-    kept.join("\n\n")
+    Ok((files, draft))
 }
 
 /// The unit with which a mesh is read as a part of a usual size: the one that its file states, else millimetres first.

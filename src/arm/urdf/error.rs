@@ -148,7 +148,7 @@ pub enum Refusal {
         value: f64,
     },
     #[error(
-        "joint `{joint}` has position limits {lower} to {upper}{origin}; expected lower below upper"
+        "joint `{joint}` has position limits {lower} to {upper}{origin}; expected lower below upper, or type continuous of a joint that turns without end"
     )]
     PositionLimits {
         joint: String,
@@ -181,7 +181,7 @@ pub enum Refusal {
     )]
     WholeMass { whole: f64, known: f64 },
     #[error(
-        "link `{link}` has principal inertias {moments} kg m2{context}; expected {expected} ones"
+        "link `{link}` has principal inertias {moments} kg m2{context}; expected {expected} ones, which [[arm.link_masses]] in the scenario (link, mass_kg) takes from the link's shape where the file's are all zero"
     )]
     Inertia {
         link: String,

@@ -357,7 +357,7 @@ pub(super) const OTHER_FORMATS: [(&str, &str); 20] = [
     ("worldbody", "<robot> with its <link>s"),
     (
         "include",
-        "the file's content: the program `xacro` puts it in",
+        "nothing, as the program `xacro` puts files together,",
     ),
     ("uri", "<mesh filename=\"..\"/>"),
     ("com", "<inertial> with an <origin>"),

@@ -48,7 +48,9 @@ impl Masses<'_> {
     ) -> Result<(BodyInertia, bool), Refusal> {
         let name = &placed.link.name;
         let by_key = self.options.link_masses.get(name).copied();
-        let unspread = self.without_inertia.contains(name) && body.mass > 0.0;
+        let without = self.without_inertia.contains(name)
+            || (by_key.is_some() && body.inertia == glam::DMat3::ZERO);
+        let unspread = without && body.mass > 0.0;
         let mass = match by_key {
             Some(mass) if body.mass > 0.0 && !unspread => {
                 return Ok((with_mass(&body, mass), false));

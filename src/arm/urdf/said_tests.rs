@@ -120,6 +120,11 @@ fn what_is_misspelt_or_of_another_format_is_refused_by_name_and_line() {
         ),
         ("type=\"revolute\"", "", "<joint> has no type"),
         (
+            "rpy=\"0 0 0\"/>",
+            "><rpy>0 0 0</rpy></origin>",
+            "<rpy> is no element of <origin>; expected attributes alone (xyz, rpy)",
+        ),
+        (
             "<mass value=\"3\"/>",
             "<mass>3</mass>",
             "link `l1`: <mass> has no value",
@@ -289,6 +294,10 @@ fn what_other_programs_put_in_is_noted_by_name_and_changes_nothing() {
             "<drake:collision_filter_group name=\"g\"/>",
             "the prefix `drake:` is used without being declared",
         ),
+        (
+            "<gazebo><joint name=\"close\"><parent>l1</parent><child>l3</child></joint></gazebo>",
+            "with a joint `close` of its own in it",
+        ),
         ("<author>nobody</author>", "not used: <author> in <robot>"),
     ] {
         let arm = load(&edited("</robot>", &format!("{extra}</robot>"))).unwrap();
@@ -303,7 +312,9 @@ fn what_other_programs_put_in_is_noted_by_name_and_changes_nothing() {
         "<axis xyz=\"0 0 1\"/>",
         "<axis xyz=\"0 0 1\"/><calibration rising=\"0\"/>",
     );
-    assert_eq!(load(&in_joint).unwrap().chain, plain.chain);
+    let calibrated = load(&in_joint).unwrap();
+    assert_eq!(calibrated.chain, plain.chain);
+    assert!(calibrated.notes[0].contains("not used: <calibration> in <joint>"));
     let of_drake = edited("<robot name", "<robot xmlns=\"http://drake.mit.edu\" name");
     assert_eq!(load(&of_drake).unwrap().chain, plain.chain);
     let marked = format!("\u{feff}{}", six_axes());
