@@ -19,8 +19,6 @@ use crate::scenario::load;
 /// A cell's file, with what it needs beside it.
 type Files = Vec<(PathBuf, Vec<u8>)>;
 
-/// Standard gravity, by which a force is told as a mass [m/s2].
-const GRAVITY: f64 = 9.80665;
 /// Stretch of the plate's edge that is worked: its middle and the longest [mm], and the longest of the arm's reach [1].
 const EDGE: [f64; 2] = [150.0, 280.0];
 const EDGE_SHARE: f64 = 0.3;
@@ -482,6 +480,8 @@ mod tests {
         for pair in SIZES.windows(2) {
             assert!(pair[0].payload > pair[1].payload && pair[0].force > pair[1].force);
         }
+        /// Standard gravity [m/s2].
+        const GRAVITY: f64 = 9.80665;
         // What is pressed with is no more than what may be carried.
         for size in SIZES.iter().filter(|size| size.payload > 0.0) {
             assert!(size.force <= size.payload * GRAVITY, "{} N", size.force);
