@@ -9,7 +9,6 @@ use clap::{Args, ValueEnum};
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
-use crate::arm::ArmDraft;
 use crate::case::RIG;
 use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
@@ -171,21 +170,12 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
             kind: kind.name(),
         });
     }
-    let mut of_arm = String::new();
-    let files = match &drafted {
-        None => {
-            let (files, arm) = with_own(files(kind, &file), arguments)?;
-            let quiet = arguments.quiet || arguments.json;
-            match (arm, &arguments.part) {
-                (Some(arm), None) => {
-                    let (files, told) = arm::placed(files, &file, &arm, quiet)?;
-                    of_arm = told;
-                    files
-                }
-                _ => files,
-            }
+    let (files, of_arm) = match &drafted {
+        None => with_own(files(kind, &file), &file, arguments)?,
+        Some(draft) => {
+            let text = draft.text.clone().into_bytes();
+            (vec![(file.clone(), text)], String::new())
         }
-        Some(draft) => vec![(file.clone(), draft.text.clone().into_bytes())],
     };
     // All are looked at before the first is written. What stands there as it would be written can stay.
     let stays = |path: &Path, content: &[u8]| std::fs::read(path).is_ok_and(|old| old == content);
@@ -205,10 +195,22 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         (Some(_), Some(log)) => format!("idc import {} {}", word(&file), word(log)),
         _ => kind.next(&file),
     };
+    told_written(arguments, (drafted.as_ref(), &of_arm), &paths, &next)?;
+    Ok(ExitCode::Done)
+}
+
+/// Prints what was written, and what was found of logs or of an arm.
+fn told_written(
+    arguments: &NewArguments,
+    (drafted, of_arm): (Option<&Draft>, &str),
+    paths: &[String],
+    next: &str,
+) -> Result<(), AppError> {
+    let kind = arguments.kind;
     if arguments.json {
         let mut document =
             serde_json::json!({ "kind": kind.name(), "written": paths, "next": next });
-        if let Some(draft) = &drafted {
+        if let Some(draft) = drafted {
             document["found"] = serde_json::json!(draft.found);
             document["asked"] = serde_json::json!(draft.open);
         }
@@ -217,8 +219,8 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         }
         say(&format!("{document:#}\n"))?;
     } else if !arguments.quiet {
-        let looked = drafted.as_ref().map_or(String::new(), told);
-        let looked = match of_arm.as_str() {
+        let looked = drafted.map_or(String::new(), told);
+        let looked = match of_arm {
             "" => looked,
             told => format!("{looked}arm: {told}\n"),
         };
@@ -227,7 +229,7 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
             paths.join(", ")
         ))?;
     }
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
 /// Quantities found in logs, and those asked for, for people.
@@ -242,11 +244,12 @@ fn told(draft: &Draft) -> String {
     lines.iter().map(|line| format!("{line}\n")).collect()
 }
 
-/// The cell's file with arm and part of the user's own.
+/// The cell's file with arm and part of the user's own, and in words what was chosen for the arm.
 fn with_own(
     mut files: Vec<(PathBuf, Vec<u8>)>,
+    file: &Path,
     arguments: &NewArguments,
-) -> Result<(Vec<(PathBuf, Vec<u8>)>, Option<ArmDraft>), AppError> {
+) -> Result<(Vec<(PathBuf, Vec<u8>)>, String), AppError> {
     let whole = |path: &Path| {
         std::fs::canonicalize(path).map_err(|error| AppError::OutputFile {
             file: path.display().to_string(),
@@ -288,7 +291,13 @@ fn with_own(
         files.retain(|(path, _)| !path.ends_with(BESIDE[2].0));
     }
     files[0].1 = text.into_bytes();
-    Ok((files, draft))
+    match (draft, &arguments.part) {
+        (Some(arm), None) => {
+            let quiet = arguments.quiet || arguments.json;
+            arm::placed(files, file, &arm, quiet)
+        }
+        _ => Ok((files, String::new())),
+    }
 }
 
 /// The unit with which a mesh is read as a part of a usual size: the one that its file states, else millimetres first.

@@ -167,7 +167,7 @@ fn limit_overrides(
         limits.push(LimitOverride {
             joint,
             effort: effort
-                .map(|value| section.number("effort_n_m", value, 0.1..=10_000.0))
+                .map(|value| section.number("effort_n_m", value, 0.1..=100_000.0))
                 .transpose()?,
             velocity: velocity
                 .map(|value| section.number("velocity_deg_per_s", value, 1.0..=2000.0))
