@@ -62,8 +62,11 @@ pub(super) fn assign(columns: &[Seen], taken: &[usize]) -> Vec<Pick> {
     split_pressures(columns, &mut all);
     let best = |quantity: &str| {
         let own = all.iter().filter(|pick| pick.quantity == quantity);
-        // The first of those that are worth as much.
-        own.max_by_key(|pick| (pick.worth, usize::MAX - pick.place))
+        // Of those that are worth as much the first that moves: of a vector not an axis that has nothing.
+        own.max_by_key(|pick| {
+            let moves = moves(columns[pick.place].numbers());
+            (pick.worth, moves, usize::MAX - pick.place)
+        })
     };
     let mut chosen: Vec<Pick> = Vec::new();
     for (quantity, _) in QUANTITIES {
@@ -204,6 +207,13 @@ fn split_pressures(columns: &[Seen], all: &mut [Pick]) {
             "of the pressures it is the one that is held and stepped, as a command is",
         );
     }
+}
+
+fn moves(values: &[f64]) -> bool {
+    let mut there = values.iter().filter(|value| value.is_finite());
+    there
+        .next()
+        .is_some_and(|first| there.any(|value| value != first))
 }
 
 fn is_held(values: &[f64]) -> bool {

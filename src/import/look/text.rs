@@ -205,7 +205,9 @@ fn first_row(lines: &[&str], separator: &Separator, kinds: &[Kind]) -> Option<us
             found => found == *own || matches!(own, Kind::Text | Kind::Empty),
         };
         let mut pairs = row.iter().zip(kinds);
-        let first = row.first().is_some_and(|field| !field.is_empty());
+        // The first columns of a sheet may be empty.
+        let first = kinds.first() == Some(&Kind::Empty)
+            || row.first().is_some_and(|field| !field.is_empty());
         fits && first && pairs.all(agrees)
     };
     let filled: Vec<(usize, &str)> = lines
