@@ -518,7 +518,7 @@ fn the_picture_of_places_has_robot_obstacles_and_part() {
         "--x-mm",
         "700..800:2",
         "--y-mm",
-        "0..0:1",
+        "0..500:2",
         "--out",
         "place.svg",
     ];
