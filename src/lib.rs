@@ -16,6 +16,7 @@
 //! - [`shell`]: paths as a shell takes them
 //! - [`scenario`]: the file that says what to simulate, checked
 //! - [`cell`]: all of it assembled and checked
+//! - `advice`: what would make a refused job possible
 //! - [`place`]: where the part of a cell can lie
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
@@ -41,6 +42,8 @@
 // Units stand in square brackets, which rustdoc would take for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+#[cfg(feature = "cli")]
+pub mod advice;
 #[cfg(feature = "cli")]
 pub mod app;
 pub mod arm;

@@ -1,9 +1,9 @@
-//! What cannot work is refused before it moves, with what would help; what helps is applied and does.
+//! What cannot work is refused before it moves, by name and place.
 
 use glam::DVec3;
 use glamx::DPose3;
 use idc_cell::app::run_cell;
-use idc_cell::cell::{Advice, Cell, CellError};
+use idc_cell::cell::{Cell, CellError};
 use idc_cell::path::{Obstacle as InTheWay, PlanError};
 use idc_cell::place::{Hindrance, PlaceGrid, best_places, tried_places};
 use idc_cell::scenario::{Obstacle, ObstacleShape, Scenario};
@@ -47,75 +47,19 @@ fn meeting(error: &CellError) -> [String; 2] {
     meeting.names.clone()
 }
 
-/// The part moved as a refusal advises lets the whole job be done.
-fn moved_as_advised(scenario: Scenario, advice: &Advice) {
-    let Some((way, position)) = advice.part else {
-        panic!("{advice:?}");
-    };
-    let believed = scenario.workpiece.world_from_part.translation;
-    assert!((believed + way - position).length() < 1e-9);
-    // As a scenario file gives it: millimetres to a tenth.
-    let typed = (position * 1e4).round() / 1e4;
-    assert_eq!(typed, position);
-    let moved = at(scenario, typed - believed);
-    Cell::new(moved).unwrap_or_else(|error| panic!("moved by {way} m: {error}"));
-}
-
 #[test]
-fn a_part_in_the_robot_s_base_is_refused_and_told_where_to_go() {
+fn a_part_in_the_robot_s_base_is_refused_by_name() {
     // A position in metres where millimetres are asked for, but for the height.
     let mut typed = scenario("plate_edge_ideal");
     typed.workpiece.world_from_part.translation = DVec3::new(0.75e-3, 0.0, 0.05);
-    let error = refusal(typed.clone());
-    let CellError::Standing {
-        names,
-        advice,
-        depth,
-        ..
-    } = &error
-    else {
+    let error = refusal(typed);
+    let CellError::Standing { names, depth, .. } = &error else {
         panic!("{error}");
     };
     assert!(
         names.contains(&"part".to_owned()) && *depth > 0.0,
         "{error}"
     );
-    moved_as_advised(typed, advice);
-}
-
-/// How far the part must be moved away from the robot to be out of reach [m], to 0.6 mm.
-fn just_out_of_reach() -> f64 {
-    let possible = |far: f64| Cell::new(at(scenario("plate_edge_ideal"), DVec3::X * far)).is_ok();
-    let (mut near, mut far) = (0.3, 1.5);
-    while far - near > 6e-4 {
-        let middle = 0.5 * (near + far);
-        if possible(middle) {
-            near = middle;
-        } else {
-            far = middle;
-        }
-    }
-    far
-}
-
-#[test]
-fn unreachable_by_little_and_by_much_the_offset_that_is_told_helps() {
-    let edge = just_out_of_reach();
-    for beyond in [0.0, 0.293] {
-        let scenario = at(scenario("plate_edge_ideal"), DVec3::X * (edge + beyond));
-        let error = refusal(scenario.clone());
-        let CellError::Plan { source, advice, .. } = &error else {
-            panic!("{error}");
-        };
-        assert!(matches!(&**source, PlanError::Waypoint { .. }), "{error}");
-        moved_as_advised(scenario, advice);
-        // The shortest way that is told is not far longer than what is needed.
-        let way = advice.part.unwrap().0.length();
-        assert!(
-            way >= beyond && way < beyond + 0.02,
-            "{way} m for {beyond} m: {error}"
-        );
-    }
 }
 
 #[test]

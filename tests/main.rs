@@ -1,5 +1,6 @@
 //! Tests of the whole: one binary, because each links the engine and the recorder.
 
+mod advice;
 mod air;
 mod bad_input;
 mod balance;

@@ -31,11 +31,12 @@ impl Outcome {
 }
 
 impl Outcome {
-    /// Standard error without the lines of a file that it shows below a sentence.
+    /// Standard error without the lines of a file that it shows below a sentence, and without those that tell of a search for advice that takes long.
     pub fn sentences(&self) -> String {
         let shown = |line: &&str| {
             let rest = line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit());
-            rest.starts_with('|') || rest.starts_with("--> ")
+            let looking = line.starts_with("looking for what would make it possible");
+            looking || rest.starts_with('|') || rest.starts_with("--> ")
         };
         let told: Vec<&str> = self.err.lines().filter(|line| !shown(line)).collect();
         told.join("\n")

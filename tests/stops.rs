@@ -13,6 +13,16 @@ fn misplaced(shift_mm: f64) -> Bench {
     bench
 }
 
+/// A part that stands out [m] by more than the check knows, with a working stroke [mm].
+fn standing_out(shift_m: f64, working_stroke_mm: f64) -> Bench {
+    let bench = Bench::new("plate_edge_ideal");
+    let stroke = format!("[process]\nworking_stroke_mm = {working_stroke_mm}");
+    bench.replace("scenario.toml", "[process]", &stroke);
+    let effect = format!("[[effect]]\nname = \"part_misplaced\"\nshift_m = {shift_m}\n\n[expect]");
+    bench.replace("scenario.toml", "[expect]", &effect);
+    bench
+}
+
 /// Air that leaves a chamber in microseconds.
 fn leaky(dead_volume_cm3: f64, orifice_mm2: f64) -> Bench {
     let bench = Bench::new("plate_edge_ideal");
@@ -85,7 +95,7 @@ fn drawn_strokes(bench: &Bench) -> usize {
 
 #[test]
 fn a_part_nearer_than_the_stroke_allows() {
-    let bench = misplaced(40.0);
+    let bench = standing_out(0.02, 15.0);
     let outcome = bench.run();
     let reason = stopped(&outcome);
     for words in [
@@ -108,7 +118,7 @@ fn a_part_nearer_than_the_stroke_allows() {
 
 #[test]
 fn a_part_farther_than_the_stroke_allows() {
-    let bench = misplaced(-40.0);
+    let bench = standing_out(-0.02, 35.0);
     let outcome = bench.run();
     let reason = stopped(&outcome);
     for words in [

@@ -12,18 +12,21 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use self::report::Report;
+use super::advice::AdviceArguments;
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
 use crate::case::RIG;
 use crate::recording::atomic::write_text;
 use crate::scenario::removal_table::is_removal_table;
-use crate::scenario::{self, AnyScenario, ScenarioError};
+use crate::scenario::{self, AnyScenario, ScenarioError, ScenarioTemplate};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
 What is wrong is told with file, line and column, and the key that was probably
-meant. Exit codes: 0 it can be used, 2 it cannot.
+meant. Of a cell that cannot do its job changes are looked for with which it can;
+each is checked and run before it is given, and stands in --json as keys and
+values for --set. Exit codes: 0 it can be used, 2 it cannot.
 
 Examples:
   # What would be simulated, how long it is and how large its files will be.
@@ -34,7 +37,7 @@ Examples:
   idc check assets/proof/cases/case-03
   # How the tool stands across the edge, drawn.
   idc check scenarios/tilted_wrist.toml --draw runs/tilted_wrist_tool.svg
-  # For a program.
+  # For a program; of a refusal, what would make the job possible.
   idc check scenarios/hand_push.toml --json";
 
 #[derive(Debug, Args)]
@@ -47,6 +50,8 @@ pub(super) struct CheckArguments {
     /// Put a new drawing in place of an old one.
     #[arg(long, help_heading = "Output", requires = "draw")]
     pub(super) force: bool,
+    #[command(flatten)]
+    pub(super) advice: AdviceArguments,
     /// Print nothing but errors.
     #[arg(long, help_heading = "Output")]
     pub(super) quiet: bool,
@@ -57,7 +62,7 @@ pub(super) struct CheckArguments {
 
 /// Explains a file.
 pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
-    let report = explained(&arguments.file)?;
+    let report = explained(&arguments.file).map_err(|error| advised(error, arguments))?;
     if let Some(draw) = &arguments.draw {
         let drawing = report.drawing.as_ref().ok_or_else(|| AppError::NoTool {
             file: arguments.file.display().to_string(),
@@ -71,6 +76,17 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
         say(&report.text())?;
     }
     Ok(ExitCode::Done)
+}
+
+/// A refusal of a cell's scenario with what would help.
+fn advised(error: AppError, arguments: &CheckArguments) -> AppError {
+    let quiet = arguments.quiet || arguments.json;
+    match ScenarioTemplate::read(&arguments.file) {
+        Ok(template) if !template.is_bench() => {
+            (arguments.advice).with_advice(error, &template, &[], quiet)
+        }
+        _ => error,
+    }
 }
 
 fn explained(file: &Path) -> Result<Report, AppError> {

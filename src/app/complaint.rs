@@ -14,7 +14,9 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use anstream::eprintln;
 use anstyle::{AnsiColor, Style};
 
+use super::advice::as_json as as_json_list;
 use super::error::{AppError, ExitCode};
+use crate::advice::Advice;
 use crate::cell::CellError;
 use crate::design::DesignError;
 use crate::metrics::MetricsError;
@@ -51,6 +53,7 @@ pub fn complain(error: &AppError, json: bool) {
 fn place(error: &AppError) -> Option<Place> {
     let of_key = |file: &Path, key: &str| place_of(file, key);
     match error {
+        AppError::Advised { source, .. } => place(source),
         AppError::Scenario(error) | AppError::Cell(CellError::Scenario(error)) => {
             error.place().cloned()
         }
@@ -65,6 +68,12 @@ fn place(error: &AppError) -> Option<Place> {
         AppError::Cell(CellError::Supply { file, .. } | CellError::Weight { file, .. }) => {
             of_key(file, "process.force_n")
         }
+        AppError::Cell(CellError::BallTooLarge { file, .. }) => {
+            of_key(file, "device.override.tool_ball_radius_mm")
+        }
+        AppError::Cell(CellError::ShiftBeyondStroke { file, .. }) => (["shift_mm", "tilt_deg"]
+            .iter())
+        .find_map(|key| of_key(file, &format!("workpiece.misplacement.{key}"))),
         AppError::Cell(CellError::SeedPosture { file, .. }) => of_key(file, "arm.seed_posture_deg"),
         AppError::Cell(CellError::EdgeStretch { file, key, .. }) => {
             of_key(file, &format!("workpiece.edge.{key}"))
@@ -100,7 +109,16 @@ fn excerpt(place: &Place) -> Option<String> {
     Some(Renderer::styled().render(&[group]))
 }
 
-/// One line: {"error": {"message", "exit_code"}}, and "file", "line", "column" where it is in a file.
+/// What would help, of a refusal that comes with it.
+fn advice_of(error: &AppError) -> Option<&Advice> {
+    match error {
+        AppError::Advised { advice, .. } => Some(advice),
+        AppError::Set { source, .. } => advice_of(source),
+        _ => None,
+    }
+}
+
+/// One line: {"error": {"message", "exit_code"}}, "file", "line", "column" where it is in a file, and "remedies" of a job: what each sets.
 fn as_json(error: &AppError, code: ExitCode, place: Option<&Place>) -> serde_json::Value {
     let mut told = serde_json::json!({
         "message": error.to_string(),
@@ -112,6 +130,9 @@ fn as_json(error: &AppError, code: ExitCode, place: Option<&Place>) -> serde_jso
             told["line"] = line.into();
             told["column"] = column.into();
         }
+    }
+    if let Some(advice) = advice_of(error) {
+        told["remedies"] = as_json_list(advice);
     }
     serde_json::json!({ "error": told })
 }

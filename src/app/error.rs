@@ -1,5 +1,6 @@
 //! Errors that end a command early, and the exit code that goes with each.
 
+use crate::advice::Advice;
 use crate::case::CaseError;
 use crate::cell::CellError;
 use crate::design::DesignError;
@@ -46,6 +47,14 @@ pub enum AppError {
     /// The cell.
     #[error(transparent)]
     Cell(#[from] CellError),
+    /// A refusal with what would make the job possible.
+    #[error("{source}{advice}")]
+    Advised {
+        /// The refusal.
+        source: Box<AppError>,
+        /// What would help.
+        advice: Box<Advice>,
+    },
     /// A mesh.
     #[error(transparent)]
     Workpiece(#[from] WorkpieceError),
@@ -266,6 +275,16 @@ pub enum AppError {
         /// The link.
         arm: String,
         /// What was in the way.
+        reason: String,
+    },
+    /// A part without an edge that can be ridden.
+    #[error("{part}: no edge of it was found that the tool can ride where the robot reaches it, of {}; {reason}; expected a part with a sharp outer edge (idc edges lists them), or another robot (--urdf)", counted(*convex, "outer edge"))]
+    NothingRidden {
+        /// The mesh.
+        part: String,
+        /// Its edges that stick out.
+        convex: usize,
+        /// What is in the way of the longest.
         reason: String,
     },
     /// Something of a cell for another kind of file.

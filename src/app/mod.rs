@@ -1,5 +1,6 @@
 //! The program: subcommands, files that they write, messages and exit codes.
 
+mod advice;
 mod bench;
 mod bench_figures;
 mod bench_picture;

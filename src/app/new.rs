@@ -1,6 +1,7 @@
 //! `idc new`: a commented file to start from, which can be used as it stands. What a cell needs beside it (arm, device, part) comes with the program.
 
 mod arm;
+mod part;
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +15,6 @@ use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
 use crate::scenario::removal_table::REMOVAL_TABLE;
 use crate::shell::word;
-use crate::workpiece::{PartFile, WorkpieceError};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -64,7 +64,7 @@ pub(super) struct NewArguments {
     /// URDF or xacro file of the arm of a cell, in place of the one that comes with the program. Masses and limits that it lacks are estimated, marked so in the file; a device that it can carry is chosen, and the part put where it reaches.
     #[arg(long, value_name = "FILE", help_heading = "Input")]
     urdf: Option<PathBuf>,
-    /// Mesh of the part of a cell, in place of the plate.
+    /// Mesh of the part of a cell, in place of the plate: its longest edge that the tool can ride is chosen, and the part put where the robot reaches it.
     #[arg(long, value_name = "FILE", help_heading = "Input")]
     part: Option<PathBuf>,
     /// The same as FILE.
@@ -177,6 +177,11 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
             (vec![(file.clone(), text)], String::new())
         }
     };
+    let quiet = arguments.quiet || arguments.json;
+    let (files, chosen) = match arguments.part {
+        Some(_) => part::with_an_edge(files, &file, quiet)?,
+        None => (files, String::new()),
+    };
     // All are looked at before the first is written. What stands there as it would be written can stay.
     let stays = |path: &Path, content: &[u8]| std::fs::read(path).is_ok_and(|old| old == content);
     let mut written = Vec::new();
@@ -195,14 +200,14 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         (Some(_), Some(log)) => format!("idc import {} {}", word(&file), word(log)),
         _ => kind.next(&file),
     };
-    told_written(arguments, (drafted.as_ref(), &of_arm), &paths, &next)?;
+    told_written(arguments, (drafted.as_ref(), &of_arm, &chosen), &paths, &next)?;
     Ok(ExitCode::Done)
 }
 
 /// Prints what was written, and what was found of logs or of an arm.
 fn told_written(
     arguments: &NewArguments,
-    (drafted, of_arm): (Option<&Draft>, &str),
+    (drafted, of_arm, chosen): (Option<&Draft>, &str, &str),
     paths: &[String],
     next: &str,
 ) -> Result<(), AppError> {
@@ -217,6 +222,9 @@ fn told_written(
         if !of_arm.is_empty() {
             document["arm"] = serde_json::json!(of_arm);
         }
+        if !chosen.is_empty() {
+            document["chosen"] = serde_json::json!(chosen);
+        }
         say(&format!("{document:#}\n"))?;
     } else if !arguments.quiet {
         let looked = drafted.map_or(String::new(), told);
@@ -224,8 +232,12 @@ fn told_written(
             "" => looked,
             told => format!("{looked}arm: {told}\n"),
         };
+        let chosen = match chosen {
+            "" => String::new(),
+            chosen => format!("chosen: {chosen}\n"),
+        };
         say(&format!(
-            "{looked}written: {}\nnext: {next}\n",
+            "{looked}{chosen}written: {}\nnext: {next}\n",
             paths.join(", ")
         ))?;
     }
@@ -274,7 +286,7 @@ fn with_own(
     };
     if let Some(part) = &arguments.part {
         let part = whole(part)?;
-        let unit = likely_unit(&part)?;
+        let unit = part::likely_unit(&part)?;
         put("mesh", &format!("{:?}", part.display().to_string()));
         put("mesh_unit", &format!("\"{unit}\""));
         put(
@@ -297,32 +309,6 @@ fn with_own(
             arm::placed(files, file, &arm, quiet)
         }
         _ => Ok((files, String::new())),
-    }
-}
-
-/// The unit with which a mesh is read as a part of a usual size: the one that its file states, else millimetres first.
-fn likely_unit(part: &Path) -> Result<&'static str, AppError> {
-    let file = PartFile::read(part)?;
-    let units = [("mm", 1e-3), ("m", 1.0), ("inch", 0.0254)];
-    let stated = units
-        .iter()
-        .filter(|(unit, _)| !file.states_unit || *unit == "m");
-    let mut refused = None;
-    for &(unit, scale) in stated {
-        let mesh = file.mesh(scale).map_err(|fault| WorkpieceError::Mesh {
-            file: part.to_owned(),
-            fault,
-        });
-        match mesh {
-            Ok(_) => return Ok(unit),
-            Err(error) => {
-                refused.get_or_insert(error);
-            }
-        }
-    }
-    match refused {
-        Some(error) => Err(error.into()),
-        None => Ok("mm"),
     }
 }
 

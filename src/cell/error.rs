@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::advice::Advice;
+use glam::DVec3;
+
 use crate::arm::urdf::ArmError;
 use crate::collision::ModelError;
 use crate::path::PlanError;
@@ -119,12 +120,10 @@ pub enum CellError {
         axes: usize,
     },
     /// The path.
-    #[error("{}: {source}{advice}", file.display())]
+    #[error("{}: {source}", file.display())]
     Plan {
         /// Scenario file.
         file: PathBuf,
-        /// What would make it possible.
-        advice: Box<Advice>,
         /// The obstacle.
         source: Box<PlanError>,
     },
@@ -137,16 +136,48 @@ pub enum CellError {
         source: ModelError,
     },
     /// What stands still stands in each other.
-    #[error("{}: {} stands {:.1} mm deep in {}{advice}", file.display(), names[0], 1e3 * depth, names[1])]
+    #[error("{}: {} stands {:.1} mm deep in {}", file.display(), names[0], 1e3 * depth, names[1])]
     Standing {
         /// Scenario file.
         file: PathBuf,
-        /// What would make it possible.
-        advice: Box<Advice>,
         /// The two bodies.
         names: [String; 2],
         /// Depth [m].
         depth: f64,
+    },
+    /// A ball that reaches into the part where it should ride on the edge.
+    #[error("{}: `device.override.tool_ball_radius_mm` is {}: the ball cannot follow the edge at {:.1} mm, point ({:.1}, {:.1}, {:.1}) mm, where it reaches into the part beside it; expected {}",
+        file.display(), millimetres(*radius), 1e3 * edge_length, 1e3 * point.x, 1e3 * point.y, 1e3 * point.z, ball_that_can(*largest))]
+    BallTooLarge {
+        /// Scenario file.
+        file: PathBuf,
+        /// Radius of the ball [m].
+        radius: f64,
+        /// That of the largest ball that can follow the whole edge [m].
+        largest: f64,
+        /// Where it is tightest [m].
+        edge_length: f64,
+        /// That point in the world [m].
+        point: DVec3,
+    },
+    /// A part that lies farther from where it is believed to be than the slide can follow.
+    #[error("{}: `workpiece.misplacement` moves the part by {} mm and {} deg: with a working stroke of {} mm the slide would go from {:.1} to {:.1} mm of 0 to {} mm along the edge; expected a part that lies within the stroke",
+        file.display(), millimetres(*shift), shown_degrees(*tilt), millimetres(*working_stroke), 1e3 * from, 1e3 * to, millimetres(*full_stroke))]
+    ShiftBeyondStroke {
+        /// Scenario file.
+        file: PathBuf,
+        /// Its shift [m].
+        shift: f64,
+        /// Its tilt [rad].
+        tilt: f64,
+        /// Least stroke along the edge [m].
+        from: f64,
+        /// Largest stroke [m].
+        to: f64,
+        /// Full stroke [m].
+        full_stroke: f64,
+        /// Working stroke [m].
+        working_stroke: f64,
     },
     /// A tool on its pole.
     #[error("{}: [tool]: the spindle's axis stands {:.1} deg from the contact normal, where the tool's surface hardly moves: it does not cut; spindle_lead_deg or spindle_lean_deg = 45, say, or another process.lean_deg, takes the contact off the pole", file.display(), angle.to_degrees())]
@@ -265,11 +296,28 @@ pub(super) fn millimetres(metres: f64) -> f64 {
     (metres * 1e9).round() / 1e6
 }
 
+/// An angle in degrees without the last digits.
+fn shown_degrees(angle: f64) -> f64 {
+    (angle.to_degrees() * 1e6).round() / 1e6
+}
+
+/// Smallest ball of a device [m].
+const SMALLEST_BALL: f64 = 5e-4;
+
+/// What ball would do.
+fn ball_that_can(largest: f64) -> String {
+    if largest < SMALLEST_BALL {
+        return "another stretch of the edge: no ball can follow it there".to_owned();
+    }
+    // Rounded down, so that what is said can.
+    let radius = (1e5 * largest).floor() / 100.0;
+    format!("at most {radius}, or a stretch of the edge without that place")
+}
+
 impl CellError {
     pub(super) fn plan(scenario: &Scenario, source: PlanError) -> Self {
         Self::Plan {
             file: scenario.path.clone(),
-            advice: Box::default(),
             source: Box::new(source),
         }
     }

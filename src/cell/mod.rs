@@ -1,6 +1,6 @@
 //! The cell, assembled from a scenario and checked: everything that does not change during a run.
 
-mod advice;
+mod ball;
 mod collision;
 mod cutting;
 mod device_shape;
@@ -9,9 +9,9 @@ mod estimated;
 mod part;
 mod payload;
 mod plant;
-mod remedy;
 mod resolution;
 mod setup;
+mod stroke;
 mod supply;
 
 use std::path::Path;
@@ -19,7 +19,7 @@ use std::path::Path;
 use glam::DVec3;
 use glamx::DPose3;
 
-pub use advice::Advice;
+pub use ball::largest_balls;
 pub use device_shape::DeviceShape;
 pub use error::CellError;
 pub use estimated::{EstimatedArm, EstimatedLink, EstimatedTorque};
@@ -99,7 +99,6 @@ impl Cell {
         if let Some(Meeting { names, depth, .. }) = setup.collision.standing().into_iter().next() {
             return Err(CellError::Standing {
                 file: setup.scenario.path.clone(),
-                advice: Box::new(remedy::for_standing(&setup)),
                 names,
                 depth,
             });
@@ -107,16 +106,14 @@ impl Cell {
         let stance = setup.stance();
         let refused = |error| CellError::plan(&setup.scenario, error);
         let tool_path = setup.tool_path(&stance).map_err(refused)?;
+        ball::check(&setup.scenario, &setup.part)?;
+        stroke::check(&setup.scenario, &setup.part, &tool_path)?;
         let gravity_on_edge = supply::check(&setup.scenario, &tool_path)?;
         cutting::check(&setup.scenario, &tool_path)?;
         let axial_share = tool_path.share(&tool_path.at(0.5 * tool_path.length()));
         let controller = controller(&setup.scenario, axial_share)?;
         let request = setup.request(&stance, &setup.collision, tool_path);
-        let plan = Plan::new(&request).map_err(|source| CellError::Plan {
-            file: setup.scenario.path.clone(),
-            advice: Box::new(remedy::for_plan(&setup, &source)),
-            source: Box::new(source),
-        })?;
+        let plan = Plan::new(&request).map_err(refused)?;
         let spread = setup.scenario.arm.mass_spread;
         let estimated = EstimatedArm::of(&setup.arm.estimated, spread, &request, &plan);
         let device = Device::new(

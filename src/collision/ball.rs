@@ -8,7 +8,7 @@ use glamx::DPose3;
 use crate::workpiece::{ContactSurface, EdgeCurve, SurfaceContact, TriangleMesh};
 
 /// Distance from the ridden edge within which a contact is that of riding it, of the ball's radius [1].
-const ZONE: f64 = 0.5;
+pub const RIDDEN_ZONE: f64 = 0.5;
 /// Depth to which the ball may reach into what it does not ride, of its radius [1]: another edge a little way off is met by deburring tools that do their work.
 pub(super) const ALLOWED: f64 = 0.1;
 
@@ -60,7 +60,7 @@ impl RiddenEdge {
             .genuine_contacts(centre, self.radius + reach, &mut contacts);
         let elsewhere = contacts
             .iter()
-            .filter(|contact| self.distance_to_edge(contact.point) > ZONE * self.radius);
+            .filter(|contact| self.distance_to_edge(contact.point) > RIDDEN_ZONE * self.radius);
         elsewhere
             .map(|contact| contact.distance - self.radius)
             .fold(reach, f64::min)

@@ -27,7 +27,7 @@ mod watch;
 #[cfg(test)]
 mod tests;
 
-pub use ball::RiddenEdge;
+pub use ball::{RIDDEN_ZONE, RiddenEdge};
 pub use body::{Body, Mount, Solid, SolidError};
 pub use model::{CollisionModel, ModelError, ModelRequest, Pair, PlacedBody, Role};
 pub use motion::JointMotion;

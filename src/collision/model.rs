@@ -278,8 +278,8 @@ impl CollisionModel {
                 }
                 margin
             }
-            // A clamped part stands in its clamps; obstacles and the floor are each other's business; the base stands on the floor.
-            [Part | Obstacle | Floor, Obstacle] | [Obstacle, Part | Floor] => {
+            // Obstacles and the floor are each other's business; the base stands on the floor.
+            [Obstacle | Floor, Obstacle] | [Obstacle, Floor] => {
                 return Ok(None);
             }
             [Robot, Floor] if between == 0 => return Ok(None),

@@ -3,7 +3,7 @@
 use super::error::{Obstacle, PlanError};
 use super::plan::Plan;
 use super::posture::{SINGULAR_LIMIT, Standing};
-use super::request::{PlanRequest, waypoint_error};
+use super::request::{Leg, PlanRequest, waypoint_error};
 use super::torques;
 
 /// Interval at which speeds and torques are checked [s].
@@ -58,12 +58,7 @@ fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError
     for (joint, axis) in request.arm.joints.iter().enumerate() {
         let needed = torques[joint];
         let obstacle = if reference.velocity[joint].abs() > axis.velocity {
-            let value = reference.velocity[joint];
-            Obstacle::Velocity {
-                axis: axis.name.clone(),
-                value,
-                limit: axis.velocity,
-            }
+            return Err(too_fast(request, plan, time));
         } else if needed.abs() > axis.effort {
             Obstacle::Effort {
                 axis: axis.name.clone(),
@@ -73,27 +68,60 @@ fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError
         } else {
             continue;
         };
-        let leg = plan
-            .legs
-            .iter()
-            .rev()
-            .find(|leg| leg.start_time <= time)
-            .unwrap_or(&plan.legs[0]);
-        let along = leg.profile.at(time - leg.start_time).position;
-        let index = leg
-            .spline
-            .knots()
-            .partition_point(|&knot| knot <= along)
-            .saturating_sub(1);
-        let place = leg.way.place(along, plan.tool_path.length());
-        return Err(waypoint_error(
-            &plan.tool_path,
-            leg.phase,
-            index,
-            leg.spline.knots().len(),
-            place,
-            obstacle,
-        ));
+        return Err(at_time(plan, time, obstacle));
     }
     Ok(())
+}
+
+/// The leg that runs at a time.
+fn leg_at(plan: &Plan, time: f64) -> &Leg {
+    let mut legs = plan.legs.iter().rev();
+    let leg = legs.find(|leg| leg.start_time <= time);
+    leg.unwrap_or(&plan.legs[0])
+}
+
+/// An obstacle at a time, told by its waypoint.
+fn at_time(plan: &Plan, time: f64, obstacle: Obstacle) -> PlanError {
+    let leg = leg_at(plan, time);
+    let along = leg.profile.at(time - leg.start_time).position;
+    let index = leg
+        .spline
+        .knots()
+        .partition_point(|&knot| knot <= along)
+        .saturating_sub(1);
+    let place = leg.way.place(along, plan.tool_path.length());
+    waypoint_error(
+        &plan.tool_path,
+        leg.phase,
+        index,
+        leg.spline.knots().len(),
+        place,
+        obstacle,
+    )
+}
+
+/// The axis that is most too fast in the leg in which one is, from a time on: the speed that is told is the one that must come down.
+fn too_fast(request: &PlanRequest, plan: &Plan, from: f64) -> PlanError {
+    let leg = leg_at(plan, from);
+    let end = leg.start_time + leg.duration;
+    let mut worst = (0.0, from, 0);
+    let count = ((end - from) / INTERVAL).ceil().max(1.0) as usize;
+    for step in 0..=count {
+        let time = (from + step as f64 * INTERVAL).min(end - 1e-9).max(from);
+        let velocity = plan.reference(time).velocity;
+        for (joint, axis) in request.arm.joints.iter().enumerate() {
+            let share = velocity[joint].abs() / axis.velocity;
+            if share > worst.0 {
+                worst = (share, time, joint);
+            }
+        }
+    }
+    let (_, time, joint) = worst;
+    let axis = &request.arm.joints[joint];
+    let obstacle = Obstacle::Velocity {
+        axis: axis.name.clone(),
+        value: plan.reference(time).velocity[joint],
+        limit: axis.velocity,
+    };
+    at_time(plan, time, obstacle)
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::super::advice::AdviceArguments;
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, RUN_NAMES, Standing, VARIED, is_same, output_folder};
 use super::super::interrupt::Interruptible;
@@ -32,6 +33,8 @@ pub(in super::super) struct RunArguments {
     /// With --set, leave runs as they are that stand complete, as of one that was interrupted.
     #[arg(long, requires = "settings", conflicts_with = "force")]
     pub(super) resume: bool,
+    #[command(flatten)]
+    advice: AdviceArguments,
     /// Folder for recording.rrd, samples.parquet and summary.json; of several runs, for a folder each and compare.html [default: runs/<scenario name>].
     #[arg(long, help_heading = "Output")]
     pub(super) out: Option<PathBuf>,
@@ -146,9 +149,24 @@ fn one(
         });
     }
     let viewing = arguments.view.as_deref().map(Viewing::parse).transpose()?;
-    let job = Job::new(scenario).map_err(|error| match varied {
-        Some((_, variant)) => with_flags(error, &variant.edits),
-        None => error,
+    let quiet = arguments.quiet || arguments.json;
+    let job = Job::new(scenario).map_err(|error| {
+        let read = || ScenarioTemplate::read(&arguments.scenario);
+        let error = match varied {
+            Some((template, variant)) => {
+                (arguments.advice).with_advice(error, template, &variant.edits, quiet)
+            }
+            None => match (&error, read()) {
+                (AppError::Cell(_), Ok(template)) => {
+                    (arguments.advice).with_advice(error, &template, &[], quiet)
+                }
+                _ => error,
+            },
+        };
+        match varied {
+            Some((_, variant)) => with_flags(error, &variant.edits),
+            None => error,
+        }
     })?;
     let path = arguments.folder();
     let folder = OutputFolder::prepare(&path, &RUN_NAMES, Standing::of(arguments.force))?;
@@ -156,7 +174,6 @@ fn one(
         Some((template, variant)) => Source::varied(template, &variant.edits, None, folder.path())?,
         None => Source::file(&arguments.scenario),
     };
-    let quiet = arguments.quiet || arguments.json;
     if !quiet {
         for note in job.notes() {
             eprintln!("note: {note}");

@@ -1,0 +1,228 @@
+//! What may help against which trouble, and in which order it is looked for.
+
+use super::amounts;
+use super::edge;
+use super::places;
+use super::{Remedy, Trial, Trouble};
+use crate::cell::{CellError, Setup};
+use crate::path::{Obstacle, PlanError};
+use crate::scenario::Scenario;
+use crate::simulation::SimulationError;
+
+/// A kind of change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Angle of the flange about the tool's axis.
+    Roll,
+    /// Lean of the tool.
+    Lean,
+    /// Direction of the tool.
+    ToolAxis,
+    /// Direction of travel.
+    Reversed,
+    /// Place of the part.
+    PartMoved,
+    /// Place and rotation of the part.
+    PartTurned,
+    /// Place of the robot's base.
+    BaseMoved,
+    /// Feed, or the speed of the phase that is too fast.
+    Feed,
+    /// Acceleration along the path.
+    Acceleration,
+    /// Less force.
+    LessForce,
+    /// More force.
+    MoreForce,
+    /// Moving mass.
+    Mass,
+    /// Pressure behind the second chamber.
+    OpposingPressure,
+    /// Supply pressure.
+    SupplyPressure,
+    /// Piston diameter.
+    Bore,
+    /// Stroke at which the device works.
+    WorkingStroke,
+    /// The part believed where it really is.
+    Located,
+    /// Radius of the tool's ball.
+    Ball,
+    /// Clearance that is asked for.
+    Margin,
+    /// Distance from the edge at which the motion starts.
+    Approach,
+    /// Edge that is followed.
+    Edge,
+    /// Stretch of the edge.
+    Stretch,
+    /// How the spindle stands.
+    Spindle,
+    /// Torque at which the spindle stalls.
+    SpindleTorque,
+    /// Step of the simulation.
+    Step,
+}
+
+impl Kind {
+    /// Its name for programs and people.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Roll => "roll",
+            Self::Lean => "lean",
+            Self::ToolAxis => "tool axis",
+            Self::Reversed => "other direction of travel",
+            Self::PartMoved => "part moved",
+            Self::PartTurned => "part turned",
+            Self::BaseMoved => "base moved",
+            Self::Feed => "feed",
+            Self::Acceleration => "acceleration",
+            Self::LessForce | Self::MoreForce => "force",
+            Self::Mass => "moving mass",
+            Self::OpposingPressure => "opposing pressure",
+            Self::SupplyPressure => "supply pressure",
+            Self::Bore => "bore",
+            Self::WorkingStroke => "working stroke",
+            Self::Located => "part located",
+            Self::Ball => "smaller ball",
+            Self::Margin => "clearance",
+            Self::Approach => "approach",
+            Self::Edge => "another edge",
+            Self::Stretch => "another stretch of the edge",
+            Self::Spindle => "spindle's axis",
+            Self::SpindleTorque => "stall torque",
+            Self::Step => "step",
+        }
+    }
+
+    /// Whether it is looked for only where nothing else was found.
+    pub(super) fn is_last_resort(self) -> bool {
+        matches!(self, Self::PartTurned | Self::BaseMoved | Self::Bore)
+    }
+}
+
+/// Where a posture cannot be had: another one, then another place.
+const POSTURE: [Kind; 6] = [
+    Kind::Roll,
+    Kind::Lean,
+    Kind::PartMoved,
+    Kind::Reversed,
+    Kind::PartTurned,
+    Kind::BaseMoved,
+];
+
+/// Kinds of change that may help, in the order in which they are looked for.
+pub(super) fn kinds(scenario: &Scenario, trouble: Trouble<'_>) -> Vec<Kind> {
+    let mut kinds = match trouble {
+        Trouble::Refused(error) => of_refusal(error),
+        Trouble::Stopped(stop) => of_stop(stop),
+    };
+    let process = &scenario.process;
+    kinds.retain(|kind| match kind {
+        Kind::Roll => process.roll.is_some(),
+        Kind::Lean => process.tool_axis.is_none(),
+        _ => true,
+    });
+    kinds
+}
+
+fn of_refusal(error: &CellError) -> Vec<Kind> {
+    match error {
+        CellError::Plan { source, .. } => of_plan(source),
+        CellError::Standing { names, .. } if names.iter().any(|name| name == "part") => {
+            vec![Kind::PartMoved, Kind::PartTurned, Kind::BaseMoved]
+        }
+        CellError::Standing { .. } => vec![Kind::BaseMoved],
+        CellError::ToolDoesNotCut { .. } | CellError::ConeOffEdge { .. } => vec![Kind::Spindle],
+        CellError::SpindleStalls { .. } => vec![Kind::LessForce, Kind::SpindleTorque],
+        CellError::Weight { .. } => vec![
+            Kind::Mass,
+            Kind::OpposingPressure,
+            Kind::MoreForce,
+            Kind::Lean,
+        ],
+        CellError::Supply { .. } => vec![
+            Kind::LessForce,
+            Kind::SupplyPressure,
+            Kind::Lean,
+            Kind::Bore,
+        ],
+        CellError::EdgeNotConvex { .. } | CellError::EdgeUnknown { .. } => vec![Kind::Edge],
+        CellError::EdgeStretch { .. } => vec![Kind::Stretch],
+        CellError::BallTooLarge { .. } => vec![Kind::Ball, Kind::Stretch],
+        CellError::ShiftBeyondStroke { .. } => vec![Kind::WorkingStroke, Kind::Located],
+        _ => Vec::new(),
+    }
+}
+
+fn of_plan(error: &PlanError) -> Vec<Kind> {
+    let PlanError::Waypoint { obstacle, .. } = error else {
+        return match error {
+            PlanError::Lean { .. } => vec![Kind::ToolAxis],
+            PlanError::InwardCorner { .. } => vec![Kind::Stretch],
+            _ => vec![Kind::PartMoved, Kind::PartTurned],
+        };
+    };
+    match obstacle {
+        Obstacle::Velocity { .. } => vec![Kind::Feed, Kind::PartMoved],
+        Obstacle::Effort { .. } => {
+            let first = [Kind::Acceleration, Kind::LessForce];
+            [&first[..], &POSTURE].concat()
+        }
+        Obstacle::Collision(meeting) => {
+            let mut kinds = Vec::new();
+            if meeting.depth < 0.0 && meeting.margin > 0.0 {
+                kinds.push(Kind::Margin);
+            }
+            if meeting.names.iter().any(|name| name == "tool's ball") {
+                kinds.extend([Kind::Ball, Kind::Stretch]);
+            }
+            kinds.push(Kind::Approach);
+            kinds.extend(POSTURE);
+            kinds
+        }
+        _ => POSTURE.to_vec(),
+    }
+}
+
+fn of_stop(stop: &SimulationError) -> Vec<Kind> {
+    match stop {
+        SimulationError::StrokeRanOut { .. } => vec![Kind::WorkingStroke, Kind::Located],
+        SimulationError::SlippedOff { .. } => {
+            vec![Kind::Lean, Kind::LessForce, Kind::Feed, Kind::Ball]
+        }
+        SimulationError::Stalled { .. } => {
+            vec![Kind::LessForce, Kind::Feed, Kind::SpindleTorque]
+        }
+        SimulationError::Collision { .. } => POSTURE.to_vec(),
+        SimulationError::AxisLost { .. } => {
+            vec![Kind::PartMoved, Kind::Lean, Kind::LessForce, Kind::Feed]
+        }
+        SimulationError::NotFinite { .. } => vec![Kind::Step],
+        #[allow(unreachable_patterns)]
+        _ => Vec::new(),
+    }
+}
+
+/// The first change of a kind that passes check and run.
+pub(super) fn remedy(
+    kind: Kind,
+    trial: &Trial<'_>,
+    scenario: &Scenario,
+    setup: Option<&Setup>,
+    trouble: Trouble<'_>,
+) -> Option<Remedy> {
+    match kind {
+        Kind::Roll => places::rolled(trial, setup?),
+        Kind::Lean => places::leaned(trial, setup?),
+        Kind::PartMoved => places::moved(trial, setup?),
+        Kind::PartTurned => places::turned(trial, setup?),
+        Kind::Located => places::located(trial, setup?),
+        Kind::BaseMoved => places::base_moved(trial, setup?),
+        Kind::ToolAxis => edge::tool_axis(trial, setup?),
+        Kind::Reversed => edge::reversed(trial, scenario),
+        Kind::Edge => edge::another(trial, scenario),
+        Kind::Stretch => edge::stretch(trial, scenario, setup, trouble),
+        kind => amounts::remedy(kind, trial, scenario, trouble),
+    }
+}
