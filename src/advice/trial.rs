@@ -215,11 +215,11 @@ impl<'a> Trial<'a> {
         let notes = self.notes.lock().unwrap_or_else(PoisonError::into_inner);
         let known = notes.clone();
         drop(notes);
-        let is_new = |note: &&String| {
-            let known = known.as_ref().is_none_or(|known| known.contains(note));
-            !known && !cell.plan.notes.contains(note)
-        };
-        if cell.notes.iter().any(|note| is_new(&note)) {
+        // Those of its plan are another matter, and of what its masses leave open.
+        let planned = cell.plan.notes.len() + usize::from(cell.estimated.is_some());
+        let own = cell.notes.len().saturating_sub(planned);
+        let is_new = |note: &String| known.as_ref().is_some_and(|known| !known.contains(note));
+        if cell.notes[..own].iter().any(is_new) {
             return false;
         }
         let steps = (cell.plan.duration() / cell.scenario.simulation.step).ceil();
