@@ -56,19 +56,18 @@ fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError
     let reference = plan.reference(time);
     let torques = torques::needed(request, plan, time);
     for (joint, axis) in request.arm.joints.iter().enumerate() {
-        let needed = torques[joint];
-        let obstacle = if reference.velocity[joint].abs() > axis.velocity {
+        if reference.velocity[joint].abs() > axis.velocity {
             return Err(too_fast(request, plan, time));
-        } else if needed.abs() > axis.effort {
-            Obstacle::Effort {
+        }
+        let needed = torques[joint];
+        if needed.abs() > axis.effort {
+            let obstacle = Obstacle::Effort {
                 axis: axis.name.clone(),
                 value: needed,
                 limit: axis.effort,
-            }
-        } else {
-            continue;
-        };
-        return Err(at_time(plan, time, obstacle));
+            };
+            return Err(at_time(plan, time, obstacle));
+        }
     }
     Ok(())
 }
