@@ -24,7 +24,7 @@ const EDGES: usize = 16;
 /// Shares of an edge that are tried, about its middle [1].
 const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
 /// Shortest stretch that is a job, of the ball's radius [1] and [m].
-const SHORTEST: (f64, f64) = (2.0, 5e-3);
+const SHORTEST: (f64, f64) = (1.0, 3e-3);
 /// Longest stretch that is tried, of the arm's reach [1].
 const LONGEST: f64 = 0.8;
 /// Stretches, and places of each, that are tried.
@@ -32,6 +32,8 @@ const STRETCHES: usize = 20;
 const PLACES: usize = 24;
 /// Places that are run for each stretch.
 const RUNS: usize = 2;
+/// Feeds that are tried in place of the usual one [mm/s]: round a tight bend the wrist must turn quickly.
+const SLOWER: [f64; 2] = [8.0, 4.0];
 /// Smallest ball that is tried [m].
 const SMALLEST_BALL: f64 = 5e-4;
 /// Extent of the search, of that for advice [1].
@@ -338,9 +340,11 @@ fn placed(trial: &Trial<'_>, ridden: &Ridden) -> Result<Result<Vec<KeyValue>, St
         let mut all = edits.clone();
         all.extend(pose_edits(there.world_from_part, true));
         match trial.checked(&all) {
-            Some(Ok(cell)) => {
-                if trial.runs_well(&cell, 0.0) {
-                    return Ok(Ok(all));
+            Some(Ok(cell)) if trial.runs_well(&cell, 0.0) => return Ok(Ok(all)),
+            Some(Ok(_)) => {
+                let mut slower = SLOWER.into_iter().map(|feed| with_feed(&all, feed));
+                if let Some(edits) = slower.find(|edits| trial.passes(edits, 0.0)) {
+                    return Ok(Ok(edits));
                 }
                 reason = Some("its run does not keep the bounds".to_owned());
                 runs += 1;
@@ -355,4 +359,11 @@ fn placed(trial: &Trial<'_>, ridden: &Ridden) -> Result<Result<Vec<KeyValue>, St
     Ok(Err(
         reason.unwrap_or_else(|| "out of reach everywhere".to_owned())
     ))
+}
+
+/// The same with another feed [mm/s].
+fn with_feed(edits: &[KeyValue], feed: f64) -> Vec<KeyValue> {
+    let mut all = edits.to_vec();
+    all.push(KeyValue::number("process.feed_mm_per_s", feed));
+    all
 }
