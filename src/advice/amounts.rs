@@ -1,7 +1,7 @@
 //! Changes of single numbers: forces, speeds, masses, pressures, strokes.
 
 use super::candidates::Kind;
-use super::{Remedy, Trial, Trouble};
+use super::{Remedy, Trial};
 use crate::cell::CellError;
 use crate::path::{Obstacle, PlanError};
 use crate::scenario::{ForceLaw, KeyValue, Scenario};
@@ -46,15 +46,15 @@ pub(super) fn remedy(
     kind: Kind,
     trial: &Trial<'_>,
     scenario: &Scenario,
-    trouble: Trouble<'_>,
+    refusal: &CellError,
 ) -> Option<Remedy> {
     let parameters = &scenario.device.parameters;
     match kind {
-        Kind::Feed => feed(trial, scenario, trouble),
+        Kind::Feed => feed(trial, scenario, refusal),
         Kind::Acceleration => acceleration(trial, scenario),
-        Kind::LessForce => less_force(trial, scenario, trouble),
+        Kind::LessForce => less_force(trial, scenario, refusal),
         Kind::MoreForce => {
-            let Trouble::Refused(CellError::Weight { pressing, .. }) = trouble else {
+            let CellError::Weight { pressing, .. } = refusal else {
                 return None;
             };
             let friction = parameters.seal_friction.static_force;
@@ -62,11 +62,11 @@ pub(super) fn remedy(
             let forces = forces.map(|force| force_edits(scenario, &|own| own.max(force)));
             first(trial, kind, "more force", forces.to_vec(), 0.0)
         }
-        Kind::Mass | Kind::OpposingPressure => weight(kind, trial, scenario, trouble),
-        Kind::SupplyPressure | Kind::Bore => supply(kind, trial, scenario, trouble),
-        Kind::WorkingStroke => working_stroke(trial, scenario, trouble),
-        Kind::Ball => ball(trial, scenario, trouble),
-        Kind::Margin => margin(trial, trouble),
+        Kind::Mass | Kind::OpposingPressure => weight(kind, trial, scenario, refusal),
+        Kind::SupplyPressure | Kind::Bore => supply(kind, trial, scenario, refusal),
+        Kind::WorkingStroke => working_stroke(trial, scenario, refusal),
+        Kind::Ball => ball(trial, scenario, refusal),
+        Kind::Margin => margin(trial, refusal),
         Kind::Approach => {
             let own = 1e3 * scenario.process.approach_distance;
             let tried = [0.5, 0.25, 0.1].map(|share| down(share * own).max(1.0));
@@ -75,7 +75,7 @@ pub(super) fn remedy(
         }
         Kind::Spindle => {
             let tried = ["tool.spindle_lead_deg", "tool.spindle_lean_deg"];
-            let angles = spindle_angles(trouble);
+            let angles = spindle_angles(refusal);
             let tried = tried.iter().flat_map(|key| {
                 angles
                     .iter()
@@ -85,21 +85,13 @@ pub(super) fn remedy(
             first(trial, kind, "the spindle leaned", tried.collect(), friction)
         }
         Kind::SpindleTorque => {
-            let torque = match trouble {
-                Trouble::Refused(CellError::SpindleStalls { torque, .. })
-                | Trouble::Stopped(crate::simulation::SimulationError::Stalled {
-                    torque, ..
-                }) => 1e3 * torque,
+            let torque = match refusal {
+                CellError::SpindleStalls { torque, .. } => 1e3 * torque,
                 _ => return None,
             };
             let tried = MORE.map(|times| up(times * torque));
             let key = "tool.stall_torque_n_mm";
             single(trial, kind, "a stronger spindle", key, &tried)
-        }
-        Kind::Step => {
-            let own = 1e3 * scenario.simulation.step;
-            let tried = [0.5, 0.2, 0.1].map(|share| down(share * own));
-            single(trial, kind, "a shorter step", "simulation.step_ms", &tried)
         }
         _ => None,
     }
@@ -157,15 +149,15 @@ fn force_edits(scenario: &Scenario, new: &dyn Fn(f64) -> f64) -> Vec<KeyValue> {
     edits
 }
 
-fn less_force(trial: &Trial<'_>, scenario: &Scenario, trouble: Trouble<'_>) -> Option<Remedy> {
-    let most = match trouble {
-        Trouble::Refused(CellError::Supply { attainable, .. }) => attainable[1],
-        Trouble::Refused(CellError::SpindleStalls {
+fn less_force(trial: &Trial<'_>, scenario: &Scenario, refusal: &CellError) -> Option<Remedy> {
+    let most = match refusal {
+        CellError::Supply { attainable, .. } => attainable[1],
+        CellError::SpindleStalls {
             force,
             torque,
             stall_torque,
             ..
-        }) => force * stall_torque / torque,
+        } => force * stall_torque / torque,
         _ => scenario.process.force,
     };
     // What just can be is near to a limit; from there down.
@@ -180,14 +172,14 @@ fn weight(
     kind: Kind,
     trial: &Trial<'_>,
     scenario: &Scenario,
-    trouble: Trouble<'_>,
+    refusal: &CellError,
 ) -> Option<Remedy> {
-    let Trouble::Refused(CellError::Weight {
+    let CellError::Weight {
         mass,
         most_mass,
         least_opposing,
         ..
-    }) = trouble
+    } = refusal
     else {
         return None;
     };
@@ -219,9 +211,9 @@ fn supply(
     kind: Kind,
     trial: &Trial<'_>,
     scenario: &Scenario,
-    trouble: Trouble<'_>,
+    refusal: &CellError,
 ) -> Option<Remedy> {
-    let Trouble::Refused(CellError::Supply { needed, supply, .. }) = trouble else {
+    let CellError::Supply { needed, supply, .. } = refusal else {
         return None;
     };
     if kind == Kind::SupplyPressure {
@@ -247,20 +239,15 @@ fn supply(
     )
 }
 
-fn working_stroke(trial: &Trial<'_>, scenario: &Scenario, trouble: Trouble<'_>) -> Option<Remedy> {
+fn working_stroke(trial: &Trial<'_>, scenario: &Scenario, refusal: &CellError) -> Option<Remedy> {
     let full = 1e3 * scenario.device.parameters.full_stroke;
     let tenth = |value: f64| (10.0 * value).round() / 10.0;
-    let tried: Vec<f64> = match trouble {
-        Trouble::Refused(CellError::ShiftBeyondStroke { from, to, .. }) => {
-            // Both ends of the way as far from the ends of the stroke.
-            let now = 1e3 * scenario.process.working_stroke;
-            let middle = now + 0.5 * full - 500.0 * (from + to);
-            vec![tenth(middle)]
-        }
-        _ => [0.5, 0.75, 0.25, 0.9, 0.1]
-            .map(|share| tenth(share * full))
-            .to_vec(),
+    let CellError::ShiftBeyondStroke { from, to, .. } = refusal else {
+        return None;
     };
+    // Both ends of the way as far from the ends of the stroke.
+    let now = 1e3 * scenario.process.working_stroke;
+    let tried = [tenth(now + 0.5 * full - 500.0 * (from + to))];
     let inside = |stroke: &f64| *stroke >= 0.1 && *stroke < full;
     let tried: Vec<f64> = tried.into_iter().filter(inside).collect();
     let key = "process.working_stroke_mm";
@@ -273,13 +260,12 @@ fn working_stroke(trial: &Trial<'_>, scenario: &Scenario, trouble: Trouble<'_>) 
     )
 }
 
-fn ball(trial: &Trial<'_>, scenario: &Scenario, trouble: Trouble<'_>) -> Option<Remedy> {
+fn ball(trial: &Trial<'_>, scenario: &Scenario, refusal: &CellError) -> Option<Remedy> {
     let own = 1e3 * scenario.device.tool_radius;
-    let tried = match trouble {
-        Trouble::Refused(CellError::BallTooLarge { largest, .. }) => {
+    let tried = match refusal {
+        CellError::BallTooLarge { largest, .. } => {
             [0.97, 0.9, 0.8, 0.65].map(|share| 1e3 * share * largest)
         }
-        Trouble::Stopped(_) => [1.3, 1.6, 2.0, 0.8].map(|share| share * own),
         _ => [0.8, 0.6, 0.4, 0.2].map(|share| share * own),
     };
     let tried = tried.map(|radius| (10.0 * radius).floor() / 10.0);
@@ -288,8 +274,8 @@ fn ball(trial: &Trial<'_>, scenario: &Scenario, trouble: Trouble<'_>) -> Option<
     single(trial, Kind::Ball, "another ball", key, &tried)
 }
 
-fn margin(trial: &Trial<'_>, trouble: Trouble<'_>) -> Option<Remedy> {
-    let Trouble::Refused(CellError::Plan { source, .. }) = trouble else {
+fn margin(trial: &Trial<'_>, refusal: &CellError) -> Option<Remedy> {
+    let CellError::Plan { source, .. } = refusal else {
         return None;
     };
     let PlanError::Waypoint {
@@ -315,9 +301,9 @@ fn margin(trial: &Trial<'_>, trouble: Trouble<'_>) -> Option<Remedy> {
 }
 
 /// Angles of the spindle's axis that are tried [deg].
-fn spindle_angles(trouble: Trouble<'_>) -> Vec<f64> {
-    match trouble {
-        Trouble::Refused(CellError::ConeOffEdge { needed, .. }) => {
+fn spindle_angles(refusal: &CellError) -> Vec<f64> {
+    match refusal {
+        CellError::ConeOffEdge { needed, .. } => {
             let needed = needed.to_degrees().round();
             vec![needed, -needed]
         }
@@ -341,26 +327,15 @@ fn acceleration(trial: &Trial<'_>, scenario: &Scenario) -> Option<Remedy> {
 }
 
 /// Speeds lowered, phase by phase, until no axis is too fast.
-fn feed(trial: &Trial<'_>, scenario: &Scenario, trouble: Trouble<'_>) -> Option<Remedy> {
+fn feed(trial: &Trial<'_>, scenario: &Scenario, refusal: &CellError) -> Option<Remedy> {
     let friction = held_back(scenario);
     let remedy = |edits| Remedy {
         kind: Kind::Feed.name(),
         words: "slower".to_owned(),
         edits,
     };
-    let too_fast = match trouble {
-        Trouble::Refused(error) => too_fast(error),
-        Trouble::Stopped(_) => {
-            let tried = [0.7, 0.5, 0.3].map(|share| {
-                let mut speeds = Speeds::of(scenario);
-                speeds.lower("follow", share);
-                speeds.edits(scenario)
-            });
-            return first(trial, Kind::Feed, "slower", tried.to_vec(), friction);
-        }
-    };
     let mut speeds = Speeds::of(scenario);
-    let (mut phase, mut share) = too_fast?;
+    let (mut phase, mut share) = too_fast(refusal)?;
     for _ in 0..PHASES {
         speeds.lower(phase, share);
         let edits = speeds.edits(scenario);
@@ -371,7 +346,7 @@ fn feed(trial: &Trial<'_>, scenario: &Scenario, trouble: Trouble<'_>) -> Option<
                 }
                 (phase, share) = ("follow", 0.8);
             }
-            Err(error) => (phase, share) = self::too_fast(&error)?,
+            Err(error) => (phase, share) = too_fast(&error)?,
         }
     }
     None

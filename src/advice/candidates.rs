@@ -1,13 +1,12 @@
-//! What may help against which trouble, and in which order it is looked for.
+//! What may help against which refusal, and in which order it is looked for.
 
 use super::amounts;
 use super::edge;
 use super::places;
-use super::{Remedy, Trial, Trouble};
+use super::{Remedy, Trial};
 use crate::cell::{CellError, Setup};
 use crate::path::{Obstacle, PlanError};
 use crate::scenario::Scenario;
-use crate::simulation::SimulationError;
 
 /// A kind of change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,8 +59,6 @@ pub(super) enum Kind {
     Spindle,
     /// Torque at which the spindle stalls.
     SpindleTorque,
-    /// Step of the simulation.
-    Step,
 }
 
 impl Kind {
@@ -91,7 +88,6 @@ impl Kind {
             Self::Stretch => "another stretch of the edge",
             Self::Spindle => "spindle's axis",
             Self::SpindleTorque => "stall torque",
-            Self::Step => "step",
         }
     }
 
@@ -112,11 +108,8 @@ const POSTURE: [Kind; 6] = [
 ];
 
 /// Kinds of change that may help, in the order in which they are looked for.
-pub(super) fn kinds(scenario: &Scenario, trouble: Trouble<'_>) -> Vec<Kind> {
-    let mut kinds = match trouble {
-        Trouble::Refused(error) => of_refusal(error),
-        Trouble::Stopped(stop) => of_stop(stop),
-    };
+pub(super) fn kinds(scenario: &Scenario, refusal: &CellError) -> Vec<Kind> {
+    let mut kinds = of_refusal(refusal);
     let process = &scenario.process;
     kinds.retain(|kind| match kind {
         Kind::Roll => process.roll.is_some(),
@@ -185,32 +178,13 @@ fn of_plan(error: &PlanError) -> Vec<Kind> {
     }
 }
 
-fn of_stop(stop: &SimulationError) -> Vec<Kind> {
-    match stop {
-        SimulationError::StrokeRanOut { .. } => vec![Kind::WorkingStroke, Kind::Located],
-        SimulationError::SlippedOff { .. } => {
-            vec![Kind::Lean, Kind::LessForce, Kind::Feed, Kind::Ball]
-        }
-        SimulationError::Stalled { .. } => {
-            vec![Kind::LessForce, Kind::Feed, Kind::SpindleTorque]
-        }
-        SimulationError::Collision { .. } => POSTURE.to_vec(),
-        SimulationError::AxisLost { .. } => {
-            vec![Kind::PartMoved, Kind::Lean, Kind::LessForce, Kind::Feed]
-        }
-        SimulationError::NotFinite { .. } => vec![Kind::Step],
-        #[allow(unreachable_patterns)]
-        _ => Vec::new(),
-    }
-}
-
 /// The first change of a kind that passes check and run.
 pub(super) fn remedy(
     kind: Kind,
     trial: &Trial<'_>,
     scenario: &Scenario,
     setup: Option<&Setup>,
-    trouble: Trouble<'_>,
+    refusal: &CellError,
 ) -> Option<Remedy> {
     match kind {
         Kind::Roll => places::rolled(trial, setup?),
@@ -222,7 +196,7 @@ pub(super) fn remedy(
         Kind::ToolAxis => edge::tool_axis(trial, setup?),
         Kind::Reversed => edge::reversed(trial, scenario),
         Kind::Edge => edge::another(trial, scenario),
-        Kind::Stretch => edge::stretch(trial, scenario, setup, trouble),
-        kind => amounts::remedy(kind, trial, scenario, trouble),
+        Kind::Stretch => edge::stretch(trial, scenario, setup, refusal),
+        kind => amounts::remedy(kind, trial, scenario, refusal),
     }
 }

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::amounts::{first, held_back};
 use super::candidates::Kind;
-use super::{Remedy, Trial, Trouble};
-use crate::cell::{Setup, choose_edge, largest_balls};
+use super::{Remedy, Trial};
+use crate::cell::{CellError, Setup, choose_edge, largest_balls};
 use crate::scenario::{EdgeChoice, EdgeSelection, KeyValue, Scenario, WorkpieceScenario};
 use crate::workpiece::{Convexity, EdgeCurve, EdgeSearch, list_edges, load_mesh};
 
@@ -116,7 +116,7 @@ pub(super) fn stretch(
     trial: &Trial<'_>,
     scenario: &Scenario,
     setup: Option<&Setup>,
-    trouble: Trouble<'_>,
+    refusal: &CellError,
 ) -> Option<Remedy> {
     let friction = held_back(scenario);
     let edits = |from: f64, to: f64| {
@@ -128,7 +128,7 @@ pub(super) fn stretch(
     };
     let words = "another stretch of the edge";
     let choice = &scenario.workpiece.edge;
-    if let Trouble::Refused(crate::cell::CellError::EdgeStretch { .. }) = trouble {
+    if let CellError::EdgeStretch { .. } = refusal {
         let whole = whole(scenario)?;
         let start = if choice.start < whole.length {
             choice.start

@@ -1,4 +1,4 @@
-//! What would make a job possible that is refused or was stopped: changes of its scenario, each of which passes the whole check and a whole run before it is given.
+//! What would make a job possible that is refused: changes of its scenario, each of which passes the whole check and a whole run before it is given.
 
 mod amounts;
 mod candidates;
@@ -10,19 +10,9 @@ use std::fmt;
 
 use crate::cell::{CellError, Setup};
 use crate::scenario::KeyValue;
-use crate::simulation::SimulationError;
 
 pub use places::{anywhere, pose_edits};
 pub use trial::{Effort, Manner, RunOutcome, Trial};
-
-/// Why a job cannot be done.
-#[derive(Debug, Clone, Copy)]
-pub enum Trouble<'a> {
-    /// It was refused before it moved.
-    Refused(&'a CellError),
-    /// Its run was stopped.
-    Stopped(&'a SimulationError),
-}
 
 /// A change of a scenario with which its job can be done.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,22 +68,22 @@ impl fmt::Display for Advice {
     }
 }
 
-/// Changes that are made one after the other, where the first ends one trouble and meets another.
+/// Changes that are made one after the other, where the first ends one refusal and meets another.
 const AFTER_ANOTHER: usize = 3;
 
 /// Looks for what would make a job possible.
 #[must_use]
-pub fn advise(trial: &Trial<'_>, trouble: Trouble<'_>) -> Advice {
-    advise_in(trial, trouble, AFTER_ANOTHER)
+pub fn advise(trial: &Trial<'_>, refusal: &CellError) -> Advice {
+    advise_in(trial, refusal, AFTER_ANOTHER)
 }
 
-fn advise_in(before: &Trial<'_>, trouble: Trouble<'_>, left: usize) -> Advice {
+fn advise_in(before: &Trial<'_>, refusal: &CellError, left: usize) -> Advice {
     let mut advice = Advice::default();
-    let trial = &before.of(&[], trouble);
+    let trial = &before.of(&[], refusal);
     let Some(scenario) = trial.scenario(&[]) else {
         return advice;
     };
-    let kinds = candidates::kinds(&scenario, trouble);
+    let kinds = candidates::kinds(&scenario, refusal);
     if kinds.is_empty() {
         return advice;
     }
@@ -110,16 +100,16 @@ fn advise_in(before: &Trial<'_>, trouble: Trouble<'_>, left: usize) -> Advice {
         }
         trial.begin(kind.name());
         advice.tried.push(kind.name());
-        let found = candidates::remedy(kind, trial, &scenario, setup.as_ref(), trouble);
+        let found = candidates::remedy(kind, trial, &scenario, setup.as_ref(), refusal);
         advice.remedies.extend(found);
     }
     advice.cut_short = trial.is_over() && !last_resort;
     if advice.remedies.is_empty()
         && left > 1
-        && let Some((edits, refusal)) = trial.other_refusal()
+        && let Some((edits, other)) = trial.other_refusal()
     {
-        let then = trial.of(&edits, trouble);
-        let further = advise_in(&then, Trouble::Refused(&refusal), left - 1);
+        let then = trial.of(&edits, refusal);
+        let further = advise_in(&then, &other, left - 1);
         advice
             .remedies
             .extend(further.remedies.into_iter().map(|remedy| {

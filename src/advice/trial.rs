@@ -4,7 +4,6 @@ use std::mem::{Discriminant, discriminant};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::Trouble;
 use crate::cell::{Cell, CellError};
 use crate::path::{Obstacle, PlanError};
 use crate::scenario::{AnyScenario, KeyValue, Scenario, ScenarioTemplate};
@@ -16,21 +15,15 @@ const CONTACT_LOST: f64 = 0.01;
 /// Share of a drive's largest torque from which it counts as saturated [1].
 const SATURATED: f64 = 0.999;
 
-/// What kind of trouble it is: of a plan, at what kind of obstacle.
+/// What kind of refusal it is: of a plan, at what kind of obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct TroubleKind {
-    refusal: Option<Discriminant<CellError>>,
+struct RefusalKind {
+    refusal: Discriminant<CellError>,
     obstacle: Option<Discriminant<Obstacle>>,
 }
 
-impl TroubleKind {
-    fn of(trouble: Trouble<'_>) -> Self {
-        let Trouble::Refused(error) = trouble else {
-            return Self {
-                refusal: None,
-                obstacle: None,
-            };
-        };
+impl RefusalKind {
+    fn of(error: &CellError) -> Self {
         let obstacle = match error {
             CellError::Plan { source, .. } => match &**source {
                 PlanError::Waypoint { obstacle, .. } => Some(discriminant(obstacle)),
@@ -39,7 +32,7 @@ impl TroubleKind {
             _ => None,
         };
         Self {
-            refusal: Some(discriminant(error)),
+            refusal: discriminant(error),
             obstacle,
         }
     }
@@ -94,8 +87,8 @@ pub struct Trial<'a> {
     checks: AtomicUsize,
     steps: AtomicUsize,
     over: AtomicBool,
-    /// The trouble that is looked into, and the first change that ended it but met another refusal.
-    trouble: Option<TroubleKind>,
+    /// The refusal that is looked into, and the first change that ended it but met another.
+    refusal: Option<RefusalKind>,
     other: Mutex<Option<(Vec<KeyValue>, CellError)>>,
     /// Notes of the scenario without a change; none where it cannot be loaded.
     notes: Mutex<Option<Vec<String>>>,
@@ -130,14 +123,14 @@ impl<'a> Trial<'a> {
             checks: AtomicUsize::new(effort.checks),
             steps: AtomicUsize::new(effort.steps),
             over: AtomicBool::new(false),
-            trouble: None,
+            refusal: None,
             other: Mutex::new(None),
             notes: Mutex::new(None),
         }
     }
 
-    /// The same with what is left of its extent, looking into a trouble of a scenario with further changes.
-    pub(super) fn of(&self, further: &[KeyValue], trouble: Trouble<'_>) -> Self {
+    /// The same with what is left of its extent, looking into a refusal of the scenario with further changes.
+    pub(super) fn of(&self, further: &[KeyValue], refusal: &CellError) -> Self {
         let left = |from: &AtomicUsize| AtomicUsize::new(from.load(Ordering::Relaxed));
         Self {
             given: self.given.iter().chain(further).cloned().collect(),
@@ -145,14 +138,14 @@ impl<'a> Trial<'a> {
             checks: left(&self.checks),
             steps: left(&self.steps),
             over: AtomicBool::new(self.is_over()),
-            trouble: Some(TroubleKind::of(trouble)),
+            refusal: Some(RefusalKind::of(refusal)),
             other: Mutex::new(None),
             notes: Mutex::new(None),
             ..*self
         }
     }
 
-    /// The first change that ended the trouble but met another refusal.
+    /// The first change that ended the refusal but met another.
     pub(super) fn other_refusal(&self) -> Option<(Vec<KeyValue>, CellError)> {
         let mut other = self.other.lock().unwrap_or_else(PoisonError::into_inner);
         other.take()
@@ -244,8 +237,8 @@ impl<'a> Trial<'a> {
         match self.checked(edits) {
             Some(Ok(cell)) => self.runs_well(&cell, friction),
             Some(Err(error)) => {
-                let kind = TroubleKind::of(Trouble::Refused(&error));
-                if self.trouble.is_some_and(|own| own != kind) {
+                let kind = RefusalKind::of(&error);
+                if self.refusal.is_some_and(|own| own != kind) {
                     let mut other = self.other.lock().unwrap_or_else(PoisonError::into_inner);
                     other.get_or_insert((edits.to_vec(), error));
                 }

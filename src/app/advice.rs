@@ -8,8 +8,8 @@ use serde_json::Value;
 use super::error::AppError;
 use super::progress;
 use super::run::run_cell;
-use crate::advice::{Advice, Effort, Manner, Remedy, RunOutcome, Trial, Trouble, advise};
-use crate::cell::Cell;
+use crate::advice::{Advice, Effort, Manner, Remedy, RunOutcome, Trial, advise};
+use crate::cell::{Cell, CellError};
 use crate::scenario::{KeyValue, ScenarioTemplate};
 
 /// Time that a search of the usual extent may take [s]; it is shorter unless the computer is slow or busy.
@@ -43,7 +43,7 @@ impl AdviceArguments {
         let AppError::Cell(refusal) = &error else {
             return error;
         };
-        let advice = self.search(template, given, Trouble::Refused(refusal), quiet);
+        let advice = self.search(template, given, refusal, quiet);
         match advice.tried.is_empty() {
             true => error,
             false => AppError::Advised {
@@ -58,7 +58,7 @@ impl AdviceArguments {
         self,
         template: &ScenarioTemplate,
         given: &[KeyValue],
-        trouble: Trouble<'_>,
+        refusal: &CellError,
         quiet: bool,
     ) -> Advice {
         if self.effort == 0.0 {
@@ -87,7 +87,7 @@ impl AdviceArguments {
                 keep_on: &keep_on,
             },
         );
-        let advice = advise(&trial, trouble);
+        let advice = advise(&trial, refusal);
         line.finish_and_clear();
         advice
     }
