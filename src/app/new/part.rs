@@ -38,6 +38,8 @@ const SLOWER: [f64; 2] = [8.0, 4.0];
 const SMALLEST_BALL: f64 = 5e-4;
 /// Extent of the search, of that for advice [1].
 const EXTENT: f64 = 3.0;
+/// Forces that are tried [N]: that of the file, then less, for arms that cannot give it.
+const FORCES: [Option<f64>; 3] = [None, Some(60.0), Some(25.0)];
 /// Bounds of the file that is written: the mean force to either side [1].
 const FORCE_KEPT: f64 = 0.03;
 
@@ -142,10 +144,27 @@ pub(super) fn with_an_edge(
         tell: &|_| (),
         keep_on: &|| true,
     };
-    let trial = Trial::new(&template, &[], Effort::times(EXTENT), &manner);
-    let found = search(&trial);
+    let mut refused = None;
+    let mut found = None;
+    for force in FORCES {
+        let given = force.map_or_else(Vec::new, with_force);
+        let trial = Trial::new(&template, &given, Effort::times(EXTENT), &manner);
+        match search(&trial) {
+            Ok((ridden, edits)) => {
+                found = Some((ridden, [given, edits].concat()));
+                break;
+            }
+            Err(error) => {
+                refused.get_or_insert(error);
+            }
+        }
+    }
     line.finish_and_clear();
-    let (ridden, edits) = found?;
+    let (ridden, edits) = match (found, refused) {
+        (Some(found), _) => found,
+        (None, Some(error)) => return Err(error),
+        (None, None) => return Ok((files, String::new())),
+    };
     files[0].1 = template.text(&edits)?.into_bytes();
     let length = (1e4 * ridden.length).round() / 10.0;
     Ok((files, format!("edge {}, {length} mm of it", ridden.number)))
@@ -166,6 +185,16 @@ fn with_own_bounds(text: &str) -> String {
         text += &format!("force_mean_n = {{ min = {low}, max = {high} }}\n");
     }
     text
+}
+
+/// Another force [N], with the bounds that go with it.
+fn with_force(force: f64) -> Vec<KeyValue> {
+    let [low, high] = [-FORCE_KEPT, FORCE_KEPT].map(|share| (1.0 + share) * force);
+    let bounds = format!("{{ min = {low}, max = {high} }}");
+    vec![
+        KeyValue::number("process.force_n", force),
+        KeyValue::typed("expect.force_mean_n", &bounds),
+    ]
 }
 
 /// A run whose bounds are not all kept counts as one that stopped.
