@@ -31,7 +31,7 @@ fn remedies_of(edits: &[(&str, &str)]) -> Vec<String> {
     for (from, to) in edits {
         bench.replace("scenario.toml", from, to);
     }
-    let refused = bench.idc(&["check", "scenario.toml", "--json", "--effort", "4"], &[]);
+    let refused = bench.idc(&["check", "scenario.toml", "--json", "--effort", "50"], &[]);
     let error = refusal(&refused);
     let mut kinds = Vec::new();
     for remedy in error["remedies"].as_array().unwrap() {
@@ -88,15 +88,11 @@ fn a_part_that_stands_in_an_obstacle_is_refused_and_moved_out() {
 
 #[test]
 fn numbers_that_cannot_be_are_given_as_ones_that_can() {
-    check(
-        &[("force_n = 150", "force_n = 1500")],
-        &["force", "supply pressure"],
-    );
+    check(&[("force_n = 150", "force_n = 1500")], &["force"]);
+    let weak = "[device.override]\nsupply_pressure_bar_gauge = 0.5\n[workpiece]";
+    check(&[("[workpiece]", weak)], &["force", "supply pressure"]);
     let heavy = "[device.override]\nmoving_mass_kg = 30\n[workpiece]";
-    check(
-        &[("[workpiece]", heavy)],
-        &["moving mass", "opposing pressure", "force"],
-    );
+    check(&[("[workpiece]", heavy)], &["moving mass"]);
     let slow = "[[arm.limit_overrides]]\njoint = \"wrist_1\"\nvelocity_deg_per_s = 2\n[device]";
     check(&[("[device]", slow)], &["feed"]);
 }

@@ -18,7 +18,9 @@ fn standing_out(shift_m: f64, working_stroke_mm: f64) -> Bench {
     let bench = Bench::new("plate_edge_ideal");
     let stroke = format!("[process]\nworking_stroke_mm = {working_stroke_mm}");
     bench.replace("scenario.toml", "[process]", &stroke);
-    let effect = format!("[[effect]]\nname = \"part_misplaced\"\nshift_m = {shift_m}\n\n[expect]");
+    let effect = format!(
+        "[[effect]]\nname = \"part_misplaced\"\nshift_m = {shift_m}\ntilt_m_per_m = 0\n\n[expect]"
+    );
     bench.replace("scenario.toml", "[expect]", &effect);
     bench
 }
