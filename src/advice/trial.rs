@@ -208,8 +208,9 @@ impl<'a> Trial<'a> {
         let notes = self.notes.lock().unwrap_or_else(PoisonError::into_inner);
         let known = notes.clone();
         drop(notes);
-        // Those of its plan are another matter, and of what its masses leave open.
-        let planned = cell.plan.notes.len() + usize::from(cell.estimated.is_some());
+        // Those of its plan are another matter, of what its masses leave open, and of the step.
+        let step = cell.resolution.note(&cell.scenario).into_iter().count();
+        let planned = cell.plan.notes.len() + usize::from(cell.estimated.is_some()) + step;
         let own = cell.notes.len().saturating_sub(planned);
         let is_new = |note: &String| known.as_ref().is_some_and(|known| !known.contains(note));
         if cell.notes[..own].iter().any(is_new) {

@@ -53,7 +53,7 @@ impl Resolution {
     }
 
     /// What a user may not expect of it.
-    pub(super) fn note(&self, scenario: &Scenario) -> Option<String> {
+    pub fn note(&self, scenario: &Scenario) -> Option<String> {
         let step = 1e3 * scenario.simulation.step;
         (self.near > 1).then(|| {
             format!(
