@@ -200,7 +200,12 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         (Some(_), Some(log)) => format!("idc import {} {}", word(&file), word(log)),
         _ => kind.next(&file),
     };
-    told_written(arguments, (drafted.as_ref(), &of_arm, &chosen), &paths, &next)?;
+    told_written(
+        arguments,
+        (drafted.as_ref(), &of_arm, &chosen),
+        &paths,
+        &next,
+    )?;
     Ok(ExitCode::Done)
 }
 
