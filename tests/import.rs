@@ -4,6 +4,7 @@ mod bags;
 mod dialects;
 mod files;
 mod forms;
+mod kinds;
 mod real;
 mod refused;
 mod stored;

@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     if let Some(out) = &arguments.out {
         check_ending(out)?;
     }
-    let each = map.files.len();
+    let each = map.files.iter().filter(|file| !file.same_log).count();
     if !arguments.logs.len().is_multiple_of(each) {
         return Err(AppError::Logs {
             given: arguments.logs.len(),
@@ -199,7 +199,8 @@ fn check_destinations(jobs: &[Job]) -> Result<(), AppError> {
 }
 
 fn provenance(imported: &Imported, map: &ImportMap) -> BTreeMap<String, String> {
-    let files: Vec<String> = imported.logs.iter().map(|log| name(&log.file)).collect();
+    let mut files: Vec<String> = imported.logs.iter().map(|log| name(&log.file)).collect();
+    files.dedup();
     let mut pairs = BTreeMap::from([
         ("title".to_owned(), map.title.clone()),
         ("imported_from".to_owned(), files.join(", ")),

@@ -139,7 +139,7 @@ impl Cleaning {
                 let ratio = noise / sheet[channel];
                 if !(1.0 / OTHER_NOISE..OTHER_NOISE).contains(&ratio) {
                     sentences.push(format!(
-                        "noise of {column} is {noise:.3e}, {ratio:.2} times what [sensors] says"
+                        "noise of {column} is {noise:.3e}, {ratio:.2} times what [sensors] says; `{column} = {noise:.1e}` there would do"
                     ));
                 }
             }

@@ -91,7 +91,7 @@ pub enum RecordedError {
     },
     /// Noise that is out of all proportion.
     #[error(
-        "{file}: the noise of column `{column}` is {found:.3e}, expected about the {expected} of [sensors]; are both in SI?"
+        "{file}: the noise of column `{column}` is {found:.3e}, expected about the {expected} of [sensors]; are both in SI? If they are, the sheet's is in doubt: `{column} = {found:.1e}` would do"
     )]
     Noise {
         /// File name.

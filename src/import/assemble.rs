@@ -31,6 +31,8 @@ pub struct LogNote {
     pub file: PathBuf,
     /// Data left out.
     pub remarks: Vec<Remark>,
+    /// Rows of it that were used, and rows that are there.
+    pub rows: [usize; 2],
     /// Where its clock was found against the first log's.
     pub alignment: Option<Alignment>,
     /// Quantities that came from it.
@@ -46,8 +48,13 @@ pub struct LogNote {
 pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportError> {
     let mut logs: Vec<LogNote> = Vec::new();
     let mut origin = 0.0;
+    let mut given = files.iter();
     for (index, file_map) in map.files.iter().enumerate() {
-        let file = files.get(index).or(file_map.path.as_ref());
+        let before = logs.last().map(|log| &log.file);
+        let file = match before {
+            Some(before) if file_map.same_log => Some(before),
+            _ => given.next().or(file_map.path.as_ref()),
+        };
         let Some(file) = file.cloned() else {
             return Err(ImportError::NoFile {
                 map: map.path.clone(),
@@ -61,6 +68,7 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
         let mut note = LogNote {
             file,
             remarks: log.remarks,
+            rows: log.rows,
             alignment: None,
             quantities: file_map
                 .channels

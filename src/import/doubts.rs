@@ -4,6 +4,7 @@
 
 use super::findings::Finding;
 use super::log::Series;
+use super::lone::lone;
 use super::map::{ChannelMap, Column, FileMap, Pressure};
 use super::units::{self, LogUnit, UNITS};
 use crate::recording::csv::median_step;
@@ -35,7 +36,9 @@ const SLOW: [f64; 2] = [1.0, 3600.0];
 /// Samples a second that no logger of an actuator takes [Hz].
 const FAST: f64 = 1e6;
 /// Words that end names without being meant as units.
-const NO_UNITS: [&str; 2] = ["in", "min"];
+const NO_UNITS: [&str; 9] = [
+    "in", "min", "A", "meter", "metre", "day", "second", "volt", "amp",
+];
 
 /// Doubts about a channel by itself, `values` being those that are there [SI].
 #[must_use]
@@ -49,6 +52,7 @@ pub fn of_channel(channel: &ChannelMap, found: &Finding, values: &[f64]) -> Vec<
         doubts.extend(by_counts(channel.unit, found.range, values));
     }
     doubts.extend(by_rest(channel, found.range, values));
+    doubts.extend(by_neighbours(channel, values));
     if let Some(fallen) = thousandfold(values) {
         doubts.push(format!(
             "falls to a thousandth from one sample to the next {} times and never goes beyond: looks like a thousands mark read as a decimal mark; `thousands_mark` in [[file]] names it",
@@ -56,6 +60,25 @@ pub fn of_channel(channel: &ChannelMap, found: &Finding, values: &[f64]) -> Vec<
         ));
     }
     doubts
+}
+
+/// Single values far from all others, as marks of missing ones are.
+fn by_neighbours(channel: &ChannelMap, values: &[f64]) -> Option<String> {
+    let written: Vec<f64> = values.iter().map(|value| channel.written(*value)).collect();
+    let found = lone(&written, channel.unit.si)?;
+    // The rounding of the way there and back.
+    let first = format!("{}", (found.first * 1e9).round() / 1e9);
+    let first = if found.first.abs() < 1e6 {
+        first
+    } else {
+        format!("{:e}", found.first)
+    };
+    Some(format!(
+        "{} of {} values lie far from their neighbours and from all others, the first as {first} in the log: \
+         if they stand for no value, `missing = [{first}]` in [[file]] says so",
+        found.count,
+        values.len()
+    ))
 }
 
 /// Largest value that is usual in a recording of an actuator, least and most [SI].

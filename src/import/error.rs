@@ -48,6 +48,54 @@ pub enum ImportError {
         /// The channels that are there.
         there: String,
     },
+    /// The map names a column by a name that several have.
+    #[error("{} has {} columns `{name}`, numbers {}: give the number of the one that is meant", file.display(), columns.len(), listed(columns))]
+    SameName {
+        /// The file.
+        file: PathBuf,
+        /// The name.
+        name: String,
+        /// The columns, from 1.
+        columns: Vec<usize>,
+    },
+    /// No row is of the variable that the map means.
+    #[error("{}: no row has `{value}` in {column}; there are {there}", file.display())]
+    NoRows {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        column: Column,
+        /// What should stand there.
+        value: String,
+        /// What stands there.
+        there: String,
+    },
+    /// Fields that are not quoted where the same mark stands between them and in their numbers.
+    #[error("{}:{line}: {found} fields, expected {expected}: `{mark}` stands between fields and before decimals, so that fields with decimals must be quoted", file.display())]
+    Unquoted {
+        /// The file.
+        file: PathBuf,
+        /// Its line, from 1.
+        line: u64,
+        /// The mark.
+        mark: char,
+        /// Fields found.
+        found: usize,
+        /// Fields expected.
+        expected: usize,
+    },
+    /// Most rows would be left out.
+    #[error("{}: {used} of {there} rows would be used, expected nine in ten at least: {why}; `accept_unused_rows = true` in the map's [[file]] uses those", file.display())]
+    Unused {
+        /// The file.
+        file: PathBuf,
+        /// Rows used.
+        used: usize,
+        /// Rows there.
+        there: usize,
+        /// Why the others are not, and what would help.
+        why: String,
+    },
     /// A row with too few fields.
     #[error("{}:{line}: {found} fields, expected at least {expected}, as the map's columns need", file.display())]
     Fields {
@@ -190,4 +238,14 @@ pub enum ImportError {
     /// The channels together make no recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+}
+
+/// Numbers of columns for a message.
+fn listed(columns: &[usize]) -> String {
+    const MOST: usize = 6;
+    let mut numbers: Vec<String> = columns.iter().take(MOST).map(usize::to_string).collect();
+    if columns.len() > MOST {
+        numbers.push("...".to_owned());
+    }
+    numbers.join(", ")
 }

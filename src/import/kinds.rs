@@ -4,7 +4,7 @@ use super::map::GAUGE;
 use crate::recording::{Unit, schema};
 
 /// Words that a quantity's name ends with, and the units it may then have.
-const WORDS: [(&str, &[Unit]); 16] = [
+const WORDS: [(&str, &[Unit]); 17] = [
     ("force", &[Unit::Newton]),
     ("friction", &[Unit::Newton, Unit::NewtonMetre]),
     ("torque", &[Unit::NewtonMetre]),
@@ -21,6 +21,7 @@ const WORDS: [(&str, &[Unit]); 16] = [
     ("mass", &[Unit::Kilogram]),
     ("temperature", &[Unit::Kelvin]),
     ("voltage", &[Unit::Volt]),
+    ("current", &[Unit::Ampere]),
 ];
 
 /// Units that a quantity may have; none where its name tells nothing.

@@ -4,8 +4,9 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::error::ImportError;
-use super::map::{FileMap, Form};
+use super::map::{ChannelMap, FileMap, Form};
 use super::rows::{Remark, Rows, Times};
+use super::stamps::are_whole_seconds;
 use super::{bag, mat_log, parquet_log, spreadsheet, tdms_log, text};
 
 /// Times from here on count from 1970, not from a start [s]: over three years.
@@ -21,6 +22,8 @@ pub struct Log {
     pub epoch: f64,
     /// Data left out, or mended, for people.
     pub remarks: Vec<Remark>,
+    /// Rows that were used, and rows that are there.
+    pub rows: [usize; 2],
 }
 
 /// Values against times.
@@ -65,6 +68,7 @@ pub fn read_log(path: &Path, map: &FileMap) -> Result<Log, ImportError> {
             }
             log.series[channel] = series;
         }
+        log.rows = [log.rows[0] + group.rows[0], log.rows[1] + group.rows[1]];
         for remark in group.remarks {
             if !log.remarks.contains(&remark) {
                 log.remarks.push(remark);
@@ -79,10 +83,15 @@ fn seconds(map: &FileMap, times: Times) -> (Vec<f64>, f64) {
     match times {
         Times::Numbers(numbers) => {
             let unit = map.time.as_ref().and_then(|time| time.unit);
-            let to_si = |number: &f64| unit.map_or(*number, |unit| unit.to_si(*number));
+            let to_si = |number: &f64| match (unit, map.sample_rate) {
+                (Some(unit), _) => unit.to_si(*number),
+                (None, Some(rate)) => number / rate,
+                (None, None) => *number,
+            };
             let time: Vec<f64> = numbers.iter().map(to_si).collect();
             match time.iter().find(|time| **time != 0.0) {
-                Some(first) if first.abs() > EPOCH => {
+                // A counter may begin anywhere.
+                Some(first) if first.abs() > EPOCH && map.sample_rate.is_none() => {
                     let epoch = first.floor();
                     let since = |t: &f64| if *t == 0.0 { f64::NAN } else { t - epoch };
                     (time.iter().map(since).collect(), epoch)
@@ -157,9 +166,12 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
         columns,
         lines,
         mut remarks,
+        there,
+        is_trimmed,
     } = rows;
+    let is_whole = matches!(&time, Times::Nanoseconds(stamps) if are_whole_seconds(stamps));
     let (time, epoch) = seconds(map, time);
-    let [first, last] = map.dropped;
+    let [first, last] = if is_trimmed { [0, 0] } else { map.dropped };
     let count = time.len();
     let kept = first..count.saturating_sub(last);
     if kept.len() < 2 {
@@ -200,28 +212,106 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
             rows: count - first - last,
         });
     }
+    let there = there.unwrap_or(count - first - last);
+    check_used(
+        path,
+        map,
+        [taken.len(), there],
+        [&repeated, &stamped],
+        is_whole,
+    )?;
     if !repeated.is_empty() {
         remarks.push(Remark::Repeated(repeated));
     }
     if !stamped.is_empty() {
         remarks.push(Remark::Stamped(stamped));
     }
+    let used = taken.len();
+    Ok(Log {
+        series: series(map, &channels, &columns, &time, &taken),
+        epoch,
+        remarks,
+        rows: [used, there],
+    })
+}
+
+/// Series in SI of the rows that were taken.
+fn series(
+    map: &FileMap,
+    channels: &[usize],
+    columns: &[Vec<f64>],
+    time: &[f64],
+    taken: &[usize],
+) -> Vec<Series> {
     let time: Vec<f64> = taken.iter().map(|row| time[*row]).collect();
-    let series = channels.iter().zip(&columns).map(|(channel, numbers)| {
+    let value = |channel: &ChannelMap, number: f64| {
+        let value = if map.missing.has(number) {
+            f64::NAN
+        } else {
+            channel.to_si(number)
+        };
+        // An overflow is no value.
+        if value.is_finite() { value } else { f64::NAN }
+    };
+    let of = |(channel, numbers): (&usize, &Vec<f64>)| {
         let channel = &map.channels[*channel];
         Series {
             time: time.clone(),
             values: taken
                 .iter()
-                .map(|row| channel.to_si(numbers[*row]))
-                // An overflow is no value.
-                .map(|value| if value.is_finite() { value } else { f64::NAN })
+                .map(|row| value(channel, numbers[*row]))
                 .collect(),
         }
-    });
-    Ok(Log {
-        series: series.collect(),
-        epoch,
-        remarks,
+    };
+    channels.iter().zip(columns).map(of).collect()
+}
+
+/// Refuses a log of which fewer than nine in ten rows would be used, unless the map accepts that.
+fn check_used(
+    path: &Path,
+    map: &FileMap,
+    [used, there]: [usize; 2],
+    [repeated, stamped]: [&[u64]; 2],
+    is_whole: bool,
+) -> Result<(), ImportError> {
+    if 10 * used >= 9 * there || map.accepts_unused_rows {
+        return Ok(());
+    }
+    let mut why: Vec<String> = Vec::new();
+    if let Some(line) = stamped.first() {
+        why.push(format!(
+            "{} have the time of the row before them but other values (line {line} is the first)",
+            stamped.len()
+        ));
+    }
+    if let Some(line) = repeated.first() {
+        why.push(format!(
+            "{} repeat the row before them (line {line} is the first)",
+            repeated.len()
+        ));
+    }
+    let others = there - used - stamped.len() - repeated.len();
+    if others > 0 {
+        why.push(format!("{others} are no rows or have no stamp"));
+    }
+    if !stamped.is_empty() {
+        why.push(
+            if is_whole {
+                "times of whole seconds are too coarse: `sample_rate_hz` in place of `time` in [[file]] spaces rows evenly"
+            } else {
+                "`sample_rate_hz` in [[file]] spaces rows evenly where times are too coarse"
+            }
+            .to_owned(),
+        );
+        why.push(
+            "`rows = { column = .., value = .. }` chooses the rows of one variable where each has its own"
+                .to_owned(),
+        );
+    }
+    Err(ImportError::Unused {
+        file: path.to_owned(),
+        used,
+        there,
+        why: why.join("; "),
     })
 }

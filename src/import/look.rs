@@ -2,7 +2,7 @@
 //! is asked for in a comment.
 //!
 //! ```text
-//! logs -> layout and columns (`text`, `forms`) -> quantities (`names`, `assign`) and units (`units`) -> map (`write`)
+//! logs -> layout (`table`) and columns (`text`, `forms`) -> clocks and times (`clocks`, `time`), quantities (`names`, `assign`) and units (`units`) -> map (`sections`, `write`)
 //! ```
 
 use std::path::{Path, PathBuf};
@@ -11,11 +11,16 @@ use super::error::ImportError;
 use super::{bag, signature};
 
 mod assign;
+mod clocks;
 mod forms;
 mod joints;
+mod long;
 mod marks;
 mod names;
+mod rate;
+mod sections;
 mod seen;
+mod table;
 mod text;
 mod time;
 mod units;
@@ -35,6 +40,10 @@ pub fn draft(title: &str, paths: &[PathBuf]) -> Result<Draft, ImportError> {
         match kinds.iter_mut().find(|(kind, _)| kind.is_like(&looked)) {
             Some((kind, alike)) => {
                 alike.push(path.clone());
+                let lacks = |line: &&seen::Line| kind.head.iter().all(|own| own.key != line.key);
+                let more: Vec<seen::Line> = looked.head.iter().filter(lacks).cloned().collect();
+                kind.head.extend(more);
+                kind.notes.extend(looked.notes.iter().cloned());
                 for (own, more) in kind.columns.iter_mut().zip(&looked.columns) {
                     // Ranges are those of all; the first log's rows stand first. A column may be empty in one of them.
                     match &mut own.cells {

@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use super::stamps::DateOrder;
+use super::stamps::{self, DateOrder, TwoNumbers};
 use super::units::LogUnit;
 use crate::recording::Unit;
 
@@ -42,16 +42,26 @@ pub struct Constant {
 pub struct FileMap {
     /// Where it is, if the map says so.
     pub path: Option<PathBuf>,
+    /// Whether it is the log of the file before it: another clock of that, or other rows.
+    pub same_log: bool,
     /// Its form.
     pub form: Form,
     /// Rows left out at either end.
     pub dropped: [usize; 2],
     /// Whether the readable part of a log that is cut off is to be used.
     pub accepts_truncated: bool,
+    /// Whether fewer than nine in ten of its rows may be used.
+    pub accepts_unused_rows: bool,
+    /// Marks that stand for no value.
+    pub missing: Missing,
+    /// Which of its rows are meant, where it holds those of several variables.
+    pub rows: Option<RowChoice>,
     /// Its clock.
     pub clock: Clock,
-    /// Its times; none for those at which a bag's messages were logged, or that a TDMS file's waveforms say.
+    /// Its times; none for those at which a bag's messages were logged, that a TDMS file's waveforms say, and where rows follow each other at a rate.
     pub time: Option<TimeMap>,
+    /// Samples a second, of rows without times, or whose `time` counts them [Hz].
+    pub sample_rate: Option<f64>,
     /// Its channels.
     pub channels: Vec<ChannelMap>,
 }
@@ -93,6 +103,40 @@ pub struct TextForm {
     pub header_lines: usize,
     /// The one of them, from 1, that names the columns.
     pub names_line: Option<usize>,
+    /// Whether lines among the rows that are none are left out.
+    pub skips_stray_lines: bool,
+}
+
+/// Marks that a log writes where it has no value.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Missing {
+    /// Texts, in small letters.
+    pub texts: Vec<String>,
+    /// Numbers, as the log writes them.
+    pub numbers: Vec<f64>,
+}
+
+impl Missing {
+    /// Whether a number stands for no value.
+    #[must_use]
+    pub fn has(&self, number: f64) -> bool {
+        self.numbers.contains(&number)
+    }
+
+    /// Whether a text does.
+    #[must_use]
+    pub fn has_text(&self, text: &str) -> bool {
+        !self.texts.is_empty() && self.texts.contains(&text.to_lowercase())
+    }
+}
+
+/// Rows that are meant: those with this text in that column.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RowChoice {
+    /// Where.
+    pub column: Column,
+    /// What stands there.
+    pub value: String,
 }
 
 /// Separator of fields.
@@ -156,6 +200,19 @@ pub struct TimeMap {
     pub date_order: Option<DateOrder>,
     /// Of stamps without a year: the year.
     pub year: Option<i32>,
+    /// Of stamps of two numbers, `14:02`: what they are, if the map says so.
+    pub two_numbers: Option<TwoNumbers>,
+}
+
+impl TimeMap {
+    /// What it says of stamps.
+    pub(super) fn reading(&self) -> stamps::Reading {
+        stamps::Reading {
+            order: self.date_order,
+            year: self.year,
+            two_numbers: self.two_numbers,
+        }
+    }
 }
 
 /// A log's channel.
@@ -198,6 +255,14 @@ impl ChannelMap {
     pub fn to_si(&self, number: f64) -> f64 {
         let value = self.unit.to_si(self.gain * number + self.offset);
         self.above + if self.reversed { -value } else { value }
+    }
+
+    /// The number of the log of a value in SI.
+    #[must_use]
+    pub fn written(&self, value: f64) -> f64 {
+        let own = value - self.above;
+        let own = if self.reversed { -own } else { own };
+        (own / self.unit.factor - self.unit.zero - self.offset) / self.gain
     }
 
     /// Whether a number is taken as it stands, its unit apart.

@@ -2,20 +2,20 @@
 
 use std::path::Path;
 
-use super::encoding;
-use super::map::{Clock, FileMap, Form, ImportMap, Separator, TextForm, TimeMap};
-use super::stamps::DateOrder;
-use super::units;
-use crate::recording::Unit;
+use super::map::{Clock, FileMap, Form, ImportMap, Missing, RowChoice};
 use crate::scenario::ScenarioError;
 use crate::scenario::check::Section;
 use crate::scenario::document::{Document, read_text};
 
 mod channels;
 mod keys;
+mod texts;
+mod times;
 
-use channels::{channel_map, constant, unit};
-use keys::{ClockKey, DateOrderKey, FileKeys, FormKey, MapFile, TimeKeys, sections};
+use channels::{channel_map, constant};
+use keys::{ClockKey, FileKeys, FormKey, MapFile, MarkKey, sections};
+use texts::text_form;
+use times::time_map;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
@@ -72,43 +72,46 @@ fn file_map(
 ) -> Result<FileMap, ScenarioError> {
     let table = format!("file[{index}]");
     let section = Section::new(document, table.clone());
+    check_forms(document, &section, keys, &table)?;
+    if keys.same_log == Some(true) && (index == 0 || keys.path.is_some()) {
+        let reason = match index {
+            0 => "the first [[file]] has none before it".to_owned(),
+            _ => "the log is that of the [[file]] before it, and has its path".to_owned(),
+        };
+        return Err(section.misplaced("same_log", reason));
+    }
+    let sample_rate = match keys.sample_rate_hz {
+        Some(rate) => Some(section.number("sample_rate_hz", rate, 1e-3..=1e7)?),
+        None => None,
+    };
     let time = keys
         .time
         .as_ref()
-        .map(|time| time_map(document, &table, keys.form, time))
+        .map(|time| time_map(document, &table, keys.form, time, sample_rate))
         .transpose()?;
-    let says_times = matches!(keys.form, FormKey::Bag | FormKey::Mcap | FormKey::Tdms);
-    if time.is_none() && !says_times {
-        return Err(section.missing("time", "the column that holds the times, and its unit"));
-    }
-    if keys.channel.is_empty() {
-        return Err(section.missing("channel", "one [[file.channel]] at least"));
-    }
-    if keys.accept_truncated.is_some() && matches!(keys.form, FormKey::Parquet) {
-        let reason = "a Parquet file that is cut off cannot be read at all".to_owned();
-        return Err(section.misplaced("accept_truncated", reason));
-    }
-    if !matches!(keys.form, FormKey::Bag | FormKey::Mcap) {
-        for (i, channel) in keys.channel.iter().enumerate() {
-            let section = Section::new(document, format!("{table}.channel[{i}]"));
-            for (key, given) in [("joint", &channel.joint), ("frame", &channel.frame)] {
-                if given.is_some() {
-                    return Err(section.misplaced(key, "only a bag's messages have it".to_owned()));
-                }
-            }
-        }
-    }
     let channels = keys.channel.iter().enumerate();
     Ok(FileMap {
         path: keys.path.as_ref().map(|path| document.folder().join(path)),
+        same_log: keys.same_log.unwrap_or(false),
         form: form(&section, keys)?,
         dropped: [
             keys.drop_first_rows.unwrap_or(0),
             keys.drop_last_rows.unwrap_or(0),
         ],
         accepts_truncated: keys.accept_truncated.unwrap_or(false),
+        accepts_unused_rows: keys.accept_unused_rows.unwrap_or(false),
+        missing: missing(&section, keys)?,
+        rows: keys.rows.as_ref().map(|rows| RowChoice {
+            column: rows.column.0.clone(),
+            value: match &rows.value {
+                MarkKey::Text(text) => text.trim().to_owned(),
+                MarkKey::Whole(number) => number.to_string(),
+                MarkKey::Number(number) => number.to_string(),
+            },
+        }),
         clock: clock(&section, index, keys)?,
         time,
+        sample_rate,
         channels: channels
             .map(|(i, channel)| {
                 channel_map(
@@ -120,6 +123,65 @@ fn file_map(
             })
             .collect::<Result<_, _>>()?,
     })
+}
+
+/// Refuses keys that a file of this form cannot have, and the lack of those that it must.
+fn check_forms(
+    document: &Document<'_>,
+    section: &Section<'_>,
+    keys: &FileKeys,
+    table: &str,
+) -> Result<(), ScenarioError> {
+    let is_bag = matches!(keys.form, FormKey::Bag | FormKey::Mcap);
+    let says_times = is_bag || matches!(keys.form, FormKey::Tdms);
+    if keys.time.is_none() && keys.sample_rate_hz.is_none() && !says_times {
+        return Err(section.missing(
+            "time",
+            "the column that holds the times, and its unit; or `sample_rate_hz` where no column does",
+        ));
+    }
+    if keys.sample_rate_hz.is_some() && is_bag {
+        let reason = "the messages of a bag have times".to_owned();
+        return Err(section.misplaced("sample_rate_hz", reason));
+    }
+    if keys.channel.is_empty() {
+        return Err(section.missing("channel", "one [[file.channel]] at least"));
+    }
+    if keys.accept_truncated.is_some() && matches!(keys.form, FormKey::Parquet) {
+        let reason = "a Parquet file that is cut off cannot be read at all".to_owned();
+        return Err(section.misplaced("accept_truncated", reason));
+    }
+    if is_bag {
+        return Ok(());
+    }
+    for (i, channel) in keys.channel.iter().enumerate() {
+        let section = Section::new(document, format!("{table}.channel[{i}]"));
+        for (key, given) in [("joint", &channel.joint), ("frame", &channel.frame)] {
+            if given.is_some() {
+                return Err(section.misplaced(key, "only a bag's messages have it".to_owned()));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Marks of missing values: texts of a text alone.
+fn missing(section: &Section<'_>, keys: &FileKeys) -> Result<Missing, ScenarioError> {
+    let mut missing = Missing::default();
+    for mark in keys.missing.iter().flatten() {
+        match mark {
+            MarkKey::Whole(number) => missing.numbers.push(*number as f64),
+            MarkKey::Number(number) => missing.numbers.push(*number),
+            MarkKey::Text(text) if matches!(keys.form, FormKey::Text | FormKey::Spreadsheet) => {
+                missing.texts.push(text.trim().to_lowercase());
+            }
+            MarkKey::Text(text) => {
+                let expected = "numbers; only a text has texts in its columns".to_owned();
+                return Err(section.refuse("missing", format!("{text:?}"), expected));
+            }
+        }
+    }
+    Ok(missing)
 }
 
 fn form(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
@@ -134,6 +196,8 @@ fn form(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioError> {
         ("decimal_mark", keys.decimal_mark.is_some()),
         ("header_lines", keys.header_lines.is_some()),
         ("names_line", keys.names_line.is_some()),
+        ("skip_stray_lines", keys.skip_stray_lines.is_some()),
+        ("rows", keys.rows.is_some()),
     ];
     let other = match keys.form {
         FormKey::Text => return text_form(section, keys).map(Form::Text),
@@ -162,93 +226,6 @@ fn spreadsheet(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioE
         sheet: keys.sheet.clone(),
         text: text_form(section, keys)?,
     })
-}
-
-fn text_form(section: &Section<'_>, keys: &FileKeys) -> Result<TextForm, ScenarioError> {
-    let separator = match (&keys.separator, &keys.field_widths) {
-        (Some(_), Some(_)) => {
-            let reason = "fields have widths, or something between them".to_owned();
-            return Err(section.misplaced("field_widths", reason));
-        }
-        (None, Some(widths)) if widths.is_empty() || widths.contains(&0) => {
-            let expected = "a width of at least 1 for each field".to_owned();
-            return Err(section.refuse("field_widths", format!("{widths:?}"), expected));
-        }
-        (None, Some(widths)) => Separator::Widths(widths.clone()),
-        (None, None) if matches!(keys.form, FormKey::Spreadsheet) => Separator::Character(b'\t'),
-        (None, None) => Separator::Character(b','),
-        (Some(name), None) => match name.as_str() {
-            "whitespace" => Separator::Whitespace,
-            "tab" => Separator::Character(b'\t'),
-            name => {
-                let character = single(section, "separator", name, "\"whitespace\" or \"tab\"")?;
-                Separator::Character(u8::try_from(character).map_err(|_| {
-                    let expected = "a character of ASCII".to_owned();
-                    section.refuse("separator", format!("{name:?}"), expected)
-                })?)
-            }
-        },
-    };
-    let header_lines = keys
-        .header_lines
-        .unwrap_or(usize::from(keys.names_line.is_some()));
-    if let Some(line) = keys.names_line {
-        section.count("names_line", line, 1..=header_lines.max(1))?;
-    }
-    let decimal_mark = match &keys.decimal_mark {
-        Some(mark) => single(section, "decimal_mark", mark, "such as \".\" or \",\"")?,
-        None => '.',
-    };
-    if u8::try_from(decimal_mark).is_ok_and(|mark| separator == Separator::Character(mark)) {
-        let expected = "another character than between fields".to_owned();
-        return Err(section.refuse("decimal_mark", format!("{decimal_mark:?}"), expected));
-    }
-    let thousands_mark = match &keys.thousands_mark {
-        Some(mark) => Some(single(
-            section,
-            "thousands_mark",
-            mark,
-            "such as \".\" or \"'\"",
-        )?),
-        None => None,
-    };
-    if thousands_mark == Some(decimal_mark) {
-        let expected = "another character than `decimal_mark`".to_owned();
-        return Err(section.refuse("thousands_mark", format!("{decimal_mark:?}"), expected));
-    }
-    if let Some(name) = &keys.encoding
-        && !encoding::is_known(name)
-    {
-        let expected =
-            "an encoding, such as \"utf-8\", \"windows-1252\", \"utf-16le\" or \"utf-16be\"";
-        return Err(section.refuse("encoding", format!("{name:?}"), expected.to_owned()));
-    }
-    Ok(TextForm {
-        encoding: keys.encoding.clone(),
-        separator,
-        decimal_mark,
-        thousands_mark,
-        header_lines,
-        names_line: keys.names_line,
-    })
-}
-
-/// A text of one character.
-fn single(
-    section: &Section<'_>,
-    key: &str,
-    text: &str,
-    besides: &str,
-) -> Result<char, ScenarioError> {
-    let mut characters = text.chars();
-    match (characters.next(), characters.next()) {
-        (Some(character), None) => Ok(character),
-        _ => Err(section.refuse(
-            key,
-            format!("{text:?}"),
-            format!("one character, {besides}"),
-        )),
-    }
 }
 
 fn clock(section: &Section<'_>, index: usize, keys: &FileKeys) -> Result<Clock, ScenarioError> {
@@ -290,61 +267,6 @@ fn clock(section: &Section<'_>, index: usize, keys: &FileKeys) -> Result<Clock, 
             Ok(Clock::Unknown { by, largest })
         }
     }
-}
-
-fn time_map(
-    document: &Document<'_>,
-    table: &str,
-    form: FormKey,
-    keys: &TimeKeys,
-) -> Result<TimeMap, ScenarioError> {
-    let section = Section::new(document, format!("{table}.time"));
-    if keys.unit.is_none() && matches!(form, FormKey::Mat5) {
-        let expected = format!("one of {}", units::of_kind(Unit::Second).join(", "));
-        return Err(section.missing("unit", &expected));
-    }
-    let of_stamps = [
-        ("date_column", keys.date_column.is_some()),
-        ("date_order", keys.date_order.is_some()),
-        ("year", keys.year.is_some()),
-    ];
-    for (key, given) in [("thousands_mark", keys.thousands_mark.is_some())]
-        .into_iter()
-        .chain(of_stamps)
-    {
-        let has_texts = matches!(
-            form,
-            FormKey::Text | FormKey::Spreadsheet | FormKey::Parquet
-        );
-        if given && !has_texts {
-            return Err(section.misplaced(key, "only a text has it".to_owned()));
-        }
-    }
-    if let Some((key, _)) = of_stamps.into_iter().find(|(_, given)| *given)
-        && keys.unit.is_some()
-    {
-        let reason = "with a `unit` the times are numbers, and no stamps".to_owned();
-        return Err(section.misplaced(key, reason));
-    }
-    if let Some(year) = keys.year {
-        section.count("year", year, 1970..=2200)?;
-    }
-    let mark = |text: &String| single(&section, "thousands_mark", text, "such as \".\" or \"'\"");
-    Ok(TimeMap {
-        column: keys.column.0.clone(),
-        unit: match &keys.unit {
-            Some(name) => Some(unit(&section, name, Some(&[Unit::Second]))?),
-            None => None,
-        },
-        thousands_mark: keys.thousands_mark.as_ref().map(mark).transpose()?,
-        date_column: keys.date_column.as_ref().map(|column| column.0.clone()),
-        date_order: keys.date_order.map(|order| match order {
-            DateOrderKey::YearMonthDay => DateOrder::YearMonthDay,
-            DateOrderKey::DayMonthYear => DateOrder::DayMonthYear,
-            DateOrderKey::MonthDayYear => DateOrder::MonthDayYear,
-        }),
-        year: keys.year,
-    })
 }
 
 /// Every quantity once, and clocks aligned by quantities that are there.
@@ -395,6 +317,7 @@ fn check_together(document: &Document<'_>, map: &ImportMap) -> Result<(), Scenar
 
 #[cfg(test)]
 mod tests {
+    use super::super::units;
     use super::*;
 
     const PAGE: &str = include_str!("../../assets/import/README.md");

@@ -90,7 +90,9 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
             other => other,
         })?;
     let values = |place: usize| contents.columns[place].values.as_slice();
-    let time = time_place.map_or(&[][..], values);
+    let first = channel_places.first();
+    let counts = || Times::counts(first.map_or(0, |place| values(*place).len()));
+    let time = time_place.map_or_else(counts, |place| values(place).to_vec());
     let time_column = map.time.as_ref().map(|time| time.column.clone());
     if let Some(row) = time.iter().position(|time| !time.is_finite()) {
         return Err(ImportError::Number {
@@ -117,9 +119,10 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
     Ok(Rows {
         channels: (0..map.channels.len()).collect(),
         lines: (1..=time.len() as u64).collect(),
-        time: Times::Numbers(time.to_vec()),
+        time: Times::Numbers(time),
         columns,
         remarks,
+        ..Rows::default()
     })
 }
 

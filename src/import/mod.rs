@@ -9,6 +9,7 @@ pub mod error;
 pub mod findings;
 pub mod kinds;
 pub mod log;
+mod lone;
 pub mod look;
 pub mod map;
 pub mod map_file;

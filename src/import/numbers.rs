@@ -3,12 +3,34 @@
 use super::words;
 
 /// Words that stand for no value.
-const NOTHING: [&str; 15] = [
-    "", "nan", "-nan", "na", "n/a", "#n/a", "#nv", "#n/v", "null", "none", "-", "--", "---",
-    "nan(ind)", "1.#qnan",
+const NOTHING: [&str; 22] = [
+    "",
+    "nan",
+    "-nan",
+    "+nan",
+    "na",
+    "n/a",
+    "#n/a",
+    "#nv",
+    "#n/v",
+    "null",
+    "none",
+    "-",
+    "--",
+    "---",
+    "–",
+    "—",
+    "nan(ind)",
+    "-nan(ind)",
+    "1.#qnan",
+    "-1.#ind",
+    "<na>",
+    "nat",
 ];
 /// Spaces that stand before every third digit.
-const SPACES: [char; 4] = [' ', '\u{a0}', '\u{202f}', '\u{2009}'];
+const SPACES: [char; 5] = [' ', '\u{a0}', '\u{202f}', '\u{2009}', '\u{2007}'];
+/// Minus signs of typesetters, which spreadsheets and browsers copy: U+2212, the dash, the small and the wide sign.
+const MINUS: [char; 4] = ['\u{2212}', '\u{2013}', '\u{fe63}', '\u{ff0d}'];
 
 /// Marks in numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +77,11 @@ impl Marks {
     }
 
     fn parse(self, field: &str) -> Option<f64> {
+        let field = &*with_plain_minus(field);
+        // What Rust reads beside numbers, `inf` and `infinity`, is no reading.
+        if !field.contains(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
         if self.decimal == '.' && self.thousands.is_none() {
             return field.parse().ok();
         }
@@ -74,6 +101,19 @@ impl Marks {
         };
         text.parse().ok()
     }
+}
+
+/// A field whose minus signs are those of ASCII.
+fn with_plain_minus(field: &str) -> std::borrow::Cow<'_, str> {
+    if field.is_ascii() || !field.contains(MINUS) {
+        return field.into();
+    }
+    field.replace(MINUS, "-").into()
+}
+
+/// Whether a mark is one of the spaces.
+pub(super) fn is_space(mark: char) -> bool {
+    SPACES.contains(&mark)
 }
 
 /// A whole number without the marks before every third digit; none where they stand elsewhere.
@@ -96,8 +136,19 @@ fn ungrouped(whole: &str, mark: char) -> Option<String> {
 
 /// Signs of marks in a field.
 pub(super) fn seen(field: &str) -> Seen {
+    let field = with_plain_minus(field);
     let body = field.trim().trim_start_matches(['+', '-']);
-    let mantissa = body.split(['e', 'E']).next().unwrap_or(body);
+    let (mantissa, exponent) = match body.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, Some(exponent)),
+        None => (body, None),
+    };
+    let is_exponent = |text: &str| {
+        let digits = text.trim_start_matches(['+', '-']);
+        !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    if exponent.is_some_and(|text| !is_exponent(text)) {
+        return Seen::Other;
+    }
     let is_mark = |c: char| ".,'’".contains(c) || SPACES.contains(&c);
     if !mantissa.chars().all(|c| c.is_ascii_digit() || is_mark(c))
         || !mantissa.contains(|c: char| c.is_ascii_digit())

@@ -18,21 +18,23 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
     let (time_place, channel_places) = places(path, map, Some(&names), names.len())?;
     let wanted: Vec<usize> = time_place.iter().chain(&channel_places).copied().collect();
     let mut cells = table.read(&wanted)?.into_iter();
-    let time = match (&map.time, cells.next()) {
-        (Some(time), Some(cells)) => times(path, time, cells)?,
-        // A Parquet's map has a time.
-        _ => Times::default(),
+    let time = match &map.time {
+        Some(time) => (cells.next())
+            .map(|cells| times(path, time, map.sample_rate.is_some(), cells))
+            .transpose()?,
+        None => None,
     };
     let pairs = cells.zip(&map.channels);
     let columns = pairs.map(|(cells, channel)| values(path, channel, cells));
     let columns: Vec<Vec<f64>> = columns.collect::<Result<_, _>>()?;
+    let time = time.unwrap_or_else(|| Times::of_rate(columns.first().map_or(0, Vec::len)));
     let count = time.len();
     Ok(Rows {
         channels: (0..map.channels.len()).collect(),
         time,
         columns,
         lines: (1..=count as u64).collect(),
-        remarks: Vec::new(),
+        ..Rows::default()
     })
 }
 
@@ -89,7 +91,12 @@ pub(super) fn numbers(cells: &Cells) -> Vec<f64> {
 }
 
 /// Times of a column that says its unit itself, or whose unit the map says.
-pub(super) fn times(path: &Path, map: &TimeMap, cells: Cells) -> Result<Times, ImportError> {
+pub(super) fn times(
+    path: &Path,
+    map: &TimeMap,
+    counts: bool,
+    cells: Cells,
+) -> Result<Times, ImportError> {
     let empty = |row: usize| ImportError::Number {
         file: path.to_owned(),
         line: row as u64 + 1,
@@ -98,15 +105,16 @@ pub(super) fn times(path: &Path, map: &TimeMap, cells: Cells) -> Result<Times, I
         expected: "a time".to_owned(),
     };
     match cells {
-        Cells::Texts(texts) if map.unit.is_some() => {
-            times(path, map, Cells::Numbers(numbers(&Cells::Texts(texts))))
+        Cells::Texts(texts) if map.unit.is_some() || counts => {
+            let numbers = Cells::Numbers(numbers(&Cells::Texts(texts)));
+            times(path, map, counts, numbers)
         }
         Cells::Texts(texts) => {
             if let Some(row) = texts.iter().position(Option::is_none) {
                 return Err(empty(row));
             }
             let texts: Vec<String> = texts.into_iter().flatten().collect();
-            let read = stamps::nanoseconds(&texts, map.date_order, map.year);
+            let read = stamps::nanoseconds(&texts, map.reading());
             read.map(Times::Nanoseconds)
                 .map_err(|unread| ImportError::Number {
                     file: path.to_owned(),
@@ -117,7 +125,7 @@ pub(super) fn times(path: &Path, map: &TimeMap, cells: Cells) -> Result<Times, I
                 })
         }
         Cells::Numbers(numbers) => {
-            if map.unit.is_none() {
+            if map.unit.is_none() && !counts {
                 return Err(ImportError::TimeUnit {
                     file: path.to_owned(),
                     column: map.column.clone(),

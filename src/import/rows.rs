@@ -25,8 +25,23 @@ pub enum Remark {
     Reversed,
     /// Something about its files, a sentence.
     Note(String),
+    /// Rows of other variables than the map means.
+    Others(usize),
+    /// Rows that hold nothing in the map's columns, as those of another clock.
+    Hollow(usize),
+    /// Lines that are no rows, left out as the map asks.
+    Strays(Vec<Stray>),
     /// Its last line does not end, and its last number may have lost digits.
     Unended(u64),
+}
+
+/// A line among the rows that is none.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Stray {
+    /// Its number, from 1.
+    pub line: u64,
+    /// Its beginning.
+    pub text: String,
 }
 
 /// Times as they are written.
@@ -45,6 +60,16 @@ impl Times {
             Self::Numbers(numbers) => numbers.len(),
             Self::Nanoseconds(stamps) => stamps.len(),
         }
+    }
+
+    /// The places of rows that follow each other at a rate.
+    pub fn counts(rows: usize) -> Vec<f64> {
+        (0..rows).map(|row| row as f64).collect()
+    }
+
+    /// Rows that follow each other at a rate.
+    pub fn of_rate(rows: usize) -> Self {
+        Self::Numbers(Self::counts(rows))
     }
 }
 
@@ -67,6 +92,10 @@ pub(super) struct Rows {
     pub lines: Vec<u64>,
     /// Data left out while reading.
     pub remarks: Vec<Remark>,
+    /// Rows that are there for these channels, where some of them were left out while reading.
+    pub there: Option<usize>,
+    /// Whether what the map drops was dropped while reading.
+    pub is_trimmed: bool,
 }
 
 /// Where a map's columns stand among named or numbered ones.

@@ -50,11 +50,17 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError>
             });
         }
     }
-    let Some(time) = &map.time else {
-        return waveforms(path, map, &channels, &remarks);
+    let times = match &map.time {
+        None if map.sample_rate.is_none() => {
+            return waveforms(path, map, &channels, &remarks);
+        }
+        None => Times::of_rate(channels.first().map_or(0, |own| own.len())),
+        Some(time) => {
+            let index = place(path, &time.column, Some(&names), names.len())?;
+            let cells = contents.channels[index].cells.clone();
+            parquet_log::times(path, time, map.sample_rate.is_some(), cells)?
+        }
     };
-    let index = place(path, &time.column, Some(&names), names.len())?;
-    let times = parquet_log::times(path, time, contents.channels[index].cells.clone())?;
     let expected = times.len();
     for (channel, own) in map.channels.iter().zip(&channels) {
         if own.len() != expected {
@@ -72,6 +78,7 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError>
         lines: (1..=expected as u64).collect(),
         time: times,
         remarks,
+        ..Rows::default()
     }])
 }
 
@@ -115,6 +122,7 @@ fn waveforms(
             columns: vec![own.numbers()],
             lines: (1..=own.len() as u64).collect(),
             remarks: remarks.to_vec(),
+            ..Rows::default()
         });
     }
     Ok(all)

@@ -29,6 +29,8 @@ pub enum Unit {
     Kelvin,
     /// Voltage, as of a regulator's set point [V].
     Volt,
+    /// Electric current, as of a regulator's set point [A].
+    Ampere,
     /// Angle [rad].
     Radian,
     /// Angular velocity [rad/s].
@@ -45,7 +47,7 @@ pub enum Unit {
 
 impl Unit {
     /// Every unit.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Second,
         Self::Metre,
         Self::MetrePerSecond,
@@ -57,6 +59,7 @@ impl Unit {
         Self::KilogramPerSecond,
         Self::Kelvin,
         Self::Volt,
+        Self::Ampere,
         Self::Radian,
         Self::RadianPerSecond,
         Self::CubicMetrePerSecond,
@@ -80,6 +83,7 @@ impl Unit {
             Self::KilogramPerSecond => "kg_per_s",
             Self::Kelvin => "k",
             Self::Volt => "v",
+            Self::Ampere => "a",
             Self::Radian => "rad",
             Self::RadianPerSecond => "rad_per_s",
             Self::CubicMetrePerSecond => "m3_per_s",
@@ -104,6 +108,7 @@ impl Unit {
             Self::KilogramPerSecond => "kg/s",
             Self::Kelvin => "K",
             Self::Volt => "V",
+            Self::Ampere => "A",
             Self::Radian => "rad",
             Self::RadianPerSecond => "rad/s",
             Self::CubicMetrePerSecond => "m3/s",

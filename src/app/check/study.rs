@@ -83,10 +83,19 @@ pub(super) fn map(file: &Path) -> Result<Report, AppError> {
         };
         let time = match &log.time {
             None if log.form == Form::Tdms => "times of its waveforms".to_owned(),
-            None => "times at which messages were logged".to_owned(),
+            None if log.sample_rate.is_none() => "times at which messages were logged".to_owned(),
+            None => String::new(),
             Some(time) => format!("times in {}", time.column),
         };
-        report.fact("log", format!("{form}, {time}{clock}"));
+        let rate = log
+            .sample_rate
+            .map(|rate| format!("{} samples a second", shown(rate)));
+        let rows = log.rows.as_ref();
+        let rows = rows.map(|rows| format!("rows with `{}` in {}", rows.value, rows.column));
+        let said = [Some(time), rate, rows].into_iter().flatten();
+        let said: Vec<String> = said.filter(|text| !text.is_empty()).collect();
+        let form = if log.same_log { "the same log" } else { form };
+        report.fact("log", format!("{form}, {}{clock}", said.join(", ")));
         for channel in &log.channels {
             let text = format!(
                 "{} from {}, in {}",

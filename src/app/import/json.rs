@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::told::{Copies, Job, remarks};
+use super::told::{Copies, Job, rate, remarks};
 use crate::import::ImportMap;
 use crate::import::findings::{Finding, findings};
 use crate::recording::gaps::parts;
@@ -28,6 +28,8 @@ struct RecordingReport {
     samples: usize,
     from_s: f64,
     to_s: f64,
+    span_s: f64,
+    rate_hz: f64,
     /// Origin of its times, in seconds since 1970; none where it is the logs' own start.
     origin_unix_s: Option<f64>,
     logs: Vec<LogReport>,
@@ -38,6 +40,8 @@ struct RecordingReport {
 #[derive(Debug, Serialize)]
 struct LogReport {
     file: String,
+    rows_used: usize,
+    rows_there: usize,
     remarks: Vec<String>,
     clock_found: Option<ClockReport>,
 }
@@ -102,6 +106,8 @@ fn recording(map: &ImportMap, job: &Job) -> RecordingReport {
     let time = imported.recording.time();
     let logs = imported.logs.iter().map(|log| LogReport {
         file: log.file.display().to_string(),
+        rows_used: log.rows[0],
+        rows_there: log.rows[1],
         remarks: remarks(log),
         clock_found: log.alignment.map(|found| ClockReport {
             added_s: found.offset,
@@ -121,6 +127,8 @@ fn recording(map: &ImportMap, job: &Job) -> RecordingReport {
         samples: time.len(),
         from_s: time[0],
         to_s: time[time.len() - 1],
+        span_s: time[time.len() - 1] - time[0],
+        rate_hz: rate(time),
         origin_unix_s: (imported.origin != 0.0).then_some(imported.origin),
         logs: logs.collect(),
         channels: findings(imported, map).into_iter().map(channel).collect(),

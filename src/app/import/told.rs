@@ -5,7 +5,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::import::findings::{Finding, findings};
+use crate::import::rows::Stray;
 use crate::import::{ImportMap, Imported, LogNote, Remark};
+use crate::recording::csv::median_step;
 use crate::recording::gaps::{longest_pause, parts};
 
 /// Gaps and rows that are listed, at most.
@@ -29,18 +31,22 @@ pub(super) struct Copies {
 pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
     let mut text = String::new();
     let time = imported.recording.time();
-    let files: Vec<String> = imported
+    let mut files: Vec<String> = imported
         .logs
         .iter()
         .map(|log| log.file.display().to_string())
         .collect();
+    // Clocks of one log stand behind each other.
+    files.dedup();
     let _ = writeln!(
         text,
-        "{}: {} samples from {:.3} to {:.3} s",
+        "{}: {} samples from {:.3} to {:.3} s, {:.3} s at {} Hz",
         files.join(" and "),
         time.len(),
         time[0],
-        time[time.len() - 1]
+        time[time.len() - 1],
+        time[time.len() - 1] - time[0],
+        shown(rate(time))
     );
     let found = findings(imported, map);
     let wide = found.iter().map(|f| f.quantity.len()).max().unwrap_or(0);
@@ -65,6 +71,16 @@ pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
         );
     }
     for log in &imported.logs {
+        let [used, there] = log.rows;
+        let of = match imported.logs.len() {
+            1 => String::new(),
+            _ => format!(", of {}", log.quantities.join(", ")),
+        };
+        let _ = writeln!(
+            text,
+            "  {}: {used} of {there} rows used{of}",
+            name(&log.file)
+        );
         for remark in remarks(log) {
             let _ = writeln!(text, "  {}: {remark}", name(&log.file));
         }
@@ -78,6 +94,12 @@ pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
         );
     }
     text + &gaps(&found)
+}
+
+/// Samples a second, in the median [Hz].
+pub(super) fn rate(time: &[f64]) -> f64 {
+    let step = median_step(time);
+    if step > 0.0 { 1.0 / step } else { 0.0 }
 }
 
 /// The longest gaps of each log, which its channels share.
@@ -193,6 +215,14 @@ pub(super) fn remarks(log: &LogNote) -> Vec<String> {
                 "its rows go back in time, the newest first; they were turned round".to_owned()
             }
             Remark::Note(sentence) => sentence.clone(),
+            Remark::Others(count) => format!("{count} rows are of other variables"),
+            Remark::Hollow(count) => {
+                format!("{count} rows hold nothing in the columns of the map, as those of another clock")
+            }
+            Remark::Strays(lines) => format!(
+                "lines that are no rows were left out, as the map says: {}",
+                strays(lines)
+            ),
             Remark::Truncated(rest) => format!("{rest}; what is left was used, as the map accepts"),
             Remark::Unended(line) => {
                 format!("its last line, {line}, does not end, and may lack the last digits of its last number")
@@ -206,6 +236,17 @@ pub(super) fn remarks(log: &LogNote) -> Vec<String> {
         ));
     }
     said
+}
+
+/// The first of the lines that were left out, with what stands in them.
+fn strays(lines: &[Stray]) -> String {
+    let first: Vec<String> = lines
+        .iter()
+        .take(LISTED)
+        .map(|stray| format!("line {} `{}`", stray.line, stray.text))
+        .collect();
+    let more = if lines.len() > LISTED { ", ..." } else { "" };
+    format!("{} ({}{more})", lines.len(), first.join(", "))
 }
 
 pub(super) fn name(path: &Path) -> String {

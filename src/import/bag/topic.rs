@@ -402,6 +402,7 @@ impl Topic {
             columns,
             lines: self.rows.iter().map(|row| row.1).collect(),
             remarks: remarks.to_vec(),
+            ..Rows::default()
         })
     }
 }

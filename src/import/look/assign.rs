@@ -111,6 +111,12 @@ fn pick(place: usize, column: &Seen) -> Option<Pick> {
         Some((_, set)) => format!("`{word}` and `{set}`"),
         None => format!("`{word}`"),
     };
+    // A force in g is no acceleration: nothing is taken for what its name says it is not.
+    let is_another = said.thing.is_some_and(|(thing, _)| match thing {
+        Thing::Other => true,
+        Thing::Time => false,
+        thing => unit.is_some() && !is_states && (!said.by_letter || thing == Thing::Force),
+    });
     let (thing, mut worth, because) = match (by_name, unit) {
         (Some((thing, word)), _) if !said.by_letter => (
             thing,
@@ -130,7 +136,7 @@ fn pick(place: usize, column: &Seen) -> Option<Pick> {
             WEAK,
             Because::likely(format!("the name says {}", quoted(letter))),
         ),
-        (None, _) if matches!(said.thing, Some((Thing::Other, _))) => return None,
+        (None, _) if is_another => return None,
         (None, _) if is_states => (Thing::Valve, WEAK, Because::likely("it is of two states")),
         (None, Some(unit)) => {
             let things = [

@@ -58,7 +58,7 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
         path: path.to_owned(),
         head: form("parquet", "it begins as one"),
         columns,
-        time: TimeSeen::Column,
+        ..Looked::default()
     })
 }
 
@@ -75,6 +75,7 @@ fn cells(read: table::Cells) -> Cells {
                 rows: stamps.len(),
                 because: Because::certain("stamps, which say their unit themselves"),
                 problem: None,
+                times: stamps.into_iter().flatten().collect(),
             }
         }
         table::Cells::Texts(texts) => of_texts(texts),
@@ -135,6 +136,7 @@ pub(super) fn tdms(path: &Path) -> Result<Looked, ImportError> {
             true => TimeSeen::Waveforms,
             false => TimeSeen::Column,
         },
+        ..Looked::default()
     })
 }
 
@@ -185,7 +187,7 @@ pub(super) fn mat(path: &Path) -> Result<Looked, ImportError> {
         path: path.to_owned(),
         head: form("mat5", "it is of version 5 to 7"),
         columns: columns.into_iter().map(seen).collect(),
-        time: TimeSeen::Column,
+        ..Looked::default()
     })
 }
 
@@ -224,6 +226,7 @@ pub(super) fn bag(path: &Path) -> Result<Looked, ImportError> {
         head: form("bag", &why.join("; ")),
         columns: glance.fields.into_iter().map(seen).collect(),
         time: TimeSeen::Messages { column, because },
+        ..Looked::default()
     })
 }
 

@@ -19,8 +19,8 @@ struct Found<'a> {
     grouped: Option<char>,
     /// A mark of either.
     open: Option<char>,
-    /// Whether there is a number without marks.
-    plain: bool,
+    /// Whether a column has both numbers with that mark and, of three digits and more, without: 999 before 1.000.
+    mixed: bool,
 }
 
 impl<'a> Found<'a> {
@@ -29,8 +29,9 @@ impl<'a> Found<'a> {
             decimals: vec![[None; 2]; of_numbers.len()],
             grouped: None,
             open: None,
-            plain: false,
+            mixed: false,
         };
+        let mut kinds = vec![[false; 2]; of_numbers.len()];
         for (line, row) in &sheet.rows {
             for (place, field) in row.iter().enumerate().take(of_numbers.len()) {
                 if !of_numbers[place] {
@@ -44,10 +45,11 @@ impl<'a> Found<'a> {
                     }
                     numbers::Seen::Open(mark) => {
                         found.open = Some(mark);
+                        kinds[place][0] = true;
                         None
                     }
                     numbers::Seen::Plain => {
-                        found.plain = true;
+                        kinds[place][1] = true;
                         None
                     }
                     numbers::Seen::Other => None,
@@ -58,11 +60,12 @@ impl<'a> Found<'a> {
                 }
             }
         }
+        found.mixed = kinds.iter().any(|both| *both == [true; 2]);
         found
     }
 }
 
-/// Decimal and thousands marks of all columns of numbers together, and how sure they are.
+/// Decimal and thousands marks of all columns of numbers together, how sure they are, and what to ask where they may be either.
 ///
 /// # Errors
 /// Decimal marks of both kinds.
@@ -70,7 +73,7 @@ pub(super) fn marks(
     path: &Path,
     sheet: &Sheet,
     of_numbers: &[bool],
-) -> Result<(Marks, Because), ImportError> {
+) -> Result<(Marks, Because, Option<String>), ImportError> {
     let found = Found::new(sheet, of_numbers);
     check_alike(path, sheet, &found.decimals)?;
     let decimals: [Shown<'_>; 2] =
@@ -90,7 +93,8 @@ pub(super) fn marks(
         let (line, field) = known(mark).unwrap_or((0, ""));
         Because::certain(format!("`{field}` in line {line}"))
     };
-    Ok(match (only, found.grouped, found.open) {
+    let mut question = None;
+    let (marks, because) = match (only, found.grouped, found.open) {
         (Some(decimal), grouped, _) if grouped.is_some() => {
             (marks(decimal, grouped), seen(decimal))
         }
@@ -109,18 +113,24 @@ pub(super) fn marks(
             ),
             Because::likely("no number has decimals"),
         ),
-        (None, None, Some(mark)) if found.plain => (
+        (None, None, Some(mark)) if found.mixed => (
             marks(other(mark), Some(mark)),
             Because::likely(format!(
                 "`{mark}` stands before three digits and in large numbers alone"
             )),
         ),
-        (None, None, Some(mark)) => (
-            marks(mark, None),
-            Because::likely(format!("every number has `{mark}` before three digits")),
-        ),
+        (None, None, Some(mark)) => {
+            let why = format!("every number has `{mark}` before three digits");
+            question = Some(format!(
+                "{why}: {mark:?} where these are decimals; where it marks thousands {:?}, and `thousands_mark = {:?}`",
+                other(mark).to_string(),
+                mark.to_string()
+            ));
+            (marks(mark, None), Because::likely(why))
+        }
         (None, None, None) => (marks('.', None), Because::likely("no number has decimals")),
-    })
+    };
+    Ok((marks, because, question))
 }
 
 /// Refuses decimal marks of both kinds, in one column or in two.

@@ -124,7 +124,7 @@ pub(super) fn units_of(thing: Thing) -> &'static [Unit] {
 }
 
 /// Parts of a name in plain small letters, without what stands in brackets: `fSollDruck_1 [bar]` as f, soll, druck, 1.
-fn parts(name: &str) -> Vec<String> {
+pub(super) fn parts(name: &str) -> Vec<String> {
     let mut parts: Vec<String> = vec![String::new()];
     let mut depth = 0;
     let mut before = ' ';

@@ -70,6 +70,8 @@ pub(super) enum Cells {
         because: Because,
         /// Their open question.
         problem: Option<String>,
+        /// Their times [ns], where they can be read.
+        times: Vec<i64>,
     },
     /// Something else.
     Other,
@@ -118,7 +120,7 @@ pub(super) struct Line {
 }
 
 /// A log as it was seen.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Looked {
     pub path: PathBuf,
     /// Lines of the map on its form.
@@ -126,12 +128,49 @@ pub(super) struct Looked {
     pub columns: Vec<Seen>,
     /// Whether the times are those at which messages were logged, not their stamps.
     pub time: TimeSeen,
+    /// Keys of its form that cannot be told, and the question.
+    pub asked: Vec<(&'static str, String)>,
+    /// What was left out of it and where, a sentence each.
+    pub notes: Vec<String>,
+    /// Rates that its header says, with the column from which on each holds.
+    pub rates: Vec<SaidRate>,
+    /// The first field of each column, for people.
+    pub samples: Vec<String>,
+    /// Units that its line of units names and nobody here knows, by column.
+    pub odd_units: Vec<Option<String>>,
+    /// Where each of its rows has another variable: those.
+    pub variables: Vec<Variable>,
+}
+
+/// A rate that a header says.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SaidRate {
+    /// Column from which on it holds, from 0.
+    pub place: usize,
+    /// Samples a second [Hz].
+    pub rate: f64,
+    /// The words that say it.
+    pub words: String,
+}
+
+/// A variable of a log in which each row has another one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Variable {
+    /// The column that names it.
+    pub chooser: Column,
+    /// Its name there.
+    pub value: String,
+    /// Its numbers, named as it is.
+    pub column: Seen,
+    /// The other columns, at its rows.
+    pub columns: Vec<Seen>,
 }
 
 /// Where the times are, as far as the form tells.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) enum TimeSeen {
     /// In a column.
+    #[default]
     Column,
     /// In the messages: the column, and why that.
     Messages {
@@ -147,7 +186,10 @@ impl Looked {
     pub fn is_like(&self, other: &Self) -> bool {
         let plain = |log: &Self| -> Vec<(&'static str, String)> {
             let head = log.head.iter();
-            head.map(|line| (line.key, line.value.clone())).collect()
+            // What one log of a kind lacks another may have.
+            head.filter(|line| !["missing", "skip_stray_lines"].contains(&line.key))
+                .map(|line| (line.key, line.value.clone()))
+                .collect()
         };
         let names = |log: &Self| -> Vec<String> {
             let columns = log.columns.iter();

@@ -60,6 +60,29 @@ pub(super) fn of_name(name: &str) -> Option<SaidUnit> {
     })
 }
 
+/// What stands in the brackets at the end of a name where a unit does, if it is one that nobody here knows.
+pub(super) fn odd_unit(name: &str) -> Option<String> {
+    const LONGEST: usize = 8;
+    let name = name.trim();
+    let (open, inside) =
+        [('[', ']'), ('(', ')'), ('{', '}')]
+            .into_iter()
+            .find_map(|(open, close)| {
+                let (_, inside) = name.strip_suffix(close)?.rsplit_once(open)?;
+                Some((open, inside.trim()))
+            })?;
+    let is_unit = inside.chars().any(char::is_alphabetic)
+        && inside.chars().count() <= LONGEST
+        && !inside.contains(' ')
+        && !inside.starts_with(|c: char| c.is_ascii_digit());
+    // Round brackets hold remarks as often: (ist), (X), (abs).
+    let is_remark = pressure_of(inside).is_some()
+        || ["bool", "bit", "none", "raw"].contains(&inside.to_lowercase().as_str())
+        || (open == '(' && names::said(inside).thing.is_some())
+        || !names::said(inside).roles.is_empty();
+    (is_unit && !is_remark && of_name(name).is_none()).then(|| inside.to_owned())
+}
+
 /// The unit that a name ends with in small letters, `force_n`, where it is one of the quantity that the name says.
 fn of_small_letters(name: &str) -> Option<&'static LogUnit> {
     let (_, last) = name.rsplit_once('_')?;
@@ -84,14 +107,24 @@ pub(super) fn of_cell(cell: &str) -> Option<SaidUnit> {
 /// A unit as written, with a suffix that says against what.
 fn of_text(text: &str) -> Option<(&'static LogUnit, Option<Pressure>)> {
     let text = text.trim();
+    // `barg`, `kPaa`: a unit of pressure and a letter.
+    let suffixed = [('g', Pressure::Gauge), ('a', Pressure::Absolute)]
+        .into_iter()
+        .find_map(|(letter, kind)| {
+            let unit = units::named(text.strip_suffix(letter)?)?;
+            (unit.si == Unit::Pascal).then_some((unit, Some(kind)))
+        });
+    if suffixed.is_some() {
+        return suffixed;
+    }
     if let Some(unit) = units::named(text) {
-        let suffixed = unit.si == Unit::Pascal && unit.name != text;
-        let kind = match text.chars().next_back() {
-            Some('g') if suffixed => Some(Pressure::Gauge),
-            Some('a') if suffixed && unit.name != "Pa" => Some(Pressure::Absolute),
-            _ => None,
-        };
-        return Some((unit, kind));
+        return Some((unit, None));
+    }
+    // `V (Voltage)`.
+    if let Some((head, _)) = text.split_once(" (")
+        && let Some(unit) = units::named(head).filter(|unit| unit.si != Unit::Pascal)
+    {
+        return Some((unit, None));
     }
     // `bar(g)`, `bar_abs`, `mbar rel`, `barÜ`.
     let end = text.find(|c: char| "( _-".contains(c) || c == 'ü' || c == 'Ü')?;
@@ -205,12 +238,34 @@ mod tests {
             ("Beschleunigung [m/s²]", "m/s2", None),
             ("Zeit  1 - default sample rate [s]", "s", None),
             ("Oberfläche [µm]", "um", None),
+            ("p [kPag]", "kPa", Some(Gauge)),
+            ("p [kpa]", "kPa", None),
+            ("p [MPaa]", "MPa", Some(Absolute)),
+            ("Strom [mA]", "mA", None),
+            ("F [daN]", "daN", None),
+            ("t [Sekunden]", "s", None),
         ] {
             let said = of_name(name).unwrap_or_else(|| panic!("{name}"));
             assert_eq!((said.unit.name, said.pressure), (unit, pressure), "{name}");
         }
         assert_eq!(of_cell("[bar]").unwrap().unit.name, "bar");
         assert_eq!(of_name("Ventil"), None);
+        assert_eq!(odd_unit("F [ozf]").as_deref(), Some("ozf"));
+        for name in [
+            "F [N]",
+            "F (ist)",
+            "p [abs]",
+            "Ventil [-]",
+            "F",
+            "x [1]",
+            "flag [bool]",
+        ] {
+            assert_eq!(odd_unit(name), None, "{name}");
+        }
+        // A port of a valve, an instrument.
+        for name in ["Druck_A", "flow_meter", "piston_second"] {
+            assert_eq!(of_name(name), None, "{name}");
+        }
         assert_eq!(of_name("F_ist"), None);
     }
 

@@ -3,10 +3,11 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use super::assign::{Pick, QUANTITIES, assign, described};
-use super::joints::joints;
+use super::assign::{Pick, QUANTITIES, described};
+use super::sections::{self, Sections};
 use super::seen::{Because, Draft, Looked, Seen, TimeSeen};
-use super::time::{self, toml_text, written};
+use super::table::is_vector;
+use super::time::{self, TimeChoice, toml_text, written};
 use super::units::{self, shown};
 use crate::import::map::Pressure;
 use crate::import::units::LogUnit;
@@ -96,79 +97,139 @@ fn file(
     kinds: &[(Looked, Vec<PathBuf>)],
 ) {
     let names: Vec<String> = paths.iter().map(|path| name(path)).collect();
-    page.plain("");
-    page.plain(&format!("[[file]]   # {}", names.join(", ")));
-    let is_text = looked.head.first().is_none_or(|line| line.key != "form");
-    if is_text {
-        page.line("form", "\"text\"", &Because::certain("it is one"));
-    }
-    for line in &looked.head {
-        page.line(line.key, &line.value, &line.because);
-    }
-    let choice = time::choose(looked, paths.len());
-    let taken = choice
-        .as_ref()
-        .map_or(Vec::new(), |choice| choice.places.clone());
-    match &choice {
-        Some(choice) => {
-            let keys: Vec<String> = choice
-                .keys
-                .iter()
-                .map(|(k, v)| format!("{k} = {v}"))
-                .collect();
-            let line = format!("time = {{ {} }}", keys.join(", "));
-            match &choice.open {
-                None => page.put(&line, &choice.because.to_string()),
-                Some(what) => {
-                    page.put(&line, &format!("asked: {what}"));
-                    page.open.push(format!("times of {}: {what}", names[0]));
-                }
-            }
-        }
-        None if looked.time == TimeSeen::Column => page.ask(
-            "time = { column = 1, unit = \"ms\" }",
-            "no column rises from row to row or holds stamps",
-            "times",
-        ),
-        None => {}
-    }
-    if index > 0 {
-        page.put(
-            "clock = \"shared\"",
-            &format!(
-                "asked: is it the clock of {}? else \"unknown\" with `aligned_by`",
-                kinds[0]
-                    .1
-                    .first()
-                    .map_or_else(String::new, |path| name(path))
-            ),
-        );
-    }
     let given: Vec<String> = page
         .found
         .iter()
         .map(|(quantity, _)| quantity.clone())
         .collect();
-    let mut picks = assign(&looked.columns, &taken);
-    let of_device: Vec<usize> = picks.iter().map(|pick| pick.place).collect();
-    picks.extend(joints(
-        &looked.columns,
-        &[taken.clone(), of_device].concat(),
-    ));
-    picks.retain(|pick| !given.iter().any(|quantity| *quantity == pick.quantity));
-    for pick in &picks {
-        channel(
-            page,
-            pick,
-            &looked.columns[pick.place],
-            &looked.columns,
-            &picks,
-        );
+    let parts = sections::of(looked, paths.len(), &given);
+    for (number, part) in parts.sections.iter().enumerate() {
+        page.plain("");
+        let of = if number == 0 {
+            ""
+        } else {
+            ", another clock of it"
+        };
+        page.plain(&format!("[[file]]   # {}{of}", names.join(", ")));
+        if number > 0 {
+            page.put("same_log = true", "the log of the [[file]] before");
+        }
+        form(page, looked, number > 0);
+        if let Some((column, value)) = &part.rows {
+            let chosen = format!(
+                "rows = {{ column = {}, value = {} }}",
+                written(column),
+                toml_text(value)
+            );
+            page.put(&chosen, "each row has another variable; these are its rows");
+        }
+        times(page, part.time.as_ref(), looked, &names[0]);
+        if index > 0 {
+            page.put(
+                "clock = \"shared\"",
+                &format!(
+                    "asked: is it the clock of {}? else \"unknown\" with `aligned_by`",
+                    kinds[0]
+                        .1
+                        .first()
+                        .map_or_else(String::new, |path| name(path))
+                ),
+            );
+        }
+        for pick in &part.picks {
+            let odd = looked.odd_units.get(pick.place).cloned().flatten();
+            let column = &parts.columns[pick.place];
+            channel(page, pick, column, odd, &parts.columns, &parts.picks);
+        }
     }
-    unused(page, looked, &taken, &picks);
+    unused(page, &parts);
 }
 
-fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks: &[Pick]) {
+/// The form of a log; of its further clocks without the reasons.
+fn form(page: &mut Page, looked: &Looked, is_again: bool) {
+    let again = "as above";
+    let is_text = looked.head.first().is_none_or(|line| line.key != "form");
+    if is_text && is_again {
+        page.put("form = \"text\"", again);
+    } else if is_text {
+        page.line("form", "\"text\"", &Because::certain("it is one"));
+    }
+    for line in &looked.head {
+        let asked = looked.asked.iter().find(|(key, _)| *key == line.key);
+        match asked {
+            // What stands there is no mark, so that nothing is read before it is filled in.
+            Some((key, question)) => {
+                page.put(&format!("{key} = \"\""), &format!("asked: {question}"));
+                if !is_again {
+                    page.open.push(format!("{key}: {question}"));
+                }
+            }
+            None if is_again => page.put(&format!("{} = {}", line.key, line.value), again),
+            None => page.line(line.key, &line.value, &line.because),
+        }
+    }
+    if !is_again {
+        for note in &looked.notes {
+            page.plain(&format!("# {note}"));
+        }
+    }
+}
+
+/// The times of a section, or what is asked of them.
+fn times(page: &mut Page, choice: Option<&TimeChoice>, looked: &Looked, name: &str) {
+    let Some(choice) = choice else {
+        if looked.time == TimeSeen::Column {
+            let what = time::nothing_found(looked);
+            page.ask("time = { column = 1, unit = \"ms\" }", &what, "times");
+        }
+        return;
+    };
+    let keys: Vec<String> = choice
+        .keys
+        .iter()
+        .map(|(k, v)| format!("{k} = {v}"))
+        .collect();
+    let rate = choice
+        .sample_rate
+        .map(|rate| format!("sample_rate_hz = {}", plain(rate)));
+    let time = (!keys.is_empty()).then(|| format!("time = {{ {} }}", keys.join(", ")));
+    let lines = [time, rate];
+    let lines = lines.iter().flatten();
+    match &choice.open {
+        None => lines.for_each(|line| page.put(line, &choice.because.to_string())),
+        Some(what) => {
+            let mut lines: Vec<String> = lines.cloned().collect();
+            if lines.is_empty() {
+                lines.push("time = { column = 1, unit = \"ms\" }".to_owned());
+            }
+            let sign = if choice.is_blocked { "# " } else { "" };
+            for line in lines {
+                page.put(&format!("{sign}{line}"), &format!("asked: {what}"));
+            }
+            page.open.push(format!("times of {name}: {what}"));
+        }
+    }
+}
+
+/// A rate with no more digits than tell it.
+fn plain(rate: f64) -> String {
+    let rounded = (rate * 1e3).round() / 1e3;
+    let near = (rate.round() / rate - 1.0).abs() < 1e-9;
+    if near {
+        format!("{}", rate.round())
+    } else {
+        format!("{rounded}")
+    }
+}
+
+fn channel(
+    page: &mut Page,
+    pick: &Pick,
+    column: &Seen,
+    odd: Option<String>,
+    columns: &[Seen],
+    picks: &[Pick],
+) {
     page.plain("");
     page.plain("[[file.channel]]");
     page.line("quantity", &format!("{:?}", pick.quantity), &pick.because);
@@ -201,13 +262,9 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
             Some(unit) => (unit, Because::certain("on and off have no unit")),
             None => return,
         },
-        None => match units::by_size(pick.kind, [low, high]) {
-            Some(found) => found,
-            None => {
-                let what = format!(
-                    "nothing says it, and {range} is usual in no unit alone; one of {}",
-                    units::choices(pick.kind)
-                );
+        None => match by_size(column, odd, pick.kind, [low, high]) {
+            Ok(found) => found,
+            Err(what) => {
                 page.ask(
                     "unit = \"\"",
                     &what,
@@ -243,6 +300,25 @@ fn channel(page: &mut Page, pick: &Pick, column: &Seen, columns: &[Seen], picks:
     }
 }
 
+/// A unit by the size of a column's numbers, or the question where that does not tell it, or its name says one that nobody here knows.
+fn by_size(
+    column: &Seen,
+    odd: Option<String>,
+    kind: Unit,
+    [low, high]: [f64; 2],
+) -> Result<(&'static LogUnit, Because), String> {
+    let choices = units::choices(kind);
+    if let Some(odd) = odd.or_else(|| units::odd_unit(&column.name)) {
+        return Err(format!(
+            "the log says `{odd}`, which is no unit known here; `gain` makes one of it, one of {choices}"
+        ));
+    }
+    units::by_size(kind, [low, high]).ok_or_else(|| {
+        let range = format!("{} to {}", shown(low), shown(high));
+        format!("nothing says it, and {range} is usual in no unit alone; one of {choices}")
+    })
+}
+
 /// What a pressure is against, by where it rests or as another one of its log.
 fn against(
     pick: &Pick,
@@ -268,24 +344,36 @@ fn against(
 }
 
 /// Columns that were taken for nothing.
-fn unused(page: &mut Page, looked: &Looked, taken: &[usize], picks: &[Pick]) {
-    let all = looked.columns.iter().enumerate();
-    let left: Vec<&Seen> = all
-        .filter(|(place, _)| !taken.contains(place) && !picks.iter().any(|p| p.place == *place))
-        .map(|(_, column)| column)
+fn unused(page: &mut Page, parts: &Sections) {
+    let all = parts.columns.iter().enumerate();
+    let left: Vec<(usize, &Seen)> = all
+        .filter(|(place, _)| !parts.taken.contains(place))
+        .filter(|(place, _)| !parts.picks.iter().any(|pick| pick.place == *place))
         .collect();
     if left.is_empty() {
         return;
     }
     page.plain("");
     page.plain("# Not used:");
-    for column in left {
+    for (place, column) in left {
+        let sample = parts.samples.get(place).map_or("", String::as_str);
         let what = match column.range() {
             Some([low, high]) => {
                 let unit = column.unit.as_ref().map_or("", |said| said.unit.name);
-                format!("{} to {} {unit}", shown(low), shown(high))
+                let electric = ["V", "mV", "A", "mA"].contains(&unit);
+                let hint = if electric {
+                    "; of a sensor `gain` and `offset` make its unit of it"
+                } else {
+                    ""
+                };
+                format!("{} to {} {unit}{hint}", shown(low), shown(high))
             }
-            None => "no numbers".to_owned(),
+            None if is_vector(sample) => format!(
+                "vectors such as `{sample}`; `column = \"{}[0]\"` is the first element",
+                column.name
+            ),
+            None if sample.is_empty() => "no numbers".to_owned(),
+            None => format!("no numbers, `{sample}`"),
         };
         page.plain(format!("#   {}: {what}", described(column)).trim_end());
     }

@@ -27,6 +27,7 @@ pub(super) struct MapFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct FileKeys {
     pub path: Option<PathBuf>,
+    pub same_log: Option<bool>,
     pub form: FormKey,
     pub sheet: Option<String>,
     pub encoding: Option<String>,
@@ -39,6 +40,11 @@ pub(super) struct FileKeys {
     pub drop_first_rows: Option<usize>,
     pub drop_last_rows: Option<usize>,
     pub accept_truncated: Option<bool>,
+    pub skip_stray_lines: Option<bool>,
+    pub accept_unused_rows: Option<bool>,
+    pub missing: Option<Vec<MarkKey>>,
+    pub rows: Option<RowsKeys>,
+    pub sample_rate_hz: Option<f64>,
     pub clock: Option<ClockKey>,
     pub clock_offset_s: Option<f64>,
     pub aligned_by: Option<[String; 2]>,
@@ -79,6 +85,7 @@ pub(super) struct TimeKeys {
     pub date_column: Option<ColumnKey>,
     pub date_order: Option<DateOrderKey>,
     pub year: Option<i32>,
+    pub two_numbers: Option<TwoNumbersKey>,
 }
 
 /// `date_order`.
@@ -88,6 +95,32 @@ pub(super) enum DateOrderKey {
     YearMonthDay,
     DayMonthYear,
     MonthDayYear,
+}
+
+/// `two_numbers`.
+#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+pub(super) enum TwoNumbersKey {
+    #[serde(rename = "mm:ss")]
+    MinutesSeconds,
+    #[serde(rename = "hh:mm")]
+    HoursMinutes,
+}
+
+/// `[file.rows]`.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RowsKeys {
+    pub column: ColumnKey,
+    pub value: MarkKey,
+}
+
+/// A text or a number that a log writes: of `missing`, of `rows`.
+#[derive(Debug, Deserialize, schemars::JsonSchema)]
+#[serde(untagged)]
+pub(super) enum MarkKey {
+    Whole(i64),
+    Number(f64),
+    Text(String),
 }
 
 /// `[[constant]]`.
@@ -178,7 +211,14 @@ pub(super) fn schema() -> serde_json::Value {
     const PAGE: &str = include_str!("../../../assets/import/README.md");
     let rows = key_rows(PAGE);
     // The page has a table for each of these, in its order.
-    let tables = ["", "file", "file.time", "file.channel", "constant"];
+    let tables = [
+        "",
+        "file",
+        "file.time",
+        "file.rows",
+        "file.channel",
+        "constant",
+    ];
     describe(plain_schema::<MapFile>(), |table, key| {
         let place = tables.iter().position(|name| *name == table)?;
         let row = rows.get(place)?.iter().find(|row| row.names(key))?;
@@ -196,6 +236,7 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("", keys::<MapFile>()),
         ("file", keys::<FileKeys>()),
         ("file.time", keys::<TimeKeys>()),
+        ("file.rows", keys::<RowsKeys>()),
         ("file.channel", keys::<ChannelKeys>()),
         ("constant", keys::<ConstantKeys>()),
     ]

@@ -38,6 +38,10 @@ fn numbers_are_read_with_the_marks_that_are_given_and_with_no_others() {
         (swiss, "1'234'567.5", Some(1_234_567.5)),
         (swiss, "1'23.5", None),
         (french, "1\u{202f}234,5", Some(1234.5)),
+        (french, "\u{2212}1\u{a0}234,5", Some(-1234.5)),
+        (POINT, "\u{2212}0.5", Some(-0.5)),
+        (COMMA, "\u{2013}0,5", Some(-0.5)),
+        (POINT, "inf", None),
     ] {
         assert_eq!(marks.number(text), number, "{text}");
     }
@@ -61,6 +65,9 @@ fn a_field_tells_its_marks_unless_they_may_be_either() {
         ("1.5.2024", Seen::Other),
         ("1.000e3", Seen::Decimal('.')),
         ("x", Seen::Other),
+        ("\u{2212}1.5", Seen::Decimal('.')),
+        ("1 234,5", Seen::Grouped(' ', Some(','))),
+        ("1.5E", Seen::Other),
     ] {
         assert_eq!(seen(text), told, "{text}");
     }

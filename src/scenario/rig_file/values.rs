@@ -220,7 +220,13 @@ pub(super) fn sensors(
             continue;
         }
         let section = Section::new(document, table);
-        *value = exact(&section, key, find(&section, keys, table, key)?, range)?;
+        let number = find(&section, keys, table, key)?;
+        if PLACES[index].is_some() && number.value == 0.0 {
+            // Without noise a single reading would outweigh all others.
+            let expected = "the standard deviation of its noise, more than 0, as every sensor has; `idc import` prints that of each channel of a log";
+            return Err(section.refuse(key, "0".to_owned(), expected.to_owned()));
+        }
+        *value = exact(&section, key, number, range)?;
     }
     let [rate, noise @ ..] = values;
     if noise.iter().all(|noise| noise.is_infinite()) {

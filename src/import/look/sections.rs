@@ -1,0 +1,135 @@
+//! The files of a draft: one for each clock of a log, or for each variable of a log in which rows have different ones.
+
+use super::assign::{Pick, assign};
+use super::clocks::{Clocks, clocks};
+use super::joints::joints;
+use super::seen::{Looked, Seen, TimeSeen};
+use super::time::{self, TimeChoice};
+use crate::import::map::Column;
+
+/// A file of the map.
+pub(super) struct Section {
+    /// Its times; none where nothing looks like them.
+    pub time: Option<TimeChoice>,
+    /// The rows that it is of, where each row has another variable.
+    pub rows: Option<(Column, String)>,
+    pub picks: Vec<Pick>,
+}
+
+/// All files of a log.
+pub(super) struct Sections {
+    pub sections: Vec<Section>,
+    /// The columns that the picks are of.
+    pub columns: Vec<Seen>,
+    /// Places of those that hold times.
+    pub taken: Vec<usize>,
+    /// The picks of all files.
+    pub picks: Vec<Pick>,
+    /// The first field of each column.
+    pub samples: Vec<String>,
+}
+
+/// The files of a log, of which `logs` are there one behind the other, for quantities that are not given yet.
+pub(super) fn of(looked: &Looked, logs: usize, given: &[String]) -> Sections {
+    let mut all = if looked.variables.is_empty() {
+        of_columns(looked, logs, given)
+    } else {
+        of_variables(looked, logs, given)
+    };
+    // The fastest clock counts: others are read off between their samples.
+    all.sections.sort_by(|a, b| rate(b).total_cmp(&rate(a)));
+    if all.sections.iter().any(|section| !section.picks.is_empty()) {
+        all.sections.retain(|section| !section.picks.is_empty());
+    } else {
+        all.sections.truncate(1);
+    }
+    all
+}
+
+fn rate(section: &Section) -> f64 {
+    section.time.as_ref().map_or(0.0, |time| time.rate)
+}
+
+/// Quantities of the device and joints of an arm in columns, but for those at some places and those that are given.
+fn all_picks(columns: &[Seen], taken: &[usize], given: &[String]) -> Vec<Pick> {
+    let mut picks = assign(columns, taken);
+    let of_device = picks.iter().map(|pick| pick.place);
+    let taken: Vec<usize> = taken.iter().copied().chain(of_device).collect();
+    picks.extend(joints(columns, &taken));
+    picks.retain(|pick| !given.iter().any(|quantity| *quantity == pick.quantity));
+    picks
+}
+
+/// Files of a log with a column for each variable.
+fn of_columns(looked: &Looked, logs: usize, given: &[String]) -> Sections {
+    let columns = &looked.columns;
+    let whole = |time: Option<TimeChoice>| {
+        let taken = time
+            .as_ref()
+            .map_or(Vec::new(), |choice| choice.places.clone());
+        let picks = all_picks(columns, &taken, given);
+        let section = Section {
+            time,
+            rows: None,
+            picks: picks.clone(),
+        };
+        (vec![section], taken, picks)
+    };
+    let (sections, taken, picks) = match (&looked.time, clocks(looked, logs)) {
+        (TimeSeen::Messages { column, because }, _) => {
+            whole(Some(time::of_messages(column, because)))
+        }
+        (TimeSeen::Waveforms, _) => whole(None),
+        (TimeSeen::Column, Clocks::One) => whole(time::choose(columns, &looked.rates, logs)),
+        (TimeSeen::Column, Clocks::Open(question)) => {
+            let is_time = |place: &usize| time::is_time(*place, &columns[*place], logs);
+            let places = (0..columns.len()).filter(is_time).collect();
+            whole(Some(TimeChoice::asked(question, places)))
+        }
+        (TimeSeen::Column, Clocks::Each(groups)) => {
+            let taken: Vec<usize> = groups.iter().map(|group| group.clock).collect();
+            let picks = all_picks(columns, &taken, given);
+            let section = |group: &super::clocks::Group| Section {
+                time: Some(time::of_column(columns, group.clock, &looked.rates, logs)),
+                rows: None,
+                picks: (picks.iter())
+                    .filter(|pick| group.columns.contains(&pick.place))
+                    .cloned()
+                    .collect(),
+            };
+            (groups.iter().map(section).collect(), taken, picks)
+        }
+    };
+    Sections {
+        sections,
+        columns: columns.clone(),
+        taken,
+        picks,
+        samples: looked.samples.clone(),
+    }
+}
+
+/// Files of a log in which each row has another variable.
+fn of_variables(looked: &Looked, logs: usize, given: &[String]) -> Sections {
+    let variables = &looked.variables;
+    let columns: Vec<Seen> = variables
+        .iter()
+        .map(|variable| variable.column.clone())
+        .collect();
+    let picks = all_picks(&columns, &[], given);
+    let section = |(place, variable): (usize, &super::seen::Variable)| Section {
+        time: time::choose(&variable.columns, &looked.rates, logs),
+        rows: Some((variable.chooser.clone(), variable.value.clone())),
+        picks: (picks.iter())
+            .filter(|pick| pick.place == place)
+            .cloned()
+            .collect(),
+    };
+    Sections {
+        sections: variables.iter().enumerate().map(section).collect(),
+        columns,
+        taken: Vec::new(),
+        picks,
+        samples: Vec::new(),
+    }
+}
