@@ -74,7 +74,7 @@ const SIZES: [Size; 4] = [
     },
     Size {
         payload: 2.0,
-        force: 20.0,
+        force: 18.0,
         keys: &[
             ("cylinder_count", 1.0),
             ("bore_mm", 16.0),

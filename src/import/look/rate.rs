@@ -177,7 +177,7 @@ mod tests {
             ("# fs = 500", vec![(0, 500.0)]),
             ("Abtastrate [Hz];2400", vec![(0, 2400.0)]),
             ("Abtastzeit;0,5;ms", vec![(0, 2e3)]),
-            ("Sampling interval (us) 100", vec![]),
+            ("Sampling interval (us) 100", vec![(0, 1e4)]),
             ("Fréquence d'échantillonnage : 100 Hz", vec![(0, 100.0)]),
             (
                 "SampleTime[ms];0,2;SampleTime[ms];5",
