@@ -137,7 +137,7 @@ fn without_effort_nothing_is_looked_for_and_what_is_well_has_no_remedy() {
     bench.replace("scenario.toml", "force_n = 150", "force_n = 1500");
     let error = refusal(&bench.idc(&["check", "scenario.toml", "--json", "--effort", "0"], &[]));
     assert_eq!(error["remedies"], Value::Null);
-    let outcome = bench.idc(&["check", "scenario.toml", "--effort", "-1"], &[]);
+    let outcome = bench.idc(&["check", "scenario.toml", "--effort=-1"], &[]);
     assert!(
         outcome.err.contains("expected a number from 0 to 1000"),
         "{}",

@@ -317,7 +317,7 @@ fn collision_shapes_of_a_robot() {
     let outcome = bench.run();
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     let told = |file: &str| outcome.err.matches(file).count();
-    assert_eq!(told("there is no file none.stl"), 1, "{}", outcome.err);
+    assert_eq!(told("there is no file ./none.stl"), 1, "{}", outcome.err);
     let said = "links with collision meshes that cannot be used have the shape that is drawn of them: shoulder, forearm";
     assert_eq!(told(said), 1, "{}", outcome.err);
     let as_drawn = std::fs::read(bench.path("out/samples.parquet")).unwrap();

@@ -95,11 +95,18 @@ fn no_drive_gives_more_than_its_limit_and_a_run_at_it_says_so() {
                 continue;
             };
             let finished = run_cell(&cell, &mut |_, _| ()).unwrap();
-            assert!(largest_torque(&finished, joint + 1) <= effort);
+            let largest = largest_torque(&finished, joint + 1);
+            assert!(largest <= effort);
+            // A drive that is limited elsewhere has another arm to carry: it may stay just below.
+            let reached = largest == effort;
             let summary = &finished.summary;
-            assert!(summary.drives_saturated_s.unwrap() > 0.0, "{name} {share}");
-            assert!(summary.joints[joint].saturated_from_s.is_some());
-            cut += 1;
+            assert_eq!(
+                summary.drives_saturated_s.unwrap() > 0.0,
+                reached,
+                "{name} {share}"
+            );
+            assert_eq!(summary.joints[joint].saturated_from_s.is_some(), reached);
+            cut += usize::from(reached);
         }
     }
     assert!(
@@ -189,7 +196,6 @@ fn peak(stiffness: f64, step: f64) -> f64 {
     stiff.contact.stiffness = stiffness;
     stiff.workpiece.edge.end = Some(stiff.workpiece.edge.start + 2e-3);
     stiff.process.settle_time = 0.02;
-    stiff.process.approach_distance = 2e-3;
     stiff.simulation.step = step;
     run(stiff).summary.engagement_peak_n.unwrap()
 }

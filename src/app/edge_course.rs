@@ -19,10 +19,13 @@ pub fn edge_course(cell: &Cell, recording: &Recording) -> Result<Vec<EdgeMoment>
     };
     let time = recording.time();
     let rate = recording.values(schema::REMOVAL_RATE)?;
-    let place = recording.values(schema::PATH_LENGTH)?;
+    let planned = recording.values(schema::PATH_LENGTH)?;
+    let lag = recording.values(schema::PATH_LAG)?;
+    // A step cuts where the sample before it has left the tool.
+    let place = |sample: usize| planned[sample - 1] - lag[sample - 1];
     let half = 0.5 * removal.contact_length;
     let cutting: Vec<usize> = (1..time.len())
-        .filter(|i| rate[*i] > 0.0 && place[*i].is_finite())
+        .filter(|i| rate[*i] > 0.0 && place(*i).is_finite())
         .collect();
     let Some(last) = cutting.last() else {
         return Ok(Vec::new());
@@ -45,7 +48,7 @@ pub fn edge_course(cell: &Cell, recording: &Recording) -> Result<Vec<EdgeMoment>
     let each = cutting.len().div_ceil(MOMENTS).max(1);
     for (count, sample) in cutting.iter().enumerate() {
         let taken = rate[*sample] * (time[*sample] - time[*sample - 1]);
-        edge.remove(place[*sample] - half, place[*sample] + half, taken);
+        edge.remove(place(*sample) - half, place(*sample) + half, taken);
         if *sample == *last || (count + 1) % each == 0 {
             moments.push(moment(*sample, edge.stations()));
         }

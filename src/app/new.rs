@@ -15,6 +15,7 @@ use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
 use crate::scenario::removal_table::REMOVAL_TABLE;
 use crate::shell::word;
+use part::Files;
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -263,10 +264,10 @@ fn told(draft: &Draft) -> String {
 
 /// The cell's file with arm and part of the user's own, and in words what was chosen for the arm.
 fn with_own(
-    mut files: Vec<(PathBuf, Vec<u8>)>,
+    mut files: Files,
     file: &Path,
     arguments: &NewArguments,
-) -> Result<(Vec<(PathBuf, Vec<u8>)>, String), AppError> {
+) -> Result<(Files, String), AppError> {
     let whole = |path: &Path| {
         std::fs::canonicalize(path).map_err(|error| AppError::OutputFile {
             file: path.display().to_string(),
@@ -318,7 +319,7 @@ fn with_own(
 }
 
 /// The file and what it needs beside it, with their contents.
-fn files(kind: Kind, file: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+fn files(kind: Kind, file: &Path) -> Files {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let models = format!("{stem}_models");
     let runs = format!("{stem}_runs.csv");

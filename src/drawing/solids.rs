@@ -60,10 +60,8 @@ pub(super) fn solids(scene: &Scene, frame: usize, most: usize) -> Vec<Solid> {
         let group = ranges.partition_point(|(first, _)| *first <= triangle[0]) - 1;
         kept[group].push(triangle);
     }
-    let solid = |(((body, colour), (_, whole)), triangles): (
-        (&(u16, Colour), (u32, usize)),
-        Vec<[u32; 3]>,
-    )| {
+    let solids = groups.keys().zip(ranges).zip(kept);
+    let solids = solids.map(|(((body, colour), (_, whole)), triangles)| {
         let (corners, triangles) = compact(&bodies.corners, &triangles);
         Solid {
             entity: scene.bodies[usize::from(*body) - 1].entity.clone(),
@@ -72,8 +70,8 @@ pub(super) fn solids(scene: &Scene, frame: usize, most: usize) -> Vec<Solid> {
             triangles,
             whole,
         }
-    };
-    groups.keys().zip(ranges).zip(kept).map(solid).collect()
+    });
+    solids.collect()
 }
 
 /// Opposite corners of the box about triangles.

@@ -155,7 +155,9 @@ mod tests {
     fn marks_in_place_of_values_are_found_and_no_course_of_a_device_is() {
         let with = |at: &[usize], mark: f64| {
             let mut values = force();
-            at.iter().for_each(|i| values[*i] = mark);
+            for i in at {
+                values[*i] = mark;
+            }
             lone(&values, Unit::Newton)
         };
         for mark in [-9999.0, 9999.0, 6553.5, -999.25, 1e30, 400.0, 0.0] {

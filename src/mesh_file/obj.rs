@@ -201,7 +201,7 @@ fn colours(text: &str) -> BTreeMap<String, [f64; 4]> {
             ("newmtl", _) => line.trim_start()[6..].trim().clone_into(&mut name),
             ("Kd", &[red, green, blue, ..]) => {
                 found.entry(name.clone()).or_insert([0.0, 0.0, 0.0, 1.0])[..3]
-                    .copy_from_slice(&[red, green, blue])
+                    .copy_from_slice(&[red, green, blue]);
             }
             _ => {}
         }

@@ -277,11 +277,7 @@ impl Values<'_> {
             self.at += start + length;
             let word = String::from_utf8_lossy(&rest[start..start + length]);
             return number(&word).map(Some).map_err(|reason| {
-                let line = self.bytes[..self.at]
-                    .iter()
-                    .filter(|byte| **byte == b'\n')
-                    .count()
-                    + 1;
+                let line = self.bytes[..self.at].split(|byte| *byte == b'\n').count();
                 Fault::at_line(line, reason)
             });
         }

@@ -195,12 +195,12 @@ impl Plane<'_> {
         while corners.len() > 3 {
             let count = corners.len();
             let reflex: Vec<u32> = (0..count)
-                .filter(|&i| self.area(self.ear(&corners, i)) <= self.no_area)
+                .filter(|&i| self.area(ear(&corners, i)) <= self.no_area)
                 .map(|i| corners[i])
                 .collect();
             let mut best = None;
             for index in 0..count {
-                let ear = self.ear(&corners, index);
+                let ear = ear(&corners, index);
                 if self.area(ear) <= self.no_area || !self.is_free(ear, &reflex) {
                     continue;
                 }
@@ -224,21 +224,12 @@ impl Plane<'_> {
                 triangles.extend((1..count - 1).map(|i| [corners[0], corners[i], corners[i + 1]]));
                 return Some(triangles);
             };
-            triangles.push(self.ear(&corners, index));
+            triangles.push(ear(&corners, index));
             corners.remove(index);
         }
         let last = [corners[0], corners[1], corners[2]];
         triangles.push(last);
         (self.area(last) >= -self.no_area).then_some(triangles)
-    }
-
-    fn ear(&self, corners: &[u32], index: usize) -> [u32; 3] {
-        let count = corners.len();
-        [
-            corners[(index + count - 1) % count],
-            corners[index],
-            corners[(index + 1) % count],
-        ]
     }
 
     /// Whether no other corner lies in an ear or on its sides.
@@ -325,6 +316,16 @@ impl Plane<'_> {
         };
         !crosses(outline) && !holes.iter().any(|hole| crosses(hole))
     }
+}
+
+/// The triangle of a corner and its neighbours.
+fn ear(corners: &[u32], index: usize) -> [u32; 3] {
+    let count = corners.len();
+    [
+        corners[(index + count - 1) % count],
+        corners[index],
+        corners[(index + 1) % count],
+    ]
 }
 
 #[cfg(test)]

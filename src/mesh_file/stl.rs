@@ -50,7 +50,7 @@ fn binary(body: &[u8], declared: usize) -> Result<MeshFile, Fault> {
     // Programs that write while they count leave the count open.
     let uncounted = declared == 0 || declared == u32::MAX as usize;
     let mut notes = Vec::new();
-    let count = if uncounted && present > 0 && present % TRIANGLE == 0 {
+    let count = if uncounted && present > 0 && present.is_multiple_of(TRIANGLE) {
         notes.push(format!(
             "its header counts {declared} triangles, and {whole} follow, which were read"
         ));

@@ -443,7 +443,7 @@ fn gltf_that_cannot_be_read_rightly_is_refused_by_name() {
 fn collada(asset: &str, faces: &str, scene: &str) -> String {
     let numbers: Vec<String> = corners()
         .iter()
-        .flat_map(|point| point.to_array())
+        .flat_map(glam::DVec3::to_array)
         .map(|value| value.to_string())
         .collect();
     format!(

@@ -42,7 +42,7 @@ pub(super) fn measure(summary: &mut Summary, profile: &EdgeProfile, limits: &Edg
         summary.chamfer_leg_max_mm = Some(1e3 * most);
     }
     let before = of(&profile.burr_before);
-    summary.burr_before_max_mm = largest(before.into_iter()).map(|burr| 1e3 * burr);
+    summary.burr_before_max_mm = largest(before).map(|burr| 1e3 * burr);
     summary.residual_burr_max_mm = largest(burrs.iter().copied()).map(|burr| 1e3 * burr);
     let count = legs.len() as f64;
     let left = burrs.iter().filter(|burr| **burr > limits.residual_burr);

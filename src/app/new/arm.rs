@@ -10,14 +10,12 @@ use rayon::prelude::*;
 use super::super::error::AppError;
 use super::super::progress;
 use super::super::run::run_cell;
+use super::part::Files;
 use crate::arm::{ArmDraft, draft_of};
 use crate::cell::{Cell, CellError, Setup, Stance};
 use crate::metrics;
 use crate::quantity::significant;
 use crate::scenario::load;
-
-/// A cell's file, with what it needs beside it.
-type Files = Vec<(PathBuf, Vec<u8>)>;
 
 /// Stretch of the plate's edge that is worked: its middle and the longest [mm], and the longest of the arm's reach [1].
 const EDGE: [f64; 2] = [150.0, 280.0];
@@ -483,11 +481,11 @@ mod tests {
 
     #[test]
     fn smaller_devices_suit_smaller_arms() {
+        /// Standard gravity [m/s2].
+        const GRAVITY: f64 = 9.80665;
         for pair in SIZES.windows(2) {
             assert!(pair[0].payload > pair[1].payload && pair[0].force > pair[1].force);
         }
-        /// Standard gravity [m/s2].
-        const GRAVITY: f64 = 9.80665;
         // What is pressed with is no more than what may be carried.
         for size in SIZES.iter().filter(|size| size.payload > 0.0) {
             assert!(size.force <= size.payload * GRAVITY, "{} N", size.force);

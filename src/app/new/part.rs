@@ -74,7 +74,7 @@ pub(super) fn likely_unit(part: &Path) -> Result<&'static str, AppError> {
     }
 }
 
-/// A cell's file, with what it needs beside it.
+/// A file, with what it needs beside it.
 pub(super) type Files = Vec<(PathBuf, Vec<u8>)>;
 
 /// A stretch of an edge.

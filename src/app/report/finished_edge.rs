@@ -31,7 +31,6 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
                 series,
                 bands,
                 markers: ends.clone(),
-                ..Panel::default()
             },
             group: "finished edge".to_owned(),
             ..Chart::default()

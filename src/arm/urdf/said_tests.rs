@@ -139,6 +139,13 @@ fn what_is_misspelt_or_of_another_format_is_refused_by_name_and_line() {
             "<mass value=\"3\"/><mass value=\"4\"/>",
             "has a second <mass>",
         ),
+    ];
+    all_refused(&cases);
+}
+
+#[test]
+fn content_in_the_wrong_place_is_refused_by_name_and_line() {
+    let cases = [
         (
             "<link name=\"l1\"><inertial><mass value=\"3\"/>",
             "<link name=\"l1\"><mass value=\"3\"/><inertial>",
@@ -195,6 +202,11 @@ fn what_is_misspelt_or_of_another_format_is_refused_by_name_and_line() {
             "<child> has link=\"\", expected a name",
         ),
     ];
+    all_refused(&cases);
+}
+
+/// Each edit of the plain arm is refused with words and the file's line.
+fn all_refused(cases: &[(&str, &str, &str)]) {
     for (from, to, words) in cases {
         let message = load(&edited(from, to)).unwrap_err().to_string();
         assert!(message.contains("arm.urdf:"), "{to}: {message}");

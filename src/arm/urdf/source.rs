@@ -32,7 +32,7 @@ impl Source {
             let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             ArmError::Faulty {
                 file: path.to_path_buf(),
-                line: 1 + before.iter().filter(|byte| **byte == b'\n').count() as u32,
+                line: before.split(|byte| *byte == b'\n').count() as u32,
                 fault: "it is not written in UTF-8: save it so".to_owned(),
             }
         })?;

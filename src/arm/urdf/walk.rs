@@ -320,7 +320,7 @@ impl Walked {
             return Ok(());
         };
         let expected = match known.form {
-            Form::Text => return self.text(line, value, element, known.name, owner),
+            Form::Text => return Self::text(line, value, element, known.name, owner),
             Form::Number if value.trim().parse::<f64>().is_ok() => return Ok(()),
             Form::Number => "a number".to_owned(),
             Form::Numbers(count) => {
@@ -340,7 +340,6 @@ impl Walked {
     }
 
     fn text(
-        &self,
         line: u32,
         value: &str,
         element: &Element,

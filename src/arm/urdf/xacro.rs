@@ -7,7 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Longest time that it may take.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 /// Interval between two looks at whether it has ended.
 const LOOK: Duration = Duration::from_millis(10);
 /// Most text that is taken from it [bytes].

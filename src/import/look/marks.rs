@@ -60,7 +60,7 @@ impl<'a> Found<'a> {
                 }
             }
         }
-        found.mixed = kinds.iter().any(|both| *both == [true; 2]);
+        found.mixed = kinds.contains(&[true; 2]);
         found
     }
 }

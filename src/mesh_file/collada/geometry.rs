@@ -241,7 +241,7 @@ fn positions<'a>(tree: &Tree<'a>, primitive: Node<'a, 'a>) -> Result<Option<Inpu
                 own = Some((tree.target(position, "source", "source")?, offset));
             }
             Some("POSITION") if own.is_none() => {
-                own = Some((tree.target(input, "source", "source")?, offset))
+                own = Some((tree.target(input, "source", "source")?, offset));
             }
             _ => {}
         }

@@ -156,8 +156,8 @@ impl Surface {
         for (triangle, sides) in by_triangle {
             let corners = self.triangles[triangle];
             let mut outline = Vec::new();
-            for corner in 0..3 {
-                outline.push(corners[corner]);
+            for (corner, vertex) in corners.iter().enumerate() {
+                outline.push(*vertex);
                 outline.extend(
                     sides
                         .iter()

@@ -88,11 +88,8 @@ impl Sides {
             let mut waiting = vec![seed];
             run_of[seed] = count;
             while let Some(triangle) = waiting.pop() {
-                for half_edge in 3 * triangle..3 * triangle + 3 {
-                    let Some(twin) = twins[half_edge] else {
-                        continue;
-                    };
-                    let other = twin as usize / 3;
+                for twin in twins[3 * triangle..3 * triangle + 3].iter().flatten() {
+                    let other = *twin as usize / 3;
                     if run_of[other] == usize::MAX {
                         run_of[other] = count;
                         waiting.push(other);

@@ -29,7 +29,7 @@ impl Surface {
                         continue;
                     };
                     let other = twin as usize / 3;
-                    let expected = own != !agrees(half_edge, twin);
+                    let expected = own == agrees(half_edge, twin);
                     match turned[other] {
                         None => {
                             turned[other] = Some(expected);
