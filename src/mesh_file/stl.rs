@@ -154,8 +154,8 @@ impl Facets {
             }
             self.started = true;
         }
-        let mut words = lower[from..].split_ascii_whitespace();
-        while let Some(word) = words.next() {
+        let words = lower[from..].split_ascii_whitespace();
+        for word in words {
             if let Some(vertex) = &mut self.vertex {
                 vertex.push(
                     number(word)

@@ -1,7 +1,7 @@
 //! A cell with an arm of one's own: what its file lacks as arms of its size have it, a device that it can carry, and the part where it reaches, found by planning and run once.
 
 use std::f64::consts::FRAC_PI_2;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
