@@ -7,6 +7,8 @@ use glamx::DPose3;
 use idc_cell::app::{edge_course, finished_edge, run_cell, scene_of};
 use idc_cell::arm::VisualShape;
 use idc_cell::cell::Cell;
+use idc_cell::recording::csv::EdgeProfile;
+use idc_cell::recording::finished_edge::EdgeMoment;
 use idc_cell::recording::rerun::{RerunOptions, write_rrd};
 use idc_cell::recording::scene::Scene;
 use idc_cell::scenario::{BurrScenario, Obstacle, ObstacleShape};
@@ -261,6 +263,31 @@ fn colour_of(leg: f64) -> [f64; 4] {
     }
 }
 
+/// What the samples say of the edge's course ends with the edge that the simulation leaves, and no burr grows again.
+fn assert_course(course: &[EdgeMoment], profile: &EdgeProfile) {
+    let (first, last) = (course.first().unwrap(), course.last().unwrap());
+    for (place, station) in last.stations.iter().enumerate() {
+        let near = |found: f64, expected: f64| {
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "station {station}: {found} {expected}"
+            );
+        };
+        near(first.burr[place], profile.burr_before[*station]);
+        near(first.leg[place], 0.0);
+        near(last.burr[place], profile.burr_after[*station]);
+        near(last.leg[place], profile.chamfer_leg[*station]);
+        let falls = |two: &[EdgeMoment]| {
+            two[1].burr[place] <= two[0].burr[place] && two[1].leg[place] >= two[0].leg[place]
+        };
+        assert!(course.windows(2).all(falls), "station {station}");
+    }
+    let among = course
+        .iter()
+        .filter(|m| m.burr != first.burr && m.burr != last.burr);
+    assert!(among.count() > 10);
+}
+
 // Catches: a chamfer drawn beside its edge, in the colours of another station, or too much as too little.
 #[test]
 fn the_edge_is_drawn_before_and_after_in_the_colours_of_its_error() {
@@ -284,29 +311,7 @@ fn the_edge_is_drawn_before_and_after_in_the_colours_of_its_error() {
     let profile = run.edge.as_ref().unwrap();
     let mut scene = scene_of(&cell, &run.recording, &run.frames).unwrap();
     assert!(scene.finished_edge.is_none());
-    // What the samples say of the edge's course ends with the edge that the simulation leaves, and no burr grows again.
-    let course = edge_course(&cell, &run.recording).unwrap();
-    let (first, last) = (course.first().unwrap(), course.last().unwrap());
-    for (place, station) in last.stations.iter().enumerate() {
-        let near = |found: f64, expected: f64| {
-            assert!(
-                (found - expected).abs() < 1e-9,
-                "station {station}: {found} {expected}"
-            );
-        };
-        near(first.burr[place], profile.burr_before[*station]);
-        near(first.leg[place], 0.0);
-        near(last.burr[place], profile.burr_after[*station]);
-        near(last.leg[place], profile.chamfer_leg[*station]);
-        let falls = |two: &[idc_cell::recording::finished_edge::EdgeMoment]| {
-            two[1].burr[place] <= two[0].burr[place] && two[1].leg[place] >= two[0].leg[place]
-        };
-        assert!(course.windows(2).all(falls), "station {station}");
-    }
-    let among = course
-        .iter()
-        .filter(|m| m.burr != first.burr && m.burr != last.burr);
-    assert!(among.count() > 10);
+    assert_course(&edge_course(&cell, &run.recording).unwrap(), profile);
     scene.finished_edge = Some(finished_edge(&cell, profile));
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str| {

@@ -424,7 +424,7 @@ fn what_does_nothing_is_not_named_and_between_whole_ends_a_length_is_any_number(
     let bench = plate();
     let text = std::fs::read_to_string(bench.path("scenario.toml")).unwrap();
     let unbounded = text.split("[expect]").next().unwrap();
-    bench.write("scenario.toml", unbounded.to_owned());
+    bench.write("scenario.toml", unbounded);
     let words = [
         "vary",
         "scenario.toml",

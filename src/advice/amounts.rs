@@ -1,7 +1,8 @@
 //! Changes of single numbers: forces, speeds, masses, pressures, strokes.
 
-use super::candidates::Kind;
-use super::{Remedy, Trial};
+use super::kind::Kind;
+use super::remedy::Remedy;
+use super::trial::Trial;
 use crate::cell::CellError;
 use crate::path::{Obstacle, PlanError};
 use crate::scenario::{ForceLaw, KeyValue, Scenario};

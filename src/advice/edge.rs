@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::amounts::{first, held_back};
-use super::candidates::Kind;
-use super::{Remedy, Trial};
+use super::kind::Kind;
+use super::remedy::Remedy;
+use super::trial::Trial;
 use crate::cell::{CellError, Setup, choose_edge, largest_balls};
 use crate::scenario::{EdgeChoice, EdgeSelection, KeyValue, Scenario, WorkpieceScenario};
 use crate::workpiece::{Convexity, EdgeCurve, EdgeSearch, list_edges, load_mesh};

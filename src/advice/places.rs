@@ -5,8 +5,9 @@ use glamx::DPose3;
 use rayon::prelude::*;
 
 use super::amounts::held_back;
-use super::candidates::Kind;
-use super::{Remedy, Trial};
+use super::kind::Kind;
+use super::remedy::Remedy;
+use super::trial::Trial;
 use crate::cell::{Setup, Stance};
 use crate::path::{Plan, ToolAxis};
 use crate::scenario::KeyValue;

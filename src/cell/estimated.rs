@@ -6,6 +6,9 @@ use crate::arm::EstimatedMass;
 use crate::path::torques::ranges;
 use crate::path::{Plan, PlanRequest, TorqueRange};
 
+/// Interval at which the range of torques is looked for [s].
+const INTERVAL: f64 = 2e-2;
+
 /// An arm some of whose masses are estimated.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EstimatedArm {
@@ -71,7 +74,9 @@ impl EstimatedArm {
             greatest_n_m: range.range[1],
             limit_n_m: range.limit,
         };
-        let ranges = ranges(request, plan, &uncertain, spread);
+        let count = (plan.duration() / INTERVAL).ceil() as usize;
+        let references = (0..=count).map(|i| plan.reference(i as f64 * INTERVAL));
+        let ranges = ranges(request, references, &uncertain, spread);
         Some(Self {
             mass_spread_percent: 100.0 * spread,
             links: masses.iter().map(link).collect(),

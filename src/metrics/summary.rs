@@ -4,8 +4,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::PassSummary;
-
 /// The numbers of a run; keys are written in the order of the fields.
 ///
 /// All but `timing` follow from the recording alone, bit for bit.
@@ -217,4 +215,47 @@ impl Timing {
             real_time_factor: simulated / wall,
         }
     }
+}
+
+/// The numbers of one pass; each is defined as that of its name in [`Summary`], over this pass alone.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct PassSummary {
+    /// Number of the pass, from 1.
+    pub pass: usize,
+    /// Desired contact force [N].
+    pub desired_force_n: f64,
+    /// Mean contact force [N].
+    pub force_mean_n: Option<f64>,
+    /// Population standard deviation of it [N].
+    pub force_standard_deviation_n: Option<f64>,
+    /// Standard deviation over mean [%].
+    pub coefficient_of_variation_percent: Option<f64>,
+    /// Root mean square of contact force less desired force [N].
+    pub force_rms_error_n: Option<f64>,
+    /// That, of the desired force [%].
+    pub force_rms_error_percent: Option<f64>,
+    /// Largest distance of the contact force from the desired one [N].
+    pub largest_deviation_n: Option<f64>,
+    /// Share of the length on which the force is within 5 % of the desired one [%].
+    pub within_5_percent_share_percent: Option<f64>,
+    /// Share of the length on which it is within 10 % [%].
+    pub within_10_percent_share_percent: Option<f64>,
+    /// Share of the length on which the tool does not touch [%].
+    pub loss_of_contact_share_percent: Option<f64>,
+    /// Largest contact force [N].
+    pub force_peak_follow_n: Option<f64>,
+    /// Root mean square of the lateral path error [µm].
+    pub path_error_rms_um: Option<f64>,
+    /// Largest lateral path error [µm].
+    pub path_error_max_um: Option<f64>,
+    /// Root mean square of the lag along the path [µm].
+    pub path_lag_rms_um: Option<f64>,
+    /// Largest lag along the path [µm].
+    pub path_lag_max_um: Option<f64>,
+    /// Length followed [mm].
+    pub path_length_mm: Option<f64>,
+    /// Length followed over the time it took [mm/s].
+    pub feed_mean_mm_per_s: Option<f64>,
+    /// Time of following [s].
+    pub follow_duration_s: Option<f64>,
 }

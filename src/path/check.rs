@@ -54,7 +54,7 @@ fn singularities(standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
 /// Speeds and torques at a time.
 fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError> {
     let reference = plan.reference(time);
-    let torques = torques::needed(request, plan, time);
+    let torques = torques::needed(request, &reference);
     for (joint, axis) in request.arm.joints.iter().enumerate() {
         if reference.velocity[joint].abs() > axis.velocity {
             return Err(too_fast(request, plan, time));

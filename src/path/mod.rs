@@ -15,14 +15,16 @@ pub mod plan;
 mod poses;
 mod posture;
 pub mod profile;
+mod reference;
 pub mod request;
 pub mod spline;
 pub mod toolpath;
 pub mod torques;
 
 pub use error::{Obstacle, PlanError};
-pub use plan::{Plan, Reference};
+pub use plan::Plan;
 pub use posture::Outline;
+pub use reference::Reference;
 pub use request::{Pass, Phase, PlanRequest};
 pub use toolpath::{ToolAxis, ToolPath, ToolStation};
 pub use torques::TorqueRange;

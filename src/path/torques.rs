@@ -2,14 +2,11 @@
 
 use glamx::DPose3;
 
-use super::plan::Plan;
+use super::reference::Reference;
 use super::request::{Phase, PlanRequest};
 use crate::arm::chain::{BodyInertia, KinematicChain, MAX_JOINTS};
 use crate::arm::dynamics::inverse_dynamics;
 use crate::arm::kinematics::{jacobian_at, link_poses};
-
-/// Interval at which the range is looked for [s].
-const INTERVAL: f64 = 2e-2;
 
 /// The largest torque of a drive over the whole plan, with its range.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,11 +21,10 @@ pub struct TorqueRange {
     pub limit: f64,
 }
 
-/// Torques at a time [N m], contact force and friction pressing while the tool is on the edge; joint losses included.
-pub(super) fn needed(request: &PlanRequest, plan: &Plan, time: f64) -> [f64; MAX_JOINTS] {
-    let reference = plan.reference(time);
+/// Torques at a time of the plan [N m], contact force and friction pressing while the tool is on the edge; joint losses included.
+pub(super) fn needed(request: &PlanRequest, reference: &Reference) -> [f64; MAX_JOINTS] {
     let n = request.arm.len();
-    let mut torque = of_bodies(request, request.arm_with_slide, plan, time);
+    let mut torque = of_bodies(request, request.arm_with_slide, reference);
     if reference.phase == Phase::Follow {
         let mut position = reference.position;
         position[n] = request.working_stroke;
@@ -61,10 +57,8 @@ pub(super) fn needed(request: &PlanRequest, plan: &Plan, time: f64) -> [f64; MAX
 fn of_bodies(
     request: &PlanRequest,
     chain: &KinematicChain,
-    plan: &Plan,
-    time: f64,
+    reference: &Reference,
 ) -> [f64; MAX_JOINTS] {
-    let reference = plan.reference(time);
     let n = request.arm.len();
     let mut position = reference.position;
     position[n] = request.working_stroke;
@@ -81,10 +75,10 @@ fn of_bodies(
     torque
 }
 
-/// Torques over the whole plan if each of these bodies of the arm may be a share heavier or lighter, whatever the others are.
+/// Torques over a plan, at its references, if each of these bodies of the arm may be a share heavier or lighter, whatever the others are.
 pub fn ranges(
     request: &PlanRequest,
-    plan: &Plan,
+    references: impl Iterator<Item = Reference>,
     uncertain: &[usize],
     share: f64,
 ) -> Vec<TorqueRange> {
@@ -107,13 +101,11 @@ pub fn ranges(
         limit: joint.effort,
     };
     let mut ranges: Vec<TorqueRange> = request.arm.joints.iter().map(joint).collect();
-    let count = (plan.duration() / INTERVAL).ceil() as usize;
-    for i in 0..=count {
-        let time = i as f64 * INTERVAL;
-        let torques = needed(request, plan, time);
+    for reference in references {
+        let torques = needed(request, &reference);
         let parts: Vec<_> = alone
             .iter()
-            .map(|chain| of_bodies(request, chain, plan, time))
+            .map(|chain| of_bodies(request, chain, &reference))
             .collect();
         for (joint, found) in ranges.iter_mut().enumerate() {
             let off: f64 = parts.iter().map(|part| share * part[joint].abs()).sum();

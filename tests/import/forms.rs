@@ -193,6 +193,10 @@ fn parquet_tables_hold_texts_lists_and_the_newest_row_first() {
 }
 
 /// TDMS in either byte order, interleaved or not, its data in two segments of which the second says nothing new.
+#[expect(
+    clippy::too_many_lines,
+    reason = "one file, from its first byte to its last"
+)]
 fn tdms(is_big: bool, is_interleaved: bool, start: bool) -> Vec<u8> {
     let u32 = |n: u32| {
         if is_big {

@@ -76,19 +76,16 @@ fn assert_rows(recording: &Recording, count: usize, what: &str) {
         values(schema::MEASURED_FORCE),
     ];
     let digits = [0.006e5, 0.000_06e5, 0.006];
-    for index in 0..count {
-        let time = recording.time()[index] - recording.time()[0];
+    for (index, stamp) in recording.time().iter().enumerate() {
+        let time = stamp - recording.time()[0];
         assert!(
             (time - STEP * index as f64).abs() < 1e-5,
             "{what}, row {index}: {time}"
         );
         let [set, out, force] = truth(index);
-        for (column, (right, digit)) in [1e5 * set, 1e5 * out, force]
-            .into_iter()
-            .zip(digits)
-            .enumerate()
-        {
-            let own = columns[column][index];
+        let right = [1e5 * set, 1e5 * out, force].into_iter().zip(digits);
+        for (column, (right, digit)) in columns.iter().zip(right) {
+            let own = column[index];
             assert!(
                 (own - right).abs() <= digit,
                 "{what}, row {index}: {own} for {right}"
@@ -587,7 +584,7 @@ fn logs_found_in_the_field_are_read_or_refused_as_they_should_be() {
     for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if name.ends_with(".toml") {
+        if path.extension().is_some_and(|ending| ending == "toml") {
             continue;
         }
         let own = Folder::new();

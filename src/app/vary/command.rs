@@ -22,9 +22,10 @@ use crate::vary::{Points, Sampling, Variable, VaryError};
 pub(in super::super) const EXAMPLES: &str = "\
 VALUES are 30,60 or 1e5..3e5:5 (so many, evenly) or 1..200: any number between,
 for samples; of a key that is a count, as a seed, each whole number. Each is
-checked by its key before anything is run. A combination that cannot be run is a result as well: the table
-says why. What stands is known by its content (program, files, values): --resume
-does what is missing, also after the sweep has grown or the engine has died.
+checked by its key before anything is run. A combination that cannot be run is a
+result as well: the table says why. What stands is known by its content
+(program, files, values): --resume does what is missing, also after the sweep
+has grown or the engine has died.
 How much of a number goes with one variable is its first-order (Sobol) index,
 with a bootstrap interval at 95 %, after what the other variables do is taken
 away; it is named where the interval lies above what a shuffled variable gets.
