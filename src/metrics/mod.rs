@@ -30,8 +30,8 @@ pub use edge::EdgeLimits;
 pub use error::MetricsError;
 pub use expect::{BoundCheck, check, check_cell, validate, validate_cell};
 pub use limits::{FOLLOW_PHASE, NARROW_BAND, SummaryLimits, TOUCH_SHARE, WIDE_BAND};
-pub use passes::{PASS_METRICS, PassSummary};
-pub use summary::{ForceTenth, JointTorqueShare, Summary, Timing};
+pub use passes::PASS_METRICS;
+pub use summary::{ForceTenth, JointTorqueShare, PassSummary, Summary, Timing};
 
 use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;

@@ -3,8 +3,6 @@
 //! Approach, engage and retract run along the tool's axis; the tool's ball is led so that at the working stroke it presses into the edge by the contact's
 //! nominal penetration.
 
-use glam::DVec3;
-
 use super::check;
 use super::collisions;
 use super::error::PlanError;
