@@ -52,7 +52,7 @@ const COMMANDS: [(&str, &str); 10] = [
         "predict cases/case-03/rig.toml cases/case-03/ride.csv --quiet",
         "out",
     ),
-    ("import map.toml ride.csv --quiet", "out"),
+    ("import map.toml ride.csv --quiet", "out/ride.parquet"),
     ("diagnose cases/case-03 --quiet", "out/diagnosis.json"),
     ("prove --cases cases --json", "out/case-03/diagnosis.json"),
     (

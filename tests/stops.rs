@@ -186,11 +186,13 @@ fn a_device_out_of_all_proportion() {
         "[expect]",
         "[simulation]\nstep_ms = 5\n[expect]",
     );
+    // Such a servo cannot follow for long.
+    bench.replace("scenario.toml", "end_mm = 290", "end_mm = 14");
     // A servo so slow that steps off the part are not cut for its sake.
     bench.replace(
         "scenario.toml",
         "[device]",
-        "[arm.servo]\nnatural_frequency_hz = 10\n[device]",
+        "[arm.servo]\nnatural_frequency_hz = 16\n[device]",
     );
     let outcome = bench.run();
     let reason = stopped(&outcome);

@@ -68,8 +68,8 @@ fn maps_that_do_not_fit() {
     );
     spoiled(
         "unit = \"N\"",
-        "unit = \"newton\"",
-        &["is \"newton\", expected one of N, kN"],
+        "unit = \"furlong\"",
+        &["is \"furlong\", expected one of N, kN"],
     );
     spoiled(
         "unit = \"ms\"",

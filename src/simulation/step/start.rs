@@ -23,7 +23,10 @@ pub(super) fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
 
 /// A watch over what must not meet, the part where it really is.
 pub(super) fn clearance(cell: &Cell, positions: &[f64]) -> ClearanceWatch {
-    let standing = cell.collision.with_part_at(cell.part.world_from_part);
+    // Where effects have put the part, its tilt apart: it is none about the middle of the edge.
+    let aside = cell.plant.cell.aside(&cell.middle, cell.middle.point);
+    let part = DPose3::from_translation(aside) * cell.part.world_from_part;
+    let standing = cell.collision.with_part_at(part);
     ClearanceWatch::new(standing, &to_array(positions))
 }
 
