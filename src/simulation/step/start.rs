@@ -1,5 +1,7 @@
 //! The parts of a simulation as they stand at the start of a job.
 
+use glamx::DPose3;
+
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::inverse_dynamics;
 use crate::cell::Cell;
