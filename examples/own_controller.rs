@@ -1,7 +1,7 @@
 //! A force controller of one's own in a cell: the desired force over the pistons' area, corrected by the integral of the load cell's error.
 //!
 //! ```text
-//! 153.2 N at the start of the edge, 150.1 N at its end
+//! 153.3 N at the start of the edge, 150.1 N at its end
 //! ```
 
 use std::error::Error;

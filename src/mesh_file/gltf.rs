@@ -86,6 +86,19 @@ struct Roughness {
     base_color_factor: Option<[f64; 4]>,
 }
 
+/// What a file of any version says of itself.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Head {
+    asset: Asset,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Asset {
+    version: serde_json::Value,
+}
+
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 struct Buffer {
@@ -98,6 +111,17 @@ pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<MeshFile, Fault> {
     } else {
         (bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None)
     };
+    // Files of version 1 have other forms: what they say of it is asked first.
+    let head: Head = serde_json::from_slice(json)
+        .map_err(|error| Fault::malformed(format!("its JSON: {error}")))?;
+    if let Some(version) = head.asset.version.as_str()
+        && version.starts_with("1.")
+    {
+        return Err(Fault::unsupported(
+            format!("glTF version {version}"),
+            "export it as glTF 2.0",
+        ));
+    }
     let root: Root = serde_json::from_slice(json)
         .map_err(|error| Fault::malformed(format!("its JSON: {error}")))?;
     for extension in &root.extensions_required {

@@ -423,6 +423,9 @@ fn gltf_that_cannot_be_read_rightly_is_refused_by_name() {
     assert!(refusal("a.gltf", &draco).contains("Draco"));
     let other = gltf(node, r#""extensionsRequired":["EXT_meshopt_compression"],"#).0;
     assert!(refusal("a.gltf", &other).contains("EXT_meshopt_compression"));
+    // Version 1 keeps its parts by name where version 2 has lists.
+    let old = r#"{"asset":{"version":"1.0"},"accessors":{"a":{}},"meshes":{}}"#;
+    assert!(refusal("a.gltf", old).contains("glTF version 1.0"));
     let text = gltf(node, "").0;
     assert!(
         refusal("a.gltf", &text.replace("\"count\":8", "\"count\":9"))
