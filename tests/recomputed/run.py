@@ -132,7 +132,7 @@ class Job:
     def of_the_arm(self):
         """What joint angles and the URDF say of the samples: lateral error and lag, and the torques that hold arm, housing, slide and force."""
         off, compared = self.run.path_errors()
-        self.checked.fact("samples: lateral error and lag are those of the joint angles, to three micrometres", bool(off < 3e-6 and compared > 100), True)
+        self.checked.fact("samples: lateral error and lag are those of the joint angles, to a tenth of a micrometre", bool(off < 1e-7 and compared > 100), True)
         recorded, held = self.run.holding()
         allowed = 0.2 + 0.005 * np.abs(held).max()
         self.checked.fact("samples: torques at rest are those that hold arm, housing, slide and force", bool(np.abs(recorded - held).max() < allowed), True)
