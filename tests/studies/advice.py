@@ -63,7 +63,7 @@ def text(job):
         rows += ["[arm.packages]"] + [f"{json.dumps(k)} = {json.dumps(v)}" for k, v in job["packages"].items()]
     for limit in job["limits"]:
         rows += ["[[arm.limit_overrides]]"] + [f"{k} = {json.dumps(v)}" for k, v in limit.items()]
-    rows += ["[device]", f'model = {json.dumps(str(PROJECT / "models/device.toml"))}', "[device.override]", f'moving_mass_kg = {job["mass"]}']
+    rows += ["[device]", f'model = {json.dumps(str(PROJECT / "models/device.toml"))}', "[device.override]", f'moving_mass_kg = {job["mass"]}', "housing_mass_kg = 1.0"]
     rows += [f"{k} = {v}" for k, v in job["overrides"].items()]
     rows += ["[workpiece]", f'mesh = {json.dumps(job["mesh"])}', f'mesh_unit = "{job["mesh_unit"]}"', f'position_mm = {job["position"]}', f'rotation_deg = {job["rotation"]}']
     rows += ["[workpiece.edge]", job["edge"]]
