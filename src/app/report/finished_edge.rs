@@ -73,7 +73,7 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
         ));
     }
     if !ends.is_empty() {
-        let told = "Between the two lines the tool has passed with its whole contact length; what lies outside them is told by the numbers of the ends.";
+        let told = "Between the two lines the tool has passed with its whole contact length; the numbers of the ends are of what lies outside them.";
         blocks.push(Block::Hint(told.to_owned()));
     }
     let told = "The burr comes off first, from its tip, then the edge is chamfered. A secondary burr, pushed over by the tool, is not modelled.";

@@ -257,7 +257,7 @@ impl Swept {
                 })
                 .collect();
             let drivers = match drivers.is_empty() {
-                true => "nothing that is told from chance".to_owned(),
+                true => "nothing that chance does not explain".to_owned(),
                 false => drivers.join(", "),
             };
             let unit = match label.unit {
