@@ -190,6 +190,8 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
                 .chain(frictions.iter().filter_map(|f| f.shown(&believed)))
                 .collect(),
             tried: None,
+            data_faults: Vec::new(),
+            rate: scenario.sample_rate,
         },
         axes: axes.into_iter().next(),
         servo,

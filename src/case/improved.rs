@@ -27,7 +27,11 @@ pub(super) fn written<'a>(
                 .collect(),
         })
     });
-    let new = found.iter().map(|(effect, numbers)| {
+    // A number that is off stands at its own key.
+    let laws = found
+        .iter()
+        .filter(|(effect, _)| effect.number_key().is_none());
+    let new = laws.map(|(effect, numbers)| {
         let parameters = effect.parameters(&diagnosis.believed);
         let own = |n: &&Number| parameters.iter().any(|p| p.quantity.name == n.name);
         let numbers = numbers.iter().filter(own);
@@ -64,9 +68,13 @@ fn is_sought(present: &PresentEffect) -> bool {
 /// improved.toml: the rig file with what was found.
 pub(super) fn improved_rig(rig: &RigFile, diagnosis: &Diagnosis) -> String {
     let estimates = &diagnosis.estimates;
+    let off = estimates.effects.iter();
+    let off = off.filter(|(effect, _)| effect.number_key().is_some());
+    let off = off.flat_map(|(_, numbers)| numbers);
     let tolerated: Vec<(&str, f64, f64, f64)> = estimates
         .tolerated
         .iter()
+        .chain(off)
         .map(|n| (n.name, n.value, n.interval[0], n.interval[1]))
         .collect();
     let effects = written(&rig.effects, diagnosis);

@@ -21,6 +21,7 @@ pub use rig::{RIG, rig_of, to_fit};
 
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::{Comparison, of_flange};
+use crate::diagnosis::data_fault::{as_read, reported};
 use crate::diagnosis::diagnose as search;
 use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
@@ -322,7 +323,10 @@ fn of_plant(
     Ok(Diagnosed {
         prediction: prediction(input, &plant)?,
         comparison: diagnosis.comparison(input, &plant),
-        answer: diagnosis.answer(start.elapsed().as_secs_f64()),
+        answer: reported(
+            diagnosis.answer(start.elapsed().as_secs_f64()),
+            &input.data_faults,
+        ),
         improved,
         diagnosis: Some(diagnosis),
         plant: Some(plant),
@@ -340,8 +344,10 @@ fn prediction(
     let inputs = &unseen.recorded.inputs;
     let predicted = simulate(plant, inputs).readings;
     check_finite(IMPROVED, &unseen.file, &inputs.time, &predicted)?;
+    // As the sensors would read it, at the stamps of their log.
+    let (stamps, predicted) = as_read(&input.data_faults, &inputs.time, predicted);
     let columns = shown_columns(plant.chain, input.noise.map(f64::is_finite), &predicted);
-    Ok(Some(columns_text(&inputs.time, &columns)?))
+    Ok(Some(columns_text(&stamps, &columns)?))
 }
 
 /// Results of the runs of a contact flange.

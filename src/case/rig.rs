@@ -4,10 +4,12 @@ use std::path::Path;
 
 use super::error::CaseError;
 use super::recordings::read_rig;
+use crate::diagnosis::data_fault::take_off;
 use crate::diagnosis::flange::{ForceRamp, NoContact, Run, RunMetrics};
 use crate::diagnosis::input::{DiagnosisInput, NamedRecording, of_link, tolerated};
 use crate::diagnosis::recorded::{recorded_of, run_of};
-use crate::effects::{candidates, sought};
+use crate::effects::{Effect, NUMBERS_OFF, candidates, sought};
+use crate::plant::Chain;
 use crate::scenario::rig_file::{RigFile, load_rig};
 
 /// Rig file of a case.
@@ -101,7 +103,7 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
     let tolerances = rig.tolerances.iter();
     let mut believed = rig.plant.clone();
     let own = sought(&mut believed);
-    Ok(DiagnosisInput {
+    let mut input = DiagnosisInput {
         believed,
         tolerated: tolerances
             .map(|t| tolerated(t.quantity, t.value, t.tolerance))
@@ -113,10 +115,25 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
             .map(read)
             .collect::<Result<_, _>>()?,
         unseen: rig.predict.as_ref().map(read).transpose()?,
-        candidates: candidates(rig.plant.chain).into_iter().chain(own).collect(),
+        candidates: (candidates(rig.plant.chain).into_iter())
+            .chain(numbers_off(rig))
+            .chain(own)
+            .collect(),
         shown: Vec::new(),
         tried: None,
-    })
+        data_faults: Vec::new(),
+        rate: rig.rate,
+    };
+    take_off(&mut input);
+    Ok(input)
+}
+
+/// Numbers of a whole device's file that may be off.
+fn numbers_off(rig: &RigFile) -> &'static [Effect] {
+    match rig.plant.chain {
+        Chain::Whole => &NUMBERS_OFF,
+        _ => &[],
+    }
 }
 
 /// A run of a contact flange with its features.

@@ -71,6 +71,9 @@ pub enum Extent {
 pub struct FoundEffect {
     /// Name in the vocabulary, or `unlisted`.
     pub name: String,
+    /// Key of the rig file's number that is off, of `number_off`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
     /// Where it enters.
     pub subsystem: String,
     /// Probability that it is at work [1].
@@ -131,6 +134,9 @@ impl FoundEffect {
                 None => meaning(UNLISTED).to_owned(),
             };
         }
+        if let Some(key) = &self.key {
+            return format!("{key} is another than the rig file says");
+        }
         let own = self.law.as_ref().map(FoundLaw::words);
         own.unwrap_or_else(|| meaning(&self.name).to_owned())
     }
@@ -142,7 +148,8 @@ impl FoundEffect {
             let unit = law.units.get(name).cloned().unwrap_or_default();
             return (name.to_owned(), unit, 1.0);
         }
-        let (words, unit, factor) = spoken(name);
+        // The value of a number that is off is in the unit of its key.
+        let (words, unit, factor) = spoken(self.key.as_deref().unwrap_or(name));
         (words, unit.to_owned(), factor)
     }
 }
@@ -340,6 +347,7 @@ mod tests {
             explained: None,
             effects: vec![FoundEffect {
                 name: "coulomb_viscous_friction".to_owned(),
+                key: None,
                 subsystem: "force_balance".to_owned(),
                 confidence: 0.98,
                 parameters: vec![

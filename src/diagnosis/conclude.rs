@@ -119,7 +119,7 @@ impl Diagnosis {
     pub fn law_of(&self, effect: &Effect) -> Option<&LawText> {
         match effect.which {
             Which::Own { place } => self.believed.own.get(place).map(|law| &*law.text),
-            Which::Only | Which::Joint { .. } => None,
+            Which::Only | Which::Joint { .. } | Which::Number { .. } => None,
         }
     }
 
@@ -136,6 +136,7 @@ impl Diagnosis {
             depends_on: (self.best().depends_on.iter())
                 .map(|name| (*name).to_owned())
                 .collect(),
+            key: None,
             law: latent.formula().map(|formula| FoundLaw::of(&formula.law)),
             unlisted: self.unlisted_report().map(Box::new),
         });
@@ -150,10 +151,11 @@ impl Diagnosis {
                         numbers
                             .iter()
                             .filter(|number| number.reported || self.is_of_link())
-                            .map(|number| (number.name.to_owned(), estimate(number))),
+                            .map(|number| (name_of(effect, number), estimate(number))),
                     )
                     .collect(),
                 depends_on: Vec::new(),
+                key: effect.number_key().map(str::to_owned),
                 law: self.law_of(effect).map(FoundLaw::of),
                 unlisted: None,
             })
@@ -509,6 +511,12 @@ impl Diagnosis {
 fn joint_of(effect: &Effect) -> Option<(String, Estimate)> {
     let joint = effect.vocabulary().1? as f64;
     Some(("joint".to_owned(), Estimate::new(joint, joint, joint)))
+}
+
+/// Name of an effect's number in an answer: of a number of the rig file that is off, whose key stands beside it, its value.
+fn name_of(effect: &Effect, number: &Number) -> String {
+    let name = effect.number_key().map_or(number.name, |_| "value");
+    name.to_owned()
 }
 
 fn estimate(number: &Number) -> Estimate {

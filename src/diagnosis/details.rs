@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::account::Account;
 use super::answer::Estimate;
+use super::data_fault::DataFaultReport;
 use super::flange_fit::report::SimulatedFlange;
 use super::localise::NOISE_ALONE;
 use super::recorded::COLUMNS;
@@ -36,6 +37,9 @@ pub struct Details {
     pub noise: Vec<ChannelNoise>,
     /// Departure of each channel of each recording from the models.
     pub misfit: Vec<ChannelMisfit>,
+    /// Faults of sensors, logs and clocks, which were taken off before any physics was looked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub data_faults: Vec<DataFaultReport>,
     /// Where recordings differ from the believed model moved within its tolerances.
     pub differences: Vec<super::answer::Mismatch>,
     /// Residual of each link of the chain, and the variable that explains it.

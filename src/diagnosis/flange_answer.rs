@@ -92,6 +92,7 @@ impl FlangeDiagnosis {
         let estimate = |[value, low, high]: [f64; 3]| Estimate::new(value, low, high);
         let effect = |name: &str, subsystem: &str, parameters: Vec<(&str, Estimate)>| FoundEffect {
             name: name.to_owned(),
+            key: None,
             subsystem: subsystem.to_owned(),
             confidence: 1.0,
             parameters: (parameters.into_iter())

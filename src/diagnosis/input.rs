@@ -1,6 +1,7 @@
 //! Input of a diagnosis: a rig as believed, what is tolerated of it, and recordings of what it did.
 
 use super::clean::{Cleaning, clean};
+use super::data_fault::DataFault;
 use super::evidence::{Evidence, Measured};
 use super::free::{Free, Prior};
 use super::recorded::{COLUMNS, Recorded, RecordedError};
@@ -10,7 +11,7 @@ use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, Quantity};
 
 /// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
-const OTHER_NOISE: f64 = 1.5;
+pub(super) const OTHER_NOISE: f64 = 1.5;
 
 /// A recording by its name.
 #[derive(Debug, Clone)]
@@ -32,6 +33,8 @@ pub struct DiagnosisInput {
     pub tolerated: Vec<Free>,
     /// Standard deviation of each sensor's noise as its sheet has it, in the order of [`CHANNELS`].
     pub noise: [f64; CHANNELS.len()],
+    /// Samples a second as the sensors' sheet has it; not a number where it says none [1/s].
+    pub rate: f64,
     /// Recordings to diagnose from.
     pub recordings: Vec<NamedRecording>,
     /// Recording to be predicted.
@@ -42,6 +45,8 @@ pub struct DiagnosisInput {
     pub shown: Vec<EstablishedEffect>,
     /// Law among the candidates that a user tries: whatever the search comes to, it is fitted in full.
     pub tried: Option<&'static Effect>,
+    /// Faults of sensors and clocks that were found, and taken off the recordings.
+    pub data_faults: Vec<DataFault>,
 }
 
 /// A number that is believed to lie within a relative tolerance of a value, any part of it being as likely: the normal distribution of that spread.
@@ -106,7 +111,7 @@ pub struct Prepared {
 pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
     let mass = case.believed.device.moving_mass;
     let mut cleanings = Vec::new();
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = case.data_faults.iter().map(DataFault::words).collect();
     let mut measured = Vec::new();
     for recording in &case.recordings {
         let mut readings = recording.recorded.readings.clone();

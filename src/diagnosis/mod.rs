@@ -9,6 +9,7 @@ pub mod comparison;
 pub mod conclude;
 mod covariance;
 pub mod cross_validation;
+pub mod data_fault;
 pub mod details;
 pub mod detectable;
 pub mod diagnose;

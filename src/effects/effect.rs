@@ -1,5 +1,6 @@
 //! A physical effect that a model may lack: an edit of the rig's description.
 
+use super::number_off::NUMBER_OFF;
 use super::quantity::Coordinate;
 use crate::plant::registry::Number;
 use crate::plant::{PlantParameters, Quantity};
@@ -77,6 +78,13 @@ pub enum Which {
         /// Joint, base first, from 0.
         joint: usize,
     },
+    /// A number of the rig file that is off.
+    Number {
+        /// Its place among those that may be.
+        place: usize,
+        /// Its dotted key in the rig file.
+        key: &'static str,
+    },
     /// A law that a user wrote, by its place in the description.
     Own {
         /// Its place among the description's own, from 0.
@@ -149,7 +157,7 @@ impl Effect {
         match self.which {
             Which::Only => 0,
             Which::Joint { joint, .. } => joint,
-            Which::Own { place } => place,
+            Which::Own { place } | Which::Number { place, .. } => place,
         }
     }
 
@@ -167,7 +175,16 @@ impl Effect {
     pub fn vocabulary(&self) -> (&'static str, Option<usize>) {
         match self.which {
             Which::Only | Which::Own { .. } => (self.name, None),
+            Which::Number { .. } => (NUMBER_OFF, None),
             Which::Joint { kind, joint } => (kind, Some(joint + 1)),
+        }
+    }
+
+    /// Key of the rig file's number that it says is off; none of any other effect.
+    pub fn number_key(&self) -> Option<&'static str> {
+        match self.which {
+            Which::Number { key, .. } => Some(key),
+            Which::Only | Which::Joint { .. } | Which::Own { .. } => None,
         }
     }
 

@@ -11,7 +11,9 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use super::{CATALOGUE, CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, LINK_EFFECTS, SERVO_LAG};
+use super::{
+    CATALOGUE, CELL_EFFECTS, JOINT_EFFECTS, JOINT_FRICTION, LINK_EFFECTS, NUMBERS_OFF, SERVO_LAG,
+};
 use super::{Effect, vocabulary};
 
 /// The parts of a header; a part that is missing is empty.
@@ -47,6 +49,7 @@ pub fn kinds() -> impl Iterator<Item = &'static Effect> {
 /// Headers by the effects' names in the vocabulary.
 static HEADERS: LazyLock<BTreeMap<&'static str, Header>> = LazyLock::new(|| {
     kinds()
+        .chain(NUMBERS_OFF.iter().take(1))
         .map(|effect| (effect.vocabulary().0, Header::of(effect.text)))
         .collect()
 });
@@ -54,7 +57,9 @@ static HEADERS: LazyLock<BTreeMap<&'static str, Header>> = LazyLock::new(|| {
 /// An effect in a few words.
 #[must_use]
 pub fn meaning(effect: &str) -> &'static str {
-    let header = HEADERS.get(vocabulary(effect).0);
+    let number = NUMBERS_OFF.iter().find(|number| number.name == effect);
+    let name = number.map_or_else(|| vocabulary(effect).0, |number| number.vocabulary().0);
+    let header = HEADERS.get(name);
     header.map_or("physics beyond the believed model", |header| {
         &header.meaning
     })

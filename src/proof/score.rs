@@ -290,6 +290,7 @@ mod tests {
             explained: None,
             effects: vec![FoundEffect {
                 name: "force_sensor_gain_error".to_owned(),
+                key: None,
                 subsystem: "sensors".to_owned(),
                 confidence: 1.0,
                 parameters: vec![("gain".to_owned(), Estimate::new(value, low, high))],

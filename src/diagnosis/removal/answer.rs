@@ -110,6 +110,7 @@ fn effect(diagnosis: &RemovalDiagnosis, value: &Value) -> FoundEffect {
     };
     FoundEffect {
         name: value.deviation.name().to_owned(),
+        key: None,
         subsystem: "process".to_owned(),
         confidence: value.confidence,
         parameters,

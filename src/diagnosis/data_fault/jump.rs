@@ -1,0 +1,270 @@
+//! Zeros that jump: a step from one sample to the next that the motion denies.
+
+use super::super::input::{DiagnosisInput, NamedRecording};
+use super::{DataFault, Kind};
+use crate::plant::Channel;
+
+/// Readings on either side of a step.
+const NARROW: usize = 10;
+/// Wider ones, which must say the same: what is steep for a moment only is none.
+const WIDE: [usize; 2] = [20, 40];
+/// Standard deviations of a step, by the narrow lines, from which it is none of noise, of some ten thousand places that are looked at [1].
+const SURE: f64 = 6.5;
+/// Standard deviations of the narrow step by which the wide one may differ [1].
+const ALIKE: f64 = 2.5;
+/// Root mean square beside the line on either side, in standard deviations of the noise, up to which there is a line [1].
+const ON_LINE: f64 = 1.35;
+/// Times that a step must be what either line moves by from sample to sample [1].
+const STEEPER: f64 = 2.5;
+/// The same of what their slopes differ by: a bend between two samples is no step [1].
+const BENT: f64 = 4.0;
+/// Samples within which there is one step.
+const NEAR: usize = 20;
+/// Share of the step that the acceleration may show as a force [1].
+const UNSEEN: f64 = 0.3;
+/// Jumps of a channel in a recording at most.
+const MOST: usize = 3;
+/// Distance from the surface beyond which a tool does not touch [m].
+const CLEAR: f64 = 2e-3;
+/// Readings without contact that say a level.
+const LEAST_FREE: usize = 30;
+
+/// A step at a sample.
+#[derive(Clone, Copy)]
+struct StepAt {
+    index: usize,
+    size: f64,
+    /// In its standard deviations [1].
+    sigmas: f64,
+}
+
+/// A straight line through readings, carried to a time: its value and slope there, the variance of the value over the noise's, the root mean square beside it.
+struct Line {
+    value: f64,
+    slope: f64,
+    variance: f64,
+    rms: f64,
+}
+
+impl Line {
+    fn through(time: &[f64], values: &[f64], at: f64) -> Option<Self> {
+        let count = time.len() as f64;
+        if values.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let middle = time.iter().sum::<f64>() / count;
+        let mean = values.iter().sum::<f64>() / count;
+        let spread: f64 = time.iter().map(|t| (t - middle).powi(2)).sum();
+        let pairs = || time.iter().zip(values);
+        let rise: f64 = pairs().map(|(t, v)| (t - middle) * (v - mean)).sum();
+        let slope = rise / spread;
+        let beside: f64 = pairs()
+            .map(|(t, v)| (v - mean - slope * (t - middle)).powi(2))
+            .sum();
+        Some(Self {
+            value: mean + slope * (at - middle),
+            slope,
+            variance: 1.0 / count + (at - middle).powi(2) / spread,
+            rms: (beside / (count - 2.0)).sqrt(),
+        })
+    }
+}
+
+/// Steps in the zeros of stroke, force and pressure.
+pub(super) fn jumps(case: &DiagnosisInput) -> Vec<DataFault> {
+    let mut faults = Vec::new();
+    let channels = [Channel::Force, Channel::Stroke, Channel::RegulatorPressure];
+    for recording in &case.recordings {
+        for channel in channels {
+            for (time, size) in of_channel(case, recording, channel) {
+                let name = Some(recording.name.as_str());
+                faults.push(DataFault::of(
+                    Kind::ZeroJump(size, time),
+                    channel,
+                    name,
+                    0.99,
+                ));
+            }
+        }
+    }
+    faults
+}
+
+/// Stamps and sizes of the jumps of a channel.
+fn of_channel(
+    case: &DiagnosisInput,
+    recording: &NamedRecording,
+    channel: Channel,
+) -> Vec<(f64, f64)> {
+    let time = &recording.recorded.inputs.time;
+    let readings = &recording.recorded.readings;
+    let noise = case.noise[channel as usize];
+    let values = readings[channel as usize].clone();
+    if noise.is_nan() || noise.is_infinite() || values.iter().all(|v| v.is_nan()) {
+        return Vec::new();
+    }
+    let acceleration = &readings[Channel::Acceleration as usize];
+    let motion = (channel == Channel::Stroke).then_some(&acceleration[..]);
+    let sight = Sight {
+        time,
+        values: &values,
+        acceleration: motion,
+        noise,
+    };
+    let mut steps: Vec<StepAt> = (NARROW..time.len().saturating_sub(NARROW))
+        .filter_map(|index| sight.step(index))
+        .filter(|step| !is_motion(case, recording, channel, step))
+        .collect();
+    steps.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
+    let mut kept: Vec<StepAt> = Vec::new();
+    for step in steps {
+        if kept.iter().all(|k| k.index.abs_diff(step.index) > NEAR) && kept.len() < MOST {
+            kept.push(step);
+        }
+    }
+    if let ([step], Channel::Force) = (&mut kept[..], channel) {
+        match level_change(recording, &values, step.index) {
+            // It goes back: no zero.
+            Some(change) if (change - step.size).abs() > (0.3 * step.size.abs()).max(noise) => {
+                kept.clear();
+            }
+            Some(change) => step.size = change,
+            None => {}
+        }
+    }
+    let said = |step: StepAt| (time[step.index], step.size);
+    kept.into_iter().map(said).collect()
+}
+
+/// Readings less the motion that accelerations from the first of them on make, lines apart.
+fn without_motion(time: &[f64], values: &[f64], acceleration: &[f64]) -> Vec<f64> {
+    let (mut way, mut speed) = (0.0, 0.0);
+    let mut left = vec![values[0]];
+    for i in 1..time.len() {
+        let h = time[i] - time[i - 1];
+        let mean = 0.5 * (acceleration[i - 1] + acceleration[i]);
+        let mean = if mean.is_finite() { mean } else { 0.0 };
+        way += h * speed + 0.5 * h * h * mean;
+        speed += h * mean;
+        left.push(values[i] - way);
+    }
+    left
+}
+
+/// The examined readings.
+struct Sight<'a> {
+    time: &'a [f64],
+    values: &'a [f64],
+    /// Acceleration whose motion is taken out.
+    acceleration: Option<&'a [f64]>,
+    noise: f64,
+}
+
+impl Sight<'_> {
+    /// The step at a sample by narrow lines, its size by the widest that say the same; none where there is none.
+    fn step(&self, index: usize) -> Option<StepAt> {
+        // A quick look first: most places have no step at all.
+        let near = [1, 2, 3].map(|k| self.values[index + k - 1] - self.values[index - k]);
+        let near = near.iter().sum::<f64>().abs() / 3.0;
+        if near.is_nan() || near < 3.0 * self.noise {
+            return None;
+        }
+        let (narrow, deviation) = self.between_lines(index, NARROW)?;
+        let sigmas = narrow.abs() / deviation;
+        let wide = WIDE
+            .into_iter()
+            .filter_map(|width| self.between_lines(index, width))
+            .filter(|(wide, _)| (wide - narrow).abs() < ALIKE * deviation)
+            .last()?;
+        (sigmas >= SURE).then_some(StepAt {
+            index,
+            size: wide.0,
+            sigmas,
+        })
+    }
+
+    /// Step between the lines on either side of a sample, and its standard deviation; none where there are no lines, or they move as fast.
+    fn between_lines(&self, index: usize, width: usize) -> Option<(f64, f64)> {
+        let count = self.time.len();
+        if index < width || index + width > count {
+            return None;
+        }
+        let span = index - width..index + width;
+        let usual = (self.time[count - 1] - self.time[0]) / (count - 1) as f64;
+        let time = &self.time[span.clone()];
+        if time[2 * width - 1] - time[0] > 1.3 * 2.0 * width as f64 * usual {
+            return None;
+        }
+        let values = match self.acceleration {
+            Some(a) => without_motion(time, &self.values[span.clone()], &a[span]),
+            None => self.values[span].to_vec(),
+        };
+        let middle = 0.5 * (time[width - 1] + time[width]);
+        let left = Line::through(&time[..width], &values[..width], middle)?;
+        let right = Line::through(&time[width..], &values[width..], middle)?;
+        let size = right.value - left.value;
+        let steep = usual * left.slope.abs().max(right.slope.abs());
+        let bent = usual * (right.slope - left.slope).abs();
+        let is_step = left.rms.max(right.rms) <= ON_LINE * self.noise
+            && size.abs() > (STEEPER * steep).max(BENT * bent);
+        let deviation = self.noise * (left.variance + right.variance).sqrt();
+        is_step.then_some((size, deviation))
+    }
+}
+
+/// Whether a step may be motion or force: the accelerometer shows what it takes, or there is none to deny it.
+fn is_motion(
+    case: &DiagnosisInput,
+    recording: &NamedRecording,
+    channel: Channel,
+    step: &StepAt,
+) -> bool {
+    let time = &recording.recorded.inputs.time;
+    let acceleration = &recording.recorded.readings[Channel::Acceleration as usize];
+    let noise = case.noise[Channel::Acceleration as usize];
+    let i = step.index;
+    let h = time[i] - time[i - 1];
+    let near = &acceleration[i.saturating_sub(3)..(i + 3).min(time.len())];
+    let known: Vec<f64> = near.iter().copied().filter(|a| a.is_finite()).collect();
+    match channel {
+        Channel::Stroke => {
+            let largest = known.iter().fold(0.0f64, |most, a| most.max(a.abs()));
+            largest > (UNSEEN * step.size.abs() / (h * h)).max(4.0 * noise)
+        }
+        Channel::Force => {
+            let mean = |part: &[f64]| {
+                let known: Vec<f64> = part.iter().copied().filter(|a| a.is_finite()).collect();
+                known.iter().sum::<f64>() / known.len().max(1) as f64
+            };
+            let side = 6;
+            let before = mean(&acceleration[i.saturating_sub(side)..i]);
+            let after = mean(&acceleration[i..(i + side).min(time.len())]);
+            let limit = UNSEEN * step.size.abs() / case.believed.device.moving_mass;
+            let largest = known.iter().fold(0.0f64, |most, a| most.max(a.abs()));
+            (after - before).abs() > limit.max(2.0 * noise)
+                || largest > limit.max(5.0 * noise) * 3.0
+        }
+        _ => false,
+    }
+}
+
+/// Change of a load cell's level without contact from before a sample to after it; none where either side has no such time.
+fn level_change(recording: &NamedRecording, force: &[f64], index: usize) -> Option<f64> {
+    let inputs = &recording.recorded.inputs;
+    let stroke = &recording.recorded.readings[Channel::Stroke as usize];
+    let is_free = |i: &usize| {
+        let near = i.saturating_sub(3)..(i + 4).min(force.len());
+        near.into_iter()
+            .all(|j| inputs.surface[j].is_nan() || stroke[j] < inputs.surface[j] - CLEAR)
+    };
+    let level = |range: std::ops::Range<usize>| {
+        let free: Vec<f64> = range
+            .filter(is_free)
+            .map(|i| force[i])
+            .filter(|f| f.is_finite())
+            .collect();
+        let count = free.len();
+        (count >= LEAST_FREE).then(|| free.iter().sum::<f64>() / count as f64)
+    };
+    Some(level(index..force.len())? - level(0..index)?)
+}

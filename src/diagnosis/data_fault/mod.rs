@@ -1,0 +1,213 @@
+//! Faults of sensors, logs and clocks, found and taken off before any physics is looked for, and put back into what a faulty sensor would read.
+//!
+//! ```text
+//! reading(stamp) = gain * signal(floor(t / period) * period) + zero,   t = (stamp - offset) / scale
+//! ```
+//!
+//! Most need no model; those of channels' clocks and of units are held against the rig as its owner believes it to be.
+
+mod clock;
+mod gain;
+mod jump;
+mod noise;
+mod report;
+mod resample;
+mod run;
+mod zero;
+
+pub use report::{DataFaultReport, reported};
+
+use super::input::{DiagnosisInput, NamedRecording};
+use crate::plant::{Chain, Channel, InitialState};
+use resample::{held, interpolated};
+
+/// Kind and size of a fault, as abroad/README.md of the concealed cases has them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// The zero is another one, in the channel's unit.
+    ZeroOffset(f64),
+    /// The zero jumps by so much, in the channel's unit, at a stamp [s].
+    ZeroJump(f64, f64),
+    /// The reading is so many times the truth [1].
+    Gain(f64),
+    /// A reading is kept for a period [s].
+    Held(f64),
+    /// The reading stands still between two stamps [s].
+    Frozen([f64; 2]),
+    /// Stamp over true time [1].
+    ClockScale(f64),
+    /// The reading is that of so much earlier [s].
+    ClockOffset(f64),
+    /// The noise has this standard deviation, in the channel's unit.
+    Noise(f64),
+}
+
+/// A fault.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataFault {
+    /// What it is.
+    pub kind: Kind,
+    /// The channel; none where a whole log has it.
+    pub channel: Option<Channel>,
+    /// Name of the recording; none where all have it.
+    pub recording: Option<String>,
+    /// Its probability [1].
+    pub probability: f64,
+    /// Whether it acts in recordings to come too.
+    pub stays: bool,
+}
+
+impl DataFault {
+    fn of(kind: Kind, channel: Channel, recording: Option<&str>, probability: f64) -> Self {
+        Self {
+            kind,
+            channel: Some(channel),
+            recording: recording.map(str::to_owned),
+            probability,
+            stays: matches!(
+                kind,
+                Kind::Gain(_) | Kind::Held(_) | Kind::ClockScale(_) | Kind::ClockOffset(_)
+            ),
+        }
+    }
+}
+
+/// Finds the faults in a case and takes them off its readings and stamps.
+pub fn take_off(case: &mut DiagnosisInput) {
+    let of_cell = |r: &NamedRecording| r.recorded.inputs.cell.is_some();
+    if case.believed.chain != Chain::Whole || case.recordings.iter().any(of_cell) {
+        return;
+    }
+    let steps: [fn(&DiagnosisInput) -> Vec<DataFault>; 9] = [
+        run::frozen,
+        run::held,
+        gain::gains,
+        zero::absolute,
+        clock::of_log_by_rate,
+        zero::at_start,
+        jump::jumps,
+        clock::of_channels,
+        clock::of_log_by_motion,
+    ];
+    for find in steps {
+        for fault in find(case) {
+            correct(case, &fault);
+            case.data_faults.push(fault);
+        }
+    }
+    let loud = noise::louder(case);
+    case.data_faults.extend(loud);
+}
+
+/// Takes a fault off all recordings that it acts in.
+fn correct(case: &mut DiagnosisInput, fault: &DataFault) {
+    let in_it = |r: &NamedRecording| fault.recording.as_ref().is_none_or(|name| *name == r.name);
+    for recording in case.recordings.iter_mut().filter(|r| in_it(r)) {
+        correct_one(recording, fault);
+    }
+    if let Some(unseen) = case
+        .unseen
+        .as_mut()
+        .filter(|_| fault.stays && fault.recording.is_none())
+    {
+        correct_one(unseen, fault);
+    }
+}
+
+fn correct_one(recording: &mut NamedRecording, fault: &DataFault) {
+    let inputs = &mut recording.recorded.inputs;
+    let readings = &mut recording.recorded.readings;
+    let Some(channel) = fault.channel else {
+        if let Kind::ClockScale(scale) = fault.kind {
+            let start = inputs.time[0];
+            for time in &mut inputs.time {
+                *time = start + (*time - start) / scale;
+            }
+        }
+        return;
+    };
+    let values = &mut readings[channel as usize];
+    match fault.kind {
+        Kind::ZeroOffset(zero) => values.iter_mut().for_each(|value| *value -= zero),
+        Kind::ZeroJump(zero, from) => {
+            for (value, time) in values.iter_mut().zip(&inputs.time) {
+                if *time >= from {
+                    *value -= zero;
+                }
+            }
+        }
+        Kind::Gain(gain) => values.iter_mut().for_each(|value| *value /= gain),
+        Kind::Held(_) => run::keep_firsts(values),
+        Kind::Frozen([start, end]) => {
+            for (value, time) in values.iter_mut().zip(&inputs.time) {
+                if *time > start && *time < end {
+                    *value = f64::NAN;
+                }
+            }
+        }
+        Kind::ClockScale(scale) => {
+            let start = inputs.time[0];
+            *values = interpolated(&inputs.time, values, |t| start + scale * (t - start));
+        }
+        Kind::ClockOffset(offset) => {
+            *values = interpolated(&inputs.time, values, |t| t + offset);
+        }
+        Kind::Noise(_) => {}
+    }
+    let [pressure, stroke] =
+        [Channel::RegulatorPressure, Channel::Stroke].map(|channel| &readings[channel as usize]);
+    inputs.initial = InitialState::of(&inputs.time, pressure, stroke);
+}
+
+/// Simulated readings as sensors with these faults read them, and the stamps of their log [s].
+#[must_use]
+pub fn as_read(
+    faults: &[DataFault],
+    time: &[f64],
+    mut readings: [Vec<f64>; 4],
+) -> (Vec<f64>, [Vec<f64>; 4]) {
+    let start = time[0];
+    let mut stamps = time.to_vec();
+    let lasting = || faults.iter().filter(|fault| fault.stays);
+    let of_log = lasting().filter(|fault| fault.channel.is_none());
+    for fault in of_log {
+        if let Kind::ClockScale(scale) = fault.kind {
+            for stamp in &mut stamps {
+                *stamp = start + (*stamp - start) * scale;
+            }
+        }
+    }
+    for (index, values) in readings.iter_mut().enumerate() {
+        // In the order of the signal's way: time, hold, gain, zero.
+        let own = || lasting().filter(|f| f.channel.is_some_and(|c| c as usize == index));
+        let (mut scale, mut offset) = (1.0, 0.0);
+        let (mut gain, mut zero) = (1.0, 0.0);
+        let mut periods: Vec<f64> = Vec::new();
+        for fault in own() {
+            match fault.kind {
+                Kind::ClockScale(value) => scale *= value,
+                Kind::ClockOffset(value) => offset += value,
+                Kind::Gain(value) => gain *= value,
+                Kind::ZeroOffset(value) => zero += value,
+                Kind::Held(period) => periods.push(period),
+                _ => {}
+            }
+        }
+        periods.sort_by(f64::total_cmp);
+        let period = periods.get(periods.len() / 2).copied();
+        if scale != 1.0 || offset != 0.0 || period.is_some() {
+            let at = |t: f64| {
+                let sampled = period.map_or(t, |period| held(t - start, period) + start);
+                start + (sampled - offset - start) / scale
+            };
+            *values = resample::read_at(time, values, at);
+        }
+        for value in values.iter_mut() {
+            *value = gain * *value + zero;
+        }
+    }
+    (stamps, readings)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,293 @@
+//! Faults planted into simulated recordings and asked back; nothing planted, and what only looks like a fault, asked back as nothing.
+
+use super::super::input::DiagnosisInput;
+use super::super::recorded::Recorded;
+use super::super::test_evidence::plant;
+use super::*;
+use crate::plant::{PlantInputs, PlantParameters, registry, simulate};
+
+const NOISE: [f64; 4] = [400.0, 2e-5, 0.8, 0.15];
+const STEP: f64 = 0.004;
+const NAMES: [&str; 3] = ["stairs.csv", "ride.csv", "cycle.csv"];
+
+/// Repeatable noise of standard deviation one: twelve evenly distributed numbers less six.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        let mut even = || {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..12).map(|_| even()).sum::<f64>() - 6.0
+    }
+}
+
+fn inputs(place: usize) -> PlantInputs {
+    let count = 1500;
+    let time: Vec<f64> = (0..count).map(|i| STEP * i as f64).collect();
+    let set = |t: f64| match (place, t) {
+        (_, t) if t < 0.2 => 0.0,
+        (0, t) => [2e5, 3.2e5, 1.5e5, 2.6e5][(t / 1.5) as usize % 4],
+        (1, _) => 2.2e5,
+        _ => 2.5e5,
+    };
+    let surface = |t: f64| match place {
+        0 => 0.02,
+        1 => 0.02 + 0.006 * (2.0 * t).sin(),
+        _ => f64::NAN,
+    };
+    PlantInputs {
+        set_pressure: time.iter().map(|t| set(*t)).collect(),
+        extends: time
+            .iter()
+            .map(|t| place != 2 || (t / 0.9) as usize % 2 == 0)
+            .collect(),
+        surface: time.iter().map(|t| surface(*t)).collect(),
+        cell: None,
+        motion: None,
+        initial: InitialState::AtRest,
+        place: 0,
+        time,
+    }
+}
+
+/// A case whose true signals are made others by `signal` and whose noisy readings by `reading`, both told the recording and its times.
+fn case_of(
+    truth: &PlantParameters,
+    signal: impl Fn(&[f64], &mut [Vec<f64>; 4]),
+    reading: impl Fn(usize, &[f64], &mut [Vec<f64>; 4]),
+) -> DiagnosisInput {
+    let recording = |place: usize| {
+        let inputs = inputs(place);
+        let mut readings = simulate(truth, &inputs).readings;
+        signal(&inputs.time, &mut readings);
+        let mut noise = Noise(7 + place as u64);
+        for (values, deviation) in readings.iter_mut().zip(NOISE) {
+            for value in values {
+                *value += deviation * noise.next();
+            }
+        }
+        reading(place, &inputs.time, &mut readings);
+        NamedRecording {
+            name: NAMES[place].to_owned(),
+            file: NAMES[place].to_owned(),
+            recorded: Recorded {
+                inputs,
+                readings,
+                filled: 0,
+            },
+        }
+    };
+    DiagnosisInput {
+        believed: plant(),
+        tolerated: Vec::new(),
+        noise: NOISE,
+        rate: 1.0 / STEP,
+        recordings: (0..3).map(recording).collect(),
+        unseen: None,
+        candidates: Vec::new(),
+        shown: Vec::new(),
+        tried: None,
+        data_faults: Vec::new(),
+    }
+}
+
+fn found(mut case: DiagnosisInput) -> Vec<DataFault> {
+    take_off(&mut case);
+    case.data_faults
+}
+
+fn read(reading: impl Fn(usize, &[f64], &mut [Vec<f64>; 4])) -> Vec<DataFault> {
+    found(case_of(&plant(), |_, _| {}, reading))
+}
+
+/// The only fault, by its kind and channel.
+fn only(faults: &[DataFault], channel: Option<Channel>) -> Kind {
+    assert!(
+        faults.len() == 1 && faults[0].channel == channel,
+        "{faults:?}"
+    );
+    faults[0].kind
+}
+
+#[test]
+fn nothing_planted_is_nothing_found() {
+    let faults = read(|_, _, _| {});
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+#[test]
+fn zeros_anew_are_found_each_and_one_for_all_is_left_to_physics() {
+    let zeros = [6.0, -4.0, 3.0];
+    let faults = read(|place, _, r| r[2].iter_mut().for_each(|f| *f += zeros[place]));
+    assert_eq!(faults.len(), 3, "{faults:?}");
+    for (fault, zero) in faults.iter().zip(zeros) {
+        let Kind::ZeroOffset(value) = fault.kind else {
+            panic!("{fault:?}");
+        };
+        assert!((value - zero).abs() < 0.5 && fault.channel == Some(Channel::Force));
+    }
+    let same = read(|_, _, r| r[2].iter_mut().for_each(|f| *f += 4.0));
+    assert!(same.is_empty(), "{same:?}");
+}
+
+#[test]
+fn a_zero_that_jumps_is_found_with_its_time() {
+    for (channel, size) in [(Channel::Force, 9.0), (Channel::Stroke, -4e-4)] {
+        let faults = read(|place, time, r| {
+            for (value, t) in r[channel as usize].iter_mut().zip(time) {
+                if place == 1 && *t >= 3.5 {
+                    *value += size;
+                }
+            }
+        });
+        let Kind::ZeroJump(value, time) = only(&faults, Some(channel)) else {
+            panic!("{faults:?}");
+        };
+        assert!((value / size - 1.0).abs() < 0.2 && (time - 3.5).abs() < 0.01);
+        assert_eq!(faults[0].recording.as_deref(), Some("ride.csv"));
+    }
+}
+
+#[test]
+fn a_channel_that_stands_still_or_is_held_is_found_and_its_copies_are_set_aside() {
+    let faults = read(|place, time, r| {
+        let kept = r[2][500];
+        for (value, t) in r[2].iter_mut().zip(time) {
+            if place == 1 && *t >= time[500] && *t < 2.8 {
+                *value = kept;
+            }
+        }
+    });
+    let Kind::Frozen([start, end]) = only(&faults, Some(Channel::Force)) else {
+        panic!("{faults:?}");
+    };
+    assert!((start - 2.0).abs() < 0.01 && (end - 2.8).abs() < 0.01);
+    let mut case = case_of(
+        &plant(),
+        |_, _| {},
+        |_, _, r| {
+            for i in 0..r[2].len() {
+                r[2][i] = r[2][i - i % 10];
+            }
+        },
+    );
+    take_off(&mut case);
+    let Kind::Held(period) = only(&case.data_faults, Some(Channel::Force)) else {
+        panic!("{:?}", case.data_faults);
+    };
+    assert!((period - 0.04).abs() < 1e-4);
+    let left = case.recordings[0].recorded.readings[2].iter();
+    assert_eq!(left.filter(|v| v.is_finite()).count(), 150);
+}
+
+#[test]
+fn units_signs_and_absolute_pressure_are_found() {
+    for gain in [0.101_971_62, -1.0, 1e-3] {
+        let faults = read(|_, _, r| r[2].iter_mut().for_each(|f| *f *= gain));
+        let Kind::Gain(value) = only(&faults, Some(Channel::Force)) else {
+            panic!("{faults:?}");
+        };
+        assert!((value / gain - 1.0).abs() < 1e-3);
+    }
+    let atmosphere = plant().device.gas.atmosphere;
+    let faults = read(|_, _, r| r[0].iter_mut().for_each(|p| *p += atmosphere));
+    let kind = only(&faults, Some(Channel::RegulatorPressure));
+    assert!(kind == Kind::ZeroOffset(atmosphere) && faults[0].stays);
+    // A gain that is no usual factor is physics.
+    let faults = read(|_, _, r| r[2].iter_mut().for_each(|f| *f *= 1.12));
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+#[test]
+fn noise_that_is_louder_than_the_sheet_s_is_found() {
+    let mut case = case_of(&plant(), |_, _| {}, |_, _, _| {});
+    case.noise[1] = 0.25 * NOISE[1];
+    let faults = found(case);
+    let Kind::Noise(noise) = only(&faults, Some(Channel::Stroke)) else {
+        panic!("{faults:?}");
+    };
+    assert!((noise / NOISE[1] - 1.0).abs() < 0.15);
+}
+
+#[test]
+fn the_clock_of_a_log_is_told_by_its_rate_and_by_its_motion() {
+    for (rate, tolerance) in [(1.0 / STEP, 1e-6), (1.0 / (STEP * 1.04), 0.008)] {
+        let mut case = case_of(&plant(), |_, _| {}, |_, _, _| {});
+        case.rate = rate;
+        for recording in &mut case.recordings {
+            recording
+                .recorded
+                .inputs
+                .time
+                .iter_mut()
+                .for_each(|t| *t *= 1.04);
+        }
+        let faults = found(case);
+        let Kind::ClockScale(scale) = only(&faults, None) else {
+            panic!("{faults:?}");
+        };
+        assert!((scale - 1.04).abs() < tolerance, "{scale}");
+    }
+}
+
+#[test]
+fn a_logger_whose_clock_drifts_is_found_in_all_its_channels() {
+    let drifting = |time: &[f64], r: &mut [Vec<f64>; 4]| {
+        for values in r {
+            *values = resample::read_at(time, values, |t| t / 0.985);
+        }
+    };
+    let faults = found(case_of(&plant(), drifting, |_, _, _| {}));
+    assert_eq!(faults.len(), 4, "{faults:?}");
+    for fault in faults {
+        let Kind::ClockScale(scale) = fault.kind else {
+            panic!("{fault:?}");
+        };
+        assert!((scale - 0.985).abs() < 0.003);
+    }
+}
+
+#[test]
+fn a_late_outlet_is_a_clock_and_a_late_regulator_is_not() {
+    let late = |time: &[f64], r: &mut [Vec<f64>; 4]| {
+        r[0] = resample::read_at(time, &r[0], |t| t - 0.06);
+    };
+    let faults = found(case_of(&plant(), late, |_, _, _| {}));
+    let Kind::ClockOffset(offset) = only(&faults, Some(Channel::RegulatorPressure)) else {
+        panic!("{faults:?}");
+    };
+    assert!((offset - 0.06).abs() < 0.012, "{offset}");
+    let mut truth = plant();
+    let dead_time = registry::REGULATOR_DEAD_TIME.quantity();
+    dead_time.set(&mut truth, dead_time.get(&truth) + 0.06);
+    let faults = found(case_of(&truth, |_, _| {}, |_, _, _| {}));
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+#[test]
+fn what_lasts_is_put_back_into_what_a_sensor_reads() {
+    let time: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
+    let ramp: Vec<f64> = time.iter().map(|t| 5.0 * t).collect();
+    let of = |kind, channel| DataFault::of(kind, channel, None, 1.0);
+    let faults = [
+        of(Kind::Gain(-2.0), Channel::Force),
+        of(Kind::Held(0.05), Channel::Force),
+        of(Kind::ClockOffset(0.1), Channel::RegulatorPressure),
+        of(Kind::ZeroOffset(9.0), Channel::Stroke),
+        DataFault {
+            channel: None,
+            ..of(Kind::ClockScale(1.02), Channel::Force)
+        },
+    ];
+    let (stamps, read) = as_read(&faults, &time, [0; 4].map(|_| ramp.clone()));
+    assert!((stamps[100] - 1.02).abs() < 1e-12);
+    assert!((read[2][103] + 2.0 * 5.0).abs() < 1e-9, "{}", read[2][103]);
+    assert!((read[0][50] - 5.0 * 0.4).abs() < 1e-9);
+    // A zero is set anew.
+    assert_eq!(read[1], ramp);
+}

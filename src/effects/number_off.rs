@@ -1,0 +1,116 @@
+//! A number of the rig file is off, beyond its tolerance or without one. A drawing of another size, a slip of the pen, a part that was exchanged.
+//!
+//! ```text
+//! number = value
+//! ```
+//!
+//! number one of the rig file by its key, value what the recordings ask for in its place.
+//! Source: The rig file is a belief like any other.
+//!
+//! Signature: That of the number: a bore scales all forces of pressure, a stroke is met at the far stop, a time constant delays the outlet.
+//!
+//! Confused with:
+//! - force_sensor_gain_error: scales the reading of the force alone, the motion is as believed; a bore scales both.
+//! - regulator_gain_error: scales the outlet, which is measured.
+
+use super::parts::*;
+use crate::effects::effect::Which;
+use crate::plant::registry::Number;
+
+/// Name in an answer.
+pub const NUMBER_OFF: &str = "number_off";
+
+/// A number that may be off, where it enters, and the shares of the sheet's value from which a fit starts.
+struct Suspect {
+    number: &'static Number,
+    shares: &'static [f64],
+}
+
+/// Numbers that may be off and that no other effect frees: mass, orifices, dead volume, the gains, the contact's stiffness and a lean of the axis have effects
+/// of their own (`moving_mass_error`, `supply_restriction`, `axial_force_offset` ..).
+static SUSPECTS: [Suspect; 6] = [
+    Suspect {
+        number: &BORE,
+        shares: &[0.94, 0.98, 1.02, 1.07],
+    },
+    Suspect {
+        number: &ROD,
+        shares: &[0.8, 1.25],
+    },
+    Suspect {
+        number: &STROKE,
+        shares: &[0.95, 0.98, 1.02, 1.05],
+    },
+    Suspect {
+        number: &REGULATOR_TIME_CONSTANT,
+        shares: &[0.5, 0.7, 1.4, 2.0],
+    },
+    Suspect {
+        number: &DISCHARGE_COEFFICIENT,
+        shares: &[0.75, 1.2],
+    },
+    Suspect {
+        number: &CONTACT_DAMPING,
+        shares: &[0.3, 3.0],
+    },
+];
+
+/// Share of the sheet's value down to which, and times up to which, a number is sought [1].
+const RANGE: [f64; 2] = [0.4, 2.5];
+
+const fn of(name: &'static str, subsystem: Subsystem, place: usize, key: &'static str) -> Effect {
+    Effect {
+        text: include_str!("number_off.rs"),
+        which: Which::Number { place, key },
+        parameters,
+        usual: |p, place| vec![1.05 * SUSPECTS[place].number.quantity().get(p)],
+        starts: |c, place| {
+            let suspect = &SUSPECTS[place];
+            shares(suspect.shares, suspect.number.quantity().get(c.plant))
+        },
+        ..effect(name, subsystem)
+    }
+}
+
+/// One for each such number, in the order of the suspects.
+#[rustfmt::skip] // A table: one number a line.
+pub static NUMBERS_OFF: [Effect; 6] = [
+    of("number_off (cylinder.bore_m)", Subsystem::ForceBalance, 0, "cylinder.bore_m"),
+    of("number_off (cylinder.rod_m)", Subsystem::ForceBalance, 1, "cylinder.rod_m"),
+    of("number_off (cylinder.stroke_m)", Subsystem::ForceBalance, 2, "cylinder.stroke_m"),
+    of("number_off (regulator.time_constant_s)", Subsystem::Regulator, 3, "regulator.time_constant_s"),
+    of("number_off (valve.discharge_coefficient)", Subsystem::Chambers, 4, "valve.discharge_coefficient"),
+    of("number_off (contact.damping_n_s_per_m)", Subsystem::Contact, 5, "contact.damping_n_s_per_m"),
+];
+
+fn parameters(plant: &crate::plant::PlantParameters, place: usize) -> Vec<Parameter> {
+    let number = SUSPECTS[place].number;
+    let believed = number.quantity().get(plant);
+    let [least, most] = number.range;
+    let bounds = [
+        (RANGE[0] * believed).max(least),
+        (RANGE[1] * believed).min(most),
+    ];
+    // A rod is thinner than its piston.
+    let bounds = match place {
+        0 => [bounds[0].max(1.05 * plant.device.rod), bounds[1]],
+        1 => [bounds[0], bounds[1].min(0.95 * plant.device.bore)],
+        _ => bounds,
+    };
+    vec![reported(number.quantity(), Logarithmic, bounds)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_is_the_number_that_its_key_names_and_can_be_made_another() {
+        for (suspect, effect) in SUSPECTS.iter().zip(&NUMBERS_OFF) {
+            let key = effect.number_key();
+            assert_eq!(key, Some(suspect.number.name));
+            assert!(effect.name.contains(suspect.number.name));
+            assert_eq!(effect.vocabulary(), (NUMBER_OFF, None));
+        }
+    }
+}
