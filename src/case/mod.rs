@@ -269,7 +269,13 @@ pub fn diagnose(
     let mut diagnosed = match &case.kind {
         Kind::Rig { rig, input } => {
             let diagnosis = search::diagnose(input, prepare(input)?, settings, observer);
-            let improved = improved::improved_rig(rig, &diagnosis);
+            let mut improved = improved::improved_rig(rig, &diagnosis);
+            for fault in &input.data_faults {
+                improved += &format!(
+                    "\n# Found in the recordings, and not in this model: {}\n",
+                    fault.words()
+                );
+            }
             // As the file says it, so that whoever takes the file gets the same.
             let plant = from_text(Path::new(IMPROVED), &improved)?.plant;
             of_plant(input, diagnosis, improved, plant, start)?

@@ -50,10 +50,12 @@ pub struct DetectableNumber {
     pub without: Option<f64>,
 }
 
-/// Smallest effects that would have been named beside an explanation that names none; without those that these recordings show at no size.
+/// Smallest effects that would have been named beside an explanation that names none; without those that these recordings show at no size, and without the rig
+/// file's own numbers, which are no effects.
 pub fn detectable(search: &Search<'_>, best: &Hypothesis) -> Vec<Detectable> {
     let effects = search.candidates.par_iter();
     effects
+        .filter(|effect| effect.number_key().is_none())
         .filter_map(|effect| Change::of(search, best, effect)?.smallest())
         .collect()
 }

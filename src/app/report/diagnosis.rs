@@ -74,6 +74,8 @@ fn lead(answer: &Answer) -> Vec<String> {
     };
     let known = answer.effects.iter().filter(|e| e.name != UNLISTED);
     let mut lead: Vec<String> = known.filter_map(said).collect();
+    let faults = answer.details.data_faults.iter();
+    lead.extend(faults.map(|fault| capital(&fault.words) + "."));
     if answer.verdict == Verdict::NothingMissing {
         let left = answer.details.account.section(SectionKind::Remaining);
         lead.extend(left.into_iter().flat_map(|told| told.paragraphs.clone()));

@@ -508,24 +508,24 @@ const TELLS_MORE: f64 = 1.6;
 /// A stroke or an acceleration that is stamped late: they tell of one motion, and the surface that the tool follows says which of them is in time.
 fn late_motion(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     let noise = case.noise[Channel::Stroke as usize];
-    let told = |lag: f64| -> f64 {
-        let of = |r: &NamedRecording| -> f64 {
-            let all = curvatures(r, noise, |t| t - lag);
-            // A wrong lag passes where there is little motion.
-            all.iter().map(|(_, weight)| weight).sum()
-        };
-        case.recordings.iter().map(of).sum()
+    // A wrong lag passes where there is little motion.
+    let told = |lag: f64| -> (usize, f64) {
+        let all = case.recordings.iter();
+        let all = all.flat_map(|r| curvatures(r, noise, |t| t - lag));
+        all.fold((0, 0.0), |(count, sum), (_, weight)| {
+            (count + 1, sum + weight)
+        })
     };
-    let none = told(0.0);
+    let (_, none) = told(0.0);
     let lags = (-LAG.1..=LAG.1).map(|step| LAG.0 * f64::from(step));
     let best = lags
         .map(|lag| (lag, told(lag)))
-        .max_by(|a, b| a.1.total_cmp(&b.1));
+        .max_by(|a, b| a.1.1.total_cmp(&b.1.1));
     let stroke = fitted.iter().find(|f| f.channel == Channel::Stroke);
-    let (Some((lag, most)), Some(stroke)) = (best, stroke) else {
+    let (Some((lag, (count, most))), Some(stroke)) = (best, stroke) else {
         return Vec::new();
     };
-    if lag.abs() < LEAST_OFFSET || most < TELLS_MORE * none {
+    if lag.abs() < LEAST_OFFSET || count < LEAST_STRETCHES || most < TELLS_MORE * none {
         return Vec::new();
     }
     let of = |channel: Channel, offset: f64| {

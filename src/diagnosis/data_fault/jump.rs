@@ -122,15 +122,18 @@ fn of_channel(
             kept.push(step);
         }
     }
-    if let ([step], Channel::Force) = (&mut kept[..], channel) {
-        match level_change(recording, &values, step.index) {
-            // It goes back: no zero.
-            Some(change) if (change - step.size).abs() > (0.3 * step.size.abs()).max(noise) => {
-                kept.clear();
-            }
-            Some(change) => step.size = change,
-            None => {}
-        }
+    if let (&[step], Channel::Force) = (&kept[..], channel)
+        && let Some(change) = level_change(recording, &values, step.index)
+    {
+        let stays = (change - step.size).abs() <= (0.3 * step.size.abs()).max(noise);
+        // What goes back is no zero.
+        kept = match stays {
+            true => vec![StepAt {
+                size: change,
+                ..step
+            }],
+            false => Vec::new(),
+        };
     }
     let said = |step: StepAt| (time[step.index], step.size);
     kept.into_iter().map(said).collect()
@@ -175,7 +178,7 @@ impl Sight<'_> {
             .into_iter()
             .filter_map(|width| self.between_lines(index, width))
             .filter(|(wide, _)| (wide - narrow).abs() < ALIKE * deviation)
-            .last()?;
+            .next_back()?;
         (sigmas >= SURE).then_some(StepAt {
             index,
             size: wide.0,
@@ -227,6 +230,7 @@ fn is_motion(
     let near = &acceleration[i.saturating_sub(3)..(i + 3).min(time.len())];
     let known: Vec<f64> = near.iter().copied().filter(|a| a.is_finite()).collect();
     match channel {
+        Channel::Stroke | Channel::Force if known.is_empty() => true,
         Channel::Stroke => {
             let largest = known.iter().fold(0.0f64, |most, a| most.max(a.abs()));
             largest > (UNSEEN * step.size.abs() / (h * h)).max(4.0 * noise)
