@@ -297,7 +297,6 @@ impl Pair<'_> {
 struct Fitted {
     channel: Channel,
     scale: f64,
-    offset: f64,
     /// Share of the cost that the scale takes from the best offset, in all and in the recording where it takes least [1].
     taken: [f64; 2],
     /// Best offset alone [s], and the share of the cost that it takes [1].
@@ -380,7 +379,6 @@ fn fitted(
         let found = Fitted {
             channel,
             scale,
-            offset,
             taken: [
                 share(cost_alone, cost_both),
                 each.fold(f64::INFINITY, f64::min),
