@@ -3,7 +3,7 @@
 use super::super::input::DiagnosisInput;
 use super::clock::curvature_ratio;
 use super::{DataFault, Kind};
-use crate::plant::{CHANNELS, Channel, simulate};
+use crate::plant::{CHANNELS, Channel, InitialState, PlantInputs, simulate};
 
 /// Standard gravity [m/s2]: a kilogram-force in newton.
 const STANDARD_GRAVITY: f64 = 9.80665;
@@ -36,7 +36,14 @@ fn usual(channel: Channel) -> &'static [f64] {
 /// Channels in another unit or with the other sign.
 pub(super) fn gains(case: &DiagnosisInput) -> Vec<DataFault> {
     let simulated: Vec<[Vec<f64>; 4]> = (case.recordings.iter())
-        .map(|r| simulate(&case.believed, &r.recorded.inputs).readings)
+        .map(|r| {
+            // In another unit the first readings say another start than the true one.
+            let inputs = PlantInputs {
+                initial: InitialState::AtRest,
+                ..r.recorded.inputs.clone()
+            };
+            simulate(&case.believed, &inputs).readings
+        })
         .collect();
     let mut faults = Vec::new();
     for channel in CHANNELS {
