@@ -1,7 +1,7 @@
 //! Slips of unit and sign: a gain among the usual factors.
 
 use super::super::input::DiagnosisInput;
-use super::clock::curvature_ratio;
+use super::curvature::curvature_ratio;
 use super::{DataFault, Kind};
 use crate::plant::{CHANNELS, Channel, InitialState, PlantInputs, simulate};
 

@@ -6,7 +6,9 @@
 //!
 //! Most need no model; those of channels' clocks and of units are held against the rig as its owner believes it to be.
 
+mod channel_clock;
 mod clock;
+mod curvature;
 mod gain;
 mod jump;
 mod noise;
@@ -86,7 +88,7 @@ pub fn take_off(case: &mut DiagnosisInput) {
         clock::of_log_by_rate,
         zero::at_start,
         jump::jumps,
-        clock::of_channels,
+        channel_clock::of_channels,
         clock::of_log_by_motion,
     ];
     for find in steps {

@@ -1,0 +1,325 @@
+//! Clocks of channels: those of one logger, of which some or all are, and offsets of single ones.
+//!
+//! ```text
+//! reading(stamp) = signal((stamp - offset) / s)
+//! ```
+//!
+//! signal that of the believed model, s stamp over true time [1], offset [s].
+
+use super::super::input::{DiagnosisInput, NamedRecording};
+use super::clock::WORTH;
+use super::curvature::{LEAST_STRETCHES, curvatures};
+use super::{DataFault, Kind};
+use crate::plant::registry::{REGULATOR_DEAD_TIME, REGULATOR_TIME_CONSTANT};
+use crate::plant::{Channel, simulate};
+
+/// Samples that are compared, at most, of each recording and channel.
+const SAMPLES: usize = 900;
+/// Offsets that are tried [s].
+const OFFSETS: [f64; 2] = [-0.12, 0.2];
+/// Scales that are tried [1].
+const SCALES: f64 = 0.03;
+/// Where the loss turns to a logarithm, in standard deviations of the noise and of the model [1].
+const BOUND: f64 = 3.0;
+/// What the believed model is off by within its tolerances in stroke and force, in standard deviations of their noise [1].
+const OF_MODEL: f64 = 8.0;
+/// Share of its cost that a clock must take from a channel [1].
+const TAKEN: f64 = 0.3;
+/// The same in each recording.
+const TAKEN_OF_EACH: f64 = 0.1;
+/// Offset that a channel must have beyond the others [s].
+const LEAST_OFFSET: f64 = 0.012;
+/// Shares of the believed time constant of the regulator that are tried, for it delays too [1].
+const TIME_CONSTANTS: [f64; 5] = [0.85, 0.93, 1.0, 1.08, 1.18];
+
+/// A channel beside what the believed model gives.
+struct Pair<'a> {
+    time: &'a [f64],
+    measured: &'a [f64],
+    simulated: &'a [f64],
+    noise: f64,
+}
+
+impl Pair<'_> {
+    /// Loss of the channel with a clock.
+    fn cost(&self, scale: f64, offset: f64) -> f64 {
+        let start = self.time[0];
+        let stride = (self.time.len() / SAMPLES).max(1);
+        let last = self.time.len() - 1;
+        let mut cost = 0.0;
+        let mut next = 1;
+        for i in (0..self.time.len()).step_by(stride) {
+            if !self.measured[i].is_finite() {
+                continue;
+            }
+            let u = start + (self.time[i] - start - offset) / scale;
+            let value = if u <= start {
+                self.simulated[0]
+            } else if u >= self.time[last] {
+                self.simulated[last]
+            } else {
+                while self.time[next] < u {
+                    next += 1;
+                }
+                while next > 1 && self.time[next - 1] > u {
+                    next -= 1;
+                }
+                let share = (u - self.time[next - 1]) / (self.time[next] - self.time[next - 1]);
+                self.simulated[next - 1] + share * (self.simulated[next] - self.simulated[next - 1])
+            };
+            let size = (self.measured[i] - value) / (BOUND * self.noise);
+            cost += (size * size).ln_1p();
+        }
+        cost
+    }
+}
+
+/// A clock of a channel as it fits best, with and without a scale.
+struct Fitted {
+    channel: Channel,
+    scale: f64,
+    /// Share of the cost that the scale takes from the best offset, in all and in the recording where it takes least [1].
+    taken: [f64; 2],
+    /// Best offset alone [s], and the share of the cost that it takes [1].
+    alone: f64,
+    taken_alone: f64,
+}
+
+/// Clocks of one logger, of which some or all channels are, and offsets of single channels.
+pub(super) fn of_channels(case: &DiagnosisInput) -> Vec<DataFault> {
+    let simulated: Vec<Vec<[Vec<f64>; 4]>> = (TIME_CONSTANTS.iter())
+        .map(|share| {
+            let mut plant = case.believed.clone();
+            let quantity = REGULATOR_TIME_CONSTANT.quantity();
+            quantity.set(&mut plant, share * quantity.get(&case.believed));
+            let of = |r: &NamedRecording| simulate(&plant, &r.recorded.inputs).readings;
+            case.recordings.iter().map(of).collect()
+        })
+        .collect();
+    let channels = [Channel::RegulatorPressure, Channel::Stroke, Channel::Force];
+    let fitted: Vec<Fitted> = (channels.iter())
+        .filter_map(|channel| fitted(case, &simulated, *channel))
+        .collect();
+    let logger = of_logger(case, &fitted);
+    if !logger.is_empty() {
+        return logger;
+    }
+    let mut faults = late_pressure(case, &fitted);
+    faults.extend(late_motion(case, &fitted));
+    faults
+}
+
+fn fitted(
+    case: &DiagnosisInput,
+    simulated: &[Vec<[Vec<f64>; 4]>],
+    channel: Channel,
+) -> Option<Fitted> {
+    let index = channel as usize;
+    let noise = case.noise[index];
+    let measured = |r: &NamedRecording| r.recorded.readings[index].iter().any(|v| v.is_finite());
+    if !noise.is_finite() || !case.recordings.iter().all(measured) {
+        return None;
+    }
+    // What the believed model is off by within its tolerances is no matter of time.
+    let noise = match channel {
+        Channel::RegulatorPressure => 3.0 * noise,
+        _ => OF_MODEL * noise,
+    };
+    let mut best: Option<(f64, Fitted)> = None;
+    for of_all in simulated {
+        if of_all
+            .iter()
+            .any(|of| of[index].iter().any(|v| !v.is_finite()))
+        {
+            continue;
+        }
+        let pairs: Vec<Pair<'_>> = (case.recordings.iter().zip(of_all))
+            .map(|(r, of)| Pair {
+                time: &r.recorded.inputs.time,
+                measured: &r.recorded.readings[index],
+                simulated: &of[index],
+                noise,
+            })
+            .collect();
+        let cost = |scale: f64, offset: f64| -> f64 {
+            pairs.iter().map(|pair| pair.cost(scale, offset)).sum()
+        };
+        let (alone, cost_alone) = least(|o| cost(1.0, o), OFFSETS, 65);
+        let none = cost(1.0, 0.0);
+        let (scale, _) = least(|s| cost(s, 0.0), [1.0 - SCALES, 1.0 + SCALES], 61);
+        let (offset, cost_both) = least(|o| cost(scale, o), [-0.03, 0.08], 23);
+        let (scale, cost_both) =
+            match least(|s| cost(s, offset), [scale - 0.003, scale + 0.003], 13) {
+                (s, c) if c < cost_both => (s, c),
+                _ => (scale, cost_both),
+            };
+        let share = |before: f64, after: f64| 1.0 - after / before.max(1e-9);
+        let each = pairs
+            .iter()
+            .map(|p| share(p.cost(1.0, alone), p.cost(scale, offset)));
+        let found = Fitted {
+            channel,
+            scale,
+            taken: [
+                share(cost_alone, cost_both),
+                each.fold(f64::INFINITY, f64::min),
+            ],
+            alone,
+            taken_alone: share(none, cost_alone),
+        };
+        let least_cost = cost_both.min(cost_alone);
+        if best.as_ref().is_none_or(|(known, _)| least_cost < *known) {
+            best = Some((least_cost, found));
+        }
+    }
+    best.map(|(_, fitted)| fitted)
+}
+
+/// Least value of a function over an interval: of a grid, then about its best place.
+fn least(of: impl Fn(f64) -> f64, [low, high]: [f64; 2], count: usize) -> (f64, f64) {
+    let step = (high - low) / (count - 1) as f64;
+    let at = |i: usize| low + step * i as f64;
+    let costs: Vec<f64> = (0..count).map(|i| of(at(i))).collect();
+    let best = (0..count)
+        .min_by(|a, b| costs[*a].total_cmp(&costs[*b]))
+        .unwrap_or(0);
+    let (mut place, mut cost) = (at(best), costs[best]);
+    let mut step = step;
+    for _ in 0..6 {
+        step *= 0.5;
+        for tried in [place - step, place + step] {
+            let c = of(tried);
+            if c < cost {
+                (place, cost) = (tried, c);
+            }
+        }
+    }
+    (place, cost)
+}
+
+/// Channels whose lag grows with time, all by the same scale: those of one logger.
+fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
+    let grows = |f: &&Fitted| {
+        (f.scale - 1.0).abs() > 0.5 * WORTH && f.taken[0] > TAKEN && f.taken[1] > TAKEN_OF_EACH
+    };
+    let those: Vec<&Fitted> = fitted.iter().filter(grows).collect();
+    let Some(first) = those.first() else {
+        return Vec::new();
+    };
+    let mut scales: Vec<f64> = those.iter().map(|f| f.scale).collect();
+    scales.sort_by(f64::total_cmp);
+    let scale = scales[scales.len() / 2];
+    // Physics makes lags too, and never by the same share of the time in all channels.
+    let alike = scales
+        .iter()
+        .all(|s| (s - scale).abs() < 0.25 * (scale - 1.0).abs());
+    if !alike || first.scale == 1.0 {
+        return Vec::new();
+    }
+    let mut channels: Vec<Channel> = those.iter().map(|f| f.channel).collect();
+    if acceleration_goes_with_stroke(case, scale) == channels.contains(&Channel::Stroke) {
+        channels.push(Channel::Acceleration);
+    }
+    (channels.into_iter())
+        .map(|channel| DataFault::of(Kind::ClockScale(scale), channel, None, 0.98))
+        .collect()
+}
+
+/// Whether the accelerometer is stamped by the clock of the stroke, not by one of another scale.
+fn acceleration_goes_with_stroke(case: &DiagnosisInput, scale: f64) -> bool {
+    let noise = case.noise[Channel::Stroke as usize];
+    let told = |by: f64| {
+        let of = |r: &NamedRecording| {
+            let start = r.recorded.inputs.time[0];
+            curvatures(r, noise, |t| start + (t - start) * by).len()
+        };
+        case.recordings.iter().map(of).sum::<usize>()
+    };
+    told(1.0) >= told(scale).max(told(1.0 / scale))
+}
+
+/// An outlet that is stamped late or early, unless the regulator is late: then what it drives is late too.
+fn late_pressure(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
+    let channel = Channel::RegulatorPressure;
+    let late = fitted.iter().find(|f| f.channel == channel);
+    let Some(late) = late.filter(|f| f.alone.abs() > LEAST_OFFSET && f.taken_alone > TAKEN) else {
+        return Vec::new();
+    };
+    let cost = |dead_time: f64| -> f64 {
+        let mut plant = case.believed.clone();
+        let quantity = REGULATOR_DEAD_TIME.quantity();
+        quantity.set(&mut plant, quantity.get(&case.believed) + dead_time);
+        let of = |r: &NamedRecording| -> f64 {
+            let simulated = simulate(&plant, &r.recorded.inputs).readings;
+            [Channel::Stroke, Channel::Force]
+                .into_iter()
+                .filter(|c| case.noise[*c as usize].is_finite())
+                .map(|c| {
+                    let index = c as usize;
+                    Pair {
+                        time: &r.recorded.inputs.time,
+                        measured: &r.recorded.readings[index],
+                        simulated: &simulated[index],
+                        noise: OF_MODEL * case.noise[index],
+                    }
+                    .cost(1.0, 0.0)
+                })
+                .sum()
+        };
+        case.recordings.iter().map(of).sum()
+    };
+    if late.alone > 0.0 && cost(late.alone) < cost(0.0) {
+        return Vec::new();
+    }
+    vec![DataFault::of(
+        Kind::ClockOffset(late.alone),
+        channel,
+        None,
+        0.95,
+    )]
+}
+
+/// Steps by which a lag of the stroke behind the acceleration is sought [s], and how many on either side.
+const LAG: (f64, i32) = (0.002, 60);
+/// Times that what the stretches tell at a lag must be what they tell at none [1].
+const TELLS_MORE: f64 = 1.6;
+
+/// A stroke or an acceleration that is stamped late: they tell of one motion, and the surface that the tool follows says which of them is in time.
+fn late_motion(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
+    let noise = case.noise[Channel::Stroke as usize];
+    // A wrong lag passes where there is little motion.
+    let told = |lag: f64| -> (usize, f64) {
+        let all = case.recordings.iter();
+        let all = all.flat_map(|r| curvatures(r, noise, |t| t - lag));
+        all.fold((0, 0.0), |(count, sum), (_, weight)| {
+            (count + 1, sum + weight)
+        })
+    };
+    let (_, none) = told(0.0);
+    let lags = (-LAG.1..=LAG.1).map(|step| LAG.0 * f64::from(step));
+    let best = lags
+        .map(|lag| (lag, told(lag)))
+        .max_by(|a, b| a.1.1.total_cmp(&b.1.1));
+    let stroke = fitted.iter().find(|f| f.channel == Channel::Stroke);
+    let (Some((lag, (count, most))), Some(stroke)) = (best, stroke) else {
+        return Vec::new();
+    };
+    if lag.abs() < LEAST_OFFSET || count < LEAST_STRETCHES || most < TELLS_MORE * none {
+        return Vec::new();
+    }
+    let of = |channel: Channel, offset: f64| {
+        vec![DataFault::of(
+            Kind::ClockOffset(offset),
+            channel,
+            None,
+            0.95,
+        )]
+    };
+    if (stroke.alone - lag).abs() < 0.4 * lag.abs() {
+        of(Channel::Stroke, lag)
+    } else if stroke.alone.abs() < 0.4 * lag.abs() {
+        of(Channel::Acceleration, -lag)
+    } else {
+        Vec::new()
+    }
+}
