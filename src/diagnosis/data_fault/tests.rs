@@ -264,7 +264,8 @@ fn a_late_outlet_is_a_clock_and_a_late_regulator_is_not() {
     assert!((offset - 0.06).abs() < 0.012, "{offset}");
     let mut truth = plant();
     let dead_time = registry::REGULATOR_DEAD_TIME.quantity();
-    dead_time.set(&mut truth, dead_time.get(&truth) + 0.06);
+    let believed = dead_time.get(&truth);
+    dead_time.set(&mut truth, believed + 0.06);
     let faults = found(case_of(&truth, |_, _| {}, |_, _, _| {}));
     assert!(faults.is_empty(), "{faults:?}");
 }
