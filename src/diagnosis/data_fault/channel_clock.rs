@@ -216,7 +216,10 @@ fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     if !alike || first.scale == 1.0 {
         return Vec::new();
     }
-    let mut channels: Vec<Channel> = those.iter().map(|f| f.channel).collect();
+    // What the believed model explains worse goes with them where its own scale is theirs.
+    let goes =
+        |f: &&Fitted| f.taken[0] > 0.0 && (f.scale - scale).abs() < 0.25 * (scale - 1.0).abs();
+    let mut channels: Vec<Channel> = (fitted.iter().filter(goes)).map(|f| f.channel).collect();
     if acceleration_goes_with_stroke(case, scale) == channels.contains(&Channel::Stroke) {
         channels.push(Channel::Acceleration);
     }
