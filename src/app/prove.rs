@@ -13,8 +13,8 @@ use super::output::say;
 use super::progress;
 use crate::laboratory::{Recipe, shipped, write_case};
 use crate::proof::{
-    CaseConditions, Claims, Course, Diagnose, LawPlan, ProofError, SweepPlan, folders, laws,
-    laws_page, page, prove, sweep,
+    CaseConditions, Claims, Course, DevicePlan, Diagnose, LawPlan, ProofError, SweepPlan, folders,
+    laws, laws_page, page, prove, sweep,
 };
 use crate::quantity::counted;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
@@ -121,12 +121,18 @@ pub(super) struct LaboratoryArguments {
     /// Instead, the cases of `idc prove --sweep --laws` of this many: devices with a law each that no list holds.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1000))]
     laws: Option<u64>,
-    /// Which devices are drawn: another number, others.
-    #[arg(long, requires = "laws", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..1_000_000))]
+    /// Instead, this many devices: nothing missing in one, an effect of the vocabulary in the next.
+    #[arg(long, conflicts_with = "laws", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    devices: Option<u64>,
+    /// With --laws or --devices, which are drawn: another number, others.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..1_000_000))]
     draw: u64,
-    /// Length of each recording [s].
-    #[arg(long, requires = "laws", default_value_t = 4.0, value_parser = duration)]
+    /// With --laws or --devices, length of each recording [s].
+    #[arg(long, default_value_t = 4.0, value_parser = duration)]
     duration_s: f64,
+    /// With --devices, conditions under which they are recorded.
+    #[arg(long, value_enum, default_value_t)]
+    conditions: CaseConditions,
     /// Put new results in place of old ones.
     #[arg(long, help_heading = "Output")]
     force: bool,
@@ -317,14 +323,21 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
         });
     }
     let quiet = arguments.quiet || arguments.json;
-    let what = match arguments.laws {
-        None => Which::Shipped(&[]),
-        Some(count) => Which::Laws(LawPlan {
+    let (draw, duration) = (arguments.draw, arguments.duration_s);
+    let what = match (arguments.laws, arguments.devices) {
+        (Some(count), _) => Which::Laws(LawPlan {
             count,
-            draw: arguments.draw,
-            duration: arguments.duration_s,
+            draw,
+            duration,
             conditions: CaseConditions::Laboratory,
         }),
+        (None, Some(count)) => Which::Devices(DevicePlan {
+            count,
+            draw,
+            duration,
+            conditions: arguments.conditions,
+        }),
+        (None, None) => Which::Shipped(&[]),
     };
     let names = make_cases(out, &what, quiet)?;
     if arguments.json {
@@ -347,6 +360,8 @@ enum Which<'a> {
     Shipped(&'a [String]),
     /// Devices with a law each.
     Laws(LawPlan),
+    /// Devices with nothing missing and with an effect of the vocabulary in turn.
+    Devices(DevicePlan),
 }
 
 /// Makes cases into `cases` and `sealed` of a folder: all of them appear, or none. Returns their names.
@@ -364,6 +379,7 @@ fn make_cases(out: &Path, which: &Which<'_>, quiet: bool) -> Result<Vec<String>,
     let made = match which {
         Which::Shipped(only) => make_shipped(&cases, &sealed, only, &tell),
         Which::Laws(plan) => plan.write(&cases, &sealed, &tell),
+        Which::Devices(plan) => plan.write(&cases, &sealed, &tell),
     };
     bar.finish_and_clear();
     let made = made?;

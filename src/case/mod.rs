@@ -21,7 +21,7 @@ pub use rig::{RIG, rig_of, to_fit};
 
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::{Comparison, of_flange};
-use crate::diagnosis::data_fault::{as_read, reported};
+use crate::diagnosis::data_fault::{DataFault, as_read, refined, reported};
 use crate::diagnosis::diagnose as search;
 use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
@@ -268,9 +268,10 @@ pub fn diagnose(
     let provenance = case.provenance()?;
     let mut diagnosed = match &case.kind {
         Kind::Rig { rig, input } => {
-            let diagnosis = search::diagnose(input, prepare(input)?, settings, observer);
+            let mut diagnosis = search::diagnose(input, prepare(input)?, settings, observer);
+            let faults = refined_by(&mut diagnosis, input);
             let mut improved = improved::improved_rig(rig, &diagnosis);
-            for fault in &input.data_faults {
+            for fault in &faults {
                 improved += &format!(
                     "\n# Found in the recordings, and not in this model: {}\n",
                     fault.words()
@@ -278,7 +279,7 @@ pub fn diagnose(
             }
             // As the file says it, so that whoever takes the file gets the same.
             let plant = from_text(Path::new(IMPROVED), &improved)?.plant;
-            of_plant(input, diagnosis, improved, plant, start)?
+            of_plant((input, &faults), diagnosis, improved, plant, start)?
         }
         Kind::Cell { cell, read } => {
             let diagnosis =
@@ -286,7 +287,8 @@ pub fn diagnose(
             let effects = improved::written(&cell.scenario.effects, &diagnosis);
             let improved = improved_cell_text(&cell.scenario, &effects)?;
             let plant = diagnosis.best().fit.prediction.plant.clone();
-            let mut diagnosed = of_plant(&read.input, diagnosis, improved, plant, start)?;
+            let of_data = (&read.input, &read.input.data_faults[..]);
+            let mut diagnosed = of_plant(of_data, diagnosis, improved, plant, start)?;
             cell_account::add_cell(&mut diagnosed, cell, read);
             diagnosed
         }
@@ -319,20 +321,31 @@ fn check_in_recordings(law: &LawText, input: &DiagnosisInput) -> Result<(), Case
     Ok(())
 }
 
+/// Faults of the data as the best explanation has them, in the notes of the diagnosis too, which begin with them.
+fn refined_by(diagnosis: &mut Diagnosis, input: &DiagnosisInput) -> Vec<DataFault> {
+    let residuals = &diagnosis.best().fit.prediction.residuals;
+    let faults = refined(
+        &input.data_faults,
+        &diagnosis.evidence,
+        &input.noise,
+        residuals,
+    );
+    let words = faults.iter().map(DataFault::words);
+    diagnosis.notes.splice(..input.data_faults.len(), words);
+    faults
+}
+
 fn of_plant(
-    input: &DiagnosisInput,
+    (input, faults): (&DiagnosisInput, &[DataFault]),
     diagnosis: Diagnosis,
     improved: String,
     plant: PlantParameters,
     start: Instant,
 ) -> Result<Diagnosed, CaseError> {
     Ok(Diagnosed {
-        prediction: prediction(input, &plant)?,
+        prediction: prediction(input, faults, &plant)?,
         comparison: diagnosis.comparison(input, &plant),
-        answer: reported(
-            diagnosis.answer(start.elapsed().as_secs_f64()),
-            &input.data_faults,
-        ),
+        answer: reported(diagnosis.answer(start.elapsed().as_secs_f64()), faults),
         improved,
         diagnosis: Some(diagnosis),
         plant: Some(plant),
@@ -342,6 +355,7 @@ fn of_plant(
 /// The improved model's prediction of the recording that was kept back.
 fn prediction(
     input: &DiagnosisInput,
+    faults: &[DataFault],
     plant: &PlantParameters,
 ) -> Result<Option<String>, CaseError> {
     let Some(unseen) = &input.unseen else {
@@ -351,7 +365,7 @@ fn prediction(
     let predicted = simulate(plant, inputs).readings;
     check_finite(IMPROVED, &unseen.file, &inputs.time, &predicted)?;
     // As the sensors would read it, at the stamps of their log.
-    let (stamps, predicted) = as_read(&input.data_faults, &inputs.time, predicted);
+    let (stamps, predicted) = as_read(faults, &inputs.time, predicted);
     let columns = shown_columns(plant.chain, input.noise.map(f64::is_finite), &predicted);
     Ok(Some(columns_text(&stamps, &columns)?))
 }

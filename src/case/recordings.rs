@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::CaseError;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Chain};
-use crate::recording::csv::{read_csv, read_readings};
+use crate::recording::csv::{read_csv, read_csv_in_any_unit, read_readings};
 use crate::recording::{Recording, RecordingError, read_table};
 
 /// Reads a recording: a Parquet table by its extension, otherwise comma-separated values. Of a rig with a part of the device not every input is asked for.
@@ -25,6 +25,16 @@ pub fn read_rig(chain: Chain, path: &Path) -> Result<Recording, RecordingError> 
         read_readings(path)?
     };
     Ok(read.recording)
+}
+
+/// Reads a recording of a whole device whose measured columns may be in any unit; none where that does not help, or it is a table with units of its own.
+pub fn read_in_any_unit(chain: Chain, path: &Path) -> Option<Recording> {
+    let is_table = path.extension().is_some_and(|e| e == "parquet");
+    let read = || read_csv_in_any_unit(path).ok();
+    (chain == Chain::Whole && !is_table)
+        .then(read)??
+        .recording
+        .into()
 }
 
 /// Checks that a prediction is made of numbers throughout. `rig` and `inputs` are the files that it is of.

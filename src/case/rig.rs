@@ -1,15 +1,15 @@
 //! A rig file and the recordings that it names.
 
+use std::cell::RefCell;
 use std::path::Path;
 
 use super::error::CaseError;
-use super::recordings::read_rig;
+use super::recordings::{read_in_any_unit, read_rig};
 use crate::diagnosis::data_fault::take_off;
 use crate::diagnosis::flange::{ForceRamp, NoContact, Run, RunMetrics};
 use crate::diagnosis::input::{DiagnosisInput, NamedRecording, of_link, tolerated};
 use crate::diagnosis::recorded::{recorded_of, run_of};
-use crate::effects::{Effect, NUMBERS_OFF, candidates, sought};
-use crate::plant::Chain;
+use crate::effects::{candidates, numbers_off, sought};
 use crate::scenario::rig_file::{RigFile, load_rig};
 
 /// Rig file of a case.
@@ -89,10 +89,20 @@ fn fits(written: &str, file: &str) -> bool {
 
 /// Inputs of a diagnosis.
 pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, CaseError> {
+    let chain = rig.plant.chain;
+    // A column that is implausible as SI may be in another unit: the message stands unless that is found.
+    let implausible = RefCell::new(None);
     let read = |name: &String| -> Result<NamedRecording, CaseError> {
         let path = folder.join(name);
         let file = path.display().to_string();
-        let recorded = recorded_of(rig.plant.chain, &file, &read_rig(rig.plant.chain, &path)?)?;
+        let recording = read_rig(chain, &path).or_else(|error| {
+            let Some(recording) = read_in_any_unit(chain, &path) else {
+                return Err(error);
+            };
+            implausible.borrow_mut().get_or_insert(error);
+            Ok(recording)
+        })?;
+        let recorded = recorded_of(chain, &file, &recording)?;
         let recorded = recorded.of_sensors(rig.sensors());
         Ok(NamedRecording {
             name: name.clone(),
@@ -116,7 +126,7 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
             .collect::<Result<_, _>>()?,
         unseen: rig.predict.as_ref().map(read).transpose()?,
         candidates: (candidates(rig.plant.chain).into_iter())
-            .chain(numbers_off(rig))
+            .chain(numbers_off(rig.plant.chain))
             .chain(own)
             .collect(),
         shown: Vec::new(),
@@ -125,14 +135,9 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
         rate: rig.rate,
     };
     take_off(&mut input);
-    Ok(input)
-}
-
-/// Numbers of a whole device's file that may be off.
-fn numbers_off(rig: &RigFile) -> &'static [Effect] {
-    match rig.plant.chain {
-        Chain::Whole => &NUMBERS_OFF,
-        _ => &[],
+    match implausible.into_inner() {
+        Some(error) if !input.is_in_si() => Err(error.into()),
+        _ => Ok(input),
     }
 }
 

@@ -6,8 +6,8 @@ use crate::plant::CHANNELS;
 use crate::recording::csv::{median_step, plausible_range};
 
 use super::recorded::{COLUMNS, QUANTITIES};
-pub(super) use departure::lagrange;
-use departure::{departures, noise_of};
+use departure::noise_of;
+pub(super) use departure::{departures, lagrange};
 
 mod departure;
 mod outlier;

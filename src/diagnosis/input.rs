@@ -4,11 +4,12 @@ use super::clean::{Cleaning, clean};
 use super::data_fault::DataFault;
 use super::evidence::{Evidence, Measured};
 use super::free::{Free, Prior};
-use super::recorded::{COLUMNS, Recorded, RecordedError};
+use super::recorded::{COLUMNS, QUANTITIES, Recorded, RecordedError};
 use super::search::EstablishedEffect;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, Quantity};
+use crate::recording::csv::plausible_range;
 
 /// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
 pub(super) const OTHER_NOISE: f64 = 1.5;
@@ -47,6 +48,31 @@ pub struct DiagnosisInput {
     pub tried: Option<&'static Effect>,
     /// Faults of sensors and clocks that were found, and taken off the recordings.
     pub data_faults: Vec<DataFault>,
+}
+
+impl DiagnosisInput {
+    /// Whether what was measured is plausible as SI: nearly all readings of each channel, and some pressure where a sensor has readings of it.
+    #[must_use]
+    pub fn is_in_si(&self) -> bool {
+        /// Share of the readings that may be wild [1].
+        const WILD: f64 = 0.02;
+        /// Largest pressure that none is below [Pa].
+        const LEAST_PRESSURE: f64 = 50.0;
+        let plausible = |recording: &NamedRecording| {
+            let channels = QUANTITIES.iter().zip(&recording.recorded.readings);
+            let mut channels = channels.enumerate();
+            channels.all(|(index, (quantity, values))| {
+                let [low, high] = plausible_range(quantity);
+                let given = values.iter().filter(|value| value.is_finite());
+                let outside = given.clone().filter(|v| !(low..=high).contains(*v)).count();
+                let largest = given.clone().fold(0.0, |most: f64, v| most.max(*v));
+                let is_pressure = index == Channel::RegulatorPressure as usize;
+                outside as f64 <= WILD * given.count() as f64
+                    && !(is_pressure && largest > 0.0 && largest < LEAST_PRESSURE)
+            })
+        };
+        self.recordings.iter().all(plausible)
+    }
 }
 
 /// A number that is believed to lie within a relative tolerance of a value, any part of it being as likely: the normal distribution of that spread.

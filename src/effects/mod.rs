@@ -21,6 +21,6 @@ pub use contact::{known_turns, tool_turns_at};
 pub use effect::{Clues, Effect, Parameter, Subsystem, Which};
 pub use header::{Header, kinds, meaning};
 pub use links::{LINK_EFFECTS, candidates};
-pub use number_off::{NUMBER_OFF, NUMBERS_OFF};
+pub use number_off::{NUMBER_OFF, NUMBERS_OFF, numbers_off};
 pub use own::{PresentEffect, own_effect, sought};
 pub use quantity::Coordinate;

@@ -15,6 +15,7 @@
 
 use super::parts::*;
 use crate::effects::effect::Which;
+use crate::plant::Chain;
 use crate::plant::registry::Number;
 
 /// Name in an answer.
@@ -27,8 +28,8 @@ struct Suspect {
 }
 
 /// Numbers that may be off and that no other effect frees: mass, orifices, dead volume, the gains, the contact's stiffness and a lean of the axis have effects
-/// of their own (`moving_mass_error`, `supply_restriction`, `axial_force_offset` ..).
-static SUSPECTS: [Suspect; 6] = [
+/// of their own (`moving_mass_error`, `supply_restriction`, `axial_force_offset` ..). The temperature acts as the discharge coefficient does, by its root.
+static SUSPECTS: [Suspect; 10] = [
     Suspect {
         number: &BORE,
         shares: &[0.94, 0.98, 1.02, 1.07],
@@ -53,10 +54,28 @@ static SUSPECTS: [Suspect; 6] = [
         number: &CONTACT_DAMPING,
         shares: &[0.3, 3.0],
     },
+    Suspect {
+        number: &END_STOP_STIFFNESS,
+        shares: &[0.2, 0.6, 2.0],
+    },
+    Suspect {
+        number: &END_STOP_DAMPING,
+        shares: &[0.3, 2.0],
+    },
+    Suspect {
+        number: &ATMOSPHERE,
+        shares: &[0.9],
+    },
+    Suspect {
+        number: &HEAT_CAPACITY_RATIO,
+        shares: &[0.9, 1.1],
+    },
 ];
 
 /// Share of the sheet's value down to which, and times up to which, a number is sought [1].
 const RANGE: [f64; 2] = [0.4, 2.5];
+/// The same of an end stop, whose numbers few have measured.
+const RANGE_OF_STOP: [f64; 2] = [0.03, 30.0];
 
 const fn of(name: &'static str, subsystem: Subsystem, place: usize, key: &'static str) -> Effect {
     Effect {
@@ -74,23 +93,40 @@ const fn of(name: &'static str, subsystem: Subsystem, place: usize, key: &'stati
 
 /// One for each such number, in the order of the suspects.
 #[rustfmt::skip] // A table: one number a line.
-pub static NUMBERS_OFF: [Effect; 6] = [
+pub static NUMBERS_OFF: [Effect; 10] = [
     of("number_off (cylinder.bore_m)", Subsystem::ForceBalance, 0, "cylinder.bore_m"),
     of("number_off (cylinder.rod_m)", Subsystem::ForceBalance, 1, "cylinder.rod_m"),
     of("number_off (cylinder.stroke_m)", Subsystem::ForceBalance, 2, "cylinder.stroke_m"),
     of("number_off (regulator.time_constant_s)", Subsystem::Regulator, 3, "regulator.time_constant_s"),
     of("number_off (valve.discharge_coefficient)", Subsystem::Chambers, 4, "valve.discharge_coefficient"),
     of("number_off (contact.damping_n_s_per_m)", Subsystem::Contact, 5, "contact.damping_n_s_per_m"),
+    of("number_off (end_stop.stiffness_n_per_m)", Subsystem::ForceBalance, 6, "end_stop.stiffness_n_per_m"),
+    of("number_off (end_stop.damping_n_s_per_m)", Subsystem::ForceBalance, 7, "end_stop.damping_n_s_per_m"),
+    of("number_off (gas.atmosphere_pa)", Subsystem::Chambers, 8, "gas.atmosphere_pa"),
+    of("number_off (gas.heat_capacity_ratio)", Subsystem::Chambers, 9, "gas.heat_capacity_ratio"),
 ];
+
+/// Those that can show in a rig with so much of the device.
+#[must_use]
+pub fn numbers_off(chain: Chain) -> &'static [Effect] {
+    match chain {
+        Chain::Whole => &NUMBERS_OFF,
+        // Its area alone acts.
+        Chain::MovedPiston => &NUMBERS_OFF[..1],
+        Chain::Regulator => &NUMBERS_OFF[3..4],
+        Chain::DrivenSlide | Chain::ClosedChamber | Chain::ContactFlange => &[],
+    }
+}
 
 fn parameters(plant: &crate::plant::PlantParameters, place: usize) -> Vec<Parameter> {
     let number = SUSPECTS[place].number;
-    let believed = number.quantity().get(plant);
+    let nominal = number.quantity().get(plant);
     let [least, most] = number.range;
-    let bounds = [
-        (RANGE[0] * believed).max(least),
-        (RANGE[1] * believed).min(most),
-    ];
+    let [down, up] = match place {
+        6 | 7 => RANGE_OF_STOP,
+        _ => RANGE,
+    };
+    let bounds = [(down * nominal).max(least), (up * nominal).min(most)];
     // A rod is thinner than its piston.
     let bounds = match place {
         0 => [bounds[0].max(1.05 * plant.device.rod), bounds[1]],

@@ -4,6 +4,7 @@
 
 mod case_conditions;
 mod confusion;
+mod devices;
 mod error;
 mod laws;
 mod outcome;
@@ -16,6 +17,7 @@ mod sweep;
 
 pub use case_conditions::CaseConditions;
 pub use confusion::page;
+pub use devices::DevicePlan;
 pub use error::ProofError;
 pub use laws::{LawAnswer, LawOutcome, LawPlan, laws, laws_page};
 pub use outcome::{Made, Outcome};

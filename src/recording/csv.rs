@@ -38,7 +38,15 @@ pub struct CsvRecording {
 /// # Errors
 /// File, line and column of what is wrong, what was found and what was expected.
 pub fn read_csv(path: &Path) -> Result<CsvRecording, RecordingError> {
-    read(path, true)
+    read(path, true, true)
+}
+
+/// Reads a recording whose measured columns may be in any unit: whoever reads it finds out which.
+///
+/// # Errors
+/// As [`read_csv`], but for measured values that are implausible as SI.
+pub fn read_csv_in_any_unit(path: &Path) -> Result<CsvRecording, RecordingError> {
+    read(path, true, false)
 }
 
 /// Reads what was measured, or predicted, without the inputs that drove the rig; those that are there are read as well.
@@ -46,16 +54,18 @@ pub fn read_csv(path: &Path) -> Result<CsvRecording, RecordingError> {
 /// # Errors
 /// As [`read_csv`].
 pub fn read_readings(path: &Path) -> Result<CsvRecording, RecordingError> {
-    read(path, false)
+    read(path, false, true)
 }
 
-fn read(path: &Path, with_inputs: bool) -> Result<CsvRecording, RecordingError> {
+fn read(path: &Path, with_inputs: bool, in_si: bool) -> Result<CsvRecording, RecordingError> {
     let table = table::read(path, &COLUMNS)?;
     let mut channels = Vec::new();
     for (column, values) in COLUMNS.iter().zip(&table.columns) {
         match values {
             Some(values) => {
-                check_plausible(path, column, values, &table.lines)?;
+                if in_si || column.is_input {
+                    check_plausible(path, column, values, &table.lines)?;
+                }
                 channels.push(RecordedChannel::new(
                     column.quantity,
                     column.unit,

@@ -60,7 +60,7 @@ pub(super) fn departure(
 }
 
 /// Departures of all readings; NaN where there is none.
-pub(super) fn departures(time: &[f64], values: &[f64], step: f64) -> Vec<f64> {
+pub(in super::super) fn departures(time: &[f64], values: &[f64], step: f64) -> Vec<f64> {
     (0..values.len())
         .map(|index| departure(time, values, step, index, None).unwrap_or(f64::NAN))
         .collect()

@@ -1,6 +1,7 @@
 //! Zeros that jump: a step from one sample to the next that the motion denies.
 
 use super::super::input::{DiagnosisInput, NamedRecording};
+use super::free_air::in_the_air;
 use super::{DataFault, Kind};
 use crate::plant::Channel;
 
@@ -12,6 +13,12 @@ const WIDE: [usize; 2] = [20, 40];
 const SURE: f64 = 6.5;
 /// Standard deviations of the narrow step by which the wide one may differ [1].
 const ALIKE: f64 = 2.5;
+/// Readings on either side of the closest look: a steep rise over a few samples is none.
+const CLOSE: [usize; 2] = [1, 3];
+/// Standard deviations by which a closer look may differ [1].
+const CLOSE_ALIKE: f64 = 3.2;
+/// Time after a command within which air and contact move fast [s], and how much surer a step must be there [1].
+const AFTER_COMMAND: (f64, f64) = (0.15, 1.6);
 /// Root mean square beside the line on either side, in standard deviations of the noise, up to which there is a line [1].
 const ON_LINE: f64 = 1.35;
 /// Times that a step must be what either line moves by from sample to sample [1].
@@ -24,8 +31,6 @@ const NEAR: usize = 20;
 const UNSEEN: f64 = 0.3;
 /// Jumps of a channel in a recording at most.
 const MOST: usize = 3;
-/// Distance from the surface beyond which a tool does not touch [m].
-const CLEAR: f64 = 2e-3;
 /// Readings without contact that say a level.
 const LEAST_FREE: usize = 30;
 
@@ -104,11 +109,15 @@ fn of_channel(
         return Vec::new();
     }
     let acceleration = &readings[Channel::Acceleration as usize];
+    let inputs = &recording.recorded.inputs;
+    let commands = inputs.set_pressure.iter().zip(&inputs.extends);
+    let commands: Vec<(f64, bool)> = commands.map(|(p, v)| (*p, *v)).collect();
     let motion = (channel == Channel::Stroke).then_some(&acceleration[..]);
     let sight = Sight {
         time,
         values: &values,
         acceleration: motion,
+        commands: &commands,
         noise,
     };
     let mut steps: Vec<StepAt> = (NARROW..time.len().saturating_sub(NARROW))
@@ -160,6 +169,8 @@ struct Sight<'a> {
     values: &'a [f64],
     /// Acceleration whose motion is taken out.
     acceleration: Option<&'a [f64]>,
+    /// Set pressure [Pa gauge] and position of the valve.
+    commands: &'a [(f64, bool)],
     noise: f64,
 }
 
@@ -174,16 +185,65 @@ impl Sight<'_> {
         }
         let (narrow, deviation) = self.between_lines(index, NARROW)?;
         let sigmas = narrow.abs() / deviation;
+        if !self.is_sudden(index, narrow) {
+            return None;
+        }
         let wide = WIDE
             .into_iter()
             .filter_map(|width| self.between_lines(index, width))
             .filter(|(wide, _)| (wide - narrow).abs() < ALIKE * deviation)
             .next_back()?;
-        (sigmas >= SURE).then_some(StepAt {
+        let sure = match self.follows_a_command(index) {
+            true => AFTER_COMMAND.1 * SURE,
+            false => SURE,
+        };
+        (sigmas >= sure).then_some(StepAt {
             index,
             size: wide.0,
             sigmas,
         })
+    }
+
+    /// Whether the few readings on either side of a sample show the step too, less what the lines about them move by.
+    fn is_sudden(&self, index: usize, size: f64) -> bool {
+        let span = index - NARROW..index + NARROW;
+        let values = self.values_of(span.clone());
+        let time = &self.time[span];
+        let middle = 0.5 * (time[NARROW - 1] + time[NARROW]);
+        let lines = [0..NARROW, NARROW..2 * NARROW]
+            .map(|side| Line::through(&time[side.clone()], &values[side], middle));
+        let [Some(left), Some(right)] = lines else {
+            return false;
+        };
+        let step = 0.5 * (left.slope + right.slope) * (time[NARROW] - time[NARROW - 1]);
+        CLOSE.into_iter().all(|width| {
+            let mean = |part: &[f64]| part.iter().sum::<f64>() / width as f64;
+            let apart =
+                mean(&values[NARROW..NARROW + width]) - mean(&values[NARROW - width..NARROW]);
+            let close = apart - step * width as f64;
+            let deviation = self.noise * (2.0 / width as f64).sqrt();
+            (close - size).abs() < CLOSE_ALIKE * deviation + 0.1 * size.abs()
+        })
+    }
+
+    /// Whether a command was given shortly before a sample.
+    fn follows_a_command(&self, index: usize) -> bool {
+        let since = self.time[index] - AFTER_COMMAND.0;
+        let first = self.time.partition_point(|t| *t < since);
+        let mut pairs = self.commands[first..=index].windows(2);
+        pairs.any(|pair| pair[0] != pair[1])
+    }
+
+    /// Readings less the motion that the accelerometer shows, lines apart.
+    fn values_of(&self, span: std::ops::Range<usize>) -> Vec<f64> {
+        match self.acceleration {
+            Some(a) => without_motion(
+                &self.time[span.clone()],
+                &self.values[span.clone()],
+                &a[span],
+            ),
+            None => self.values[span].to_vec(),
+        }
     }
 
     /// Step between the lines on either side of a sample, and its standard deviation; none where there are no lines, or they move as fast.
@@ -198,10 +258,7 @@ impl Sight<'_> {
         if time[2 * width - 1] - time[0] > 1.3 * 2.0 * width as f64 * usual {
             return None;
         }
-        let values = match self.acceleration {
-            Some(a) => without_motion(time, &self.values[span.clone()], &a[span]),
-            None => self.values[span].to_vec(),
-        };
+        let values = self.values_of(span);
         let middle = 0.5 * (time[width - 1] + time[width]);
         let left = Line::through(&time[..width], &values[..width], middle)?;
         let right = Line::through(&time[width..], &values[width..], middle)?;
@@ -252,23 +309,13 @@ fn is_motion(
     }
 }
 
-/// Change of a load cell's level without contact from before a sample to after it; none where either side has no such time.
+/// Change of a load cell's level in the air from before a sample to after it; none where either side has no such time.
 fn level_change(recording: &NamedRecording, force: &[f64], index: usize) -> Option<f64> {
-    let inputs = &recording.recorded.inputs;
-    let stroke = &recording.recorded.readings[Channel::Stroke as usize];
-    let is_free = |i: &usize| {
-        let near = i.saturating_sub(3)..(i + 4).min(force.len());
-        near.into_iter()
-            .all(|j| inputs.surface[j].is_nan() || stroke[j] < inputs.surface[j] - CLEAR)
+    let air = in_the_air(recording);
+    let level = |side: &[usize]| {
+        let sum: f64 = side.iter().map(|i| force[*i]).sum();
+        (side.len() >= LEAST_FREE).then(|| sum / side.len() as f64)
     };
-    let level = |range: std::ops::Range<usize>| {
-        let free: Vec<f64> = range
-            .filter(is_free)
-            .map(|i| force[i])
-            .filter(|f| f.is_finite())
-            .collect();
-        let count = free.len();
-        (count >= LEAST_FREE).then(|| free.iter().sum::<f64>() / count as f64)
-    };
-    Some(level(index..force.len())? - level(0..index)?)
+    let (before, after) = air.split_at(air.partition_point(|i| *i < index));
+    Some(level(after)? - level(before)?)
 }

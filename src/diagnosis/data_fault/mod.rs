@@ -8,15 +8,20 @@
 
 mod channel_clock;
 mod clock;
+mod copied;
 mod curvature;
+mod drift;
+mod free_air;
 mod gain;
 mod jump;
 mod noise;
+mod refined;
 mod report;
 mod resample;
 mod run;
 mod zero;
 
+pub use refined::refined;
 pub use report::{DataFaultReport, reported};
 
 use super::input::{DiagnosisInput, NamedRecording};
@@ -40,6 +45,10 @@ pub enum Kind {
     ClockScale(f64),
     /// The reading is that of so much earlier [s].
     ClockOffset(f64),
+    /// The zero moves by so much a second, in the channel's unit a second.
+    Drift(f64),
+    /// The readings between two stamps [s] are those of another place, which begins at a stamp [s].
+    Copied([f64; 2], f64),
     /// The noise has this standard deviation, in the channel's unit.
     Noise(f64),
 }
@@ -80,7 +89,8 @@ pub fn take_off(case: &mut DiagnosisInput) {
     if case.believed.chain != Chain::Whole || case.recordings.iter().any(of_cell) {
         return;
     }
-    let steps: [fn(&DiagnosisInput) -> Vec<DataFault>; 9] = [
+    let steps: [fn(&DiagnosisInput) -> Vec<DataFault>; 11] = [
+        copied::copies,
         run::frozen,
         run::held,
         gain::gains,
@@ -88,6 +98,7 @@ pub fn take_off(case: &mut DiagnosisInput) {
         clock::of_log_by_rate,
         zero::at_start,
         jump::jumps,
+        drift::drifts,
         channel_clock::of_channels,
         clock::of_log_by_motion,
     ];
@@ -140,7 +151,12 @@ fn correct_one(recording: &mut NamedRecording, fault: &DataFault) {
         }
         Kind::Gain(gain) => values.iter_mut().for_each(|value| *value /= gain),
         Kind::Held(_) => run::keep_firsts(values),
-        Kind::Frozen([start, end]) => {
+        Kind::Drift(drift) => {
+            for (value, time) in values.iter_mut().zip(&inputs.time) {
+                *value -= drift * (time - inputs.time[0]);
+            }
+        }
+        Kind::Frozen([start, end]) | Kind::Copied([start, end], _) => {
             for (value, time) in values.iter_mut().zip(&inputs.time) {
                 if *time > start && *time < end {
                     *value = f64::NAN;

@@ -1,9 +1,30 @@
 //! Noise that is louder than the sheet's.
 
-use super::super::clean::clean;
+use super::super::clean::{clean, departures};
 use super::super::input::{DiagnosisInput, OTHER_NOISE};
 use super::{DataFault, Kind};
 use crate::plant::CHANNELS;
+
+/// Samples within which departures of white noise from their neighbours' cubic are alike, and up to which a period is sought.
+const LAGS: [usize; 2] = [5, 40];
+/// Correlation of departures with themselves from which they are periodic [1].
+const PERIODIC: f64 = 0.25;
+
+/// Whether departures from the neighbours have no period: a fast runout is no noise.
+fn is_white(time: &[f64], values: &[f64]) -> bool {
+    let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+    let all: Vec<f64> = departures(time, values, step);
+    // Robustly: an impact is large and stands alone.
+    let signs: Vec<f64> = all
+        .iter()
+        .map(|z| if z.is_nan() { 0.0 } else { z.signum() })
+        .collect();
+    let at = |lag: usize| -> f64 {
+        let pairs = signs.iter().zip(&signs[lag..]);
+        pairs.map(|(a, b)| a * b).sum::<f64>() / (signs.len() - lag) as f64
+    };
+    (LAGS[0]..LAGS[1].min(signs.len() / 4)).all(|lag| at(lag).abs() < PERIODIC)
+}
 
 /// Channels whose noise is clearly more than their sheet says, by the median over the recordings.
 pub(super) fn louder(case: &DiagnosisInput) -> Vec<DataFault> {
@@ -12,7 +33,11 @@ pub(super) fn louder(case: &DiagnosisInput) -> Vec<DataFault> {
         .map(|recording| {
             let mut readings = recording.recorded.readings.clone();
             let inputs = &recording.recorded.inputs;
-            clean(&inputs.time, &mut readings, &case.noise, mass)
+            let mut cleaning = clean(&inputs.time, &mut readings, &case.noise, mass);
+            for (noise, values) in cleaning.noise.iter_mut().zip(&readings) {
+                *noise = noise.filter(|_| is_white(&inputs.time, values));
+            }
+            cleaning
         })
         .collect();
     let of = |(channel, sheet): (usize, f64)| {

@@ -15,7 +15,7 @@ const ALL: &str = "all";
 /// A fault in diagnosis.json.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DataFaultReport {
-    /// What it is: `zero_offset`, `zero_jump`, `gain`, `held`, `frozen`, `clock_scale`, `clock_offset` or `noise`.
+    /// What it is: `zero_offset`, `zero_jump`, `gain`, `held`, `frozen`, `drift`, `copied`, `clock_scale`, `clock_offset` or `noise`.
     pub kind: String,
     /// Column; none where a whole log has it.
     pub channel: Option<String>,
@@ -24,10 +24,10 @@ pub struct DataFaultReport {
     /// Its size: in the channel's unit, of times in s, of gains and scales as a factor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// Stamp from which it acts [s].
+    /// Stamp from which it acts; of a copy where its source begins [s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
-    /// Stamp from which a channel stands still [s].
+    /// Stamp from which a channel stands still, or is a copy [s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start_s: Option<f64>,
     /// Stamp until which it does [s].
@@ -47,11 +47,13 @@ impl DataFault {
         let (value, time_s, span) = match self.kind {
             Kind::ZeroJump(value, time) => (Some(value), Some(time), None),
             Kind::Frozen(span) => (None, None, Some(span)),
+            Kind::Copied(span, from) => (None, Some(from), Some(span)),
             Kind::ZeroOffset(value)
             | Kind::Gain(value)
             | Kind::Held(value)
             | Kind::ClockScale(value)
             | Kind::ClockOffset(value)
+            | Kind::Drift(value)
             | Kind::Noise(value) => (Some(value), None, None),
         };
         DataFaultReport {
@@ -74,6 +76,8 @@ impl DataFault {
             Kind::Gain(_) => "gain",
             Kind::Held(_) => "held",
             Kind::Frozen(_) => "frozen",
+            Kind::Drift(_) => "drift",
+            Kind::Copied(..) => "copied",
             Kind::ClockScale(_) => "clock_scale",
             Kind::ClockOffset(_) => "clock_offset",
             Kind::Noise(_) => "noise",
@@ -113,6 +117,16 @@ impl DataFault {
                 "the {channel} stands still from {} to {}",
                 seconds(start),
                 seconds(end)
+            ),
+            Kind::Drift(value) => format!(
+                "the zero of the {channel} drifts by {} a second",
+                said(value)
+            ),
+            Kind::Copied([start, end], from) => format!(
+                "the {channel} from {} to {} is a copy of what stands at {}",
+                seconds(start),
+                seconds(end),
+                seconds(from)
             ),
             Kind::ClockScale(value) => format!(
                 "the stamps of the {channel} advance {} times as fast as time",

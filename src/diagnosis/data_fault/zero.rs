@@ -1,6 +1,7 @@
 //! Zeros: absolute pressure for gauge, and those that the rest at the start of each recording shows.
 
 use super::super::input::{DiagnosisInput, NamedRecording};
+use super::free_air::in_the_air;
 use super::{DataFault, Kind};
 use crate::plant::{CHANNELS, Channel, InitialState, simulate};
 
@@ -99,8 +100,45 @@ pub(super) fn at_start(case: &DiagnosisInput) -> Vec<DataFault> {
     faults
 }
 
-/// Zero of a channel at the start of a recording, and its standard error; none where it does not rest there without touching.
+/// Zero of a channel in a recording, and its standard error; none where nothing says it.
 fn zero(case: &DiagnosisInput, recording: &NamedRecording, channel: Channel) -> Option<(f64, f64)> {
+    let at_start = zero_at_start(case, recording, channel);
+    match channel {
+        Channel::Force => at_start.or_else(|| zero_in_the_air(case, recording)),
+        _ => at_start,
+    }
+}
+
+/// Mean of the load cell's readings in the air, which say its zero whatever went before, and its standard error.
+fn zero_in_the_air(case: &DiagnosisInput, recording: &NamedRecording) -> Option<(f64, f64)> {
+    let force = &recording.recorded.readings[Channel::Force as usize];
+    let mut air: Vec<f64> = in_the_air(recording)
+        .into_iter()
+        .map(|i| force[i])
+        .collect();
+    if air.len() < 4 * LEAST {
+        return None;
+    }
+    // What moves shakes the load cell: the middle, and as few independent readings as a motion leaves.
+    let middle = air.len() / 2;
+    let median = *air.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let mut apart: Vec<f64> = air.iter().map(|f| (f - median).abs()).collect();
+    let spread = *apart.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745;
+    let noise = case.noise[Channel::Force as usize];
+    (spread < 3.0 * noise).then(|| {
+        (
+            median,
+            spread.max(noise) / (apart.len() as f64 / 20.0).sqrt(),
+        )
+    })
+}
+
+/// The same from the rest at the start.
+fn zero_at_start(
+    case: &DiagnosisInput,
+    recording: &NamedRecording,
+    channel: Channel,
+) -> Option<(f64, f64)> {
     let inputs = &recording.recorded.inputs;
     if inputs.initial != InitialState::AtRest {
         return None;

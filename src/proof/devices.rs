@@ -1,0 +1,94 @@
+//! Devices of the laboratory on disk: nothing missing in one, a listed effect in the next.
+
+use std::path::Path;
+
+use super::case_conditions::CaseConditions;
+use super::error::ProofError;
+use super::sweep::SEEDS_PER_DRAW;
+use crate::laboratory::{EFFECTS, Recipe, write_case};
+
+/// Seed of the first device.
+const FIRST_SEED: u64 = 3_000_000;
+/// Least share of the largest plausible effect; the shares of a draw are spread evenly from here to 1 [1].
+const LEAST_SHARE: f64 = 0.35;
+/// Golden ratio less one: its multiples, less their whole parts, are spread evenly [1].
+const GOLDEN: f64 = 0.618_033_988_749_895;
+
+/// Which devices are made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DevicePlan {
+    /// Devices.
+    pub count: u64,
+    /// Which devices are drawn.
+    pub draw: u64,
+    /// Length of each recording [s].
+    pub duration: f64,
+    /// Conditions under which they are recorded.
+    pub conditions: CaseConditions,
+}
+
+impl DevicePlan {
+    fn recipe(&self, index: u64) -> Recipe {
+        let seed = SEEDS_PER_DRAW * self.draw + FIRST_SEED + index;
+        // A draw begins at an effect of its own.
+        let number = index / 2 + 7 * self.draw;
+        let effect = &EFFECTS[number as usize % EFFECTS.len()];
+        let share = LEAST_SHARE + (1.0 - LEAST_SHARE) * (GOLDEN * number as f64).fract();
+        let (name, effects) = match index % 2 {
+            0 => (format!("nothing-{seed}"), Vec::new()),
+            _ => (
+                format!("{}-{seed}", effect.name),
+                vec![(effect.name, share)],
+            ),
+        };
+        Recipe {
+            name,
+            seed,
+            effects,
+            law: None,
+            duration: self.duration,
+            conditions: self.conditions.of(seed, self.duration),
+        }
+    }
+
+    /// Writes the cases into `cases` and their truth into `sealed`; `say` gets how many are written, of how many. Returns their names.
+    ///
+    /// # Errors
+    /// The integrator cannot go on, a file that cannot be written.
+    pub fn write(
+        &self,
+        cases: &Path,
+        sealed: &Path,
+        say: &dyn Fn(usize, usize),
+    ) -> Result<Vec<String>, ProofError> {
+        let mut names = Vec::new();
+        for index in 0..self.count {
+            let recipe = self.recipe(index);
+            write_case(&recipe.make()?, &cases.join(&recipe.name), Some(sealed))?;
+            names.push(recipe.name);
+            say(names.len(), self.count as usize);
+        }
+        Ok(names)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_second_device_lacks_nothing_and_the_others_have_effects_in_turn() {
+        let plan = DevicePlan {
+            count: 8,
+            draw: 1,
+            duration: 2.0,
+            conditions: CaseConditions::Laboratory,
+        };
+        let recipes: Vec<Recipe> = (0..8).map(|i| plan.recipe(i)).collect();
+        let found: Vec<usize> = recipes.iter().map(|r| r.effects.len()).collect();
+        assert_eq!(found, [0, 1, 0, 1, 0, 1, 0, 1]);
+        assert_ne!(recipes[1].effects[0].0, recipes[3].effects[0].0);
+        let shares = recipes.iter().flat_map(|r| &r.effects).map(|e| e.1);
+        assert!(shares.into_iter().all(|s| (LEAST_SHARE..=1.0).contains(&s)));
+    }
+}
