@@ -15,7 +15,7 @@ use std::time::Instant;
 
 pub use cell::is_cell_case;
 pub use error::CaseError;
-pub use recordings::{check_finite, read_rig, shown_columns};
+pub use recordings::{check_finite, read_in_any_unit, read_rig, shown_columns};
 pub use removal_table::{RemovalCase, RemovalDiagnosed, predict_table};
 pub use rig::{RIG, rig_of, to_fit};
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::report::{Report, shown};
-use crate::case::{Case, CaseError, read_rig, rig_of, to_fit};
+use crate::case::{Case, CaseError, read_in_any_unit, read_rig, rig_of, to_fit};
 use crate::diagnosis::input::{DiagnosisInput, prepare};
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::plant::{Chain, InitialState};
@@ -49,6 +49,7 @@ pub(super) fn case(folder: &Path) -> Result<Report, AppError> {
     );
     describe(&mut report, &rig);
     let names = to_fit(&rig, folder)?;
+    let case = Case::from_folder(folder)?;
     for name in &names {
         recording(&mut report, &rig, folder, name, "to diagnose from")?;
     }
@@ -56,7 +57,7 @@ pub(super) fn case(folder: &Path) -> Result<Report, AppError> {
         recording(&mut report, &rig, folder, name, "to be predicted")?;
     }
     report.number("recordings", names.len());
-    if let Some(input) = Case::from_folder(folder)?.input() {
+    if let Some(input) = case.input() {
         conditions(&mut report, input)?;
     }
     report.next(format!("idc diagnose {} --out DIR", word(folder)));
@@ -131,7 +132,9 @@ fn recording(
     what: &str,
 ) -> Result<(), AppError> {
     let path = folder.join(name);
-    let read = read_rig(rig.plant.chain, &path)?;
+    let chain = rig.plant.chain;
+    // The case was read: a column in another unit is one of its faults.
+    let read = read_rig(chain, &path).or_else(|e| read_in_any_unit(chain, &path).ok_or(e))?;
     let time = read.time();
     let span = time.last().unwrap_or(&0.0) - time.first().unwrap_or(&0.0);
     let mut measured = String::new();

@@ -32,6 +32,9 @@ const LEAST_OFFSET: f64 = 0.012;
 /// Shares of the believed time constant of the regulator that are tried, for it delays too [1].
 const TIME_CONSTANTS: [f64; 5] = [0.85, 0.93, 1.0, 1.08, 1.18];
 
+/// Shares of it between which it is sought where the clock of a logger is measured [1].
+const TIME_CONSTANT_SHARES: [f64; 2] = [0.8, 1.25];
+
 /// A channel beside what the believed model gives.
 struct Pair<'a> {
     time: &'a [f64],
@@ -216,6 +219,13 @@ fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     if !alike || first.scale == 1.0 {
         return Vec::new();
     }
+    let scale = match those
+        .iter()
+        .any(|f| f.channel == Channel::RegulatorPressure)
+    {
+        true => by_pressure(case, scale),
+        false => scale,
+    };
     // What the believed model explains worse goes with them where its own scale is theirs.
     let goes =
         |f: &&Fitted| f.taken[0] > 0.0 && (f.scale - scale).abs() < 0.25 * (scale - 1.0).abs();
@@ -226,6 +236,46 @@ fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     (channels.into_iter())
         .map(|channel| DataFault::of(Kind::ClockScale(scale), channel, None, 0.98))
         .collect()
+}
+
+/// The scale of a clock by the outlet, of which the commands alone say when it moves: fitted with time constant and delay of the regulator.
+fn by_pressure(case: &DiagnosisInput, scale: f64) -> f64 {
+    let index = Channel::RegulatorPressure as usize;
+    let quantity = REGULATOR_TIME_CONSTANT.quantity();
+    let nominal = quantity.get(&case.believed);
+    let fitted = |share: f64| -> (f64, f64) {
+        let mut plant = case.believed.clone();
+        quantity.set(&mut plant, share * nominal);
+        let simulated: Vec<_> = (case.recordings.iter())
+            .map(|r| simulate(&plant, &r.recorded.inputs).readings)
+            .collect();
+        let cost = |scale: f64, offset: f64| -> f64 {
+            let pairs = case.recordings.iter().zip(&simulated);
+            pairs
+                .map(|(r, of)| {
+                    Pair {
+                        time: &r.recorded.inputs.time,
+                        measured: &r.recorded.readings[index],
+                        simulated: &of[index],
+                        noise: case.noise[index],
+                    }
+                    .cost(scale, offset)
+                })
+                .sum()
+        };
+        let (mut scale, mut offset, mut least_cost) = (scale, 0.0, f64::INFINITY);
+        for width in [4e-3, 1e-3, 3e-4] {
+            (offset, _) = least(
+                |o| cost(scale, o),
+                [offset - 5.0 * width, offset + 5.0 * width],
+                11,
+            );
+            (scale, least_cost) = least(|s| cost(s, offset), [scale - width, scale + width], 11);
+        }
+        (scale, least_cost)
+    };
+    let (share, _) = least(|share| fitted(share).1, TIME_CONSTANT_SHARES, 5);
+    fitted(share).0
 }
 
 /// Whether the accelerometer is stamped by the clock of the stroke, not by one of another scale.

@@ -19,8 +19,8 @@ const CLOSE: [usize; 2] = [1, 3];
 const CLOSE_ALIKE: f64 = 3.2;
 /// Time after a command within which air and contact move fast [s], and how much surer a step must be there [1].
 const AFTER_COMMAND: (f64, f64) = (0.15, 1.6);
-/// Root mean square beside the line on either side, in standard deviations of the noise, up to which there is a line [1].
-const ON_LINE: f64 = 1.35;
+/// Standard deviations by which the root mean square beside a line may exceed the noise for there to be a line [1]: of n readings it scatters by 1 / sqrt(2 (n - 2)).
+const ON_LINE: f64 = 2.6;
 /// Times that a step must be what either line moves by from sample to sample [1].
 const STEEPER: f64 = 2.5;
 /// The same of what their slopes differ by: a bend between two samples is no step [1].
@@ -265,7 +265,8 @@ impl Sight<'_> {
         let size = right.value - left.value;
         let steep = usual * left.slope.abs().max(right.slope.abs());
         let bent = usual * (right.slope - left.slope).abs();
-        let is_step = left.rms.max(right.rms) <= ON_LINE * self.noise
+        let on_line = 1.0 + ON_LINE / (2.0 * (width - 2) as f64).sqrt();
+        let is_step = left.rms.max(right.rms) <= on_line * self.noise
             && size.abs() > (STEEPER * steep).max(BENT * bent);
         let deviation = self.noise * (left.variance + right.variance).sqrt();
         is_step.then_some((size, deviation))

@@ -25,8 +25,8 @@ pub use refined::refined;
 pub use report::{DataFaultReport, reported};
 
 use super::input::{DiagnosisInput, NamedRecording};
-use crate::plant::{Chain, Channel, InitialState};
-use resample::{held, interpolated};
+use crate::plant::{CHANNELS, Chain, Channel, InitialState};
+use resample::{held, interpolated, read_at};
 
 /// Kind and size of a fault, as abroad/README.md of the concealed cases has them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,13 +103,61 @@ pub fn take_off(case: &mut DiagnosisInput) {
         clock::of_log_by_motion,
     ];
     for find in steps {
-        for fault in find(case) {
-            correct(case, &fault);
-            case.data_faults.push(fault);
+        let faults = find(case);
+        match clock_of_all(case, &faults) {
+            Some(scale) => case
+                .recordings
+                .iter_mut()
+                .for_each(|r| by_other_clock(r, scale)),
+            None => faults.iter().for_each(|fault| correct(case, fault)),
         }
+        case.data_faults.extend(faults);
     }
     let loud = noise::louder(case);
     case.data_faults.extend(loud);
+}
+
+/// Scale of the clock by which all that was measured is stamped; none where some of it is stamped by that of the commands.
+fn clock_of_all(case: &DiagnosisInput, faults: &[DataFault]) -> Option<f64> {
+    let scale = |channel: Channel| {
+        let of = |fault: &DataFault| match fault.kind {
+            Kind::ClockScale(scale) if fault.channel == Some(channel) => Some(scale),
+            _ => None,
+        };
+        faults.iter().find_map(of)
+    };
+    let measured = |channel: &Channel| {
+        let mut recordings = case.recordings.iter();
+        recordings.any(|r| {
+            r.recorded.readings[*channel as usize]
+                .iter()
+                .any(|v| v.is_finite())
+        })
+    };
+    let mut scales = CHANNELS.into_iter().filter(measured).map(scale);
+    let first = scales.next()??;
+    scales.all(|other| other == Some(first)).then_some(first)
+}
+
+/// Stamps a recording by when its readings were taken, with the commands of that time: no reading is made another.
+fn by_other_clock(recording: &mut NamedRecording, scale: f64) {
+    let inputs = &mut recording.recorded.inputs;
+    let stamps = inputs.time.clone();
+    let start = stamps[0];
+    let taken: Vec<f64> = stamps.iter().map(|t| start + (t - start) / scale).collect();
+    let last = stamps.len() - 1;
+    // A command holds until the next.
+    let row = |t: &f64| {
+        stamps
+            .partition_point(|stamp| stamp <= t)
+            .clamp(1, last + 1)
+            - 1
+    };
+    let rows: Vec<usize> = taken.iter().map(row).collect();
+    inputs.set_pressure = rows.iter().map(|i| inputs.set_pressure[*i]).collect();
+    inputs.extends = rows.iter().map(|i| inputs.extends[*i]).collect();
+    inputs.surface = read_at(&stamps, &inputs.surface, |t| start + (t - start) / scale);
+    inputs.time = taken;
 }
 
 /// Takes a fault off all recordings that it acts in.
@@ -218,7 +266,7 @@ pub fn as_read(
                 let sampled = period.map_or(t, |period| held(t - start, period) + start);
                 start + (sampled - offset - start) / scale
             };
-            *values = resample::read_at(time, values, at);
+            *values = read_at(time, values, at);
         }
         for value in values.iter_mut() {
             *value = gain * *value + zero;
