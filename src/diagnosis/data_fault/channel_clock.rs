@@ -219,13 +219,6 @@ fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     if !alike || first.scale == 1.0 {
         return Vec::new();
     }
-    let scale = match those
-        .iter()
-        .any(|f| f.channel == Channel::RegulatorPressure)
-    {
-        true => by_pressure(case, scale),
-        false => scale,
-    };
     // What the believed model explains worse goes with them where its own scale is theirs.
     let goes =
         |f: &&Fitted| f.taken[0] > 0.0 && (f.scale - scale).abs() < 0.25 * (scale - 1.0).abs();
@@ -233,6 +226,10 @@ fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     if acceleration_goes_with_stroke(case, scale) == channels.contains(&Channel::Stroke) {
         channels.push(Channel::Acceleration);
     }
+    let scale = match channels.contains(&Channel::RegulatorPressure) {
+        true => by_pressure(case, scale),
+        false => scale,
+    };
     (channels.into_iter())
         .map(|channel| DataFault::of(Kind::ClockScale(scale), channel, None, 0.98))
         .collect()

@@ -17,6 +17,9 @@ const ALIKE: f64 = 2.5;
 const CLOSE: [usize; 2] = [1, 3];
 /// Standard deviations by which a closer look may differ [1].
 const CLOSE_ALIKE: f64 = 3.2;
+/// White noise integrated twice: root mean square beside a line, and standard deviation of the step between two lines, over step squared, noise and root of the cube of
+/// the number of readings [1]; from 400 draws of 10 to 40 readings.
+const WALK: [f64; 2] = [0.05, 0.14];
 /// Time after a command within which air and contact move fast [s], and how much surer a step must be there [1].
 const AFTER_COMMAND: (f64, f64) = (0.15, 1.6);
 /// Standard deviations by which the root mean square beside a line may exceed the noise for there to be a line [1]: of n readings it scatters by 1 / sqrt(2 (n - 2)).
@@ -118,6 +121,10 @@ fn of_channel(
         values: &values,
         acceleration: motion,
         commands: &commands,
+        noise_of_acceleration: match channel {
+            Channel::Stroke => case.noise[Channel::Acceleration as usize],
+            _ => 0.0,
+        },
         noise,
     };
     let mut steps: Vec<StepAt> = (NARROW..time.len().saturating_sub(NARROW))
@@ -172,9 +179,16 @@ struct Sight<'a> {
     /// Set pressure [Pa gauge] and position of the valve.
     commands: &'a [(f64, bool)],
     noise: f64,
+    /// Noise of the acceleration [m/s2]; nothing where its motion is not taken out.
+    noise_of_acceleration: f64,
 }
 
 impl Sight<'_> {
+    /// What the noise of the acceleration, integrated twice, comes to over so many readings: it grows as the root of the cube of their number.
+    fn walk(&self, width: usize, step: f64) -> f64 {
+        step * step * self.noise_of_acceleration * (width as f64).powi(3).sqrt()
+    }
+
     /// The step at a sample by narrow lines, its size by the widest that say the same; none where there is none.
     fn step(&self, index: usize) -> Option<StepAt> {
         // A quick look first: most places have no step at all.
@@ -191,15 +205,17 @@ impl Sight<'_> {
         let wide = WIDE
             .into_iter()
             .filter_map(|width| self.between_lines(index, width))
-            .filter(|(wide, _)| (wide - narrow).abs() < ALIKE * deviation)
+            .filter(|(wide, own)| (wide - narrow).abs() < ALIKE * deviation.hypot(*own))
             .next_back()?;
+        // The surer of the two says the size.
+        let size = if wide.1 < deviation { wide.0 } else { narrow };
         let sure = match self.follows_a_command(index) {
             true => AFTER_COMMAND.1 * SURE,
             false => SURE,
         };
         (sigmas >= sure).then_some(StepAt {
             index,
-            size: wide.0,
+            size,
             sigmas,
         })
     }
@@ -266,9 +282,12 @@ impl Sight<'_> {
         let steep = usual * left.slope.abs().max(right.slope.abs());
         let bent = usual * (right.slope - left.slope).abs();
         let on_line = 1.0 + ON_LINE / (2.0 * (width - 2) as f64).sqrt();
-        let is_step = left.rms.max(right.rms) <= on_line * self.noise
+        let walk = self.walk(width, usual);
+        let noise = self.noise.hypot(WALK[0] * walk);
+        let is_step = left.rms.max(right.rms) <= on_line * noise
             && size.abs() > (STEEPER * steep).max(BENT * bent);
-        let deviation = self.noise * (left.variance + right.variance).sqrt();
+        let own = self.noise * (left.variance + right.variance).sqrt();
+        let deviation = own.hypot(WALK[1] * walk);
         is_step.then_some((size, deviation))
     }
 }

@@ -26,6 +26,8 @@ const LIGHTER: usize = 8;
 /// The last stages of a full fit, for what is all but there.
 const LAST: &[Stage] = FULL.split_at(FULL.len() - 2).1;
 
+/// Known effects that are fitted from where a formula stands, at most.
+const MOST_DIRECT: usize = 2;
 /// Share of the mismatch that the best effect must leave for a formula to be asked for at once [1].
 const ONE_LEAVES: f64 = 0.25;
 /// Sets of effects beside which a formula is asked for at a time, at most.
@@ -368,15 +370,28 @@ impl Search<'_> {
         let mut named = self.screen(&from, ROUGH, most);
         named.retain(|h| self.rough_score(h) < most);
         named.truncate(self.settings.fitted_in_full);
-        for h in &mut named {
-            *h = self.refit(h, Refit::ROUGH.from(Start::Here));
+        // From where the formula has put the rest: a held piston may draw that elsewhere.
+        let there = Refit {
+            start: Start::Here,
+            stages: LAST,
+            ..Refit::FULL
+        };
+        let mut direct: Vec<Hypothesis> = (named.iter().take(MOST_DIRECT))
+            .map(|h| self.refit(h, there))
+            .filter(|h| scale.is_adequate(h))
+            .collect();
+        direct.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        if direct.is_empty() {
+            for h in &mut named {
+                *h = self.refit(h, Refit::ROUGH.from(Start::Here));
+            }
+            // One that leaves more than noise where the piston is held does so in full.
+            named.retain(|h| h.fit.rough < self.left_alone(scale));
+            direct = self.in_full(&named, scale, &mut Vec::new(), observer);
+            direct.retain(|h| scale.is_adequate(h));
         }
-        // One that leaves more than noise where the piston is held does so in full.
-        named.retain(|h| h.fit.rough < self.left_alone(scale));
-        let mut named = self.in_full(&named, scale, &mut Vec::new(), observer);
-        named.retain(|h| scale.is_adequate(h));
         let allowed = self.score(&found[0]) + self.settings.look_elsewhere;
-        if let Some(first) = named.into_iter().next()
+        if let Some(first) = direct.into_iter().next()
             && self.score(&first) < allowed
         {
             found.insert(0, first);
