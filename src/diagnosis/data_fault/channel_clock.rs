@@ -46,35 +46,61 @@ struct Pair<'a> {
 impl Pair<'_> {
     /// Loss of the channel with a clock.
     fn cost(&self, scale: f64, offset: f64) -> f64 {
-        let start = self.time[0];
         let stride = (self.time.len() / SAMPLES).max(1);
-        let last = self.time.len() - 1;
-        let mut cost = 0.0;
-        let mut next = 1;
-        for i in (0..self.time.len()).step_by(stride) {
-            if !self.measured[i].is_finite() {
-                continue;
-            }
-            let u = start + (self.time[i] - start - offset) / scale;
-            let value = if u <= start {
-                self.simulated[0]
-            } else if u >= self.time[last] {
-                self.simulated[last]
-            } else {
-                while self.time[next] < u {
-                    next += 1;
-                }
-                while next > 1 && self.time[next - 1] > u {
-                    next -= 1;
-                }
-                let share = (u - self.time[next - 1]) / (self.time[next] - self.time[next - 1]);
-                self.simulated[next - 1] + share * (self.simulated[next] - self.simulated[next - 1])
-            };
-            let size = (self.measured[i] - value) / (BOUND * self.noise);
-            cost += (size * size).ln_1p();
-        }
-        cost
+        self.loss(&self.read(scale, offset, stride), 1.0)
     }
+
+    /// Readings beside simulated ones at the times of a clock, one of so many.
+    fn read(&self, scale: f64, offset: f64, stride: usize) -> Vec<(f64, f64)> {
+        let start = self.time[0];
+        let last = self.time.len() - 1;
+        let mut next = 1;
+        let rows = (0..self.time.len()).step_by(stride);
+        rows.filter(|i| self.measured[*i].is_finite())
+            .map(|i| {
+                let u = start + (self.time[i] - start - offset) / scale;
+                let value = if u <= start {
+                    self.simulated[0]
+                } else if u >= self.time[last] {
+                    self.simulated[last]
+                } else {
+                    while self.time[next] < u {
+                        next += 1;
+                    }
+                    while next > 1 && self.time[next - 1] > u {
+                        next -= 1;
+                    }
+                    let [before, after] = [self.simulated[next - 1], self.simulated[next]];
+                    let step = self.time[next] - self.time[next - 1];
+                    before + (u - self.time[next - 1]) / step * (after - before)
+                };
+                (self.measured[i], value)
+            })
+            .collect()
+    }
+
+    /// Loss of readings against simulated ones times a gain.
+    fn loss(&self, pairs: &[(f64, f64)], gain: f64) -> f64 {
+        let of = |(measured, value): &(f64, f64)| {
+            let size = (measured - gain * value) / (BOUND * self.noise);
+            (size * size).ln_1p()
+        };
+        pairs.iter().map(of).sum()
+    }
+}
+
+/// Loss of all recordings with a clock, at the gain that fits best: a sensor's or a regulator's is no matter of time.
+fn cost_at_best_gain(pairs: &[Pair<'_>], scale: f64, offset: f64) -> f64 {
+    let read: Vec<_> = pairs
+        .iter()
+        .map(|pair| pair.read(scale, offset, 1))
+        .collect();
+    let (both, own) = (read.iter().flatten()).fold((0.0, 0.0), |(both, own), (m, v)| {
+        (both + m * v, own + v * v)
+    });
+    let gain = if own > 0.0 { both / own } else { 1.0 };
+    let all = pairs.iter().zip(&read);
+    all.map(|(pair, read)| pair.loss(read, gain)).sum()
 }
 
 /// A clock of a channel as it fits best, with and without a scale.
@@ -246,22 +272,17 @@ fn by_pressure(case: &DiagnosisInput, scale: f64) -> f64 {
         let simulated: Vec<_> = (case.recordings.iter())
             .map(|r| simulate(&plant, &r.recorded.inputs).readings)
             .collect();
-        let cost = |scale: f64, offset: f64| -> f64 {
-            let pairs = case.recordings.iter().zip(&simulated);
-            pairs
-                .map(|(r, of)| {
-                    Pair {
-                        time: &r.recorded.inputs.time,
-                        measured: &r.recorded.readings[index],
-                        simulated: &of[index],
-                        noise: case.noise[index],
-                    }
-                    .cost(scale, offset)
-                })
-                .sum()
-        };
+        let pairs: Vec<Pair<'_>> = (case.recordings.iter().zip(&simulated))
+            .map(|(r, of)| Pair {
+                time: &r.recorded.inputs.time,
+                measured: &r.recorded.readings[index],
+                simulated: &of[index],
+                noise: case.noise[index],
+            })
+            .collect();
+        let cost = |scale: f64, offset: f64| cost_at_best_gain(&pairs, scale, offset);
         let (mut scale, mut offset, mut least_cost) = (scale, 0.0, f64::INFINITY);
-        for width in [4e-3, 1e-3, 3e-4] {
+        for width in [4e-3, 1e-3, 3e-4, 1e-4] {
             (offset, _) = least(
                 |o| cost(scale, o),
                 [offset - 5.0 * width, offset + 5.0 * width],

@@ -17,16 +17,18 @@ mod jump;
 mod noise;
 mod refined;
 mod report;
+mod reported;
 mod resample;
 mod run;
 mod zero;
 
 pub use refined::refined;
-pub use report::{DataFaultReport, reported};
+pub use report::DataFaultReport;
+pub use reported::reported;
 
 use super::input::{DiagnosisInput, NamedRecording};
 use crate::plant::{CHANNELS, Chain, Channel, InitialState};
-use resample::{held, interpolated, read_at};
+use resample::{held, interpolated, read_at, set_impacts_aside};
 
 /// Kind and size of a fault, as abroad/README.md of the concealed cases has them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,25 +141,45 @@ fn clock_of_all(case: &DiagnosisInput, faults: &[DataFault]) -> Option<f64> {
     scales.all(|other| other == Some(first)).then_some(first)
 }
 
-/// Stamps a recording by when its readings were taken, with the commands of that time: no reading is made another.
+/// Stamps a recording by when its readings were taken, with the commands of that time: no reading is made another. A command that changes between two of them gets a
+/// sample of its own, without readings.
 fn by_other_clock(recording: &mut NamedRecording, scale: f64) {
     let inputs = &mut recording.recorded.inputs;
     let stamps = inputs.time.clone();
     let start = stamps[0];
-    let taken: Vec<f64> = stamps.iter().map(|t| start + (t - start) / scale).collect();
+    let command = |i: usize| (inputs.set_pressure[i], inputs.extends[i]);
+    let taken = |i: usize| start + (stamps[i] - start) / scale;
+    // Time of each sample, and the row of its readings.
+    let mut samples: Vec<(f64, Option<usize>)> =
+        (0..stamps.len()).map(|i| (taken(i), Some(i))).collect();
+    let changes = (1..stamps.len()).filter(|i| command(*i) != command(i - 1));
+    samples.extend(changes.map(|i| (stamps[i], None)));
+    samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+    samples.dedup_by(|later, earlier| later.0 - earlier.0 < 1e-9 && later.1.is_none());
     let last = stamps.len() - 1;
     // A command holds until the next.
-    let row = |t: &f64| {
+    let row = |t: f64| {
         stamps
-            .partition_point(|stamp| stamp <= t)
+            .partition_point(|stamp| *stamp <= t)
             .clamp(1, last + 1)
             - 1
     };
-    let rows: Vec<usize> = taken.iter().map(row).collect();
+    let rows: Vec<usize> = samples.iter().map(|(t, _)| row(*t)).collect();
     inputs.set_pressure = rows.iter().map(|i| inputs.set_pressure[*i]).collect();
     inputs.extends = rows.iter().map(|i| inputs.extends[*i]).collect();
-    inputs.surface = read_at(&stamps, &inputs.surface, |t| start + (t - start) / scale);
-    inputs.time = taken;
+    let surface = &inputs.surface;
+    let place = |t: f64| {
+        let next = row(t).min(last.saturating_sub(1)) + 1;
+        let share = ((t - stamps[next - 1]) / (stamps[next] - stamps[next - 1])).min(1.0);
+        surface[next - 1] + share * (surface[next] - surface[next - 1])
+    };
+    inputs.surface = samples.iter().map(|(t, _)| place(*t)).collect();
+    for values in &mut recording.recorded.readings {
+        set_impacts_aside(values);
+        let of = |(_, row): &(f64, Option<usize>)| row.map_or(f64::NAN, |i| values[i]);
+        *values = samples.iter().map(of).collect();
+    }
+    inputs.time = samples.into_iter().map(|(t, _)| t).collect();
 }
 
 /// Takes a fault off all recordings that it acts in.

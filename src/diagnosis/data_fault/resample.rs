@@ -22,18 +22,34 @@ pub(super) fn read_at(time: &[f64], values: &[f64], at: impl Fn(f64) -> f64) -> 
     time.iter().map(read).collect()
 }
 
-/// Readings at times within the recording; none beside a gap, a lost one or an impact.
-pub(super) fn interpolated(time: &[f64], values: &[f64], at: impl Fn(f64) -> f64) -> Vec<f64> {
+/// Whether the readings bend so sharply at an index that an impact lies there; of all indices.
+fn steep(values: &[f64]) -> Vec<bool> {
     let bend = |i: usize| values[i - 1] - 2.0 * values[i] + values[i + 1];
-    let mut bends: Vec<f64> = (1..values.len() - 1)
+    let last = values.len() - 1;
+    let mut bends: Vec<f64> = (1..last)
         .map(|i| bend(i).abs())
         .filter(|b| b.is_finite())
         .collect();
     bends.sort_by(f64::total_cmp);
     // Median of the size to standard deviation.
     let usual = 1.4826 * bends.get(bends.len() / 2).copied().unwrap_or(0.0);
-    let last = time.len() - 1;
     let is_steep = |i: usize| i > 0 && i < last && bend(i).abs() > STEEP * usual;
+    (0..=last).map(is_steep).collect()
+}
+
+/// Sets aside what stands beside an impact: it changes within less than a clock is known to.
+pub(super) fn set_impacts_aside(values: &mut [f64]) {
+    let steep = steep(values);
+    for i in (0..values.len()).filter(|i| steep[*i]) {
+        let end = (i + 2).min(values.len());
+        values[i.saturating_sub(1)..end].fill(f64::NAN);
+    }
+}
+
+/// Readings at times within the recording; none beside a gap, a lost one or an impact.
+pub(super) fn interpolated(time: &[f64], values: &[f64], at: impl Fn(f64) -> f64) -> Vec<f64> {
+    let steep = steep(values);
+    let last = time.len() - 1;
     let plain = read_at(time, values, &at);
     let inside = |(t, value): (&f64, f64)| {
         let u = at(*t);
@@ -43,7 +59,7 @@ pub(super) fn interpolated(time: &[f64], values: &[f64], at: impl Fn(f64) -> f64
         let next = time.partition_point(|other| *other <= u).clamp(1, last);
         let share = (u - time[next - 1]) / (time[next] - time[next - 1]);
         let between = share > 1e-3 && share < 1.0 - 1e-3;
-        if between && (is_steep(next - 1) || is_steep(next)) {
+        if between && (steep[next - 1] || steep[next]) {
             return f64::NAN;
         }
         value
