@@ -21,7 +21,8 @@ pub use rig::{RIG, rig_of, to_fit};
 
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::{Comparison, of_flange};
-use crate::diagnosis::data_fault::{DataFault, as_read, refined, reported};
+use crate::diagnosis::data_fault::fault::DataFault;
+use crate::diagnosis::data_fault::{as_read, refined, reported};
 use crate::diagnosis::diagnose as search;
 use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::flange::Run;

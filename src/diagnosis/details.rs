@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::account::Account;
 use super::answer::Estimate;
-use super::data_fault::DataFaultReport;
+use super::data_fault::report::DataFaultReport;
 use super::flange_fit::report::SimulatedFlange;
 use super::localise::NOISE_ALONE;
 use super::recorded::COLUMNS;

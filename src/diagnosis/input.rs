@@ -1,7 +1,7 @@
 //! Input of a diagnosis: a rig as believed, what is tolerated of it, and recordings of what it did.
 
 use super::clean::{Cleaning, clean};
-use super::data_fault::DataFault;
+use super::data_fault::fault::DataFault;
 use super::evidence::{Evidence, Measured};
 use super::free::{Free, Prior};
 use super::recorded::{COLUMNS, QUANTITIES, Recorded, RecordedError};

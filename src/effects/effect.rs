@@ -1,6 +1,5 @@
 //! A physical effect that a model may lack: an edit of the rig's description.
 
-use super::number_off::NUMBER_OFF;
 use super::quantity::Coordinate;
 use crate::plant::registry::Number;
 use crate::plant::{PlantParameters, Quantity};
@@ -65,6 +64,9 @@ pub struct Clues<'a> {
     /// Places along a cell's edge where what is left in the stroke looks like a bump, strongest first [m].
     pub bumps: &'a [f64],
 }
+
+/// Name in an answer of a number of the rig file that is off.
+pub const NUMBER_OFF: &str = "number_off";
 
 /// Which of several alike an effect is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -14,12 +14,9 @@
 //! - regulator_gain_error: scales the outlet, which is measured.
 
 use super::parts::*;
-use crate::effects::effect::Which;
+use crate::effects::effect::{NUMBER_OFF, Which};
 use crate::plant::Chain;
 use crate::plant::registry::Number;
-
-/// Name in an answer.
-pub const NUMBER_OFF: &str = "number_off";
 
 /// A number that may be off, where it enters, and the shares of the sheet's value from which a fit starts.
 struct Suspect {

@@ -9,7 +9,7 @@
 use super::super::input::{DiagnosisInput, NamedRecording};
 use super::clock::WORTH;
 use super::curvature::{LEAST_STRETCHES, curvatures};
-use super::{DataFault, Kind};
+use super::fault::{DataFault, Kind};
 use crate::plant::registry::{REGULATOR_DEAD_TIME, REGULATOR_TIME_CONSTANT};
 use crate::plant::{Channel, simulate};
 

@@ -8,7 +8,7 @@
 
 use super::super::input::DiagnosisInput;
 use super::curvature::curvature_ratio;
-use super::{DataFault, Kind};
+use super::fault::{DataFault, Kind};
 use crate::plant::Channel;
 
 /// Departure of a clock from true time that is worth a word [1].

@@ -10,7 +10,7 @@
 use std::collections::HashMap;
 
 use super::super::input::DiagnosisInput;
-use super::{DataFault, Kind};
+use super::fault::{DataFault, Kind};
 use crate::plant::CHANNELS;
 
 /// Readings by which a copy is known.

@@ -2,7 +2,7 @@
 
 use super::super::input::DiagnosisInput;
 use super::curvature::curvature_ratio;
-use super::{DataFault, Kind};
+use super::fault::{DataFault, Kind};
 use crate::plant::{CHANNELS, Channel, InitialState, PlantInputs, simulate};
 
 /// Standard gravity [m/s2]: a kilogram-force in newton.

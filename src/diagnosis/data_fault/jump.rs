@@ -1,8 +1,8 @@
 //! Zeros that jump: a step from one sample to the next that the motion denies.
 
 use super::super::input::{DiagnosisInput, NamedRecording};
+use super::fault::{DataFault, Kind};
 use super::free_air::in_the_air;
-use super::{DataFault, Kind};
 use crate::plant::Channel;
 
 /// Readings on either side of a step.

@@ -11,79 +11,26 @@ mod clock;
 mod copied;
 mod curvature;
 mod drift;
+pub mod fault;
 mod free_air;
 mod gain;
 mod jump;
 mod noise;
 mod refined;
-mod report;
+pub mod report;
 mod reported;
 mod resample;
 mod run;
 mod zero;
 
 pub use refined::refined;
-pub use report::DataFaultReport;
 pub use reported::reported;
+
+use fault::{DataFault, Kind};
 
 use super::input::{DiagnosisInput, NamedRecording};
 use crate::plant::{CHANNELS, Chain, Channel, InitialState};
 use resample::{held, interpolated, read_at, set_impacts_aside};
-
-/// Kind and size of a fault, as abroad/README.md of the concealed cases has them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
-    /// The zero is another one, in the channel's unit.
-    ZeroOffset(f64),
-    /// The zero jumps by so much, in the channel's unit, at a stamp [s].
-    ZeroJump(f64, f64),
-    /// The reading is so many times the truth [1].
-    Gain(f64),
-    /// A reading is kept for a period [s].
-    Held(f64),
-    /// The reading stands still between two stamps [s].
-    Frozen([f64; 2]),
-    /// Stamp over true time [1].
-    ClockScale(f64),
-    /// The reading is that of so much earlier [s].
-    ClockOffset(f64),
-    /// The zero moves by so much a second, in the channel's unit a second.
-    Drift(f64),
-    /// The readings between two stamps [s] are those of another place, which begins at a stamp [s].
-    Copied([f64; 2], f64),
-    /// The noise has this standard deviation, in the channel's unit.
-    Noise(f64),
-}
-
-/// A fault.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DataFault {
-    /// What it is.
-    pub kind: Kind,
-    /// The channel; none where a whole log has it.
-    pub channel: Option<Channel>,
-    /// Name of the recording; none where all have it.
-    pub recording: Option<String>,
-    /// Its probability [1].
-    pub probability: f64,
-    /// Whether it acts in recordings to come too.
-    pub stays: bool,
-}
-
-impl DataFault {
-    fn of(kind: Kind, channel: Channel, recording: Option<&str>, probability: f64) -> Self {
-        Self {
-            kind,
-            channel: Some(channel),
-            recording: recording.map(str::to_owned),
-            probability,
-            stays: matches!(
-                kind,
-                Kind::Gain(_) | Kind::Held(_) | Kind::ClockScale(_) | Kind::ClockOffset(_)
-            ),
-        }
-    }
-}
 
 /// Finds the faults in a case and takes them off its readings and stamps.
 pub fn take_off(case: &mut DiagnosisInput) {

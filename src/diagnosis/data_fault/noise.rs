@@ -2,7 +2,7 @@
 
 use super::super::clean::{clean, departures};
 use super::super::input::{DiagnosisInput, OTHER_NOISE};
-use super::{DataFault, Kind};
+use super::fault::{DataFault, Kind};
 use crate::plant::CHANNELS;
 
 /// Samples within which departures of white noise from their neighbours' cubic are alike, and up to which a period is sought.

@@ -8,7 +8,7 @@
 
 use super::super::autocorrelation::integrated_autocorrelation_time;
 use super::super::evidence::{Evidence, by_channel};
-use super::{DataFault, Kind};
+use super::fault::{DataFault, Kind};
 use crate::plant::Channel;
 
 /// Time on either side of a jump from which its size is taken [s].

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::recorded::COLUMNS;
 use super::super::words::{CHANNEL_UNITS, CHANNEL_WORDS, percent};
-use super::{DataFault, Kind};
+use super::fault::{DataFault, Kind};
 use crate::plant::Channel;
 use crate::quantity::significant;
 

@@ -2,8 +2,8 @@
 
 use super::super::answer::{Answer, Estimate};
 use super::super::words::{CHANNEL_WORDS, listed};
+use super::fault::{DataFault, Kind};
 use super::report::DataFaultReport;
-use super::{DataFault, Kind};
 use crate::plant::Channel;
 
 /// An answer with the faults of its data: those taken off before the search, and those that the search names as an effect of the same meaning.

@@ -1,7 +1,7 @@
 //! Runs of equal readings: a channel that stands still for a while, and one that is sampled and held.
 
 use super::super::input::{DiagnosisInput, NamedRecording};
-use super::{DataFault, Kind};
+use super::fault::{DataFault, Kind};
 use crate::plant::CHANNELS;
 
 /// Time for which a channel must stand still to be frozen [s].

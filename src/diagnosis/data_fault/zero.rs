@@ -1,8 +1,8 @@
 //! Zeros: absolute pressure for gauge, and those that the rest at the start of each recording shows.
 
 use super::super::input::{DiagnosisInput, NamedRecording};
+use super::fault::{DataFault, Kind};
 use super::free_air::in_the_air;
-use super::{DataFault, Kind};
 use crate::plant::{CHANNELS, Channel, InitialState, simulate};
 
 /// Share of the atmosphere by which that of a day may differ [1].
