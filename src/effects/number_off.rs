@@ -14,7 +14,7 @@
 //! - regulator_gain_error: scales the outlet, which is measured.
 
 use super::parts::*;
-use crate::effects::effect::{NUMBER_OFF, Which};
+use crate::effects::effect::Which;
 use crate::plant::Chain;
 use crate::plant::registry::Number;
 
@@ -136,6 +136,7 @@ fn parameters(plant: &crate::plant::PlantParameters, place: usize) -> Vec<Parame
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::NUMBER_OFF;
 
     #[test]
     fn each_is_the_number_that_its_key_names_and_can_be_made_another() {
