@@ -4,6 +4,7 @@ use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::free_air::in_the_air;
 use crate::plant::Channel;
+use nalgebra::{DMatrix, DVector};
 
 /// Readings on either side of a step.
 const NARROW: usize = 10;
@@ -11,6 +12,9 @@ const NARROW: usize = 10;
 const WIDE: [usize; 2] = [20, 40];
 /// Standard deviations of a step, by the narrow lines, from which it is none of noise, of some ten thousand places that are looked at [1].
 const SURE: f64 = 6.5;
+/// Readings on either side from which a size is taken, and degrees of the polynomials beside it.
+const SMOOTH: [usize; 7] = [10, 20, 40, 80, 160, 320, 640];
+const DEGREES: [usize; 3] = [1, 2, 3];
 /// Standard deviations of the narrow step by which the wide one may differ [1].
 const ALIKE: f64 = 2.5;
 /// Readings on either side of the closest look: a steep rise over a few samples is none.
@@ -202,13 +206,18 @@ impl Sight<'_> {
         if !self.is_sudden(index, narrow) {
             return None;
         }
-        let wide = WIDE
-            .into_iter()
-            .filter_map(|width| self.between_lines(index, width))
-            .filter(|(wide, own)| (wide - narrow).abs() < ALIKE * deviation.hypot(*own))
-            .next_back()?;
-        // The surer of the two says the size.
-        let size = if wide.1 < deviation { wide.0 } else { narrow };
+        let alike =
+            |(other, own): &(f64, f64)| (other - narrow).abs() < ALIKE * deviation.hypot(*own);
+        let mut wide = WIDE.into_iter();
+        wide.find_map(|width| self.between_lines(index, width).filter(alike))?;
+        // What is left of a zero is left in all that follows: its size is taken from as far as the readings are smooth.
+        let smooth = SMOOTH.into_iter().flat_map(|width| {
+            DEGREES
+                .into_iter()
+                .filter_map(move |degree| self.beside_polynomial(index, width, degree))
+        });
+        let surest = smooth.filter(alike).min_by(|a, b| a.1.total_cmp(&b.1));
+        let (size, _) = surest.unwrap_or((narrow, deviation));
         let sure = match self.follows_a_command(index) {
             true => AFTER_COMMAND.1 * SURE,
             false => SURE,
@@ -218,6 +227,35 @@ impl Sight<'_> {
             size,
             sigmas,
         })
+    }
+
+    /// Step at a sample beside a polynomial through the readings on both sides, and its standard deviation; none where they are not smooth.
+    fn beside_polynomial(&self, index: usize, width: usize, degree: usize) -> Option<(f64, f64)> {
+        if index < width || index + width > self.time.len() {
+            return None;
+        }
+        let span = index - width..index + width;
+        let values = &self.values[span.clone()];
+        let reach = self.time[span.end - 1] - self.time[span.start];
+        let count = 2 * width;
+        let numbers = degree + 2;
+        let row = |i: usize, column: usize| match column {
+            0 => f64::from(u8::from(i >= width)),
+            power => ((self.time[span.start + i] - self.time[index]) / reach)
+                .powi(i32::try_from(power - 1).unwrap_or(0)),
+        };
+        let design = DMatrix::from_fn(count, numbers, row);
+        let measured = DVector::from_column_slice(values);
+        if values.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let inverse = (design.transpose() * &design).try_inverse()?;
+        let found = &inverse * design.transpose() * &measured;
+        let beside = (&measured - &design * &found).norm_squared();
+        let free = (count - numbers) as f64;
+        let on_line = 1.0 + ON_LINE / (2.0 * free).sqrt();
+        let is_smooth = (beside / free).sqrt() <= on_line * self.noise;
+        is_smooth.then(|| (found[0], self.noise * inverse[(0, 0)].sqrt()))
     }
 
     /// Whether the few readings on either side of a sample show the step too, less what the lines about them move by.
