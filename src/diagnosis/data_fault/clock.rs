@@ -80,6 +80,9 @@ pub(super) fn of_log_by_motion(case: &DiagnosisInput) -> Vec<DataFault> {
     }
 }
 
+/// Spread of the surface that tells a gain [m].
+const SPREAD: f64 = 1.5e-3;
+
 /// Gain of the stroke sensor, from the strokes at which the tool rests on a surface that the robot knows [1].
 fn stroke_gain(case: &DiagnosisInput) -> Option<f64> {
     let (mut both, mut own, mut mean) = (0.0, 0.0, [0.0; 3]);
@@ -103,7 +106,5 @@ fn stroke_gain(case: &DiagnosisInput) -> Option<f64> {
         both += (s - s0) * (x - x0);
         own += (s - s0).powi(2);
     }
-    /// Spread of the surface that tells a gain [m].
-    const SPREAD: f64 = 1.5e-3;
     (mean[2] > 50.0 && (own / mean[2]).sqrt() > SPREAD).then(|| both / own)
 }

@@ -28,7 +28,7 @@ impl Noise {
 
 fn inputs(place: usize) -> PlantInputs {
     let count = 1500;
-    let time: Vec<f64> = (0..count).map(|i| STEP * i as f64).collect();
+    let time: Vec<f64> = (0..count).map(|i| STEP * f64::from(i)).collect();
     let set = |t: f64| match (place, t) {
         (_, t) if t < 0.2 => 0.0,
         (0, t) => [2e5, 3.2e5, 1.5e5, 2.6e5][(t / 1.5) as usize % 4],
@@ -44,7 +44,7 @@ fn inputs(place: usize) -> PlantInputs {
         set_pressure: time.iter().map(|t| set(*t)).collect(),
         extends: time
             .iter()
-            .map(|t| place != 2 || (t / 0.9) as usize % 2 == 0)
+            .map(|t| place != 2 || ((t / 0.9) as usize).is_multiple_of(2))
             .collect(),
         surface: time.iter().map(|t| surface(*t)).collect(),
         cell: None,
