@@ -1,6 +1,7 @@
 //! Stroke and accelerometer tell of one motion: the stroke's second derivative against the acceleration, over short stretches.
 
 use super::super::input::{DiagnosisInput, NamedRecording};
+use super::line::Line;
 use super::resample::read_at;
 use crate::plant::Channel;
 
@@ -20,19 +21,19 @@ pub(super) const LEAST_STRETCHES: usize = 8;
 /// Measured acceleration over the second derivative of the stroke by the stamps [1], and its standard error; none where the recordings do not tell.
 pub(super) fn curvature_ratio(case: &DiagnosisInput) -> Option<(f64, f64)> {
     let noise = case.noise[Channel::Stroke as usize];
-    let mut told: Vec<(f64, f64)> = Vec::new();
+    let mut ratios: Vec<(f64, f64)> = Vec::new();
     for recording in &case.recordings {
-        told.extend(curvatures(recording, noise, |t| t));
+        ratios.extend(curvatures(recording, noise, |t| t));
     }
-    pooled(&told)
+    pooled(&ratios)
 }
 
 /// Ratio of stretches, by their weights.
-fn pooled(told: &[(f64, f64)]) -> Option<(f64, f64)> {
-    if told.len() < LEAST_STRETCHES {
+fn pooled(ratios: &[(f64, f64)]) -> Option<(f64, f64)> {
+    if ratios.len() < LEAST_STRETCHES {
         return None;
     }
-    let mut sorted = told.to_vec();
+    let mut sorted = ratios.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half: f64 = sorted.iter().map(|(_, w)| w).sum::<f64>() / 2.0;
     let mut sum = 0.0;
@@ -60,7 +61,7 @@ pub(super) fn curvatures(
     let acceleration = read_at(time, &readings[Channel::Acceleration as usize], at);
     let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
     let width = ((STRETCH / step) as usize).max(LEAST);
-    let mut told = Vec::new();
+    let mut ratios = Vec::new();
     let mut from = 0;
     while from + width <= time.len() {
         let span = from..from + width;
@@ -70,11 +71,11 @@ pub(super) fn curvatures(
             &acceleration[span],
             noise,
         ) {
-            told.push(found);
+            ratios.push(found);
         }
         from += width / 2;
     }
-    told
+    ratios
 }
 
 /// Slope of a stroke on its acceleration twice integrated, lines apart, and its weight.
@@ -98,8 +99,8 @@ fn curvature(time: &[f64], stroke: &[f64], acceleration: &[f64], noise: f64) -> 
     let of = |values: &[f64]| -> Vec<f64> { known.iter().map(|i| values[*i]).collect() };
     let time = of(time);
     let (way, stroke) = (
-        without_line(&time, &of(&way)),
-        without_line(&time, &of(stroke)),
+        without_line(&time, &of(&way))?,
+        without_line(&time, &of(stroke))?,
     );
     let own: f64 = way.iter().map(|w| w * w).sum();
     let both: f64 = way.iter().zip(&stroke).map(|(w, x)| w * x).sum();
@@ -117,18 +118,9 @@ fn curvature(time: &[f64], stroke: &[f64], acceleration: &[f64], noise: f64) -> 
     tells.then_some((slope, own * slope * slope))
 }
 
-fn without_line(time: &[f64], values: &[f64]) -> Vec<f64> {
-    let count = time.len() as f64;
-    let middle = time.iter().sum::<f64>() / count;
-    let mean = values.iter().sum::<f64>() / count;
-    let spread: f64 = time.iter().map(|t| (t - middle).powi(2)).sum();
-    let rise: f64 = time
-        .iter()
-        .zip(values)
-        .map(|(t, v)| (t - middle) * (v - mean))
-        .sum();
-    let pairs = time.iter().zip(values);
-    pairs
-        .map(|(t, v)| v - mean - rise / spread * (t - middle))
-        .collect()
+/// Values less the line through them.
+fn without_line(time: &[f64], values: &[f64]) -> Option<Vec<f64>> {
+    let points = || time.iter().copied().zip(values.iter().copied());
+    let line = Line::through(points())?;
+    Some(points().map(|(t, v)| v - line.at(t)).collect())
 }

@@ -9,6 +9,7 @@
 use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::free_air::in_the_air;
+use super::line::Line;
 use crate::plant::Channel;
 
 /// Readings in the air that are needed.
@@ -62,16 +63,7 @@ fn drift(recording: &NamedRecording, noise: f64) -> Option<(f64, f64)> {
     if air.len() < LEAST || spread < SPREAD * length {
         return None;
     }
-    let count = air.len() as f64;
-    let middle = air.iter().map(|(t, _)| t).sum::<f64>() / count;
-    let mean = air.iter().map(|(_, f)| f).sum::<f64>() / count;
-    let own: f64 = air.iter().map(|(t, _)| (t - middle).powi(2)).sum();
-    let both: f64 = air.iter().map(|(t, f)| (t - middle) * (f - mean)).sum();
-    let slope = both / own;
-    let beside = air
-        .iter()
-        .map(|(t, f)| (f - mean - slope * (t - middle)).powi(2));
-    let scatter = (beside.sum::<f64>() / count).sqrt();
+    let line = Line::through(air.into_iter())?;
     // Beside a line there is noise alone: a jump, or what the tool touches, is no drift.
-    (scatter < 1.6 * noise).then(|| (slope, scatter.max(noise) / own.sqrt()))
+    (line.rms < 1.6 * noise).then(|| (line.slope, line.rms.max(noise) / line.spread.sqrt()))
 }

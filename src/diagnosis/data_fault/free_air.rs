@@ -4,7 +4,7 @@ use super::super::input::NamedRecording;
 use crate::plant::Channel;
 
 /// Distance from the surface beyond which a tool does not touch [m].
-const CLEAR: f64 = 2e-3;
+pub(super) const CLEAR: f64 = 2e-3;
 /// Samples on either side that must be clear too.
 const BESIDE: usize = 3;
 

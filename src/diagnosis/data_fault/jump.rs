@@ -3,6 +3,7 @@
 use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::free_air::in_the_air;
+use super::line::Line;
 use crate::plant::Channel;
 use nalgebra::{DMatrix, DVector};
 
@@ -48,38 +49,6 @@ struct StepAt {
     size: f64,
     /// In its standard deviations [1].
     sigmas: f64,
-}
-
-/// A straight line through readings, carried to a time: its value and slope there, the variance of the value over the noise's, the root mean square beside it.
-struct Line {
-    value: f64,
-    slope: f64,
-    variance: f64,
-    rms: f64,
-}
-
-impl Line {
-    fn through(time: &[f64], values: &[f64], at: f64) -> Option<Self> {
-        let count = time.len() as f64;
-        if values.iter().any(|v| !v.is_finite()) {
-            return None;
-        }
-        let middle = time.iter().sum::<f64>() / count;
-        let mean = values.iter().sum::<f64>() / count;
-        let spread: f64 = time.iter().map(|t| (t - middle).powi(2)).sum();
-        let pairs = || time.iter().zip(values);
-        let rise: f64 = pairs().map(|(t, v)| (t - middle) * (v - mean)).sum();
-        let slope = rise / spread;
-        let beside: f64 = pairs()
-            .map(|(t, v)| (v - mean - slope * (t - middle)).powi(2))
-            .sum();
-        Some(Self {
-            value: mean + slope * (at - middle),
-            slope,
-            variance: 1.0 / count + (at - middle).powi(2) / spread,
-            rms: (beside / (count - 2.0)).sqrt(),
-        })
-    }
 }
 
 /// Steps in the zeros of stroke, force and pressure.
@@ -263,10 +232,7 @@ impl Sight<'_> {
         let span = index - NARROW..index + NARROW;
         let values = self.values_of(span.clone());
         let time = &self.time[span];
-        let middle = 0.5 * (time[NARROW - 1] + time[NARROW]);
-        let lines = [0..NARROW, NARROW..2 * NARROW]
-            .map(|side| Line::through(&time[side.clone()], &values[side], middle));
-        let [Some(left), Some(right)] = lines else {
+        let Some([left, right]) = lines_beside(time, &values) else {
             return false;
         };
         let step = 0.5 * (left.slope + right.slope) * (time[NARROW] - time[NARROW - 1]);
@@ -314,9 +280,8 @@ impl Sight<'_> {
         }
         let values = self.values_of(span);
         let middle = 0.5 * (time[width - 1] + time[width]);
-        let left = Line::through(&time[..width], &values[..width], middle)?;
-        let right = Line::through(&time[width..], &values[width..], middle)?;
-        let size = right.value - left.value;
+        let [left, right] = lines_beside(time, &values)?;
+        let size = right.at(middle) - left.at(middle);
         let steep = usual * left.slope.abs().max(right.slope.abs());
         let bent = usual * (right.slope - left.slope).abs();
         let on_line = 1.0 + ON_LINE / (2.0 * (width - 2) as f64).sqrt();
@@ -324,10 +289,20 @@ impl Sight<'_> {
         let noise = self.noise.hypot(WALK[0] * walk);
         let is_step = left.rms.max(right.rms) <= on_line * noise
             && size.abs() > (STEEPER * steep).max(BENT * bent);
-        let own = self.noise * (left.variance + right.variance).sqrt();
+        let own = self.noise * (left.variance_at(middle) + right.variance_at(middle)).sqrt();
         let deviation = own.hypot(WALK[1] * walk);
         is_step.then_some((size, deviation))
     }
+}
+
+/// Lines through the first and the second half of readings.
+fn lines_beside(time: &[f64], values: &[f64]) -> Option<[Line; 2]> {
+    let half = time.len() / 2;
+    let points = || time.iter().copied().zip(values.iter().copied());
+    Some([
+        Line::through(points().take(half))?,
+        Line::through(points().skip(half))?,
+    ])
 }
 
 /// Whether a step may be motion or force: the accelerometer shows what it takes, or there is none to deny it.

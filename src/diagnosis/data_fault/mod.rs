@@ -4,7 +4,7 @@
 //! reading(stamp) = gain * signal(floor(t / period) * period) + zero,   t = (stamp - offset) / scale
 //! ```
 //!
-//! Most need no model; those of channels' clocks and of units are held against the rig as its owner believes it to be.
+//! Most need no model; those of channels' clocks and of units are held against the nominal model.
 
 mod channel_clock;
 mod clock;
@@ -15,6 +15,7 @@ pub mod fault;
 mod free_air;
 mod gain;
 mod jump;
+mod line;
 mod noise;
 mod refined;
 pub mod report;
@@ -54,10 +55,12 @@ pub fn take_off(case: &mut DiagnosisInput) {
     for find in steps {
         let faults = find(case);
         match clock_of_all(case, &faults) {
-            Some(scale) => case
-                .recordings
-                .iter_mut()
-                .for_each(|r| by_other_clock(r, scale)),
+            Some(scale) => {
+                (case.recordings.iter_mut()).for_each(|r| by_other_clock(r, scale));
+                // What is to be predicted keeps its commands: a prediction is made at their stamps.
+                let unseen = case.unseen.iter_mut();
+                unseen.for_each(|r| faults.iter().for_each(|fault| correct_one(r, fault)));
+            }
             None => faults.iter().for_each(|fault| correct(case, fault)),
         }
         case.data_faults.extend(faults);

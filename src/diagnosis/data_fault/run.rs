@@ -2,6 +2,7 @@
 
 use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
+use super::line::Line;
 use crate::plant::CHANNELS;
 
 /// Time for which a channel must stand still to be frozen [s].
@@ -133,18 +134,12 @@ fn period(time: &[f64], values: &[f64]) -> Option<f64> {
         number += ((pair[1] - pair[0]) / usual).round().max(1.0);
         numbered.push((number, pair[1]));
     }
-    let count = numbered.len() as f64;
-    let mean = numbered.iter().map(|(n, _)| n).sum::<f64>() / count;
-    let middle = numbered.iter().map(|(_, t)| t).sum::<f64>() / count;
-    let spread: f64 = numbered.iter().map(|(n, _)| (n - mean).powi(2)).sum();
-    let rise: f64 = numbered
-        .iter()
-        .map(|(n, t)| (n - mean) * (t - middle))
-        .sum();
-    let period = rise / spread;
+    let line = Line::through(numbered.iter().copied())?;
+    let period = line.slope;
     let on = numbered
         .iter()
-        .filter(|(n, t)| (t - middle - period * (n - mean)).abs() <= 0.75 * step)
+        .filter(|(n, t)| (t - line.at(*n)).abs() <= 0.75 * step)
         .count();
+    let count = numbered.len() as f64;
     (period > 1.5 * step && on as f64 >= AT_MULTIPLES * count).then_some(period)
 }

@@ -2,7 +2,7 @@
 
 use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
-use super::free_air::in_the_air;
+use super::free_air::{CLEAR, in_the_air};
 use crate::plant::{CHANNELS, Channel, InitialState, simulate};
 
 /// Share of the atmosphere by which that of a day may differ [1].
@@ -19,8 +19,6 @@ const WORTH: f64 = 0.4;
 const FAR: f64 = 4.0;
 /// Spread of the readings at rest, in standard deviations of the noise, beyond which that is no rest [1].
 const QUIET: f64 = 1.6;
-/// Distance of the surface from a retracted tool from which it does not touch [m].
-const CLEAR: f64 = 2e-3;
 /// Force that a stop may carry at rest unknown to the model [N].
 const UNKNOWN_LOAD: f64 = 120.0;
 
