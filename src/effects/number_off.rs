@@ -5,12 +5,12 @@
 //! ```
 //!
 //! number one of the rig file by its key, value what the recordings ask for in its place.
-//! Source: The rig file is a belief like any other.
+//! Source: Definition; a rig file is nominal.
 //!
 //! Signature: That of the number: a bore scales all forces of pressure, a stroke is met at the far stop, a time constant delays the outlet.
 //!
 //! Confused with:
-//! - force_sensor_gain_error: scales the reading of the force alone, the motion is as believed; a bore scales both.
+//! - force_sensor_gain_error: scales the reading of the force alone, the motion is nominal; a bore scales both.
 //! - regulator_gain_error: scales the outlet, which is measured.
 
 use super::parts::*;
@@ -22,7 +22,14 @@ use crate::plant::registry::Number;
 struct Suspect {
     number: &'static Number,
     shares: &'static [f64],
+    /// Share of the sheet's value down to which, and times up to which, it is sought [1].
+    range: [f64; 2],
 }
+
+/// Range of most numbers.
+const USUAL: [f64; 2] = [0.4, 2.5];
+/// That of an end stop, whose numbers few have measured.
+const OF_STOP: [f64; 2] = [0.03, 30.0];
 
 /// Numbers that may be off and that no other effect frees: mass, orifices, dead volume, the gains, the contact's stiffness and a lean of the axis have effects
 /// of their own (`moving_mass_error`, `supply_restriction`, `axial_force_offset` ..). The temperature acts as the discharge coefficient does, by its root.
@@ -30,49 +37,54 @@ static SUSPECTS: [Suspect; 10] = [
     Suspect {
         number: &BORE,
         shares: &[0.94, 0.98, 1.02, 1.07],
+        range: USUAL,
     },
     Suspect {
         number: &ROD,
         shares: &[0.8, 1.25],
+        range: USUAL,
     },
     Suspect {
         number: &STROKE,
         shares: &[0.95, 0.98, 1.02, 1.05],
+        range: USUAL,
     },
     Suspect {
         number: &REGULATOR_TIME_CONSTANT,
         shares: &[0.5, 0.7, 1.4, 2.0],
+        range: USUAL,
     },
     Suspect {
         number: &DISCHARGE_COEFFICIENT,
         shares: &[0.75, 1.2],
+        range: USUAL,
     },
     Suspect {
         number: &CONTACT_DAMPING,
         shares: &[0.3, 3.0],
+        range: USUAL,
     },
     Suspect {
         number: &END_STOP_STIFFNESS,
         shares: &[0.2, 0.6, 2.0],
+        range: OF_STOP,
     },
     Suspect {
         number: &END_STOP_DAMPING,
         shares: &[0.3, 2.0],
+        range: OF_STOP,
     },
     Suspect {
         number: &ATMOSPHERE,
         shares: &[0.9],
+        range: USUAL,
     },
     Suspect {
         number: &HEAT_CAPACITY_RATIO,
         shares: &[0.9, 1.1],
+        range: USUAL,
     },
 ];
-
-/// Share of the sheet's value down to which, and times up to which, a number is sought [1].
-const RANGE: [f64; 2] = [0.4, 2.5];
-/// The same of an end stop, whose numbers few have measured.
-const RANGE_OF_STOP: [f64; 2] = [0.03, 30.0];
 
 const fn of(name: &'static str, subsystem: Subsystem, place: usize, key: &'static str) -> Effect {
     Effect {
@@ -116,13 +128,13 @@ pub fn numbers_off(chain: Chain) -> &'static [Effect] {
 }
 
 fn parameters(plant: &crate::plant::PlantParameters, place: usize) -> Vec<Parameter> {
-    let number = SUSPECTS[place].number;
+    let Suspect {
+        number,
+        range: [down, up],
+        ..
+    } = SUSPECTS[place];
     let nominal = number.quantity().get(plant);
     let [least, most] = number.range;
-    let [down, up] = match place {
-        6 | 7 => RANGE_OF_STOP,
-        _ => RANGE,
-    };
     let bounds = [(down * nominal).max(least), (up * nominal).min(most)];
     // A rod is thinner than its piston.
     let bounds = match place {
