@@ -51,7 +51,7 @@ pub struct DiagnosisInput {
 }
 
 impl DiagnosisInput {
-    /// Whether what was measured is plausible as SI: nearly all readings of each channel, and some pressure where a sensor has readings of it.
+    /// Whether what was measured is plausible as SI, in the recording to be predicted too: nearly all readings of each channel, and some pressure where a sensor has readings of it.
     #[must_use]
     pub fn is_in_si(&self) -> bool {
         /// Share of the readings that may be wild [1].
@@ -71,7 +71,7 @@ impl DiagnosisInput {
                     && !(is_pressure && largest > 0.0 && largest < LEAST_PRESSURE)
             })
         };
-        self.recordings.iter().all(plausible)
+        self.recordings.iter().chain(&self.unseen).all(plausible)
     }
 }
 
@@ -142,7 +142,13 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
     for recording in &case.recordings {
         let mut readings = recording.recorded.readings.clone();
         let inputs = recording.recorded.inputs.clone();
-        let cleaning = clean(&inputs.time, &mut readings, &case.noise, mass);
+        let mut cleaning = clean(&inputs.time, &mut readings, &case.noise, mass);
+        for (channel, lost) in CHANNELS.into_iter().zip(&mut cleaning.lost) {
+            let mut faults = case.data_faults.iter();
+            if faults.any(|fault| fault.sets_aside(channel, &recording.name)) {
+                *lost = 0;
+            }
+        }
         recording
             .recorded
             .check(&recording.file, &cleaning.noise, &case.noise)?;

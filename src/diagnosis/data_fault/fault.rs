@@ -2,7 +2,7 @@
 
 use crate::plant::Channel;
 
-/// Kind and size of a fault, as abroad/README.md of the concealed cases has them.
+/// Kind and size of a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     /// The zero is another one, in the channel's unit.
@@ -43,6 +43,21 @@ pub struct DataFault {
 }
 
 impl DataFault {
+    /// Whether readings of a channel of a recording are set aside for it: those are not lost.
+    #[must_use]
+    pub fn sets_aside(&self, channel: Channel, recording: &str) -> bool {
+        let does = matches!(
+            self.kind,
+            Kind::Held(_)
+                | Kind::Frozen(_)
+                | Kind::Copied(..)
+                | Kind::ClockScale(_)
+                | Kind::ClockOffset(_)
+        );
+        does && self.channel == Some(channel)
+            && self.recording.as_ref().is_none_or(|own| own == recording)
+    }
+
     pub(super) fn of(
         kind: Kind,
         channel: Channel,
