@@ -1,8 +1,10 @@
 //! Faults planted into simulated recordings and asked back; nothing planted, and what only looks like a fault, asked back as nothing.
 
+use super::super::evidence::{Evidence, by_channel};
 use super::super::input::DiagnosisInput;
+use super::super::input::prepare;
 use super::super::recorded::Recorded;
-use super::super::test_evidence::plant;
+use super::super::test_evidence::{evidence_of, plant};
 use super::*;
 use crate::plant::{PlantInputs, PlantParameters, registry, simulate};
 
@@ -55,7 +57,7 @@ fn inputs(place: usize) -> PlantInputs {
     }
 }
 
-/// A case whose true signals are made others by `signal` and whose noisy readings by `reading`, both told the recording and its times.
+/// A case whose true signals are made others by `signal` and whose noisy readings by `reading`, both given the recording and its times.
 fn case_of(
     truth: &PlantParameters,
     signal: impl Fn(&[f64], &mut [Vec<f64>; 4]),
@@ -215,7 +217,7 @@ fn noise_that_is_louder_than_the_sheet_s_is_found() {
 }
 
 #[test]
-fn the_clock_of_a_log_is_told_by_its_rate_and_by_its_motion() {
+fn the_clock_of_a_log_is_found_by_its_rate_and_by_its_motion() {
     for (rate, tolerance) in [(1.0 / STEP, 1e-6), (1.0 / (STEP * 1.04), 0.008)] {
         let mut case = case_of(&plant(), |_, _| {}, |_, _, _| {});
         case.rate = rate;
@@ -264,8 +266,8 @@ fn a_late_outlet_is_a_clock_and_a_late_regulator_is_not() {
     assert!((offset - 0.06).abs() < 0.012, "{offset}");
     let mut truth = plant();
     let dead_time = registry::REGULATOR_DEAD_TIME.quantity();
-    let believed = dead_time.get(&truth);
-    dead_time.set(&mut truth, believed + 0.06);
+    let nominal = dead_time.get(&truth);
+    dead_time.set(&mut truth, nominal + 0.06);
     let faults = found(case_of(&truth, |_, _| {}, |_, _, _| {}));
     assert!(faults.is_empty(), "{faults:?}");
 }
@@ -291,4 +293,142 @@ fn what_lasts_is_put_back_into_what_a_sensor_reads() {
     assert!((read[0][50] - 5.0 * 0.4).abs() < 1e-9);
     // A zero is set anew.
     assert_eq!(read[1], ramp);
+}
+
+#[test]
+fn a_stretch_that_stands_in_two_places_is_a_copy() {
+    let faults = read(|place, _, r| {
+        if place == 1 {
+            r[2].copy_within(200..300, 700);
+        }
+    });
+    let Kind::Copied([start, end], from) = only(&faults, Some(Channel::Force)) else {
+        panic!("{faults:?}");
+    };
+    assert!((start - 2.8).abs() < 1e-9 && (end - 3.2).abs() < 1e-9 && (from - 0.8).abs() < 1e-9);
+}
+
+#[test]
+fn a_zero_that_drifts_in_one_recording_is_found_and_one_that_does_in_all_is_left_to_physics() {
+    // The third recording never touches; the others touch soon, and say nothing of a drift.
+    let drifting = |place: usize, time: &[f64], r: &mut [Vec<f64>; 4]| {
+        if place == 2 {
+            for (value, t) in r[2].iter_mut().zip(time) {
+                *value += 0.8 * t;
+            }
+        }
+    };
+    let mut case = case_of(&plant(), |_, _| {}, drifting);
+    let mut other = case.recordings[2].clone();
+    other.name = "again.csv".to_owned();
+    let mut noise = Noise(91);
+    for value in &mut other.recorded.readings[2] {
+        *value = NOISE[2] * noise.next();
+    }
+    case.recordings.push(other);
+    let faults = drift::drifts(&case);
+    let Kind::Drift(value) = only(&faults, Some(Channel::Force)) else {
+        panic!("{faults:?}");
+    };
+    assert!((value - 0.8).abs() < 0.05, "{value}");
+    assert_eq!(faults[0].recording.as_deref(), Some("cycle.csv"));
+    case.recordings[3] = case.recordings[2].clone();
+    assert_eq!(drift::drifts(&case), []);
+}
+
+#[test]
+fn a_fast_swing_is_no_louder_noise() {
+    let faults = read(|_, time, r| {
+        for (value, t) in r[2].iter_mut().zip(time) {
+            *value += 6.0 * (2.0 * std::f64::consts::PI * 61.0 * t).sin();
+        }
+    });
+    let loud = |fault: &DataFault| matches!(fault.kind, Kind::Noise(_));
+    assert!(!faults.iter().any(loud), "{faults:?}");
+}
+
+/// A stroke in millimetres was refused as implausible; what no usual factor explains still is.
+#[test]
+fn a_column_in_another_unit_is_in_si_once_its_factor_is_found() {
+    let in_millimetres = |_: usize, _: &[f64], r: &mut [Vec<f64>; 4]| {
+        r[1].iter_mut().for_each(|x| *x *= 1e3);
+    };
+    let mut case = case_of(&plant(), |_, _| {}, in_millimetres);
+    assert!(!case.is_in_si());
+    take_off(&mut case);
+    assert!(case.is_in_si());
+    case.unseen = Some(case.recordings[0].clone());
+    if let Some(unseen) = &mut case.unseen {
+        unseen.recorded.readings[1]
+            .iter_mut()
+            .for_each(|x| *x *= 1e3);
+    }
+    assert!(!case.is_in_si());
+}
+
+/// Held readings that were set aside stood in the account as thousands of lost ones.
+#[test]
+fn readings_that_are_set_aside_are_not_called_lost() {
+    let mut case = case_of(
+        &plant(),
+        |_, _| {},
+        |_, _, r| {
+            for i in 0..r[2].len() {
+                r[2][i] = r[2][i - i % 10];
+            }
+        },
+    );
+    take_off(&mut case);
+    let notes = prepare(&case).unwrap().notes;
+    assert!(
+        notes.iter().any(|n| n.contains("sampled and held")),
+        "{notes:?}"
+    );
+    assert!(!notes.iter().any(|n| n.contains("lost")), "{notes:?}");
+}
+
+/// Residuals of two recordings, those of the force of the first given by time.
+fn residuals(evidence: &Evidence, force: impl Fn(f64) -> f64) -> Vec<f64> {
+    let none: Vec<f64> = vec![0.0; 8 * evidence.recordings[0].inputs.time.len()];
+    let mut noise = Noise(5);
+    let mut all = Vec::new();
+    for (recording, channel, residuals) in by_channel(evidence, &none) {
+        let time = &evidence.recordings[recording].inputs.time;
+        all.extend(time.iter().zip(residuals).map(|(t, _)| {
+            let own = recording == 0 && channel == Channel::Force;
+            noise.next() + if own { force(*t) } else { 0.0 }
+        }));
+    }
+    all
+}
+
+#[test]
+fn a_jump_that_the_explanation_denies_is_withdrawn_and_one_that_is_short_is_completed() {
+    let evidence = evidence_of(&plant(), vec![vec![2e5; 500]; 2]);
+    let jump = |size: f64| {
+        vec![DataFault::of(
+            Kind::ZeroJump(size, 1.0),
+            Channel::Force,
+            Some("0.csv"),
+            0.99,
+        )]
+    };
+    let refine = |size: f64, left: f64| {
+        let residuals = residuals(&evidence, |t| if t < 1.0 { 0.0 } else { left });
+        refined(&jump(size), &evidence, &NOISE, &residuals)
+    };
+    // Residuals are in standard deviations of 0.8 N.
+    assert_eq!(refine(6.0, 0.0), jump(6.0));
+    let completed = refine(6.0, 1.0);
+    let Kind::ZeroJump(size, _) = completed[0].kind else {
+        panic!("{completed:?}");
+    };
+    assert!((size - 6.8).abs() < 0.3, "{size}");
+    assert_eq!(refine(4.0, -5.0), []);
+    // Of a louder noise that the explanation accounts for nothing remains.
+    let loud = [DataFault::of(Kind::Noise(4.0), Channel::Force, None, 0.99)];
+    let quiet = residuals(&evidence, |_| 0.0);
+    assert_eq!(refined(&loud, &evidence, &NOISE, &quiet), []);
+    let louder: Vec<f64> = quiet.iter().map(|r| 4.0 * r).collect();
+    assert_eq!(refined(&loud, &evidence, &NOISE, &louder), loud);
 }
