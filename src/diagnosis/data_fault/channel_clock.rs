@@ -4,7 +4,7 @@
 //! reading(stamp) = signal((stamp - offset) / s)
 //! ```
 //!
-//! signal that of the believed model, s stamp over true time [1], offset [s].
+//! signal that of the nominal model, s stamp over true time [1], offset [s].
 
 use super::super::input::{DiagnosisInput, NamedRecording};
 use super::clock::WORTH;
@@ -21,7 +21,7 @@ const OFFSETS: [f64; 2] = [-0.12, 0.2];
 const SCALES: f64 = 0.03;
 /// Where the loss turns to a logarithm, in standard deviations of the noise and of the model [1].
 const BOUND: f64 = 3.0;
-/// What the believed model is off by within its tolerances in stroke and force, in standard deviations of their noise [1].
+/// What the nominal model is off by within its tolerances in stroke and force, in standard deviations of their noise [1].
 const OF_MODEL: f64 = 8.0;
 /// Share of its cost that a clock must take from a channel [1].
 const TAKEN: f64 = 0.3;
@@ -29,13 +29,13 @@ const TAKEN: f64 = 0.3;
 const TAKEN_OF_EACH: f64 = 0.1;
 /// Offset that a channel must have beyond the others [s].
 const LEAST_OFFSET: f64 = 0.012;
-/// Shares of the believed time constant of the regulator that are tried, for it delays too [1].
+/// Shares of the nominal time constant of the regulator that are tried, for it delays too [1].
 const TIME_CONSTANTS: [f64; 5] = [0.85, 0.93, 1.0, 1.08, 1.18];
 
 /// Shares of it between which it is sought where the clock of a logger is measured [1].
 const TIME_CONSTANT_SHARES: [f64; 2] = [0.8, 1.25];
 
-/// A channel beside what the believed model gives.
+/// A channel beside what the nominal model gives.
 struct Pair<'a> {
     time: &'a [f64],
     measured: &'a [f64],
@@ -149,7 +149,7 @@ fn fitted(
     if !noise.is_finite() || !case.recordings.iter().all(measured) {
         return None;
     }
-    // What the believed model is off by within its tolerances is no matter of time.
+    // What the nominal model is off by within its tolerances is no matter of time.
     let noise = match channel {
         Channel::RegulatorPressure => 3.0 * noise,
         _ => OF_MODEL * noise,
@@ -245,7 +245,7 @@ fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     if !alike || first.scale == 1.0 {
         return Vec::new();
     }
-    // What the believed model explains worse goes with them where its own scale is theirs.
+    // What the nominal model explains worse goes with them where its own scale is theirs.
     let goes =
         |f: &&Fitted| f.taken[0] > 0.0 && (f.scale - scale).abs() < 0.25 * (scale - 1.0).abs();
     let mut channels: Vec<Channel> = (fitted.iter().filter(goes)).map(|f| f.channel).collect();
@@ -299,14 +299,14 @@ fn by_pressure(case: &DiagnosisInput, scale: f64) -> f64 {
 /// Whether the accelerometer is stamped by the clock of the stroke, not by one of another scale.
 fn acceleration_goes_with_stroke(case: &DiagnosisInput, scale: f64) -> bool {
     let noise = case.noise[Channel::Stroke as usize];
-    let told = |by: f64| {
+    let weighed = |by: f64| {
         let of = |r: &NamedRecording| {
             let start = r.recorded.inputs.time[0];
             curvatures(r, noise, |t| start + (t - start) * by).len()
         };
         case.recordings.iter().map(of).sum::<usize>()
     };
-    told(1.0) >= told(scale).max(told(1.0 / scale))
+    weighed(1.0) >= weighed(scale).max(weighed(1.0 / scale))
 }
 
 /// An outlet that is stamped late or early, unless the regulator is late: then what it drives is late too.
@@ -359,17 +359,17 @@ const TELLS_MORE: f64 = 1.6;
 fn late_motion(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     let noise = case.noise[Channel::Stroke as usize];
     // A wrong lag passes where there is little motion.
-    let told = |lag: f64| -> (usize, f64) {
+    let weighed = |lag: f64| -> (usize, f64) {
         let all = case.recordings.iter();
         let all = all.flat_map(|r| curvatures(r, noise, |t| t - lag));
         all.fold((0, 0.0), |(count, sum), (_, weight)| {
             (count + 1, sum + weight)
         })
     };
-    let (_, none) = told(0.0);
+    let (_, none) = weighed(0.0);
     let lags = (-LAG.1..=LAG.1).map(|step| LAG.0 * f64::from(step));
     let best = lags
-        .map(|lag| (lag, told(lag)))
+        .map(|lag| (lag, weighed(lag)))
         .max_by(|a, b| a.1.1.total_cmp(&b.1.1));
     let stroke = fitted.iter().find(|f| f.channel == Channel::Stroke);
     let (Some((lag, (count, most))), Some(stroke)) = (best, stroke) else {

@@ -11,9 +11,9 @@ const STANDARD_GRAVITY: f64 = 9.80665;
 const POUND_FORCE: f64 = 4.448_221_615;
 /// A pound-force per square inch in pascal.
 const PSI: f64 = 6_894.757_293;
-/// Times that the believed model may be off [1]: usual factors are farther from one another.
+/// Times that the nominal model may be off [1]: usual factors are farther from one another.
 const NEAR: f64 = 1.6;
-/// Correlation with the believed model from which it says the factor [1].
+/// Correlation with the nominal model from which it says the factor [1].
 const ALIKE: f64 = 0.7;
 
 /// Usual factors of a channel's unit [1].
@@ -70,7 +70,7 @@ fn off(found: f64, factor: f64) -> f64 {
     (found.abs() / factor).ln().abs()
 }
 
-/// Slope of what was measured against what the believed model gives; none where they are not alike.
+/// Slope of what was measured against what the nominal model gives; none where they are not alike.
 fn slope(case: &DiagnosisInput, simulated: &[[Vec<f64>; 4]], channel: usize) -> Option<f64> {
     let (mut both, mut own, mut other) = (0.0, 0.0, 0.0);
     for (recording, simulated) in case.recordings.iter().zip(simulated) {
