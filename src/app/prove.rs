@@ -11,10 +11,10 @@ use super::files::{OutputFolder, Standing, prepare_file};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
-use crate::laboratory::{Recipe, shipped, write_case};
+use crate::laboratory::{Recipe, shipped};
 use crate::proof::{
-    CaseConditions, Claims, Course, DevicePlan, Diagnose, LawPlan, ProofError, SweepPlan, folders,
-    laws, laws_page, page, prove, sweep,
+    CaseConditions, Claims, Course, Diagnose, DrawPlan, ProofError, SweepPlan, folders, laws,
+    laws_page, page, prove, sweep, write_recipes,
 };
 use crate::quantity::counted;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
@@ -301,8 +301,8 @@ fn swept(
     Ok((outcomes.len(), laws_page(&outcomes), json))
 }
 
-fn law_plan(count: u64, arguments: &SweepArguments) -> LawPlan {
-    LawPlan {
+fn law_plan(count: u64, arguments: &SweepArguments) -> DrawPlan {
+    DrawPlan {
         count,
         draw: arguments.draw,
         duration: arguments.duration_s,
@@ -323,20 +323,15 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
         });
     }
     let quiet = arguments.quiet || arguments.json;
-    let (draw, duration) = (arguments.draw, arguments.duration_s);
+    let plan = |count: u64, conditions: CaseConditions| DrawPlan {
+        count,
+        draw: arguments.draw,
+        duration: arguments.duration_s,
+        conditions,
+    };
     let what = match (arguments.laws, arguments.devices) {
-        (Some(count), _) => Which::Laws(LawPlan {
-            count,
-            draw,
-            duration,
-            conditions: CaseConditions::Laboratory,
-        }),
-        (None, Some(count)) => Which::Devices(DevicePlan {
-            count,
-            draw,
-            duration,
-            conditions: arguments.conditions,
-        }),
+        (Some(count), _) => Which::Laws(plan(count, CaseConditions::Laboratory)),
+        (None, Some(count)) => Which::Devices(plan(count, arguments.conditions)),
         (None, None) => Which::Shipped(&[]),
     };
     let names = make_cases(out, &what, quiet)?;
@@ -359,9 +354,9 @@ enum Which<'a> {
     /// The project's own, all or those named.
     Shipped(&'a [String]),
     /// Devices with a law each.
-    Laws(LawPlan),
+    Laws(DrawPlan),
     /// Devices with nothing missing and with an effect of the vocabulary in turn.
-    Devices(DevicePlan),
+    Devices(DrawPlan),
 }
 
 /// Makes cases into `cases` and `sealed` of a folder: all of them appear, or none. Returns their names.
@@ -378,8 +373,8 @@ fn make_cases(out: &Path, which: &Which<'_>, quiet: bool) -> Result<Vec<String>,
     let tell = |done: usize, total: usize| progress::tell(&bar, done, total);
     let made = match which {
         Which::Shipped(only) => make_shipped(&cases, &sealed, only, &tell),
-        Which::Laws(plan) => plan.write(&cases, &sealed, &tell),
-        Which::Devices(plan) => plan.write(&cases, &sealed, &tell),
+        Which::Laws(plan) => plan.write_laws(&cases, &sealed, &tell),
+        Which::Devices(plan) => plan.write_devices(&cases, &sealed, &tell),
     };
     bar.finish_and_clear();
     let made = made?;
@@ -401,13 +396,8 @@ fn make_shipped(
     tell: &dyn Fn(usize, usize),
 ) -> Result<Vec<String>, ProofError> {
     let wanted = |recipe: &Recipe| only.is_empty() || only.contains(&recipe.name);
-    let recipes: Vec<Recipe> = shipped().into_iter().filter(wanted).collect();
-    for (index, recipe) in recipes.iter().enumerate() {
-        let case = recipe.make()?;
-        write_case(&case, &cases.join(&recipe.name), Some(sealed))?;
-        tell(index + 1, recipes.len());
-    }
-    Ok(recipes.into_iter().map(|recipe| recipe.name).collect())
+    let recipes = shipped().into_iter().filter(wanted).map(Ok);
+    write_recipes(recipes, (cases, sealed), tell)
 }
 
 /// Files below a folder, by their paths from it.

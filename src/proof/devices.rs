@@ -14,9 +14,9 @@ const LEAST_SHARE: f64 = 0.35;
 /// Golden ratio less one: its multiples, less their whole parts, are spread evenly [1].
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// Which devices are made.
+/// Which devices are drawn, for laws or for effects.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DevicePlan {
+pub struct DrawPlan {
     /// Devices.
     pub count: u64,
     /// Which devices are drawn.
@@ -27,9 +27,14 @@ pub struct DevicePlan {
     pub conditions: CaseConditions,
 }
 
-impl DevicePlan {
-    fn recipe(&self, index: u64) -> Recipe {
-        let seed = SEEDS_PER_DRAW * self.draw + FIRST_SEED + index;
+impl DrawPlan {
+    /// Seeds of the devices, where the first of the first draw has one.
+    pub(super) fn seeds(&self, first: u64) -> impl Iterator<Item = u64> {
+        let first = SEEDS_PER_DRAW * self.draw + first;
+        first..first + self.count
+    }
+
+    fn device(&self, index: u64, seed: u64) -> Recipe {
         // A draw begins at an effect of its own.
         let number = index / 2 + 7 * self.draw;
         let effect = &EFFECTS[number as usize % EFFECTS.len()];
@@ -51,25 +56,38 @@ impl DevicePlan {
         }
     }
 
-    /// Writes the cases into `cases` and their truth into `sealed`; `say` gets how many are written, of how many. Returns their names.
+    /// Writes devices with and without an effect into `cases` and their truth into `sealed`; `say` gets how many are written, of how many. Returns their names.
     ///
     /// # Errors
     /// The integrator cannot go on, a file that cannot be written.
-    pub fn write(
+    pub fn write_devices(
         &self,
         cases: &Path,
         sealed: &Path,
         say: &dyn Fn(usize, usize),
     ) -> Result<Vec<String>, ProofError> {
-        let mut names = Vec::new();
-        for index in 0..self.count {
-            let recipe = self.recipe(index);
-            write_case(&recipe.make()?, &cases.join(&recipe.name), Some(sealed))?;
-            names.push(recipe.name);
-            say(names.len(), self.count as usize);
-        }
-        Ok(names)
+        let seeds = (0..).zip(self.seeds(FIRST_SEED));
+        let recipes = seeds.map(|(index, seed)| Ok(self.device(index, seed)));
+        write_recipes(recipes, (cases, sealed), say)
     }
+}
+
+/// Makes the cases of recipes, into a folder of cases and one of their truth. Returns their names.
+///
+/// # Errors
+/// Those of the recipes, of the integrator, of a file that cannot be written.
+pub fn write_recipes(
+    recipes: impl Iterator<Item = Result<Recipe, ProofError>>,
+    (cases, sealed): (&Path, &Path),
+    say: &dyn Fn(usize, usize),
+) -> Result<Vec<String>, ProofError> {
+    let recipes: Vec<Recipe> = recipes.collect::<Result<_, _>>()?;
+    for (index, recipe) in recipes.iter().enumerate() {
+        let case = recipe.make()?;
+        write_case(&case, &cases.join(&recipe.name), Some(sealed))?;
+        say(index + 1, recipes.len());
+    }
+    Ok(recipes.into_iter().map(|recipe| recipe.name).collect())
 }
 
 #[cfg(test)]
@@ -78,13 +96,14 @@ mod tests {
 
     #[test]
     fn every_second_device_lacks_nothing_and_the_others_have_effects_in_turn() {
-        let plan = DevicePlan {
+        let plan = DrawPlan {
             count: 8,
             draw: 1,
             duration: 2.0,
             conditions: CaseConditions::Laboratory,
         };
-        let recipes: Vec<Recipe> = (0..8).map(|i| plan.recipe(i)).collect();
+        let seeds = (0..).zip(plan.seeds(FIRST_SEED));
+        let recipes: Vec<Recipe> = seeds.map(|(i, seed)| plan.device(i, seed)).collect();
         let found: Vec<usize> = recipes.iter().map(|r| r.effects.len()).collect();
         assert_eq!(found, [0, 1, 0, 1, 0, 1, 0, 1]);
         assert_ne!(recipes[1].effects[0].0, recipes[3].effects[0].0);

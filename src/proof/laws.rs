@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::case_conditions::CaseConditions;
+use super::devices::{DrawPlan, write_recipes};
 use super::error::ProofError;
 use super::outcome::Made;
 use super::prove::{Diagnose, score};
 use super::score::CaseScore;
 use super::summary::percentile;
-use super::sweep::{Course, SEEDS_PER_DRAW, carry_out};
+use super::sweep::{Course, carry_out};
 use crate::diagnosis::answer::Answer;
 use crate::effects::UNLISTED;
 use crate::laboratory::{Known, Recipe, SealedEffect, law_case, write_case};
@@ -23,19 +23,6 @@ const FIRST_SEED: u64 = 2_000_000;
 const WITHIN: f64 = 2.0;
 /// Variables that an answer may name.
 const MOST_VARIABLES: usize = 3;
-
-/// Plan of the cases.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LawPlan {
-    /// Devices, each with a law.
-    pub count: u64,
-    /// Which devices are drawn.
-    pub draw: u64,
-    /// Length of each recording [s].
-    pub duration: f64,
-    /// Conditions under which they are made.
-    pub conditions: CaseConditions,
-}
 
 /// A case and what was made of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -95,10 +82,10 @@ impl LawOutcome {
     }
 }
 
-impl LawPlan {
+impl DrawPlan {
     /// Name and seed of each case.
     fn cases(&self) -> Vec<(String, u64)> {
-        let seeds = (0..self.count).map(|i| SEEDS_PER_DRAW * self.draw + FIRST_SEED + i);
+        let seeds = self.seeds(FIRST_SEED);
         seeds.map(|seed| (format!("law-{seed}"), seed)).collect()
     }
 
@@ -126,23 +113,19 @@ impl LawPlan {
         }
     }
 
-    /// Writes the cases into `cases` and their truth into `sealed`; `say` is told how many are written. Returns their names.
+    /// Writes the cases of the laws into `cases` and their truth into `sealed`; `say` gets how many are written, of how many. Returns their names.
     ///
     /// # Errors
     /// No law will do for a device, a file that cannot be written.
-    pub fn write(
+    pub fn write_laws(
         &self,
         cases: &Path,
         sealed: &Path,
         say: &dyn Fn(usize, usize),
     ) -> Result<Vec<String>, ProofError> {
-        let all = self.cases();
-        for (index, (name, seed)) in all.iter().enumerate() {
-            let case = self.recipe(name, *seed)?.make()?;
-            write_case(&case, &cases.join(name), Some(sealed))?;
-            say(index + 1, all.len());
-        }
-        Ok(all.into_iter().map(|(name, _)| name).collect())
+        let recipes = self.cases().into_iter();
+        let recipes = recipes.map(|(name, seed)| self.recipe(&name, seed));
+        write_recipes(recipes, (cases, sealed), say)
     }
 }
 
@@ -151,7 +134,7 @@ impl LawPlan {
 /// # Errors
 /// Outcomes of another plan, no law that will do for a device, a file that cannot be written.
 pub fn laws(
-    plan: &LawPlan,
+    plan: &DrawPlan,
     course: &Course<'_>,
     diagnose: &Diagnose<'_>,
     say: &(dyn Fn(usize, usize, &str) + Sync),
@@ -175,7 +158,7 @@ pub fn laws(
 }
 
 fn attempt(
-    plan: &LawPlan,
+    plan: &DrawPlan,
     name: &str,
     seed: u64,
     out: &Path,
@@ -309,6 +292,7 @@ concealed, in standard deviations beside all that is tolerated.\n\n\
 mod tests {
     use super::*;
     use crate::laboratory::SealedCase;
+    use crate::proof::CaseConditions;
 
     #[test]
     fn the_page_counts_links_variables_names_and_predictions() {
@@ -327,7 +311,7 @@ mod tests {
                 .map(|s| (*s).to_owned())
                 .collect::<Vec<String>>()
         };
-        let plan = LawPlan {
+        let plan = DrawPlan {
             count: 2,
             draw: 0,
             duration: 4.0,

@@ -17,9 +17,9 @@ mod sweep;
 
 pub use case_conditions::CaseConditions;
 pub use confusion::page;
-pub use devices::DevicePlan;
+pub use devices::{DrawPlan, write_recipes};
 pub use error::ProofError;
-pub use laws::{LawAnswer, LawOutcome, LawPlan, laws, laws_page};
+pub use laws::{LawAnswer, LawOutcome, laws, laws_page};
 pub use outcome::{Made, Outcome};
 pub use prove::{Diagnose, folders, prove};
 pub use queue::all as in_order;
