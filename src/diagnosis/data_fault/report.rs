@@ -138,7 +138,7 @@ impl DataFault {
             ),
         };
         format!(
-            "{name}: {what} (probability {}){}",
+            "in {name} {what} (probability {}){}",
             percent(self.probability),
             match self.kind {
                 Kind::Noise(_) => "",
