@@ -160,7 +160,8 @@ impl<'a> Trial<'a> {
     }
 
     /// Whether the search's extent is used up.
-    pub(super) fn is_over(&self) -> bool {
+    #[must_use]
+    pub fn is_over(&self) -> bool {
         if !(self.keep_on)() {
             self.over.store(true, Ordering::Relaxed);
         }
@@ -179,7 +180,8 @@ impl<'a> Trial<'a> {
     }
 
     /// Whether so many places may still be tried.
-    pub(super) fn may_outline(&self, count: usize) -> bool {
+    #[must_use]
+    pub fn may_outline(&self, count: usize) -> bool {
         self.take(&self.outlines, count)
     }
 

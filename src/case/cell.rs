@@ -245,6 +245,7 @@ fn drives(cell: &LoadedCell, recording: &CellRecording) -> Vec<DriveLoad> {
         torque: drive.torque,
         expected: drive.expected,
         rate: drive.rate,
+        rated: drive.rated,
     };
     drives.into_iter().flatten().map(load).collect()
 }

@@ -6,7 +6,8 @@
 //!
 //! Ordinary least squares; what is left is not white, so that its samples count for as many as are independent of each other (first-order autocorrelation:
 //! Bartlett, J. R. Stat. Soc. 8, 1946). A drive's torque is known through a torque constant, and its load through a model: neither better than the belief's
-//! tolerance. What a model leaves out is the same over a whole recording: friction is known no better than the recordings agree on it.
+//! tolerance. Nor is it known better than a current converter resolves of what the drive is rated for: a joint that carries nothing shows friction of a
+//! thousandth of that from the bends and turns of others. What a model leaves out is the same over a whole recording: friction is known no better than the recordings agree on it.
 
 use super::free::{Prior, free_of};
 use super::search::EstablishedEffect;
@@ -23,6 +24,8 @@ pub struct DriveLoad {
     pub expected: Vec<f64>,
     /// Speed of the motor [rad/s].
     pub rate: Vec<f64>,
+    /// Largest torque that the drive is rated for [N m].
+    pub rated: f64,
 }
 
 impl DriveLoad {
@@ -57,6 +60,8 @@ pub struct JointFriction {
 const STILL: f64 = 1e-3;
 /// Uncertainty of a joint's friction that is as believed, relative to it [1]: no data sheet says more.
 const KNOWN: f64 = 0.03;
+/// Uncertainty of a drive's torque, relative to what it is rated for [1]: ten bits of a current converter.
+const RESOLVED: f64 = 1e-3;
 /// Sum of squares of sat(v) about its mean below which a joint hardly changed its speed, and nothing can be said.
 const LEAST_CHANGE: f64 = 5.0;
 
@@ -68,10 +73,11 @@ pub fn joint_friction(
     believed: f64,
     tolerance: f64,
 ) -> Option<JointFriction> {
-    let (mut change, mut product, mut largest) = (0.0, 0.0, 0.0f64);
+    let (mut change, mut product, mut largest, mut rated) = (0.0, 0.0, 0.0f64, 0.0f64);
     let mut centred: Vec<Vec<[f64; 2]>> = Vec::new();
     for drive in drives {
         let count = drive.torque.len() as f64;
+        rated = rated.max(drive.rated);
         let rows: Vec<[f64; 2]> = (0..drive.torque.len())
             .map(|i| {
                 let rate = drive.rate[i];
@@ -110,7 +116,10 @@ pub fn joint_friction(
     Some(JointFriction {
         joint,
         friction,
-        deviation: scatter.hypot(tolerance * largest).hypot(KNOWN * believed),
+        deviation: scatter
+            .hypot(tolerance * largest)
+            .hypot(RESOLVED * rated)
+            .hypot(KNOWN * believed),
         believed,
         count: count * independent,
     })
@@ -191,6 +200,25 @@ mod tests {
                 .unwrap()
                 .differs()
         );
+    }
+
+    /// A wrist that carries nothing was said to rub by 0.0022 N m "above 99.9 %": a backlash of another joint turned it by a hair.
+    #[test]
+    fn less_than_a_drive_resolves_is_no_friction() {
+        let mut idle = drive(0.0);
+        idle.rated = 50.0;
+        for i in 0..idle.torque.len() {
+            let rate = idle.rate[i];
+            idle.expected[i] = 0.0;
+            idle.torque[i] = 2.2e-3 * rate / rate.hypot(STILL);
+        }
+        let found = joint_friction(5, std::slice::from_ref(&idle), 0.0, 0.005).unwrap();
+        assert!((found.friction - 2.2e-3).abs() < 1e-9 && !found.differs());
+        for (torque, rate) in idle.torque.iter_mut().zip(&idle.rate) {
+            *torque = 2.2 * rate / rate.hypot(STILL);
+        }
+        let found = joint_friction(5, &[idle], 0.0, 0.005).unwrap();
+        assert!(found.differs(), "{found:?}");
     }
 
     #[test]

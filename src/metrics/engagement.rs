@@ -1,6 +1,7 @@
 //! Engagement of the tool with the edge: peak of the force and time to settle.
 //!
-//! The window runs from the first touch, whatever phase it falls into, to the start of following.
+//! The window runs from the first touch, whatever phase it falls into, to the start of following. Where the largest force since the sample before is recorded,
+//! a touch that bounces off between two samples counts too.
 
 use super::force::within;
 use super::statistics::largest;
@@ -23,7 +24,9 @@ pub(super) fn measure(
     let end = follow.map_or(time.len(), |follow| {
         time.partition_point(|&time| time < follow.start)
     });
-    let touch = force[..end]
+    let between = raw(recording, schema::CONTACT_FORCE_PEAK, Unit::Newton)?;
+    let peaks = between.unwrap_or(force);
+    let touch = peaks[..end]
         .iter()
         .position(|&force| force > TOUCH_SHARE * desired);
     let Some(touch) = touch else {
@@ -33,9 +36,7 @@ pub(super) fn measure(
     if force.iter().any(|force| !force.is_finite()) {
         return Ok(());
     }
-    let between = raw(recording, schema::CONTACT_FORCE_PEAK, Unit::Newton)?;
-    let peaks = between.map_or(force, |peaks| &peaks[touch..end]);
-    let peak = largest(peaks.iter().copied());
+    let peak = largest(peaks[touch..end].iter().copied());
     summary.engagement_peak_n = peak;
     summary.engagement_overshoot_percent =
         peak.map(|peak| (100.0 * (peak - desired) / desired).max(0.0));
@@ -94,6 +95,23 @@ mod tests {
         });
         let settling = measured(&builder).settling_time_s.unwrap();
         assert!((settling - 0.4).abs() <= Builder::STEP, "{settling}");
+    }
+
+    /// On a stiff part a run of 1 ms steps said 1097 N where the first touch, over between two samples, was of 1270 N.
+    #[test]
+    fn a_touch_that_is_over_between_two_samples_is_the_peak_and_begins_the_window() {
+        let mut builder = Builder::nominal();
+        builder.engage_with(1.0, |since| if since < 0.2 { 0.0 } else { 100.0 });
+        let mut peaks = builder.force.clone();
+        let bounce = builder.time.partition_point(|time| *time < 1.1);
+        peaks[bounce] = 270.0;
+        builder.peaks = Some(peaks);
+        let summary = measured(&builder);
+        assert_near(summary.engagement_peak_n, 270.0, 1e-9);
+        // From the bounce at 1.1 s to the touch that stays at 1.2 s.
+        assert!((summary.settling_time_s.unwrap() - 0.1).abs() <= 2.0 * Builder::STEP);
+        builder.peaks = None;
+        assert_near(measured(&builder).engagement_peak_n, 100.0, 1e-9);
     }
 
     #[test]

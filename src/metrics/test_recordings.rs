@@ -30,6 +30,8 @@ pub(crate) fn assert_near(value: Option<f64>, expected: f64, relative: f64) {
 pub(crate) struct Builder {
     pub(crate) time: Vec<f64>,
     pub(crate) force: Vec<f64>,
+    /// Largest since the sample before [N], where that is recorded.
+    pub(crate) peaks: Option<Vec<f64>>,
     pub(crate) path: Vec<f64>,
     pub(crate) stroke: Vec<f64>,
     pub(crate) path_error: Vec<f64>,
@@ -59,6 +61,7 @@ impl Builder {
         };
         let mut builder = Self {
             force: by_time(|t| if (1.0..6.0).contains(&t) { 100.0 } else { 0.0 }),
+            peaks: None,
             path: constant(0.0),
             stroke: constant(0.025),
             path_error: constant(10e-6),
@@ -146,6 +149,9 @@ impl Builder {
         ];
         for (quantity, mass) in masses.into_iter().zip(&self.air) {
             channels.push(RecordedChannel::new(quantity, Unit::Kilogram, mass.clone()));
+        }
+        if let Some(peaks) = &self.peaks {
+            channels.push(newton(schema::CONTACT_FORCE_PEAK, peaks));
         }
         for (joint, torque) in (1..).zip(&self.torques) {
             let quantity = schema::joint_quantity(joint, JointSignal::Torque);

@@ -21,6 +21,8 @@ pub struct Drive {
     pub expected: Vec<f64>,
     /// Speed of its motor [rad/s].
     pub rate: Vec<f64>,
+    /// Largest torque that it is rated for [N m].
+    pub rated: f64,
 }
 
 /// Contact force above which the tool touches [N].
@@ -37,9 +39,14 @@ impl LoadedCell {
         stroke: &[f64],
         force: &[f64],
     ) -> Vec<Option<Drive>> {
-        let mut drives: Vec<Option<Drive>> = torques
-            .iter()
-            .map(|torque| torque.as_ref().map(|_| Drive::default()))
+        let mut drives: Vec<Option<Drive>> = (torques.iter().zip(&self.cell.chain.joints))
+            .map(|(torque, joint)| {
+                let rated = joint.effort;
+                torque.as_ref().map(|_| Drive {
+                    rated,
+                    ..Drive::default()
+                })
+            })
             .collect();
         let count = trajectory.len();
         for i in 1..count.saturating_sub(1) {

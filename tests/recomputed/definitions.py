@@ -157,12 +157,13 @@ class CellRun(Run):
 
     def touch(self, s, force, desired, follow):
         end = follow[0] if len(follow) else len(force)
-        touching = np.flatnonzero(force[:end] > 0.01 * desired)
+        peaks = self.column("contact_force_peak_n", slice(0, end))
+        touching = np.flatnonzero(peaks > 0.01 * desired)
         s.update(engagement_peak_n=None, engagement_overshoot_percent=None, settling_time_s=None)
         if not len(touching):
             return
         window = slice(touching[0], end)
-        peak = self.column("contact_force_peak_n", window).max()
+        peak = peaks[touching[0]:].max()
         s["engagement_peak_n"] = peak
         s["engagement_overshoot_percent"] = max(0.0, 100 * (peak - desired) / desired)
         outside = np.flatnonzero(np.abs(force[window] - desired) > 0.05 * desired)

@@ -242,15 +242,26 @@ fn search(trial: &Trial<'_>) -> Result<(Ridden, Vec<KeyValue>), AppError> {
                     nearest.get_or_insert(reason);
                 }
             }
+            if trial.is_over() {
+                break;
+            }
         }
     }
+    let reason = match nearest {
+        Some(reason) if trial.is_over() => {
+            format!(
+                "the longest: {reason}; the search was ended there, after as much as it may try"
+            )
+        }
+        Some(reason) => format!("the longest: {reason}"),
+        None => {
+            "none is long enough for the tool's ball, or none can be followed by any".to_owned()
+        }
+    };
     Err(AppError::NothingRidden {
         part,
         convex,
-        reason: nearest.map_or_else(
-            || "none is long enough for the tool's ball, or none can be followed by any".to_owned(),
-            |reason| format!("the longest: {reason}"),
-        ),
+        reason,
     })
 }
 
@@ -362,6 +373,9 @@ fn placed(trial: &Trial<'_>, ridden: &Ridden) -> Result<Result<Vec<KeyValue>, St
         .into_iter()
         .take(PLACES)
     {
+        if !trial.may_outline(1) {
+            break;
+        }
         if let Err(error) = setup.outline(&there) {
             reason.get_or_insert_with(|| error.to_string());
             continue;
