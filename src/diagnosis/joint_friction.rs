@@ -1,9 +1,12 @@
 //! The link from an arm's motion to the torques of its drives, by itself: dry friction of each joint.
 //!
 //! ```text
-//! tau_measured - tau_expected = b_r + F sat(v)        b_r of recording r, F friction [N m], sat(v) = v/sqrt(v^2 + v_0^2)
+//! tau_measured - tau_expected = b_r + c_r . C + F sat(v)        F friction [N m], sat(v) = v/sqrt(v^2 + v_0^2), b_r and c_r of recording r
 //! ```
 //!
+//! C is what the contact force takes of the drive along its normal, across it, and by the tool's friction: a ball that stands off a sharp edge by a tenth of its
+//! radius is pressed on another normal, by a tenth of the force, and a load cell's gain and the tool's friction are known roughly. What a drive does beside
+//! that while the tool rides tells nothing of its friction. (Partialling out: Frisch, Waugh, Econometrica 1, 1933.)
 //! Ordinary least squares; what is left is not white, so that its samples count for as many as are independent of each other (first-order autocorrelation:
 //! Bartlett, J. R. Stat. Soc. 8, 1946). A drive's torque is known through a torque constant, and its load through a model: neither better than the belief's
 //! tolerance. Nor is it known better than a current converter resolves of what the drive is rated for: a joint that carries nothing shows friction of a
@@ -26,6 +29,8 @@ pub struct DriveLoad {
     pub rate: Vec<f64>,
     /// Largest torque that the drive is rated for [N m].
     pub rated: f64,
+    /// Torque that the contact force along the normal, the same across it, and the tool's friction take [N m].
+    pub contact: Vec<[f64; 3]>,
 }
 
 impl DriveLoad {
@@ -62,6 +67,8 @@ const STILL: f64 = 1e-3;
 const KNOWN: f64 = 0.03;
 /// Uncertainty of a drive's torque, relative to what it is rated for [1]: ten bits of a current converter.
 const RESOLVED: f64 = 1e-3;
+/// Share of a column beside those before it below which it tells nothing new [1].
+const NOTHING_NEW: f64 = 1e-6;
 /// Sum of squares of sat(v) about its mean below which a joint hardly changed its speed, and nothing can be said.
 const LEAST_CHANGE: f64 = 5.0;
 
@@ -76,7 +83,6 @@ pub fn joint_friction(
     let (mut change, mut product, mut largest, mut rated) = (0.0, 0.0, 0.0f64, 0.0f64);
     let mut centred: Vec<Vec<[f64; 2]>> = Vec::new();
     for drive in drives {
-        let count = drive.torque.len() as f64;
         rated = rated.max(drive.rated);
         let rows: Vec<[f64; 2]> = (0..drive.torque.len())
             .map(|i| {
@@ -88,12 +94,7 @@ pub fn joint_friction(
                 ]
             })
             .collect();
-        let mean = |k: usize| rows.iter().map(|row| row[k]).sum::<f64>() / count.max(1.0);
-        let means = [mean(0), mean(1)];
-        let rows: Vec<[f64; 2]> = rows
-            .iter()
-            .map(|row| [row[0] - means[0], row[1] - means[1]])
-            .collect();
+        let rows = beside_contact(rows, &drive.contact);
         change += rows.iter().map(|row| row[1] * row[1]).sum::<f64>();
         product += rows.iter().map(|row| row[0] * row[1]).sum::<f64>();
         centred.push(rows);
@@ -123,6 +124,38 @@ pub fn joint_friction(
         believed,
         count: count * independent,
     })
+}
+
+/// Two columns less what a constant and the contact's part of the torque take of them.
+fn beside_contact(mut rows: Vec<[f64; 2]>, contact: &[[f64; 3]]) -> Vec<[f64; 2]> {
+    let mut columns = vec![vec![1.0; rows.len()]];
+    columns.extend((0..3).map(|k| contact.iter().map(|row| row[k]).collect::<Vec<f64>>()));
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    // Gram and Schmidt, twice for what rounding leaves.
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for mut column in columns.into_iter().filter(|c| c.len() == rows.len()) {
+        let before = dot(&column, &column).sqrt();
+        for known in basis.iter().chain(&basis) {
+            let share = dot(known, &column);
+            (column.iter_mut().zip(known)).for_each(|(value, known)| *value -= share * known);
+        }
+        let after = dot(&column, &column).sqrt();
+        if after > NOTHING_NEW * before {
+            column.iter_mut().for_each(|value| *value /= after);
+            basis.push(column);
+        }
+    }
+    for known in &basis {
+        for k in 0..2 {
+            let share: f64 = rows
+                .iter()
+                .zip(known)
+                .map(|(row, known)| row[k] * known)
+                .sum();
+            (rows.iter_mut().zip(known)).for_each(|(row, known)| row[k] -= share * known);
+        }
+    }
+    rows
 }
 
 /// Standard deviation of the friction by how far the recordings' own differ, each weighed by what it tells [N m].
@@ -200,6 +233,32 @@ mod tests {
                 .unwrap()
                 .differs()
         );
+    }
+
+    /// With backlash a ball stood half a millimetre off its edge: 150 N on another normal were 11 N m at the shoulder while it rode, and its joint "rubbed".
+    #[test]
+    fn a_force_on_another_normal_is_no_friction() {
+        let mut rides = drive(0.0);
+        for i in 0..rides.torque.len() {
+            let across = if (150..450).contains(&i) {
+                90.0 + 0.05 * i as f64
+            } else {
+                0.0
+            };
+            rides.contact.push([0.7 * across, across, 0.0]);
+            // Before it rides the joint moves freely.
+            if (20..120).contains(&i) {
+                rides.rate[i] = -0.03;
+            }
+            rides.torque[i] += 0.1 * across;
+        }
+        let found = joint_friction(1, std::slice::from_ref(&rides), 0.0, 0.005).unwrap();
+        assert!(!found.differs() && found.friction.abs() < 0.5, "{found:?}");
+        for i in 0..rides.torque.len() {
+            rides.torque[i] += 14.0 * rides.rate[i] / rides.rate[i].hypot(STILL);
+        }
+        let found = joint_friction(1, &[rides], 0.0, 0.005).unwrap();
+        assert!((found.friction - 14.0).abs() < 0.5, "{found:?}");
     }
 
     /// A wrist that carries nothing was said to rub by 0.0022 N m "above 99.9 %": a backlash of another joint turned it by a hair.

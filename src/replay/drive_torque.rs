@@ -6,11 +6,12 @@
 //! ```
 //!
 //! M, C, G with the device's moving mass at its stroke, D viscous friction of the URDF, F_n contact force, J_n, J_t levers of the ball along the part's normal
-//! and along the edge, mu friction of the tool, v speed along the edge. (Swevers et al., IEEE Control Systems 27(5), 2007: inverse dynamics identification.)
+//! and along the edge, mu friction of the tool, v speed along the edge. A ball that stands a little off its place meets a sharp edge on another normal, and mu is
+//! known roughly: the shares of a contact force along normal and across it, and of the friction, are given beside. (Swevers et al., IEEE Control Systems 27(5), 2007: inverse dynamics identification.)
 
 use super::{LoadedCell, ReplayCell};
 use crate::arm::dynamics::inverse_dynamics;
-use crate::plant::ArmTrajectory;
+use crate::plant::{ArmTrajectory, JointTrajectory};
 
 /// A drive over samples of a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,10 +24,20 @@ pub struct Drive {
     pub rate: Vec<f64>,
     /// Largest torque that it is rated for [N m].
     pub rated: f64,
+    /// Torque that the contact force along the normal, the same across it, and the tool's friction take [N m].
+    pub contact: Vec<[f64; 3]>,
 }
 
-/// Contact force above which the tool touches [N].
-const TOUCHING: f64 = 10.0;
+/// What the drives have to give at a sample.
+struct Load {
+    /// Speeds of the motors [rad/s].
+    rates: Vec<f64>,
+    /// Torques expected but for dry friction [N m].
+    torques: Vec<f64>,
+    /// Torques of the contact, as in [`Drive`] [N m].
+    contact: Vec<[f64; 3]>,
+}
+
 /// Speed along the edge at which friction is felt in full [m/s].
 const SLIDING: f64 = 1e-3;
 
@@ -53,23 +64,22 @@ impl LoadedCell {
             if !(force[i].is_finite() && stroke[i].is_finite()) {
                 continue;
             }
-            let touches = force[i] > TOUCHING;
+            let touches = force[i] > self.scenario.touching();
             // A tool that rests holds on to the edge by as much as friction lets it, which nothing shows.
             if touches && trajectory.rests(i) {
                 continue;
             }
             let pressed = if touches { force[i] } else { 0.0 };
             let friction = self.scenario.contact.friction;
-            let (rates, expected) = self
-                .cell
-                .torques_at(trajectory, i, stroke[i], pressed, friction);
+            let load = (self.cell).torques_at(trajectory, i, stroke[i], pressed, friction);
             for (j, drive) in drives.iter_mut().enumerate() {
                 if let (Some(drive), Some(torque)) = (drive, &torques[j])
                     && torque[i].is_finite()
                 {
                     drive.torque.push(torque[i]);
-                    drive.expected.push(expected[j]);
-                    drive.rate.push(rates[j]);
+                    drive.expected.push(load.torques[j]);
+                    drive.rate.push(load.rates[j]);
+                    drive.contact.push(load.contact[j]);
                 }
             }
         }
@@ -86,7 +96,7 @@ impl ReplayCell {
         stroke: f64,
         force: f64,
         friction: f64,
-    ) -> (Vec<f64>, Vec<f64>) {
+    ) -> Load {
         let span = trajectory.time[i + 1] - trajectory.time[i - 1];
         let joints = &trajectory.joints;
         let q: Vec<f64> = joints.iter().map(|j| j.angle[i]).collect();
@@ -114,12 +124,21 @@ impl ReplayCell {
         let speed = (centre(i + 1) - centre(i - 1)).dot(edge.tangent) / span;
         let pressed = force / -normal.dot(trajectory.slide[i]);
         let drag = friction * pressed * (speed / SLIDING).clamp(-1.0, 1.0);
-        let on_tool = normal * pressed - edge.tangent * drag;
+        let across = edge.tangent.cross(normal);
+        let on_tool = [normal * pressed, across * pressed, -edge.tangent * drag];
         let point = centre(i) - normal * self.ball_radius;
-        for (j, joint) in joints.iter().enumerate() {
+        let of = |joint: &JointTrajectory| {
             let lever = joint.axis[i].cross(point - joint.origin[i]);
-            torques[j] += self.chain.joints[j].damping * rates[j] - lever.dot(on_tool);
+            on_tool.map(|force| -lever.dot(force))
+        };
+        let contact: Vec<[f64; 3]> = joints.iter().map(of).collect();
+        for (j, [along, _, drags]) in contact.iter().enumerate() {
+            torques[j] += self.chain.joints[j].damping * rates[j] + along + drags;
         }
-        (rates, torques)
+        Load {
+            rates,
+            torques,
+            contact,
+        }
     }
 }

@@ -68,6 +68,18 @@ pub struct RecordedCell {
     pub sample_rate: f64,
 }
 
+/// Force above which a tool touches, in standard deviations of the load cell's noise [1].
+const TOUCHING: f64 = 6.0;
+
+impl RecordedCell {
+    /// Force above which the tool touches: no noise reads as much [N].
+    #[must_use]
+    pub fn touching(&self) -> f64 {
+        let [_, _, force] = self.noise;
+        TOUCHING * force
+    }
+}
+
 /// Reads and checks the scenario file of a recorded cell and the device model file that it names.
 ///
 /// # Errors
