@@ -141,7 +141,7 @@ def run(file, program, out, effect, more=()):
     if (out / "samples.parquet").exists():
         return True
     put = ["--with", effect] if effect else []
-    done = idc("run", file, *sets(file, program), *more, *put, "--out", out, "--no-recording", "--quiet", "--force", fails=True)
+    done = idc("run", file, *sets(file, program), *more, *put, "--out", out, "--effort", 0, "--no-recording", "--quiet", "--force", fails=True)
     return done.returncode in (0, 1)
 
 
