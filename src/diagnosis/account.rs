@@ -2,6 +2,7 @@
 
 mod difference;
 mod document;
+mod doubts;
 mod link;
 mod missing;
 mod rivals;
@@ -13,7 +14,6 @@ pub use document::{Account, AccountSection, SectionKind};
 use super::details::RemainingError;
 use super::finding::Diagnosis;
 use super::words::listed;
-use crate::effects::UNLISTED;
 
 /// Other channels that differ from the model, named at most.
 const MOST_OTHERS: usize = 3;
@@ -44,11 +44,10 @@ impl Diagnosis {
     }
 
     fn headline(&self) -> String {
-        let mut names = self.best().spoken_names();
-        if let Some(unlisted) = names.iter_mut().find(|name| *name == UNLISTED) {
-            "physics that no known effect explains".clone_into(unlisted);
-        }
-        if names.is_empty() {
+        let names = self.headline_names();
+        if names.is_empty() && !self.best().finds_nothing() {
+            "what is missing is not settled: no effect is sure".to_owned()
+        } else if names.is_empty() {
             let errors = self.remaining_errors();
             match errors.iter().any(RemainingError::is_beyond_noise) || self.remaining.is_some() {
                 false => "nothing is missing".to_owned(),

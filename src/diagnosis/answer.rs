@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::details::Details;
 use super::estimate::Limit;
+use super::statements::Doubt;
 use super::unlisted::report::UnlistedReport;
 use super::words::spoken;
 use crate::effects::UNLISTED;
@@ -78,6 +79,9 @@ pub struct FoundEffect {
     pub subsystem: String,
     /// Probability that it is at work [1].
     pub confidence: f64,
+    /// Reasons why it is not stated as surer.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<Doubt>,
     /// Its numbers by name, in the order of the vocabulary.
     #[serde(with = "in_order")]
     pub parameters: Vec<(String, Estimate)>,
@@ -166,6 +170,9 @@ pub struct Estimate {
     /// End of its range at which the value stands, if it does: the recordings ask for more than it may be.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_limit: Option<Limit>,
+    /// Value without the effect; none where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without: Option<f64>,
 }
 
 impl Estimate {
@@ -177,6 +184,7 @@ impl Estimate {
             low,
             high,
             at_limit: None,
+            without: None,
         }
     }
 }
@@ -350,6 +358,7 @@ mod tests {
                 key: None,
                 subsystem: "force_balance".to_owned(),
                 confidence: 0.98,
+                doubts: Vec::new(),
                 parameters: vec![
                     (
                         "viscous_coefficient_n_s_per_m".to_owned(),

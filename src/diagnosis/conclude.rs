@@ -19,9 +19,10 @@ use super::links::Link;
 use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms, root_mean_square};
 use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
+use super::statements::{FarAbove, TRUSTED, far_above, forbids_fully};
 use super::unlisted::report::formula_text;
 use crate::effects::UNLISTED;
-use crate::effects::{Effect, Which};
+use crate::effects::{Effect, Subsystem, Which};
 use crate::plant::{CHANNELS, Chain, Channel, LawText};
 
 /// Variables named at most for a link.
@@ -36,6 +37,15 @@ impl Link {
             Channel::RegulatorPressure => Self::Regulator,
             Channel::Stroke | Channel::Acceleration => Self::Piston,
             Channel::Force => Self::Contact,
+        }
+    }
+
+    /// Where physics without a name would enter that this link alone shows.
+    fn subsystem(self) -> Subsystem {
+        match self {
+            Self::Regulator => Subsystem::Regulator,
+            Self::Piston => Subsystem::ForceBalance,
+            Self::Contact => Subsystem::Contact,
         }
     }
 
@@ -60,7 +70,7 @@ impl Diagnosis {
             schema: SCHEMA,
             verdict: if effects.is_empty() {
                 Verdict::NothingMissing
-            } else if self.best().unlisted().is_some() {
+            } else if effects.iter().any(|effect| effect.name == UNLISTED) {
                 Verdict::Unlisted
             } else {
                 Verdict::Explained
@@ -96,7 +106,8 @@ impl Diagnosis {
     pub fn extent(&self) -> Option<Extent> {
         let unseen = self.unseen.iter().flat_map(|(_, errors)| errors);
         let near = |error: &Unseen| error.after.p90 <= NEAR_NOISE;
-        let fully = self.largest?.is_near_noise() && unseen.into_iter().all(near);
+        let near = self.largest?.is_near_noise() && unseen.into_iter().all(near);
+        let fully = near && !forbids_fully(&self.misfits(), &self.prediction_errors());
         Some(if fully { Extent::Fully } else { Extent::Partly })
     }
 
@@ -130,8 +141,9 @@ impl Diagnosis {
             name: UNLISTED.to_owned(),
             subsystem: latent.port.subsystem().to_owned(),
             confidence: self.confidence(UNLISTED),
+            doubts: self.doubts(UNLISTED),
             parameters: (self.estimates.formula.iter())
-                .map(|number| (number.name.to_owned(), estimate(number)))
+                .map(|number| (number.name.to_owned(), Estimate::from(number)))
                 .collect(),
             depends_on: (self.best().depends_on.iter())
                 .map(|name| (*name).to_owned())
@@ -140,18 +152,20 @@ impl Diagnosis {
             law: latent.formula().map(|formula| FoundLaw::of(&formula.law)),
             unlisted: self.unlisted_report().map(Box::new),
         });
+        let rest = self.far_above_without_a_name();
         effects
             .map(|(effect, numbers)| FoundEffect {
                 name: effect.vocabulary().0.to_owned(),
                 subsystem: effect.subsystem.name().to_owned(),
                 confidence: self.confidence(effect.name),
+                doubts: self.doubts(effect.name),
                 parameters: joint_of(effect)
                     .into_iter()
                     .chain(
                         numbers
                             .iter()
                             .filter(|number| number.reported || self.is_of_link())
-                            .map(|number| (name_of(effect, number), estimate(number))),
+                            .map(|number| (name_of(effect, number), Estimate::from(number))),
                     )
                     .collect(),
                 depends_on: Vec::new(),
@@ -160,45 +174,51 @@ impl Diagnosis {
                 unlisted: None,
             })
             .chain(unlisted)
+            .chain(rest)
             .collect()
     }
 
-    /// Probability that an effect is at work, by its name: that of the explanations with it, times G / (G + L), G what it gains over the best one without
-    /// it and L what all effects together leave beyond noise, of which what it gains may be a part.
-    #[must_use]
-    pub fn confidence(&self, name: &str) -> f64 {
-        let has = |r: &&super::ranking::Ranked| {
-            let own = |e: &Effect| e.name == name;
-            let unnamed = name == UNLISTED && r.hypothesis.unlisted().is_some();
-            unnamed || r.hypothesis.effects.iter().any(|e| own(e))
-        };
-        let with = self.ranked.iter().filter(has);
-        let probability = with.map(|r| r.probability).sum::<f64>().min(1.0);
-        let own = &self.best().fit;
-        let left = match &self.remaining {
-            // What no law explains of a part counts as its noise: all of that but the sensor's own is left by the laws.
-            Some(remaining) => {
-                remaining.beyond_noise() * own.misfit / remaining.autocorrelation_samples
-            }
-            None => self.model_error.left(&self.evidence, own),
-        };
-        // A law that excludes it is no explanation without what it stands for: the probability weighs that.
-        let in_place = |r: &super::ranking::Ranked| {
-            let mut effects = r.hypothesis.effects.iter();
-            let named = self.best().effects.iter().find(|e| e.name == name);
-            named.is_some_and(|own| effects.any(|e| e.excludes(own)))
-        };
-        let without = (self.ranked.iter()).filter(|r| !has(r) && !in_place(r));
-        let least = without.map(|r| match self.remaining {
-            // Those far behind were not fitted to all samples; scores are of the same ones.
-            Some(_) => r.score - self.ranked[0].score,
-            None => r.hypothesis.fit.cost() - own.cost(),
-        });
-        let gain = least.fold(f64::INFINITY, f64::min).max(0.0);
-        match left > 0.0 && gain.is_finite() {
-            true => probability * gain / (gain + left),
-            false => probability,
-        }
+    /// The channel that known effects leave furthest above its noise, of those far above it.
+    fn far_above_with_names(&self) -> Option<FarAbove> {
+        let named = !self.best().effects.is_empty() && self.best().unlisted().is_none();
+        self.far_above().filter(|_| named)
+    }
+
+    /// The channel that the best explanation leaves furthest above its noise, of those far above it.
+    pub(super) fn far_above(&self) -> Option<FarAbove> {
+        // What no law explains of a part is what everything was judged against.
+        let departure = self.largest.filter(|_| self.remaining.is_none());
+        let departure = departure.map(|largest| self.departure(largest));
+        far_above(
+            &self.misfits(),
+            &self.prediction_errors(),
+            departure.as_ref(),
+        )
+    }
+
+    /// Whether known effects leave a channel far above its noise: then they do not explain the recordings.
+    pub(super) fn leaves_without_a_name(&self) -> bool {
+        self.far_above_with_names().is_some()
+    }
+
+    /// What known effects leave far above the noise, as an effect without a name: of them alone nothing is explained.
+    fn far_above_without_a_name(&self) -> Option<FoundEffect> {
+        let far = self.far_above_with_names()?;
+        Some(FoundEffect {
+            name: UNLISTED.to_owned(),
+            subsystem: Link::of(CHANNELS[far.channel])
+                .subsystem()
+                .name()
+                .to_owned(),
+            // Of recordings left out in turn it may be the fit to fewer of them.
+            confidence: if far.left_out { 0.5 * TRUSTED } else { TRUSTED },
+            doubts: Vec::new(),
+            parameters: Vec::new(),
+            depends_on: Vec::new(),
+            key: None,
+            law: None,
+            unlisted: None,
+        })
     }
 
     /// Share of the mismatch of the baseline that is explained [1]; none where there is no mismatch beyond noise.
@@ -300,6 +320,7 @@ impl Diagnosis {
             links: self.link_reports(),
             departure: self.largest.map(|largest| self.departure(largest)),
             tried: self.tried_report(),
+            families: self.families(),
             explained_share: self.explained_share(),
             remaining: self.remaining_report(),
             considered: (self.considered().into_iter())
@@ -372,7 +393,7 @@ impl Diagnosis {
         all.filter(there).map(of).collect()
     }
 
-    fn misfits(&self) -> Vec<ChannelMisfit> {
+    pub(super) fn misfits(&self) -> Vec<ChannelMisfit> {
         let evidence = &self.evidence;
         let believed = misfits(evidence, &self.as_believed.residuals);
         let baseline = misfits(evidence, &self.baseline.prediction.residuals);
@@ -482,7 +503,7 @@ impl Diagnosis {
                 Some(ToleratedNumber {
                     key: number.name.to_owned(),
                     believed: believed(number)?,
-                    found: estimate(number),
+                    found: Estimate::from(number),
                 })
             })
             .collect()
@@ -517,12 +538,4 @@ fn joint_of(effect: &Effect) -> Option<(String, Estimate)> {
 fn name_of(effect: &Effect, number: &Number) -> String {
     let name = effect.number_key().map_or(number.name, |_| "value");
     name.to_owned()
-}
-
-fn estimate(number: &Number) -> Estimate {
-    let [low, high] = number.interval;
-    Estimate {
-        at_limit: number.at_limit,
-        ..Estimate::new(number.value, low, high)
-    }
 }

@@ -50,6 +50,9 @@ pub struct Details {
     /// What became of a law that a user tried.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tried: Option<TriedReport>,
+    /// Families of laws that are alike of the effects that were found.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub families: Vec<FamilyReport>,
     /// Share of the mismatch that is explained [1]; none where there is none.
     pub explained_share: Option<f64>,
     /// Remainder that no law explains, where it is more than noise and everything was judged against it.
@@ -91,6 +94,31 @@ pub struct Departure {
     pub p90_sigmas: f64,
     /// Link of the chain that the channel shows: `regulator`, `piston`, `contact` or `sensors`.
     pub link: String,
+}
+
+/// Laws that are alike: that one of them is at work may be certain while it is open which.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FamilyReport {
+    /// Name.
+    pub name: String,
+    /// In words, with an article.
+    pub words: String,
+    /// Probability that one of its laws is at work [1].
+    pub probability: f64,
+    /// Its laws, the likeliest first.
+    pub members: Vec<FamilyMember>,
+}
+
+/// A law of a family.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FamilyMember {
+    /// Name in the vocabulary.
+    pub name: String,
+    /// Key of the rig file's number that is off, of `number_off`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
+    /// Probability that it is the one [1].
+    pub probability: f64,
 }
 
 /// What became of a law that a user tried.

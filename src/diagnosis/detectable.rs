@@ -25,6 +25,8 @@ const NINE_IN_TEN: f64 = 1.282;
 const MOST_STEPS: usize = 5;
 /// Share of a size to which it is found, and up to which one is told [1].
 const NEAR: [f64; 2] = [0.05, 0.3];
+/// Standard deviations by which noise may hold an effect [1].
+const CHANCE: f64 = 2.0;
 /// Change of a residual that is none [1].
 const UNCHANGED: f64 = 1e-6;
 /// Largest and smallest size that is looked for, over the usual one [1].
@@ -149,6 +151,25 @@ impl<'a> Change<'a> {
         moved.min(gain.sqrt() / (penalty.sqrt() + NINE_IN_TEN))
     }
 
+    /// Multiple of a change that what is left holds of it in the recording that holds most, less two standard deviations of noise.
+    fn held(&self, change: &[f64]) -> f64 {
+        let mut sums = vec![[0.0; 2]; self.search.evidence.recordings.len()];
+        let left = &self.best.fit.prediction.residuals;
+        let mut at = 0;
+        for (recording, _, own) in by_channel(self.search.evidence, change) {
+            for (d, r) in own.iter().zip(&left[at..]) {
+                if (d * r).is_finite() {
+                    sums[recording][0] += d * r;
+                    sums[recording][1] += d * d;
+                }
+            }
+            at += own.len();
+        }
+        let held = |[product, square]: [f64; 2]| product.abs() / square - CHANCE / square.sqrt();
+        let shown = sums.into_iter().filter(|[_, square]| *square > 0.0);
+        shown.map(held).fold(0.0, f64::max)
+    }
+
     fn smallest(&self) -> Option<Detectable> {
         let (mut share, mut seen) = (1.0, 0.0);
         for _ in 0..MOST_STEPS {
@@ -161,10 +182,14 @@ impl<'a> Change<'a> {
             }
             share = (share / seen).clamp(SIZES[0], SIZES[1]);
         }
-        let values = self.values(share);
+        if (seen - 1.0).abs() > NEAR[1] {
+            return None;
+        }
+        // What is left may hold more of it than noise would need to: then less than that has not shown.
+        let values = self.values(share * self.held(&self.at(&self.values(share))).max(1.0));
         let mut bounds = self.free.iter().zip(&values);
         let within = bounds.all(|(free, value)| (free.bounds[0]..=free.bounds[1]).contains(value));
-        if (seen - 1.0).abs() > NEAR[1] || !within {
+        if !within {
             return None;
         }
         Some(Detectable {

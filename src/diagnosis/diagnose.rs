@@ -8,6 +8,7 @@ use super::evidence::Evidence;
 use super::extent::Largest;
 use super::finding::{Baseline, Diagnosis, ErrorSize, Unseen};
 use super::fit::{Limit, Refit, Start};
+use super::free::Free;
 use super::hypothesis::Hypothesis;
 use super::input::{DiagnosisInput, NamedRecording, Prepared};
 use super::links::links;
@@ -210,7 +211,7 @@ pub(super) fn search_of<'a>(
     Search {
         evidence,
         believed: case.believed.clone(),
-        tolerated: case.tolerated.clone(),
+        tolerated: case.tolerated.iter().map(Free::within_sheet).collect(),
         candidates: case.candidates.clone(),
         shown: case.shown.clone(),
         look,

@@ -66,6 +66,8 @@ pub struct Number {
     pub interval: [f64; 2],
     /// End of its range at which it stands; none where it stands between them.
     pub at_limit: Option<Limit>,
+    /// Value without the effect that it is of; none where there is none.
+    pub without: Option<f64>,
     /// Whether it is a part of the answer.
     pub reported: bool,
 }
@@ -177,6 +179,7 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
         covariance[(index, index)] += between;
     }
     let sample = longest_sample(evidence);
+    let effects_end = fit.free.len() - hypothesis.unlisted().map_or(0, Latent::numbers);
     for (index, free) in fit.free.iter().enumerate().skip(first) {
         let slope = free.coordinate.slope(fit.values[index]);
         let allowed = allowance(believed, free, fit.values[index], sample);
@@ -188,11 +191,20 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
         let at = free.coordinate.of(fit.values[index]);
         let ends =
             [-INTERVAL, INTERVAL].map(|z| free.clamp(free.coordinate.value(at + z * deviation)));
+        let interval = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        // A number without a prior that its interval keeps from the end of its range stands between the ends, however wide the range.
+        let reaches = |limit: &Limit| match (free.prior, limit) {
+            (Prior::Flat, Limit::Lower) => interval[0] <= free.bounds[0],
+            (Prior::Flat, Limit::Upper) => interval[1] >= free.bounds[1],
+            _ => true,
+        };
+        let of_effect = index >= first && index < effects_end;
         Number {
             name: free.quantity.name,
             value: fit.values[index],
-            at_limit: Limit::of(free, fit.values[index]),
-            interval: [ends[0].min(ends[1]), ends[0].max(ends[1])],
+            at_limit: Limit::of(free, fit.values[index]).filter(reaches),
+            interval,
+            without: Some(free.quantity.get(believed)).filter(|v| of_effect && v.is_finite()),
             reported,
         }
     };
@@ -259,6 +271,7 @@ fn amplitude(
         value,
         interval: [(value - half).max(0.0), value + half],
         at_limit: None,
+        without: Some(0.0),
         reported: true,
     }
 }

@@ -95,6 +95,7 @@ impl FlangeDiagnosis {
             key: None,
             subsystem: subsystem.to_owned(),
             confidence: 1.0,
+            doubts: Vec::new(),
             parameters: (parameters.into_iter())
                 .map(|(name, value)| (name.to_owned(), value))
                 .collect(),

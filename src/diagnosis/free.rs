@@ -3,6 +3,10 @@
 use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
 use crate::plant::Quantity;
+use crate::plant::registry::PRESSURE_DRIFT;
+
+/// Standard deviations of a sensor's drift that its sheet allows [1].
+const ALLOWED: f64 = 3.0;
 
 /// Belief about a quantity before the recordings are looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +43,20 @@ pub struct Free {
 }
 
 impl Free {
+    /// The same, of a sensor's drift no further than the sheet allows: a multiple of that explains any slow loss, and so hides a leak.
+    pub fn within_sheet(&self) -> Self {
+        match self.prior {
+            Prior::Normal { mean, deviation } if self.quantity.is(&PRESSURE_DRIFT.quantity()) => {
+                let half = ALLOWED * deviation;
+                Self {
+                    bounds: [mean - half, mean + half],
+                    ..*self
+                }
+            }
+            _ => *self,
+        }
+    }
+
     /// The same from another start.
     #[must_use]
     pub fn from(self, start: f64) -> Self {

@@ -12,7 +12,7 @@ const SPREAD: f64 = 6.0;
 /// Share of the mismatch that the idealisation of a law may leave [1].
 const IDEALISATION_LEFT: f64 = 0.002;
 /// Share of what is explained already below which one more effect is not told from the idealisation of the others [1].
-const IMMATERIAL: f64 = 1e-3;
+pub(super) const IMMATERIAL: f64 = 1e-3;
 
 /// Share of the mismatch beyond which what is left is physics of its own [1].
 const UNEXPLAINED: f64 = 0.05;

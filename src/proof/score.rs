@@ -293,6 +293,7 @@ mod tests {
                 key: None,
                 subsystem: "sensors".to_owned(),
                 confidence: 1.0,
+                doubts: Vec::new(),
                 parameters: vec![("gain".to_owned(), Estimate::new(value, low, high))],
                 depends_on: Vec::new(),
                 law: None,

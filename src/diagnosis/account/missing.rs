@@ -17,9 +17,6 @@ use crate::effects::meaning;
 use crate::plant::CHANNELS;
 use crate::quantity::{change, significant};
 
-/// Probability below which an effect that is named is said not to be trusted [1].
-const TRUSTED: f64 = 0.5;
-
 impl Diagnosis {
     pub(super) fn what_is_missing(&self) -> Vec<String> {
         let mut paragraphs = Vec::new();
@@ -52,12 +49,7 @@ impl Diagnosis {
                 .collect();
             let subsystem = effect.subsystem.name().replace('_', " ");
             let confidence = self.confidence(effect.name);
-            let doubt = match confidence < TRUSTED {
-                true => {
-                    " Not to be trusted: another explanation is as likely, or it gains less than what all of them leave and may stand in for what another law gets slightly wrong."
-                }
-                false => "",
-            };
+            let doubt = self.doubt_words(effect.name);
             paragraphs.push(format!(
                 "{} ({subsystem}): {}. {}. Probability {}; the intervals are those of 95 %.{doubt}",
                 spoken_name(effect.name),
@@ -72,7 +64,9 @@ impl Diagnosis {
                 probability(confidence)
             ));
         }
+        paragraphs.extend(self.family_words());
         paragraphs.extend(self.unlisted_words());
+        paragraphs.extend(self.left_words());
         paragraphs.extend(self.smallest_that_show());
         let displaced = self.displaced();
         if !displaced.is_empty() {
@@ -97,6 +91,13 @@ impl Diagnosis {
             ));
         }
         paragraphs
+    }
+
+    /// What known effects leave far above the noise.
+    fn left_words(&self) -> Option<String> {
+        self.leaves_without_a_name().then(|| {
+            "Beside it, or in its place, there is physics that no known effect explains: a channel is left far above its noise.".to_owned()
+        })
     }
 
     fn smallest_that_show(&self) -> Option<String> {

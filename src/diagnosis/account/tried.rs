@@ -23,14 +23,7 @@ impl Diagnosis {
     pub(in crate::diagnosis) fn tried_report(&self) -> Option<TriedReport> {
         let (tried, law) = (self.tried.as_ref()?, self.tried_law()?);
         let ranked = &self.ranked[tried.place];
-        let number = |n: &Number| {
-            let [low, high] = n.interval;
-            let estimate = Estimate {
-                at_limit: n.at_limit,
-                ..Estimate::new(n.value, low, high)
-            };
-            (n.name.to_owned(), estimate)
-        };
+        let number = |n: &Number| (n.name.to_owned(), Estimate::from(n));
         Some(TriedReport {
             formula: format!("{} = {}", law.port.name(), law.expression.text()),
             parameters: tried.numbers.iter().map(number).collect::<BTreeMap<_, _>>(),

@@ -25,7 +25,11 @@ impl Diagnosis {
         let latent = &shape.latent;
         let known = known(latent, shape.form);
         let confidence = probability(self.confidence(crate::effects::UNLISTED));
-        let first = format!("{}. Probability {confidence}.", self.where_and_what(shape));
+        let doubt = self.doubt_words(crate::effects::UNLISTED);
+        let first = format!(
+            "{}. Probability {confidence}.{doubt}",
+            self.where_and_what(shape)
+        );
         let mut paragraphs = vec![first];
         paragraphs.extend(self.as_formula());
         paragraphs.push(

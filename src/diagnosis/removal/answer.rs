@@ -4,7 +4,11 @@ use super::law::{Deviation, TableRow};
 use super::select::{Left, RemovalDiagnosis, Rival, Told as Value};
 use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::{Alternative, Answer, Estimate, FoundEffect, SCHEMA, Verdict};
-use crate::diagnosis::details::{DETAILS_SCHEMA, Details, NextExperiment, PredictionError};
+use crate::diagnosis::details::{
+    DETAILS_SCHEMA, Details, FamilyMember, FamilyReport, NextExperiment, PredictionError,
+};
+use crate::diagnosis::family::family;
+use crate::diagnosis::statements::{TRUSTED, doubts_of, in_headline, stated};
 use crate::quantity::{counted, significant};
 
 /// Half width of an exponent's interval beyond which the table does not tell it.
@@ -47,6 +51,7 @@ pub fn answer(diagnosis: &RemovalDiagnosis, told: &Told<'_>, seconds: f64) -> An
     for (kind, paragraphs) in parts {
         details.account.add(kind, paragraphs);
     }
+    details.families = families(diagnosis);
     details.prediction = predictions(diagnosis, told.unseen);
     details.next_experiment = experiment(diagnosis);
     let [before, after] = [diagnosis.before.log, diagnosis.after.log].map(|rms| rms * rms);
@@ -76,6 +81,33 @@ fn names(deviations: &[Deviation]) -> Vec<String> {
     deviations.iter().map(|of| of.name().to_owned()).collect()
 }
 
+/// The law of the force, whatever its form, where one is named.
+fn families(diagnosis: &RemovalDiagnosis) -> Vec<FamilyReport> {
+    let own = |of: Deviation| diagnosis.effects.iter().find(|v| v.deviation == of);
+    let (any, forms) = &diagnosis.by_force;
+    let Some(family) = (forms.iter())
+        .find(|(of, _)| own(*of).is_some())
+        .and_then(|(of, _)| family(of.name(), None))
+    else {
+        return Vec::new();
+    };
+    let mut members: Vec<FamilyMember> = (forms.iter())
+        .map(|(of, probability)| FamilyMember {
+            name: of.name().to_owned(),
+            key: None,
+            probability: own(*of).map_or(*probability, |v| effect(diagnosis, v).confidence),
+        })
+        .collect();
+    members.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let likeliest = members.first().map_or(0.0, |m| m.probability);
+    vec![FamilyReport {
+        name: family.name.to_owned(),
+        words: family.words.to_owned(),
+        probability: any.max(likeliest),
+        members,
+    }]
+}
+
 fn alternative(rival: &Rival) -> Alternative {
     Alternative {
         effects: names(&rival.deviations),
@@ -91,13 +123,18 @@ fn effect(diagnosis: &RemovalDiagnosis, value: &Value) -> FoundEffect {
         1.0
     };
     let [middle, low, high] = value.value.map(|v| v * scale);
-    let mut parameters = vec![(
-        value.deviation.key().to_owned(),
-        Estimate::new(middle, low, high),
-    )];
+    let believed = diagnosis.believed.number(value.deviation) * scale;
+    let own = Estimate {
+        without: Some(believed).filter(|v| v.is_finite()),
+        ..Estimate::new(middle, low, high)
+    };
+    let mut parameters = vec![(value.deviation.key().to_owned(), own)];
     if value.deviation == Deviation::Wear {
         let [middle, low, high] = losses(diagnosis, value);
-        let loss = Estimate::new(middle, low, high);
+        let loss = Estimate {
+            without: Some(0.0),
+            ..Estimate::new(middle, low, high)
+        };
         parameters.push(("loss_over_table_percent".to_owned(), loss));
     }
     let depends = match value.deviation {
@@ -108,11 +145,13 @@ fn effect(diagnosis: &RemovalDiagnosis, value: &Value) -> FoundEffect {
         Deviation::Time => vec!["time"],
         Deviation::Area => vec!["area"],
     };
+    let doubts = doubts_of(parameters.iter().map(|(_, e)| e));
     FoundEffect {
         name: value.deviation.name().to_owned(),
         key: None,
         subsystem: "process".to_owned(),
-        confidence: value.confidence,
+        confidence: stated(value.confidence, &doubts),
+        doubts,
         parameters,
         depends_on: depends.into_iter().map(str::to_owned).collect(),
         law: None,
@@ -147,12 +186,23 @@ fn headline(diagnosis: &RemovalDiagnosis) -> String {
         Deviation::Time => "another exponent of the time",
         Deviation::Area => "another exponent of the area",
     };
-    let found: Vec<&str> = diagnosis
-        .effects
-        .iter()
-        .map(|v| words(v.deviation))
-        .collect();
+    let said = |value: &Value| {
+        let effect = effect(diagnosis, value);
+        let force = family(value.deviation.name(), None).is_some();
+        match in_headline(effect.confidence, &effect.doubts) {
+            _ if effect.confidence >= TRUSTED => Some(words(value.deviation)),
+            _ if force && diagnosis.by_force.0 >= TRUSTED => {
+                Some("another law of the force (a power or a threshold is open)")
+            }
+            true => Some(words(value.deviation)),
+            false => None,
+        }
+    };
+    let found: Vec<&str> = diagnosis.effects.iter().filter_map(said).collect();
     match found.split_last() {
+        None if !diagnosis.effects.is_empty() => {
+            "what the law of removal lacks is not settled: nothing is sure".to_owned()
+        }
         None => "nothing is missing from the believed law of removal".to_owned(),
         Some((last, [])) => format!("the law of removal lacks {last}"),
         Some((last, others)) => {

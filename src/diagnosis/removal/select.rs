@@ -2,7 +2,7 @@
 
 use super::fit::{Fit, fit, rms};
 use super::law::{Deviation, TableLaw, TableRow};
-use super::student::t_exceeded;
+use super::student::{chance_beyond, t_exceeded};
 
 /// Chance that a table of a believed law that is right names anything at all.
 pub(super) const FALSE_ALARM: f64 = 0.05;
@@ -12,6 +12,10 @@ const SET_ASIDE: f64 = 0.01;
 const SET_ASIDE_MOST: f64 = 0.1;
 /// Relative span of a setting from which an exponent of it is looked for.
 const LEAST_SPAN: f64 = 0.02;
+/// Relative distance within which rows have one level of a setting.
+const LEVEL: f64 = 0.005;
+/// Odds by which rows must tell a threshold or a sag from an exponent of the force to be named: the believed law with another number is the plainer one.
+const TELLS: f64 = 10.0;
 
 /// A deviation with its value and interval.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +81,8 @@ pub struct RemovalDiagnosis {
     pub found: TableLaw,
     /// Deviations found.
     pub effects: Vec<Told>,
+    /// Probability that the volume goes with the force otherwise than believed, whatever the form [1], and of each form that was looked at.
+    pub by_force: (f64, Vec<(Deviation, f64)>),
     /// Deviations that were looked for and are not needed, with the values that they would have beside those found.
     pub not_needed: Vec<Told>,
     /// Deviations that the table cannot tell: a setting that does not vary, or varies with another.
@@ -121,13 +127,16 @@ pub fn diagnose_table(
     let aside = set_aside(&mut rows, believed, &candidates);
     let models = models(&rows, believed, &candidates);
     let count = candidates.len().max(1);
-    let best = models
-        .iter()
-        .min_by(|a, b| score(a, count).total_cmp(&score(b, count)))?;
+    let forms = Forms::of(&models, &rows);
+    let least = (0..models.len()).min_by(|a, b| {
+        let score = |index: usize| forms.deviance[index] + price(&models[index], count);
+        score(*a).total_cmp(&score(*b))
+    })?;
+    let chosen = forms.plainest(&models, least);
+    let best = &models[chosen];
     let start = fit(&rows, believed, &[])?;
-    let evidence: Vec<f64> = models
-        .iter()
-        .map(|m| criterion(m) - criterion(best))
+    let evidence: Vec<f64> = (0..models.len())
+        .map(|index| forms.criterion(&models, index) - forms.criterion(&models, chosen))
         .collect();
     let whole: f64 = evidence.iter().map(|e| (-0.5 * e).exp()).sum();
     let confidence = |of: Deviation| {
@@ -135,12 +144,20 @@ pub fn diagnose_table(
             .iter()
             .zip(&evidence)
             .filter(|(m, _)| m.free.contains(&of));
-        with.map(|(_, e)| (-0.5 * e).exp()).sum::<f64>() / whole
+        (with.map(|(_, e)| (-0.5 * e).exp()).sum::<f64>() / whole).clamp(0.0, 1.0)
     };
+    let of_any = |m: &Fit| of_force(m) > 0;
+    let any = models.iter().zip(&evidence).filter(|(m, _)| of_any(m));
+    let any = any.map(|(_, e)| (-0.5 * e).exp()).sum::<f64>() / whole;
+    let forms_tried = OF_FORCE.into_iter().filter(|of| candidates.contains(of));
+    let by_force = (
+        any.min(1.0),
+        forms_tried.map(|of| (of, confidence(of))).collect(),
+    );
     let told = |fitted: &Fit, of: Deviation| Told {
         deviation: of,
         value: interval(fitted, of),
-        confidence: confidence(of).min(1.0),
+        confidence: confidence(of).min(sure_by_levels(&rows, &start.law, fitted, of)),
     };
     let mut not_needed = Vec::new();
     for of in candidates.iter().filter(|of| !best.free.contains(of)) {
@@ -157,9 +174,10 @@ pub fn diagnose_table(
         believed: start.law,
         found: best.law,
         effects: best.free.iter().map(|of| told(best, *of)).collect(),
+        by_force,
         not_needed,
         untold,
-        rivals: rivals(&models, best),
+        rivals: rivals(&models, chosen, &forms),
         before: Left::of(&start.law, &every),
         after: Left::of(&best.law, &every),
         left_out: best.left_out_rms(),
@@ -281,24 +299,127 @@ fn possible(fitted: &Fit) -> bool {
         && (!is_free(Deviation::Sag) || law.sag > 0.0)
 }
 
-/// What is least of the model to be named: each further number must better the fit by what chance does in one table of twenty, shared among the candidates.
-fn score(fitted: &Fit, candidates: usize) -> f64 {
+/// Levels of a setting in rows.
+fn levels(rows: &[TableRow], of: impl Fn(&TableRow) -> f64) -> usize {
+    let mut values: Vec<f64> = rows.iter().map(of).collect();
+    values.sort_by(f64::total_cmp);
+    let (mut count, mut last) = (0, f64::NEG_INFINITY);
+    for value in values {
+        if value > last + LEVEL * last.abs() || count == 0 {
+            count += 1;
+            last = value;
+        }
+    }
+    count
+}
+
+/// -2 ln of the likelihood of each model, in which forms of the force's law are told from one another by as many measurements as there are levels of the force:
+/// rows at one level all say the same of what happens between two.
+struct Forms {
+    deviance: Vec<f64>,
+}
+
+/// Deviations that are forms of the force's law.
+const OF_FORCE: [Deviation; 3] = [Deviation::Force, Deviation::Threshold, Deviation::Sag];
+
+fn of_force(fitted: &Fit) -> usize {
+    fitted
+        .free
+        .iter()
+        .filter(|of| OF_FORCE.contains(of))
+        .count()
+}
+
+/// Whether two models have the same deviations but for the form of the force's law.
+fn alike(one: &Fit, other: &Fit) -> bool {
+    let others = |m: &Fit| -> Vec<Deviation> {
+        let free = m.free.iter().copied();
+        free.filter(|of| !OF_FORCE.contains(of)).collect()
+    };
+    others(one) == others(other)
+}
+
+impl Forms {
+    fn of(models: &[Fit], rows: &[TableRow]) -> Self {
+        let levels = levels(rows, |row| row.force) as f64;
+        let of = |m: &Fit| {
+            let own = m.deviance();
+            let single = models
+                .iter()
+                .filter(|other| of_force(other) == 1 && alike(other, m));
+            let least = single.map(Fit::deviance).fold(f64::INFINITY, f64::min);
+            match of_force(m) > 0 && least.is_finite() {
+                true => least + (own - least) * (levels / m.measurements).min(1.0),
+                false => own,
+            }
+        };
+        Self {
+            deviance: models.iter().map(of).collect(),
+        }
+    }
+
+    /// Bayesian information criterion of a model.
+    fn criterion(&self, models: &[Fit], index: usize) -> f64 {
+        let fitted = &models[index];
+        self.deviance[index] + fitted.numbers as f64 * fitted.measurements.ln()
+    }
+
+    /// A model, or the one with an exponent in the place of its threshold or sag where the rows do not tell the two apart.
+    fn plainest(&self, models: &[Fit], index: usize) -> usize {
+        let own = &models[index];
+        let plainer = (0..models.len()).find(|other| {
+            let free = &models[*other].free;
+            of_force(&models[*other]) == 1
+                && free.contains(&Deviation::Force)
+                && alike(&models[*other], own)
+        });
+        let open = |other: &usize| {
+            let behind = self.criterion(models, *other) - self.criterion(models, index);
+            behind < 2.0 * TELLS.ln()
+        };
+        match of_force(own) {
+            0 => index,
+            _ => plainer.filter(open).unwrap_or(index),
+        }
+    }
+}
+
+/// Most that levels of a setting can say for its exponent: with so few the scatter from level to level is known as badly (degrees of freedom of clustered
+/// errors: Cameron and Miller, J. Human Resources 50, 2015).
+fn sure_by_levels(rows: &[TableRow], believed: &TableLaw, fitted: &Fit, of: Deviation) -> f64 {
+    let setting = |row: &TableRow| match of {
+        Deviation::Force => row.force,
+        Deviation::Speed => row.speed,
+        Deviation::Time => row.time,
+        _ => row.area,
+    };
+    let exponent = matches!(
+        of,
+        Deviation::Force | Deviation::Speed | Deviation::Time | Deviation::Area
+    );
+    let place = fitted.free.iter().position(|free| *free == of);
+    let Some(error) = place.map(|place| fitted.errors[place]).filter(|_| exponent) else {
+        return 1.0;
+    };
+    let freedom = levels(rows, setting)
+        .saturating_sub(1)
+        .min(fitted.freedom())
+        .max(1);
+    let off = (fitted.law.number(of) - believed.number(of)) / error.max(f64::MIN_POSITIVE);
+    1.0 - chance_beyond(off, freedom)
+}
+
+/// What each further number must better a fit by to be named: as much as chance does in one table of twenty, shared among the candidates.
+fn price(fitted: &Fit, candidates: usize) -> f64 {
     let rows = fitted.measurements;
     let hidden = fitted.numbers - fitted.free.len();
-    let price: f64 = (1..=fitted.free.len())
+    (1..=fitted.free.len())
         .map(|number| {
             let freedom = (rows as usize).saturating_sub(hidden + number).max(1);
             let t = t_exceeded(FALSE_ALARM / (2.0 * candidates as f64), freedom);
             rows * (t * t / freedom as f64).ln_1p()
         })
-        .sum();
-    fitted.deviance() + price
-}
-
-/// Bayesian information criterion.
-fn criterion(fitted: &Fit) -> f64 {
-    let rows = fitted.measurements;
-    fitted.deviance() + fitted.numbers as f64 * rows.ln()
+        .sum()
 }
 
 /// Value and 95 % interval by Student's t with robust errors [SI].
@@ -315,16 +436,18 @@ fn interval(fitted: &Fit, of: Deviation) -> [f64; 3] {
 }
 
 /// Forms of other deviations, as many or fewer and one more at most, that stay within odds of 1 to 1000.
-fn rivals(models: &[Fit], best: &Fit) -> Vec<Rival> {
+fn rivals(models: &[Fit], chosen: usize, forms: &Forms) -> Vec<Rival> {
+    let best = &models[chosen];
     let holds = |whole: &Fit, part: &Fit| part.free.iter().all(|of| whole.free.contains(of));
     // Less would be a form without an effect that was found, more one with what is not needed: neither is a rival.
     let mut rivals: Vec<Rival> = models
         .iter()
-        .filter(|m| m.numbers <= best.numbers && !holds(m, best) && !holds(best, m))
-        .map(|m| Rival {
+        .enumerate()
+        .filter(|(_, m)| m.numbers <= best.numbers && !holds(m, best) && !holds(best, m))
+        .map(|(index, m)| Rival {
             deviations: m.free.clone(),
             law: m.law,
-            odds: (0.5 * (criterion(best) - criterion(m))).exp(),
+            odds: (0.5 * (forms.criterion(models, chosen) - forms.criterion(models, index))).exp(),
             rms: m.rms(),
         })
         .filter(|rival| rival.odds > 1e-3)

@@ -2,6 +2,20 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+/// Probability that Student's t is beyond a value on either side, by degrees of freedom.
+pub(super) fn chance_beyond(t: f64, freedom: usize) -> f64 {
+    let (mut low, mut high) = (0.0, 0.5);
+    for _ in 0..50 {
+        let middle = f64::midpoint(low, high);
+        if t_exceeded(middle, freedom) > t.abs() {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    2.0 * high
+}
+
 /// Value that Student's t exceeds with a probability on the upper side, by degrees of freedom.
 ///
 /// With t = sqrt(d) tan u the density goes as cos^(d-1) u, which is summed by Simpson's rule.
@@ -38,7 +52,7 @@ pub(super) fn t_exceeded(upper: f64, freedom: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::t_exceeded;
+    use super::{chance_beyond, t_exceeded};
 
     #[test]
     fn quantiles_are_those_of_the_tables() {
@@ -55,6 +69,8 @@ mod tests {
                 (value / table - 1.0).abs() < 1e-3,
                 "{upper} {freedom}: {value}"
             );
+            let chance = chance_beyond(table, freedom);
+            assert!((0.5 * chance / upper - 1.0).abs() < 0.01, "{chance}");
         }
     }
 }

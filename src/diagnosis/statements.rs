@@ -1,0 +1,303 @@
+//! Rules that hold the statements of an answer to each other, in one place: a diagnosis is stated through them, and [`contradictions`] checks any answer.
+
+use serde::{Deserialize, Serialize};
+
+use super::answer::{Answer, Estimate, Extent, FoundEffect, Verdict};
+use super::details::{ChannelMisfit, Departure, IN_TURN, PredictionError, remaining_errors};
+use super::localise::NOISE_ALONE;
+use super::recorded::COLUMNS;
+use crate::effects::UNLISTED;
+
+/// Probability from which an effect is stated as found [1].
+pub const TRUSTED: f64 = 0.5;
+/// Probability below which an effect is not in the headline [1].
+pub const IN_HEADLINE: f64 = 0.1;
+/// Most that is stated of a law while a tolerated number stands at its end and was not tried beyond it [1].
+const UNTRIED: f64 = 0.9;
+/// Ratio of the ends of an interval that says no more than an order of magnitude [1].
+const DECADE: f64 = 10.0;
+/// Robust root mean square of a channel far above its noise, over the noise [1].
+pub const FAR: f64 = 3.0;
+/// 90th percentile of the size of noise, over its standard deviation [1].
+const NOISE_P90: f64 = 1.645;
+/// Growth of an error from the model as believed that is more than chance [1].
+const WORSE: f64 = 1.05;
+
+/// A reason why an effect is not stated as sure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Doubt {
+    /// A number stands at the end of the range that is searched.
+    AtEndOfRange,
+    /// The interval of a number spans a decade.
+    SpansDecade,
+    /// The intervals of its numbers hold the values without it.
+    HoldsNeutral,
+    /// The recordings are explained as well without it.
+    CostsNothing,
+    /// Another law in its place explains the recordings as well.
+    AnotherDoesAsWell,
+    /// A channel is left far above its noise.
+    LeavesMuch,
+    /// A tolerated number stands at its end and was not tried beyond it.
+    NotTriedBeyond,
+}
+
+impl Doubt {
+    /// Whether it forbids to state the effect above 50 %, or in the headline.
+    #[must_use]
+    pub fn forbids(self) -> bool {
+        !matches!(self, Self::NotTriedBeyond | Self::LeavesMuch)
+    }
+
+    /// In words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::AtEndOfRange => "a number of it stands at the end of the range that is searched",
+            Self::SpansDecade => "the interval of a number of it spans a decade",
+            Self::HoldsNeutral => "the intervals of its numbers hold their values without it",
+            Self::CostsNothing => "the recordings are explained as well without it",
+            Self::AnotherDoesAsWell => "another law in its place explains the recordings as well",
+            Self::LeavesMuch => "a channel is left far above its noise",
+            Self::NotTriedBeyond => {
+                "a number of the rig file stands at the end of its tolerance and was not tried beyond it"
+            }
+        }
+    }
+}
+
+/// Probability that is stated of an effect for which the evidence gives one.
+#[must_use]
+pub fn stated(probability: f64, doubts: &[Doubt]) -> f64 {
+    let of = |most: f64, doubt: &Doubt| match doubt {
+        Doubt::NotTriedBeyond | Doubt::LeavesMuch => most.min(UNTRIED),
+        Doubt::AnotherDoesAsWell => most.min(TRUSTED),
+        // As likely as not at best.
+        _ => most.min(TRUSTED * probability),
+    };
+    doubts.iter().fold(probability, of)
+}
+
+/// Doubts that the numbers of an effect cast on it.
+#[must_use]
+pub fn doubts_of<'a>(numbers: impl Iterator<Item = &'a Estimate> + Clone) -> Vec<Doubt> {
+    let spans = |e: &Estimate| {
+        e.low * e.high > 0.0 && {
+            let [a, b] = [e.low.abs(), e.high.abs()];
+            a.max(b) >= DECADE * a.min(b)
+        }
+    };
+    let neutral = |e: &Estimate| {
+        e.without
+            .map(|without| e.low < e.high && (e.low..=e.high).contains(&without))
+    };
+    let mut known = numbers.clone().filter_map(neutral).peekable();
+    let holds = known.peek().is_some() && known.all(|holds| holds);
+    let all = [
+        (
+            numbers.clone().any(|e| e.at_limit.is_some()),
+            Doubt::AtEndOfRange,
+        ),
+        (numbers.clone().any(spans), Doubt::SpansDecade),
+        (holds, Doubt::HoldsNeutral),
+    ];
+    all.into_iter()
+        .filter_map(|(is, doubt)| is.then_some(doubt))
+        .collect()
+}
+
+/// Whether an effect is named in the headline.
+#[must_use]
+pub fn in_headline(confidence: f64, doubts: &[Doubt]) -> bool {
+    confidence >= IN_HEADLINE && !doubts.iter().any(|d| d.forbids())
+}
+
+/// A channel that is left far above its noise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FarAbove {
+    /// Its index.
+    pub channel: usize,
+    /// Whether that is so of recordings that were left out in turn alone, by a fit to fewer of them.
+    pub left_out: bool,
+}
+
+/// The channel that is left furthest above its noise, of those far above it: fitted to, kept back, or left out in turn.
+#[must_use]
+pub fn far_above(
+    misfit: &[ChannelMisfit],
+    prediction: &[PredictionError],
+    departure: Option<&Departure>,
+) -> Option<FarAbove> {
+    let errors = remaining_errors(misfit, prediction);
+    let seen = errors.first().filter(|e| e.sigmas > FAR).map(|e| e.channel);
+    let in_turn = departure.filter(|d| d.left_out && d.p90_sigmas > FAR * NOISE_P90);
+    let in_turn = in_turn.and_then(|d| COLUMNS.iter().position(|c| *c == d.channel));
+    let far = |channel: usize| FarAbove {
+        channel,
+        left_out: seen.is_none(),
+    };
+    seen.or(in_turn).map(far)
+}
+
+/// Whether a channel of a recording is predicted worse than by the model as believed.
+#[must_use]
+pub fn is_worse(believed: f64, improved: f64, sigmas: f64) -> bool {
+    sigmas > NOISE_ALONE && improved > WORSE * believed
+}
+
+/// Whether a channel is predicted worse than by the model as believed, or the recording that was kept back not to its noise.
+#[must_use]
+pub fn forbids_fully(misfit: &[ChannelMisfit], prediction: &[PredictionError]) -> bool {
+    let worse = |m: &ChannelMisfit| is_worse(m.believed_rms, m.improved_rms, m.improved_sigmas);
+    let mut kept = prediction.iter().filter(|e| e.recording != IN_TURN);
+    misfit.iter().any(worse)
+        || kept.any(|e| e.after_sigmas.is_some_and(|sigmas| sigmas > NOISE_ALONE))
+}
+
+/// Statements of an answer that contradict one another, a sentence each; none of an answer that holds together.
+#[must_use]
+pub fn contradictions(answer: &Answer) -> Vec<String> {
+    let mut found = Vec::new();
+    let details = &answer.details;
+    for effect in &answer.effects {
+        found.extend(of_effect(effect, &details.account.headline));
+    }
+    let unlisted = answer.effects.iter().any(|e| e.name == UNLISTED);
+    // What no law explains of a part is what everything was judged against.
+    let departure = details
+        .departure
+        .as_ref()
+        .filter(|_| details.remaining.is_none());
+    let far = far_above(&details.misfit, &details.prediction, departure).is_some();
+    let mut claim = |is: bool, what: &str| {
+        if is {
+            found.push(what.to_owned());
+        }
+    };
+    claim(
+        answer.verdict == Verdict::Explained && far,
+        "it is explained, and a channel is left far above its noise",
+    );
+    claim(
+        (answer.verdict == Verdict::NothingMissing) != answer.effects.is_empty(),
+        "the verdict does not go with the effects",
+    );
+    claim(
+        (answer.verdict == Verdict::Unlisted) != unlisted,
+        "the verdict does not go with what is unlisted",
+    );
+    claim(
+        answer.explained == Some(Extent::Fully)
+            && forbids_fully(&details.misfit, &details.prediction),
+        "it is explained fully, and a channel is worse than as believed or above its noise where it was not fitted to",
+    );
+    for family in &details.families {
+        let most = family
+            .members
+            .iter()
+            .map(|m| m.probability)
+            .fold(0.0, f64::max);
+        claim(
+            family.probability < most - 1e-9,
+            &format!(
+                "the family {} is less likely than one of its laws",
+                family.name
+            ),
+        );
+        for member in &family.members {
+            let stated = (answer.effects.iter())
+                .find(|e| e.name == member.name && e.key == member.key)
+                .map(|e| e.confidence);
+            claim(
+                stated.is_some_and(|stated| (stated - member.probability).abs() > 1e-9),
+                &format!("{} has two probabilities", member.name),
+            );
+        }
+    }
+    found
+}
+
+/// Contradictions in what is stated of an effect.
+fn of_effect(effect: &FoundEffect, headline: &str) -> Vec<String> {
+    let name = &effect.name;
+    let mut found = Vec::new();
+    let probability = effect.confidence;
+    if !(0.0..=1.0).contains(&probability) {
+        found.push(format!("{name} has a probability of {probability}"));
+    }
+    let shown = doubts_of(effect.parameters.iter().map(|(_, e)| e));
+    let forbidden = shown.iter().chain(&effect.doubts).find(|d| d.forbids());
+    if let Some(doubt) = forbidden.filter(|_| probability > TRUSTED) {
+        found.push(format!(
+            "{name} is stated above 50 %, and {}",
+            doubt.words()
+        ));
+    }
+    if effect.doubts.contains(&Doubt::NotTriedBeyond) && probability > UNTRIED {
+        let what = Doubt::NotTriedBeyond.words();
+        found.push(format!("{name} is stated above 90 %, and {what}"));
+    }
+    let named = headline
+        .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+        .any(|word| word == name);
+    if named && (forbidden.is_some() || probability < IN_HEADLINE) {
+        found.push(format!(
+            "{name} is in the headline, and is not to be stated"
+        ));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::estimate::Limit;
+    use super::*;
+
+    fn number(value: f64, low: f64, high: f64, without: Option<f64>) -> Estimate {
+        Estimate {
+            without,
+            ..Estimate::new(value, low, high)
+        }
+    }
+
+    #[test]
+    fn numbers_cast_the_doubts_that_they_should() {
+        let of = |numbers: &[Estimate]| doubts_of(numbers.iter());
+        assert_eq!(of(&[number(12.0, 11.0, 13.0, Some(0.0))]), []);
+        assert_eq!(
+            of(&[number(0.1, -0.1, 0.3, Some(0.0))]),
+            [Doubt::HoldsNeutral]
+        );
+        assert_eq!(
+            of(&[number(1.0, 0.3, 3.1, Some(0.0))]),
+            [Doubt::SpansDecade]
+        );
+        // Of two numbers one that is clearly there is enough.
+        let drift = [
+            number(0.1, -0.1, 0.3, Some(0.0)),
+            number(2.0, 1.9, 2.1, Some(0.0)),
+        ];
+        assert_eq!(of(&drift), []);
+        let end = Estimate {
+            at_limit: Some(Limit::Upper),
+            ..number(1000.0, 900.0, 1000.0, None)
+        };
+        assert_eq!(of(&[end]), [Doubt::AtEndOfRange]);
+        // Which joint is known or not.
+        assert_eq!(
+            of(&[number(2.0, 2.0, 2.0, Some(2.0))]),
+            [Doubt::HoldsNeutral; 0]
+        );
+    }
+
+    #[test]
+    fn what_is_doubted_is_stated_by_no_more_than_the_rules_allow() {
+        assert_eq!(stated(0.999, &[]), 0.999);
+        assert!(stated(1.0, &[Doubt::AtEndOfRange]) <= 0.5);
+        assert!(stated(0.6, &[Doubt::SpansDecade, Doubt::NotTriedBeyond]) <= 0.3);
+        assert_eq!(stated(1.0, &[Doubt::NotTriedBeyond]), 0.9);
+        assert!(!in_headline(0.3, &[Doubt::CostsNothing]));
+        assert!(!in_headline(0.09, &[]) && in_headline(0.3, &[]));
+    }
+}
