@@ -54,6 +54,7 @@ mod schemas;
 mod settings;
 mod source;
 mod standing;
+mod statements;
 mod stiff_reference;
 mod stops;
 mod uniformity;

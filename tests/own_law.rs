@@ -24,7 +24,9 @@ fn answer(bench: &Bench, folder: &str) -> Answer {
     );
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     let text = std::fs::read_to_string(bench.path("out/diagnosis.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
+    let answer = serde_json::from_str(&text).unwrap();
+    crate::statements::hold_together(&answer);
+    answer
 }
 
 /// Makes the law a candidate of a case.

@@ -11,6 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 use crate::common::{project, shared};
+use crate::statements::hold_together;
 
 /// Runs the program, which must succeed.
 fn idc(arguments: &[&str]) {
@@ -29,7 +30,9 @@ fn diagnosed(case: &Path) -> Answer {
     idc(&["diagnose", &from, "--out", &to, "--quiet"]);
     let text = std::fs::read_to_string(out.join("diagnosis.json")).unwrap();
     assert!(out.join("fit.svg").is_file() || text.contains("contact_impact"));
-    serde_json::from_str(&text).unwrap()
+    let answer = serde_json::from_str(&text).unwrap();
+    hold_together(&answer);
+    answer
 }
 
 /// A case with a rig file and recordings: name, header and rows of each.
@@ -222,6 +225,31 @@ fn a_tight_chamber_lacks_nothing_and_a_leak_that_pressure_opens_is_told_from_oth
         .filter(|r| r.effects.iter().any(|e| e == "orifice_leakage"))
         .collect();
     assert!(others[0].rms > 2000.0, "{others:?}");
+}
+
+/// A leak so small that all laws of one do: that it leaks is certain, by which law is open. A drift of the sensor as its sheet allows it is no rival.
+#[test]
+fn a_small_leak_is_certain_and_its_law_is_open() {
+    let answer = diagnosed(case(CLOSED, &[chamber(|g| 4e-5 * g, 0.0)]).path());
+    let family = answer.details.families.iter().find(|f| f.name == "leak");
+    let family = family.unwrap_or_else(|| panic!("{:?}", answer.effects));
+    assert!(family.probability > 0.9, "{family:?}");
+    assert!(family.members.len() > 2, "{family:?}");
+    assert!(
+        family.members.iter().all(|m| m.probability < 0.6),
+        "{family:?}"
+    );
+    let headline = &answer.details.account.headline;
+    assert_eq!(headline, "missing: a leak (which law is open)");
+    assert!(answer.details.explained_share.unwrap() > 0.9);
+    // Half the loss that the sheet's drift may be is no leak.
+    let drift = diagnosed(case(CLOSED, &[chamber(|_| 1.5, 0.0)]).path());
+    assert_eq!(
+        drift.verdict,
+        Verdict::NothingMissing,
+        "{:?}",
+        drift.effects
+    );
 }
 
 #[test]

@@ -6,6 +6,8 @@ use std::process::Command;
 use idc_cell::diagnosis::answer::{Answer, Extent};
 use idc_cell::laboratory::{Conditions, EFFECTS, Known, LOST, Recipe, SealedCase, write_case};
 
+use crate::statements::hold_together;
+
 /// Makes a case, diagnoses it by the program, and returns the answer with what was concealed.
 fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer, SealedCase) {
     let case = Recipe {
@@ -158,7 +160,9 @@ fn a_device_without_an_accelerometer_is_diagnosed_by_its_other_sensors() {
 
 fn answer(folder: &Path) -> Answer {
     let text = std::fs::read_to_string(folder.join("diagnosis.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
+    let answer = serde_json::from_str(&text).unwrap();
+    hold_together(&answer);
+    answer
 }
 
 fn named(answer: &Answer) -> Vec<&str> {

@@ -297,6 +297,7 @@ fn what_is_planted_in_a_cell_is_found_placed_and_predicted_with() {
         let folder = bench.path("out").join(format!("case-{index}"));
         let text = std::fs::read_to_string(folder.join("diagnosis.json")).unwrap();
         let answer: Answer = serde_json::from_str(&text).unwrap();
+        crate::statements::hold_together(&answer);
         let account = std::fs::read_to_string(folder.join("account.txt")).unwrap();
         if name.is_empty() {
             assert_eq!(answer.verdict, Verdict::NothingMissing, "{account}");
@@ -577,5 +578,6 @@ fn the_laboratory_s_nothing_is_nothing() {
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     let text = std::fs::read_to_string(bench.path("out/diagnosis.json")).unwrap();
     let answer: Answer = serde_json::from_str(&text).unwrap();
+    crate::statements::hold_together(&answer);
     assert_eq!(answer.verdict, Verdict::NothingMissing);
 }

@@ -52,6 +52,7 @@ fn diagnosed(bench: &Bench, folder: &str) -> Value {
     );
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     let text = std::fs::read_to_string(bench.path("found/diagnosis.json")).unwrap();
+    crate::statements::hold_together(&serde_json::from_str(&text).unwrap());
     serde_json::from_str(&text).unwrap()
 }
 

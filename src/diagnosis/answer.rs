@@ -344,10 +344,10 @@ mod in_order {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn answer() -> Answer {
+    pub(in super::super) fn answer() -> Answer {
         let estimate = Estimate::new;
         Answer {
             schema: SCHEMA,

@@ -162,6 +162,7 @@ impl Diagnosis {
         let Some(channel) = self.believed.chain.output() else {
             return false;
         };
+        // A whole device's variants were compared by their evidence, and an effect that is not worth its numbers was taken out.
         let own = self.left_of(channel);
         let mut variants = self.ruled_out.iter().filter(|v| kind(&v.effects));
         variants.any(|v| v.rms <= AS_WELL * own)

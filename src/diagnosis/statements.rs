@@ -251,6 +251,8 @@ fn of_effect(effect: &FoundEffect, headline: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::answer::tests::answer;
+    use super::super::details::{FamilyMember, FamilyReport};
     use super::super::estimate::Limit;
     use super::*;
 
@@ -288,6 +290,86 @@ mod tests {
         assert_eq!(
             of(&[number(2.0, 2.0, 2.0, Some(2.0))]),
             [Doubt::HoldsNeutral; 0]
+        );
+    }
+
+    /// Each statement that must not stand, made in an answer that holds together.
+    #[test]
+    fn what_contradicts_is_seen() {
+        let sound = answer();
+        assert_eq!(contradictions(&sound), [""; 0]);
+        let seen = |change: &dyn Fn(&mut Answer), words: &str| {
+            let mut answer = sound.clone();
+            change(&mut answer);
+            let found = contradictions(&answer);
+            assert!(
+                found.iter().any(|s| s.contains(words)),
+                "{words}: {found:?}"
+            );
+        };
+        let misfit = |improved: f64, believed: f64| ChannelMisfit {
+            recording: "ride.csv".to_owned(),
+            channel: "force_n".to_owned(),
+            samples: 100,
+            believed_sigmas: believed,
+            tolerated_sigmas: believed,
+            improved_sigmas: improved,
+            left_out_sigmas: None,
+            believed_rms: believed,
+            tolerated_rms: believed,
+            improved_rms: improved,
+            improved_share: 0.1,
+        };
+        seen(
+            &|a| a.effects[0].parameters[0].1.at_limit = Some(Limit::Upper),
+            "end of the range",
+        );
+        seen(
+            &|a| a.effects[0].parameters[0].1.high = 1000.0,
+            "spans a decade",
+        );
+        seen(
+            &|a| a.effects[0].doubts = vec![Doubt::CostsNothing],
+            "as well without it",
+        );
+        seen(
+            &|a| a.effects[0].doubts = vec![Doubt::NotTriedBeyond],
+            "above 90 %",
+        );
+        seen(
+            &|a| {
+                a.effects[0].confidence = 0.05;
+                a.details.account.headline = "missing: coulomb_viscous_friction".to_owned();
+            },
+            "in the headline",
+        );
+        seen(
+            &|a| a.details.misfit = vec![misfit(5.0, 9.0)],
+            "far above its noise",
+        );
+        seen(
+            &|a| {
+                a.explained = Some(Extent::Fully);
+                a.details.misfit = vec![misfit(1.3, 1.2)];
+            },
+            "explained fully",
+        );
+        seen(&|a| a.verdict = Verdict::NothingMissing, "does not go with");
+        seen(
+            &|a| {
+                let member = FamilyMember {
+                    name: "coulomb_viscous_friction".to_owned(),
+                    key: None,
+                    probability: 0.5,
+                };
+                a.details.families = vec![FamilyReport {
+                    name: "dry_friction".to_owned(),
+                    words: String::new(),
+                    probability: 0.4,
+                    members: vec![member],
+                }];
+            },
+            "two probabilities",
         );
     }
 

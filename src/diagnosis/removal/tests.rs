@@ -182,3 +182,32 @@ fn a_scatter_that_is_known_keeps_what_is_smooth_from_being_named() {
     assert!(named(0.0).len() > 1, "{:?}", named(0.0));
     assert_eq!(named(0.08), [Deviation::Force]);
 }
+
+/// Three forces say a slope and hardly a curvature: rows of one force tell nothing of what is between two. Such a table once stated a threshold at 99.85 %.
+#[test]
+fn rows_at_three_forces_do_not_tell_a_threshold_from_an_exponent() {
+    let levels = |truth: Truth, scatter: f64| -> RemovalDiagnosis {
+        let mut rows = table(truth, 11);
+        for (index, row) in rows.iter_mut().enumerate() {
+            let plain = truth(row.force, 1.0 / row.time, row.speed, row.wear);
+            let off = (row.volume / plain).ln();
+            row.force = [4.0, 5.0, 6.0][index % 3];
+            let volume = truth(row.force, 1.0 / row.time, row.speed, row.wear);
+            row.volume = volume * (0.5 * off).exp();
+            row.scatter = scatter;
+        }
+        diagnose_table(&rows, &preston(), false).unwrap()
+    };
+    for scatter in [0.0, 0.05, 0.1] {
+        let found = levels(|f, v, n, _| 4e-13 * (f - 2.4) * n / v, scatter);
+        assert_eq!(names(&found), [Deviation::Force], "{scatter}");
+        let (any, forms) = &found.by_force;
+        assert!(*any > 0.99, "{any}");
+        assert!(found.effects[0].confidence < 0.9, "{:?}", found.effects);
+        let threshold = forms.iter().find(|(of, _)| *of == Deviation::Threshold);
+        assert!(
+            threshold.is_some_and(|(_, p)| (0.1..0.9).contains(p)),
+            "{forms:?}"
+        );
+    }
+}
