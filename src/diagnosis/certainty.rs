@@ -26,7 +26,7 @@ impl Diagnosis {
     /// Doubts about an effect of the best explanation.
     #[must_use]
     pub fn doubts(&self, name: &str) -> Vec<Doubt> {
-        let mut doubts = doubts_of(self.numbers_of(name).iter());
+        let mut doubts = doubts_of(&self.numbers_of(name));
         if self.costs_nothing(name) {
             doubts.push(Doubt::CostsNothing);
         }

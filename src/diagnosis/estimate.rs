@@ -55,6 +55,25 @@ impl Limit {
     }
 }
 
+impl Limit {
+    /// The end of a quantity's range at which a value stands for the recordings ask for more. One without a prior that its interval keeps from the end stands
+    /// between the ends, however wide the range; and where the end is the value without the effect there is no more to ask for.
+    fn asked_for(
+        free: &Free,
+        value: f64,
+        interval: [f64; 2],
+        without: Option<f64>,
+    ) -> Option<Self> {
+        let [low, high] = free.bounds;
+        let asks = |limit: &Self| match (free.prior, limit) {
+            (Prior::Flat, Self::Lower) => interval[0] <= low && without != Some(low),
+            (Prior::Flat, Self::Upper) => interval[1] >= high && without != Some(high),
+            _ => true,
+        };
+        Self::of(free, value).filter(asks)
+    }
+}
+
 /// A number with its 95 % interval.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Number {
@@ -192,19 +211,15 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
         let ends =
             [-INTERVAL, INTERVAL].map(|z| free.clamp(free.coordinate.value(at + z * deviation)));
         let interval = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        // A number without a prior that its interval keeps from the end of its range stands between the ends, however wide the range.
-        let reaches = |limit: &Limit| match (free.prior, limit) {
-            (Prior::Flat, Limit::Lower) => interval[0] <= free.bounds[0],
-            (Prior::Flat, Limit::Upper) => interval[1] >= free.bounds[1],
-            _ => true,
-        };
-        let of_effect = index >= first && index < effects_end;
+        let of_effect = (first..effects_end).contains(&index);
+        let without = Some(free.quantity.get(believed))
+            .filter(|v| of_effect && (free.bounds[0]..=free.bounds[1]).contains(v));
         Number {
             name: free.quantity.name,
             value: fit.values[index],
-            at_limit: Limit::of(free, fit.values[index]).filter(reaches),
+            at_limit: Limit::asked_for(free, fit.values[index], interval, without),
             interval,
-            without: Some(free.quantity.get(believed)).filter(|v| of_effect && v.is_finite()),
+            without,
             reported,
         }
     };

@@ -81,30 +81,29 @@ pub fn stated(probability: f64, doubts: &[Doubt]) -> f64 {
 
 /// Doubts that the numbers of an effect cast on it.
 #[must_use]
-pub fn doubts_of<'a>(numbers: impl Iterator<Item = &'a Estimate> + Clone) -> Vec<Doubt> {
+pub fn doubts_of(numbers: &[Estimate]) -> Vec<Doubt> {
     let spans = |e: &Estimate| {
-        e.low * e.high > 0.0 && {
-            let [a, b] = [e.low.abs(), e.high.abs()];
-            a.max(b) >= DECADE * a.min(b)
-        }
+        let [a, b] = [e.low.abs(), e.high.abs()];
+        e.low * e.high > 0.0 && a.max(b) >= DECADE * a.min(b)
     };
     let neutral = |e: &Estimate| {
         e.without
             .map(|without| e.low < e.high && (e.low..=e.high).contains(&without))
     };
-    let mut known = numbers.clone().filter_map(neutral).peekable();
-    let holds = known.peek().is_some() && known.all(|holds| holds);
+    let known: Vec<bool> = numbers.iter().filter_map(neutral).collect();
     let all = [
         (
-            numbers.clone().any(|e| e.at_limit.is_some()),
+            numbers.iter().any(|e| e.at_limit.is_some()),
             Doubt::AtEndOfRange,
         ),
-        (numbers.clone().any(spans), Doubt::SpansDecade),
-        (holds, Doubt::HoldsNeutral),
+        (numbers.iter().any(spans), Doubt::SpansDecade),
+        (
+            !known.is_empty() && known.iter().all(|holds| *holds),
+            Doubt::HoldsNeutral,
+        ),
     ];
-    all.into_iter()
-        .filter_map(|(is, doubt)| is.then_some(doubt))
-        .collect()
+    let stands = all.into_iter().filter(|(is, _)| *is);
+    stands.map(|(_, doubt)| doubt).collect()
 }
 
 /// Whether an effect is named in the headline.
@@ -226,7 +225,8 @@ fn of_effect(effect: &FoundEffect, headline: &str) -> Vec<String> {
     if !(0.0..=1.0).contains(&probability) {
         found.push(format!("{name} has a probability of {probability}"));
     }
-    let shown = doubts_of(effect.parameters.iter().map(|(_, e)| e));
+    let numbers: Vec<Estimate> = effect.parameters.iter().map(|(_, e)| *e).collect();
+    let shown = doubts_of(&numbers);
     let forbidden = shown.iter().chain(&effect.doubts).find(|d| d.forbids());
     if let Some(doubt) = forbidden.filter(|_| probability > TRUSTED) {
         found.push(format!(
@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn numbers_cast_the_doubts_that_they_should() {
-        let of = |numbers: &[Estimate]| doubts_of(numbers.iter());
+        let of = doubts_of;
         assert_eq!(of(&[number(12.0, 11.0, 13.0, Some(0.0))]), []);
         assert_eq!(
             of(&[number(0.1, -0.1, 0.3, Some(0.0))]),

@@ -145,7 +145,8 @@ fn effect(diagnosis: &RemovalDiagnosis, value: &Value) -> FoundEffect {
         Deviation::Time => vec!["time"],
         Deviation::Area => vec!["area"],
     };
-    let doubts = doubts_of(parameters.iter().map(|(_, e)| e));
+    let numbers: Vec<Estimate> = parameters.iter().map(|(_, e)| *e).collect();
+    let doubts = doubts_of(&numbers);
     FoundEffect {
         name: value.deviation.name().to_owned(),
         key: None,

@@ -2,45 +2,37 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+/// Integral of cos^(d-1) u from 0 by Simpson's rule: with t = sqrt(d) tan u the density of Student's t goes so.
+fn area(to: f64, freedom: usize) -> f64 {
+    const STEPS: usize = 400;
+    let power = freedom as i32 - 1;
+    let step = to / STEPS as f64;
+    let sum: f64 = (0..=STEPS)
+        .map(|index| {
+            let factor = match index {
+                0 | STEPS => 1.0,
+                odd if odd % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            factor * (index as f64 * step).cos().max(0.0).powi(power)
+        })
+        .sum();
+    sum * step / 3.0
+}
+
 /// Probability that Student's t is beyond a value on either side, by degrees of freedom.
 pub(super) fn chance_beyond(t: f64, freedom: usize) -> f64 {
-    let (mut low, mut high) = (0.0, 0.5);
-    for _ in 0..50 {
-        let middle = f64::midpoint(low, high);
-        if t_exceeded(middle, freedom) > t.abs() {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    2.0 * high
+    let to = (t.abs() / (freedom as f64).sqrt()).atan();
+    (1.0 - area(to, freedom) / area(FRAC_PI_2, freedom)).max(0.0)
 }
 
 /// Value that Student's t exceeds with a probability on the upper side, by degrees of freedom.
-///
-/// With t = sqrt(d) tan u the density goes as cos^(d-1) u, which is summed by Simpson's rule.
 pub(super) fn t_exceeded(upper: f64, freedom: usize) -> f64 {
-    const STEPS: usize = 400;
-    let power = freedom as i32 - 1;
-    let area = |to: f64| {
-        let step = to / STEPS as f64;
-        let sum: f64 = (0..=STEPS)
-            .map(|index| {
-                let factor = match index {
-                    0 | STEPS => 1.0,
-                    odd if odd % 2 == 1 => 4.0,
-                    _ => 2.0,
-                };
-                factor * (index as f64 * step).cos().max(0.0).powi(power)
-            })
-            .sum();
-        sum * step / 3.0
-    };
-    let whole = area(FRAC_PI_2);
+    let whole = area(FRAC_PI_2, freedom);
     let (mut low, mut high) = (0.0, FRAC_PI_2);
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
-        if 0.5 - 0.5 * area(middle) / whole > upper {
+        if 0.5 - 0.5 * area(middle, freedom) / whole > upper {
             low = middle;
         } else {
             high = middle;
