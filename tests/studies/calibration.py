@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How sure diagnoses are against how often they are right (standard library only).
 
-    calibration.py ANSWERS=TRUTH [ANSWERS=TRUTH ..] [--out docs/evidence/CALIBRATION.md]
+    calibration.py ANSWERS=TRUTH [ANSWERS=TRUTH ..] [--out docs/evidence/CALIBRATION.md] [--note TEXT]
 
 ANSWERS/<case>/diagnosis.json are answers, TRUTH/<case>.json the sealed truth of each case, in the forms of the concealed cases (score.py, score_abroad.py). Cases without an answer are
 counted, and are in no figure. The names of the sets in the tables are those of the folders of answers.
@@ -105,7 +105,8 @@ def share(part, whole):
 def main():
     args = sys.argv[1:]
     out = pathlib.Path(args.pop(args.index("--out") + 1)) if "--out" in args else None
-    pairs = [a.split("=", 1) for a in args if a != "--out"]
+    note = args.pop(args.index("--note") + 1) if "--note" in args else None
+    pairs = [a.split("=", 1) for a in args if a not in ("--out", "--note")]
     if not pairs or any(len(p) != 2 for p in pairs):
         sys.exit(__doc__)
     sets, every, lost = {}, [], {}
@@ -139,6 +140,8 @@ def main():
     lines += ["", "Stated above 90 % and not right: " + ("; ".join(f"{s} {c} {n}{f' ({k})' if k else ''} {p:.4f}" for s, c, n, k, p in wrong) or "none") + "."]
     low = [(name, a.get("case", "?"), cause, p) for name, cases in sets.items() for a, t in cases for cause, p in causes(a, t) if p < 0.5]
     lines += ["", "True causes stated below 50 %: " + ("; ".join(f"{s} {c} {n} {p:.2f}" for s, c, n, p in low) or "none") + "."]
+    if note:
+        lines += ["", note]
     text = "\n".join(lines) + "\n"
     print(text, end="")
     if out:
