@@ -146,14 +146,13 @@ pub fn diagnose_table(
             .filter(|(m, _)| m.free.contains(&of));
         (with.map(|(_, e)| (-0.5 * e).exp()).sum::<f64>() / whole).clamp(0.0, 1.0)
     };
-    let of_any = |m: &Fit| of_force(m) > 0;
-    let any = models.iter().zip(&evidence).filter(|(m, _)| of_any(m));
+    let any = models
+        .iter()
+        .zip(&evidence)
+        .filter(|(m, _)| of_force(m) > 0);
     let any = any.map(|(_, e)| (-0.5 * e).exp()).sum::<f64>() / whole;
-    let forms_tried = OF_FORCE.into_iter().filter(|of| candidates.contains(of));
-    let by_force = (
-        any.min(1.0),
-        forms_tried.map(|of| (of, confidence(of))).collect(),
-    );
+    let tried = OF_FORCE.into_iter().filter(|of| candidates.contains(of));
+    let by_force = (any.min(1.0), tried.map(|of| (of, confidence(of))).collect());
     let told = |fitted: &Fit, of: Deviation| Told {
         deviation: of,
         value: interval(fitted, of),
