@@ -6,8 +6,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::details::Details;
+use super::doubt::Doubt;
 use super::estimate::Limit;
-use super::statements::Doubt;
 use super::unlisted::report::UnlistedReport;
 use super::words::spoken;
 use crate::effects::UNLISTED;

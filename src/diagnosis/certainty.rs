@@ -2,13 +2,14 @@
 
 use super::answer::Estimate;
 use super::details::{FamilyMember, FamilyReport};
+use super::doubt::Doubt;
 use super::estimate::Number;
 use super::family::{FAMILIES, Family, family_of};
 use super::finding::Diagnosis;
 use super::fit::robust_sum;
 use super::hypothesis::Hypothesis;
 use super::scale::IMMATERIAL;
-use super::statements::{Doubt, doubts_of, stated};
+use super::statements::{doubts_of, stated};
 use crate::effects::{Effect, LINK_EFFECTS, NUMBERS_OFF, UNLISTED, every};
 
 /// Ratio of what two laws leave up to which one does as well as the other [1]: a hundredth is what a law of the catalogue is good to.

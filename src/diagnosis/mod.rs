@@ -14,6 +14,7 @@ pub mod data_fault;
 pub mod details;
 pub mod detectable;
 pub mod diagnose;
+pub mod doubt;
 pub mod estimate;
 pub mod evidence;
 pub mod experiment;

@@ -1,9 +1,10 @@
 //! Words on how sure an effect is: what is doubted of it, and the family of which it is.
 
 use super::super::details::FamilyReport;
+use super::super::doubt::Doubt;
 use super::super::finding::Diagnosis;
 use super::super::hypothesis::spoken_name;
-use super::super::statements::{Doubt, TRUSTED, in_headline};
+use super::super::statements::{TRUSTED, in_headline};
 use super::super::words::{capital, listed};
 use super::missing::probability;
 use crate::effects::UNLISTED;
