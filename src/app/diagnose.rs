@@ -13,6 +13,7 @@ mod stages;
 mod unlisted_picture;
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 
@@ -24,6 +25,7 @@ use super::files::{Standing, output_folder};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress::StagedLine;
+use crate::diagnosis::effort::EffortLimit;
 use crate::diagnosis::progress::Progress;
 use crate::plant::LawText;
 use crate::replay::LoadedCell;
@@ -56,6 +58,16 @@ pub(super) struct DiagnoseArguments {
     /// "piston_force: -c * max(v, 0); c = 100..1000"; variables and ports stand in scenarios/README.md
     #[arg(long = "try", value_name = "LAW", value_parser = law_of_line, allow_hyphen_values = true, conflicts_with = "all")]
     tried: Option<LawText>,
+    /// Stop the search after so many model evaluations, with the best answer so
+    /// far: the same answer each time
+    #[arg(long, value_name = "EVALUATIONS", help_heading = "Limits",
+        value_parser = clap::value_parser!(u64).range(1..))]
+    effort: Option<u64>,
+    /// Stop the search after so long (90s, 5min, 1h), with the best answer so far;
+    /// it says the --effort that comes to the same
+    #[arg(long, value_name = "TIME", help_heading = "Limits", value_parser = duration,
+        conflicts_with = "effort")]
+    limit: Option<Duration>,
     /// Print nothing but errors.
     #[arg(long, help_heading = "Output")]
     quiet: bool,
@@ -65,6 +77,29 @@ pub(super) struct DiagnoseArguments {
     /// Print what diagnosis.json holds instead of the account; with --all, one line for each case.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
+}
+
+impl DiagnoseArguments {
+    /// Limit of the search.
+    fn limit(&self) -> EffortLimit {
+        match (self.effort, self.limit) {
+            (Some(evaluations), _) => EffortLimit::Evaluations(evaluations),
+            (None, Some(time)) => EffortLimit::Time(time),
+            (None, None) => EffortLimit::None,
+        }
+    }
+}
+
+/// A time with its unit.
+fn duration(text: &str) -> Result<Duration, String> {
+    let units = [("min", 60.0), ("ms", 1e-3), ("s", 1.0), ("h", 3600.0)];
+    let read = units.iter().find_map(|(unit, factor)| {
+        let value: f64 = text.strip_suffix(unit)?.trim_end().parse().ok()?;
+        (value > 0.0 && value * factor < 1e9).then(|| Duration::from_secs_f64(value * factor))
+    });
+    read.ok_or_else(|| {
+        "expected a time above zero with its unit: s, min or h, as in 120s".to_owned()
+    })
 }
 
 /// Diagnoses and writes.
@@ -98,7 +133,12 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
     let _interruptible = Interruptible::of_one("diagnosis", &out);
     let line = StagedLine::new(&stages::first(), silent);
     let tried = arguments.tried.clone();
-    let prepared = one::Prepared::new(&arguments.case, (cell, tried), &out, standing)?;
+    let prepared = one::Prepared::new(
+        &arguments.case,
+        (cell, tried, arguments.limit()),
+        &out,
+        standing,
+    )?;
     let mut stages = Stages::default();
     line.tell(Stages::begun(), None);
     let finished = prepared.run(&mut |progress: &Progress<'_>| {
@@ -128,6 +168,11 @@ pub(super) fn answer_case(
     case: &std::path::Path,
     out: &std::path::Path,
 ) -> Result<crate::diagnosis::answer::Answer, AppError> {
-    let prepared = one::Prepared::new(case, (None, None), out, Standing::Replace)?;
+    let prepared = one::Prepared::new(
+        case,
+        (None, None, EffortLimit::None),
+        out,
+        Standing::Replace,
+    )?;
     Ok(prepared.run(&mut |_| ())?.answer)
 }

@@ -10,11 +10,11 @@ use super::error::{AppError, ExitCode};
 use super::files::{Standing, is_same, prepare_file};
 use super::output::say;
 use super::progress;
-use crate::case::{check_finite, predict_table, read_rig, shown_columns};
+use crate::case::{check_finite, predict_table, predicted_by, read_rig, shown_columns};
 use crate::diagnosis::clean::clean;
+use crate::diagnosis::details::UnknownGround;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::diagnosis::words::of_column;
-use crate::plant::simulate;
 use crate::quantity::{counted, significant};
 use crate::recording::atomic::write_text;
 use crate::recording::csv::write_csv;
@@ -53,18 +53,24 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     prepare(arguments)?;
     let time = &taken.inputs.time;
     let spinner = progress::spinner("simulating", arguments.quiet || arguments.json);
-    let predicted = simulate(&rig.plant, &taken.inputs).readings;
+    let of_model = predicted_by(&rig, &taken.inputs);
+    let predicted = &of_model.readings;
     spinner.finish_and_clear();
     let rig_file = arguments.rig.display().to_string();
-    check_finite(&rig_file, &file, time, &predicted)?;
-    let columns = shown_columns(rig.plant.chain, rig.sensors(), &predicted);
+    check_finite(&rig_file, &file, time, predicted)?;
+    let columns = of_model.columns(&shown_columns(rig.plant.chain, rig.sensors(), predicted));
+    let columns: Vec<(&str, &[f64])> = (columns
+        .iter()
+        .map(|(name, values)| (name.as_str(), values.as_slice())))
+    .collect();
     write_csv(&arguments.out, time, &columns)?;
     if arguments.quiet {
         return Ok(ExitCode::Done);
     }
     let mass = rig.plant.device.moving_mass;
     let cleaning = clean(time, &mut taken.readings, &rig.noise, mass);
-    let notes = cleaning.account(&rig.noise);
+    let mut notes = cleaning.account(&rig.noise);
+    notes.extend(of_model.unknown.iter().map(|ground| ground.words(&file)));
     let off: Vec<Error> = (0..COLUMNS.len())
         .filter_map(|channel| {
             let [measured, predicted] = [&taken.readings[channel], &predicted[channel]];
@@ -77,7 +83,7 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
         })
         .collect();
     say(&if arguments.json {
-        json(arguments, time.len(), &notes, &off)
+        json(arguments, (time.len(), &of_model.unknown), &notes, &off)
     } else {
         text(arguments, time.len(), &notes, &off)
     })?;
@@ -161,7 +167,12 @@ fn text(arguments: &PredictArguments, samples: usize, notes: &[String], off: &[E
 }
 
 /// The same for a program.
-fn json(arguments: &PredictArguments, samples: usize, notes: &[String], off: &[Error]) -> String {
+fn json(
+    arguments: &PredictArguments,
+    (samples, unknown): (usize, &[UnknownGround]),
+    notes: &[String],
+    off: &[Error],
+) -> String {
     let off: BTreeMap<&str, f64> = off.iter().map(|e| (e.column, e.rms)).collect();
     let document = serde_json::json!({
         "rig": arguments.rig.display().to_string(),
@@ -169,6 +180,7 @@ fn json(arguments: &PredictArguments, samples: usize, notes: &[String], off: &[E
         "prediction": arguments.out.display().to_string(),
         "samples": samples,
         "notes": notes,
+        "unknown_ground": unknown,
         "rms_in_standard_deviations_of_noise": off,
     });
     format!("{document:#}\n")

@@ -3,8 +3,13 @@
 use crate::diagnosis::estimate::Number;
 use crate::diagnosis::finding::Diagnosis;
 use crate::effects::{PresentEffect, own_effect};
+use crate::plant::{Latent, Quantity};
 use crate::scenario::effects::WrittenEffect;
-use crate::scenario::rig_file::{RigFile, improved_text};
+use crate::scenario::rig_file::{
+    FREQUENCY_NAME, Improved, Known, RigFile, coefficient_name, improved_text,
+};
+
+use super::ground::covered;
 
 /// The effects of an improved file: what the believed one names already stays, unless what was found stands in its place.
 pub(super) fn written<'a>(
@@ -78,5 +83,92 @@ pub(super) fn improved_rig(rig: &RigFile, diagnosis: &Diagnosis) -> String {
         .map(|n| (n.name, n.value, n.interval[0], n.interval[1]))
         .collect();
     let effects = written(&rig.effects, diagnosis);
-    improved_text(rig, &tolerated, &effects, diagnosis.best().unlisted())
+    let known = known(diagnosis);
+    improved_text(
+        rig,
+        &Improved {
+            tolerated: &tolerated,
+            effects: &effects,
+            unnamed: diagnosis.best().unlisted(),
+            known: Some(&known),
+        },
+    )
+}
+
+/// How sure a diagnosis is of its best explanation, and what its recordings covered.
+pub(super) fn known(diagnosis: &Diagnosis) -> Known {
+    let best = diagnosis.best();
+    let fit = &best.fit;
+    let covariance = &diagnosis.estimates.covariance;
+    let places: Vec<(usize, String, Quantity)> = named(diagnosis);
+    let deviation = |index: usize| covariance[(index, index)].max(0.0).sqrt();
+    let numbers = places.iter().map(|(index, name, quantity)| {
+        let slope = fit.free[*index].coordinate.slope(fit.values[*index]);
+        (name.clone(), *quantity, deviation(*index) * slope.abs())
+    });
+    let correlation = |i: usize, j: usize| {
+        let both = deviation(i) * deviation(j);
+        match both > 0.0 {
+            true => (covariance[(i, j)] / both).clamp(-1.0, 1.0),
+            false => 0.0,
+        }
+    };
+    let correlations = (1..places.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let trajectories = &fit.prediction.trajectories;
+    let runs = diagnosis.evidence.recordings.iter().zip(trajectories);
+    Known {
+        numbers: numbers.collect(),
+        correlations: (correlations.map(|(i, j)| correlation(places[i].0, places[j].0))).collect(),
+        noise: diagnosis.evidence.noise,
+        half_widths: diagnosis.half_widths,
+        covered: covered(runs.map(|(measured, run)| (&measured.inputs, &run.truth))),
+    }
+}
+
+/// Free numbers that an improved file holds, by their names there: phases of what is periodic and the start of a chamber are those of their recordings.
+fn named(diagnosis: &Diagnosis) -> Vec<(usize, String, Quantity)> {
+    let best = diagnosis.best();
+    let free = &best.fit.free;
+    let tolerated = best.tolerated(&diagnosis.believed);
+    let mut found: Vec<(usize, String, Quantity)> = (0..tolerated)
+        .filter(|index| free[*index].quantity.name.contains('.'))
+        .map(|index| {
+            (
+                index,
+                free[index].quantity.name.to_owned(),
+                free[index].quantity,
+            )
+        })
+        .collect();
+    for (place, effect) in best.effects.iter().enumerate() {
+        let own = best.numbers_of(&diagnosis.believed, place);
+        let parameters = effect.parameters(&diagnosis.believed);
+        for (index, parameter) in own.zip(parameters) {
+            let name = match effect.number_key() {
+                Some(key) => key.to_owned(),
+                None => format!("{}.{}", effect.name, parameter.quantity.name),
+            };
+            found.push((index, name, free[index].quantity));
+        }
+    }
+    if let Some(term) = best.unlisted() {
+        let first = free.len() - term.numbers();
+        found.extend((first..free.len()).map(|index| {
+            let quantity = free[index].quantity;
+            (
+                index,
+                name_in_term(term, index - first, &quantity),
+                quantity,
+            )
+        }));
+    }
+    found
+}
+
+fn name_in_term(term: &Latent, index: usize, quantity: &Quantity) -> String {
+    match term.formula() {
+        Some(formula) => format!("{}.{}", own_effect(&formula.law, 0).name, quantity.name),
+        None if index < term.coefficients.len() => coefficient_name(index),
+        None => FREQUENCY_NAME.to_owned(),
+    }
 }

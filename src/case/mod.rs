@@ -1,9 +1,11 @@
 //! A case of a diagnosis: a folder with recordings, and the model that is believed of what they were recorded from.
 
 mod arm_prediction;
+mod band;
 mod cell;
 mod cell_account;
 mod error;
+mod ground;
 mod improved;
 mod recordings;
 mod removal_table;
@@ -13,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
 pub use error::CaseError;
 pub use recordings::{check_finite, read_in_any_unit, read_rig, shown_columns};
@@ -23,6 +26,7 @@ use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::{Comparison, of_flange};
 use crate::diagnosis::data_fault::fault::DataFault;
 use crate::diagnosis::data_fault::{as_read, refined, reported};
+use crate::diagnosis::details::UnknownGround;
 use crate::diagnosis::diagnose as search;
 use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
@@ -41,7 +45,7 @@ use crate::recording::provenance::Provenance;
 use crate::replay::LoadedCell;
 use crate::scenario::files_of_cell;
 use crate::scenario::recorded_cell::improved_cell_text;
-use crate::scenario::rig_file::{RigFile, from_text, improved_text};
+use crate::scenario::rig_file::{Improved, Known, RigFile, from_text, improved_text};
 use cell::CellCase;
 use rig::MeasuredRun;
 
@@ -279,17 +283,26 @@ pub fn diagnose(
                 );
             }
             // As the file says it, so that whoever takes the file gets the same.
-            let plant = from_text(Path::new(IMPROVED), &improved)?.plant;
-            of_plant((input, &faults), diagnosis, improved, plant, start)?
+            let model = |rig: RigFile| Model {
+                plant: rig.plant,
+                bare: rig.bare,
+                known: rig.known.unwrap_or_default(),
+            };
+            let read = from_text(Path::new(IMPROVED), &improved).map(model);
+            of_plant((input, &faults), diagnosis, improved, read, start)
         }
         Kind::Cell { cell, read } => {
             let diagnosis =
                 search::diagnose(&read.input, prepare(&read.input)?, settings, observer);
             let effects = improved::written(&cell.scenario.effects, &diagnosis);
-            let improved = improved_cell_text(&cell.scenario, &effects)?;
-            let plant = diagnosis.best().fit.prediction.plant.clone();
+            let improved = improved_cell_text(&cell.scenario, &effects);
+            let written = improved.as_ref().map(|_| ());
+            let plant = written
+                .map(|()| Model::of(&diagnosis))
+                .map_err(ToString::to_string);
+            let improved = improved.unwrap_or_else(|error| format!("# Not written: {error}\n"));
             let of_data = (&read.input, &read.input.data_faults[..]);
-            let mut diagnosed = of_plant(of_data, diagnosis, improved, plant, start)?;
+            let mut diagnosed = of_plant(of_data, diagnosis, improved, plant, start);
             cell_account::add_cell(&mut diagnosed, cell, read);
             diagnosed
         }
@@ -336,39 +349,132 @@ fn refined_by(diagnosis: &mut Diagnosis, input: &DiagnosisInput) -> Vec<DataFaul
     faults
 }
 
+/// A model that predicts.
+#[derive(Clone)]
+struct Model {
+    plant: PlantParameters,
+    /// The same without what was found.
+    bare: PlantParameters,
+    known: Known,
+}
+
+impl Model {
+    /// The best explanation as it was fitted.
+    fn of(diagnosis: &Diagnosis) -> Self {
+        Self {
+            plant: diagnosis.best().fit.prediction.plant.clone(),
+            bare: diagnosis.baseline.plant.clone(),
+            known: improved::known(diagnosis),
+        }
+    }
+}
+
+/// Files of what was found; a step that fails is noted, and what was found stands without it. `read` is the improved model as its file says it.
 fn of_plant(
     (input, faults): (&DiagnosisInput, &[DataFault]),
-    diagnosis: Diagnosis,
+    mut diagnosis: Diagnosis,
     improved: String,
-    plant: PlantParameters,
+    read: Result<Model, impl std::fmt::Display>,
     start: Instant,
-) -> Result<Diagnosed, CaseError> {
-    Ok(Diagnosed {
-        prediction: prediction(input, faults, &plant)?,
+) -> Diagnosed {
+    let best = Model::of(&diagnosis);
+    let (model, failed) = match read {
+        Ok(model) => (model, None),
+        Err(error) => (
+            best.clone(),
+            Some(format!("improved.toml is not as it should be: {error}")),
+        ),
+    };
+    diagnosis.notes.extend(failed);
+    let with = |plant: &PlantParameters| Model {
+        plant: plant.clone(),
+        ..best.clone()
+    };
+    let models = [
+        ("the improved model", model),
+        ("the explanation as it was fitted", best.clone()),
+        (
+            "the believed model within its tolerances",
+            with(&diagnosis.baseline.plant),
+        ),
+        ("the believed model", with(&diagnosis.believed)),
+    ];
+    let (predicted, notes) = first_prediction((input, faults), &models);
+    diagnosis.notes.extend(notes);
+    let (prediction, unknown) = predicted.unzip();
+    let unknown = unknown.unwrap_or_default();
+    let name = input
+        .unseen
+        .as_ref()
+        .map_or("", |unseen| unseen.name.as_str());
+    diagnosis
+        .notes
+        .extend(unknown.iter().map(|ground| ground.words(name)));
+    let [(_, Model { plant, .. }), ..] = models;
+    let mut answer = diagnosis.answer(start.elapsed().as_secs_f64());
+    answer.details.unknown_ground = unknown;
+    Diagnosed {
+        prediction,
         comparison: diagnosis.comparison(input, &plant),
-        answer: reported(diagnosis.answer(start.elapsed().as_secs_f64()), faults),
+        answer: reported(answer, faults),
         improved,
         diagnosis: Some(diagnosis),
         plant: Some(plant),
-    })
+    }
+}
+
+/// The prediction by the first model that stays finite, with a note where that is not the first.
+fn first_prediction(
+    (input, faults): (&DiagnosisInput, &[DataFault]),
+    models: &[(&str, Model)],
+) -> (Option<(String, Vec<UnknownGround>)>, Option<String>) {
+    let mut failed: Option<String> = None;
+    for (name, model) in models {
+        match prediction(input, faults, model) {
+            Ok(predicted) => {
+                let note = failed.map(|error| format!("prediction.csv is that of {name}: {error}"));
+                return (predicted, note);
+            }
+            Err(error) => failed = failed.or(Some(error.to_string())),
+        }
+    }
+    let note = failed.map(|error| format!("there is no prediction.csv: {error}"));
+    (None, note)
 }
 
 /// The improved model's prediction of the recording that was kept back.
 fn prediction(
     input: &DiagnosisInput,
     faults: &[DataFault],
-    plant: &PlantParameters,
-) -> Result<Option<String>, CaseError> {
+    Model { plant, bare, known }: &Model,
+) -> Result<Option<(String, Vec<UnknownGround>)>, CaseError> {
     let Some(unseen) = &input.unseen else {
         return Ok(None);
     };
     let inputs = &unseen.recorded.inputs;
-    let predicted = simulate(plant, inputs).readings;
-    check_finite(IMPROVED, &unseen.file, &inputs.time, &predicted)?;
+    let mut predicted = band::predicted((plant, bare), known, inputs);
+    check_finite(IMPROVED, &unseen.file, &inputs.time, &predicted.readings)?;
     // As the sensors would read it, at the stamps of their log.
-    let (stamps, predicted) = as_read(faults, &inputs.time, predicted);
-    let columns = shown_columns(plant.chain, input.noise.map(f64::is_finite), &predicted);
-    Ok(Some(columns_text(&stamps, &columns)?))
+    let mut stamps = Vec::new();
+    for readings in [
+        &mut predicted.readings,
+        &mut predicted.low,
+        &mut predicted.high,
+    ] {
+        (stamps, *readings) = as_read(faults, &inputs.time, std::mem::take(readings));
+    }
+    predicted.order();
+    let shown = shown_columns(
+        plant.chain,
+        input.noise.map(f64::is_finite),
+        &predicted.readings,
+    );
+    let columns = predicted.columns(&shown);
+    let columns: Vec<(&str, &[f64])> = (columns
+        .iter()
+        .map(|(name, values)| (name.as_str(), values.as_slice())))
+    .collect();
+    Ok(Some((columns_text(&stamps, &columns)?, predicted.unknown)))
 }
 
 /// Results of the runs of a contact flange.
@@ -405,7 +511,7 @@ fn of_flange_runs(
 
 /// The rig file of a flange: what was found has no place in it and stands there as comments.
 fn improved_flange(rig: &RigFile, answer: &Answer) -> String {
-    let mut improved = improved_text(rig, &[], &[], None);
+    let mut improved = improved_text(rig, &Improved::default());
     let line = |key: &str, value: f64, interval: Option<[f64; 2]>| {
         let range = interval.map(|[low, high]| format!("   # {low:.3e} to {high:.3e}"));
         format!("# {key} = {value:.5e}{}\n", range.unwrap_or_default())

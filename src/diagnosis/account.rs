@@ -44,6 +44,15 @@ impl Diagnosis {
     }
 
     fn headline(&self) -> String {
+        let stopped = match self.effort.stopped {
+            true => "; the search was stopped by its limit",
+            false => "",
+        };
+        format!("{}{stopped}", self.finding())
+    }
+
+    /// The finding in a line.
+    fn finding(&self) -> String {
         let names = self.headline_names();
         if names.is_empty() && !self.best().finds_nothing() {
             "what is missing is not settled: no effect is sure".to_owned()

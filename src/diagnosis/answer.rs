@@ -244,6 +244,55 @@ pub enum AnswerError {
 }
 
 impl Answer {
+    /// Notes what became of a step that failed: what was found stands without it.
+    pub fn note(&mut self, sentence: String) {
+        self.details.account.remark(&sentence);
+        self.notes.push(sentence);
+    }
+
+    /// A result of a last step; one that failed is noted and goes without.
+    pub fn kept<T>(&mut self, what: &str, result: Result<T, impl std::fmt::Display>) -> Option<T> {
+        result
+            .map_err(|error| self.note(format!("{what} is missing: {error}")))
+            .ok()
+    }
+
+    /// Takes out what is no number, and notes it: the rest of what was found is not lost for it.
+    pub fn take_out_what_is_no_number(&mut self) {
+        let mut notes: Vec<String> = Vec::new();
+        for effect in &mut self.effects {
+            let name = &effect.name;
+            effect.parameters.retain(|(parameter, e)| {
+                let finite = [e.value, e.low, e.high].iter().all(|v| v.is_finite());
+                if !finite {
+                    notes.push(format!("{parameter} of {name} could not be determined"));
+                }
+                finite
+            });
+            if !effect.confidence.is_finite() {
+                effect.confidence = 0.0;
+                notes.push(format!("how sure {name} is could not be determined"));
+            }
+            let shape = effect.unlisted.iter().flat_map(|u| u.numbers());
+            if shape.into_iter().any(|(_, value)| !value.is_finite()) {
+                effect.unlisted = None;
+                notes.push(format!("the shape of {name} could not be determined"));
+            }
+        }
+        let places = self.mismatch.len();
+        (self.mismatch).retain(|place| place.start_s.is_finite() && place.end_s.is_finite());
+        let rivals = self.alternatives.len();
+        self.alternatives.retain(|rival| rival.odds.is_finite());
+        if places > self.mismatch.len() || rivals > self.alternatives.len() {
+            notes.push(
+                "places of the mismatch or odds of rivals could not be determined".to_owned(),
+            );
+        }
+        for note in notes {
+            self.note(note);
+        }
+    }
+
     /// As JSON, numbers in their shortest form.
     ///
     /// # Errors

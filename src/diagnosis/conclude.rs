@@ -303,6 +303,7 @@ impl Diagnosis {
     pub fn details(&self) -> Details {
         Details {
             schema: DETAILS_SCHEMA,
+            effort: Some(self.effort),
             account: self.account(),
             noise: self.noises(),
             misfit: self.misfits(),

@@ -11,6 +11,7 @@ use super::evidence::Evidence;
 use super::fit::{Fit, ROUGH, Refit, fit, robust_sum, with_values};
 use super::free::Free;
 use super::model_error::ModelError;
+use super::normal_equations::weighted_products;
 use super::settings::HUBER;
 use crate::plant::CHANNELS;
 use nalgebra::{DMatrix, DVector};
@@ -155,23 +156,7 @@ fn normal_without(fit: &Fit, left: &Range<usize>) -> Option<(DMatrix<f64>, DVect
         if counts { weight } else { 0.0 }
     };
     let weights: Vec<f64> = (0..residuals.len()).map(weight).collect();
-    let product = |one: &[f64], other: &[f64]| -> f64 {
-        let pairs = one.iter().zip(other).zip(&weights);
-        pairs
-            .filter(|((one, other), w)| **w > 0.0 && one.is_finite() && other.is_finite())
-            .map(|((one, other), w)| w * one * other)
-            .sum()
-    };
-    let mut normal = DMatrix::zeros(count, count);
-    let mut gradient = DVector::zeros(count);
-    for i in 0..count {
-        for j in 0..=i {
-            let sum = product(&fit.columns[i], &fit.columns[j]);
-            normal[(i, j)] = sum;
-            normal[(j, i)] = sum;
-        }
-        gradient[i] = product(&fit.columns[i], residuals);
-    }
+    let (mut normal, mut gradient) = weighted_products(&fit.columns, residuals, &weights);
     for (i, free) in fit.free.iter().enumerate() {
         let slope = free.departure_slope(fit.values[i]);
         normal[(i, i)] += slope * slope;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::account::Account;
 use super::answer::Estimate;
 use super::data_fault::report::DataFaultReport;
+use super::effort::EffortReport;
 use super::flange_fit::report::SimulatedFlange;
 use super::localise::NOISE_ALONE;
 use super::recorded::COLUMNS;
@@ -29,6 +30,9 @@ pub struct Details {
     pub schema: u32,
     /// Name of the case.
     pub case: String,
+    /// Effort of the search.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effort: Option<EffortReport>,
     /// The account, as account.txt.
     pub account: Account,
     /// Its provenance.
@@ -77,6 +81,9 @@ pub struct Details {
     pub tolerated: Vec<ToleratedNumber>,
     /// Errors of prediction on what was not fitted to.
     pub prediction: Vec<PredictionError>,
+    /// Where the prediction leaves what the recordings covered.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unknown_ground: Vec<UnknownGround>,
     /// The next recording to make.
     pub next_experiment: Option<NextExperiment>,
 }
@@ -119,6 +126,38 @@ pub struct FamilyMember {
     pub key: Option<String>,
     /// Probability that it is the one [1].
     pub probability: f64,
+}
+
+/// A stretch in which a prediction leaves what the recordings covered that its model was fitted to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UnknownGround {
+    /// What leaves it, with its unit; of one over another both.
+    pub variable: String,
+    /// From [s].
+    pub start_s: f64,
+    /// Until [s].
+    pub end_s: f64,
+    /// The value that is farthest off, in the variable's unit.
+    pub value: f64,
+    /// Least and largest value that the recordings had there.
+    pub covered: [f64; 2],
+}
+
+impl UnknownGround {
+    /// In a sentence.
+    #[must_use]
+    pub fn words(&self, recording: &str) -> String {
+        let shown = |value: f64| significant(value, 3);
+        format!(
+            "{recording} from {:.2} to {:.2} s is unknown ground, and the band of its prediction is wider there: {} comes to {}, and the recordings that were fitted to cover {} to {}",
+            self.start_s,
+            self.end_s,
+            self.variable.replace("_by_", " over "),
+            shown(self.value),
+            shown(self.covered[0]),
+            shown(self.covered[1])
+        )
+    }
 }
 
 /// What became of a law that a user tried.

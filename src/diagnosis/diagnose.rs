@@ -1,8 +1,10 @@
 //! From a case to everything that is found in it.
 
+use super::band::half_widths;
 use super::clean::clean;
 use super::cross_validation::{Depth, left_out};
 use super::detectable::detectable;
+use super::effort::Effort;
 use super::estimate::estimates;
 use super::evidence::Evidence;
 use super::extent::Largest;
@@ -25,6 +27,7 @@ use super::search::{RoughFit, Search};
 use super::settings::Settings;
 use super::tried::Tried;
 use super::unlisted::Shape;
+use super::words::listed;
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
 
 /// The fit of the answer to all recordings but one, from where that to all is.
@@ -39,10 +42,11 @@ pub fn diagnose(
     observer: &mut Observer<'_>,
 ) -> Diagnosis {
     let Prepared {
-        evidence,
+        mut evidence,
         cleanings,
-        notes,
+        mut notes,
     } = prepared;
+    evidence.effort = Effort::within(settings.limit);
     let Found {
         mut ranked,
         roughly,
@@ -50,9 +54,17 @@ pub fn diagnose(
         evidence,
         remaining,
     } = found(case, evidence, settings, observer);
-    let whole = &ranked[0].hypothesis.fit;
-    ranked[0].left_out = left_out(&evidence, whole, Depth::Refit(LEFT_OUT));
     let search = search_of(case, &evidence, settings);
+    notes.extend(finite_first(&search, &mut ranked));
+    let is_spent = search.is_spent();
+    let effort = evidence.effort.report();
+    notes.extend(effort.note());
+    let depth = match is_spent {
+        true => Depth::OneStep,
+        false => Depth::Refit(LEFT_OUT),
+    };
+    let whole = &ranked[0].hypothesis.fit;
+    ranked[0].left_out = left_out(&evidence, whole, depth);
     let best = &ranked[0].hypothesis;
     observer(&Step::Localisation.begins());
     let baseline = baseline(&search, best);
@@ -62,16 +74,17 @@ pub fn diagnose(
     });
     observer(&Step::Experiments.begins());
     let experiments = experiments(case, &evidence, &ranked);
+    let estimates = estimates(&case.believed, &ranked, &evidence);
     Diagnosis {
         settings: *settings,
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
         looked_at: case.candidates.len(),
         ruled_out: match case.believed.chain.output() {
-            Some(channel) => ruled_out(&search, best, channel),
-            None => Vec::new(),
+            Some(channel) if !is_spent => ruled_out(&search, best, channel),
+            _ => Vec::new(),
         },
-        detectable: match case.believed.chain == Chain::Whole && best.finds_nothing() {
+        detectable: match case.believed.chain == Chain::Whole && best.finds_nothing() && !is_spent {
             true => detectable(&search, best),
             false => Vec::new(),
         },
@@ -80,7 +93,8 @@ pub fn diagnose(
         roughly,
         model_error,
         remaining,
-        estimates: estimates(&case.believed, &ranked, &evidence),
+        half_widths: half_widths(&evidence, &ranked[0], &estimates.covariance),
+        estimates,
         shape: Shape::of(&evidence, best),
         mismatch: intervals(&evidence, &case.believed, best),
         largest: Largest::of(&evidence, &ranked[0], remaining.as_ref()),
@@ -90,9 +104,47 @@ pub fn diagnose(
         experiments,
         ranked,
         cleanings,
+        effort,
         notes,
         evidence,
     }
+}
+
+/// Puts the first explanation that stays finite over what the recording to be predicted reaches before those that do not, and takes these out: the believed
+/// model within its tolerances where all fail. Returns what was taken out, a sentence each.
+fn finite_first(search: &Search<'_>, ranked: &mut Vec<Ranked>) -> Vec<String> {
+    let mut notes = Vec::new();
+    while !search.is_finite(&ranked[0].hypothesis) {
+        let names = ranked[0].hypothesis.spoken_names();
+        if names.is_empty() {
+            notes.push("no model stays finite over the recording that is to be predicted, the believed one neither".to_owned());
+            break;
+        }
+        let names = listed(&names);
+        notes.push(format!(
+            "{names} fits the recordings best, and is not finite over what the recording to be predicted reaches: the next best explanation is given in its place"
+        ));
+        let failed = ranked.remove(0);
+        if ranked.is_empty() {
+            let plain = search.refit(&search.baseline(), Refit::FULL);
+            ranked.push(Ranked {
+                score: search.score(&plain),
+                hypothesis: plain,
+                ..failed
+            });
+        }
+        let sum: f64 = ranked.iter().map(|r| r.probability).sum();
+        let first = ranked[0].odds;
+        for one in ranked.iter_mut() {
+            one.odds = (one.odds / first).min(1.0);
+            one.probability = if sum > 0.0 {
+                one.probability / sum
+            } else {
+                1.0
+            };
+        }
+    }
+    notes
 }
 
 /// What a search came to.
@@ -139,7 +191,8 @@ fn found(
         let (mut ranked, whole) = against((case, settings), &remaining, &seed, &evidence, observer);
         let best = &ranked[0].hypothesis.fit.prediction;
         let left = Remaining::left_by(best, &evidence, remaining.channel);
-        if round == settings.rounds || !remaining.is_more_than(&left) {
+        let is_last = round == settings.rounds || whole.effort.is_spent();
+        if is_last || !remaining.is_more_than(&left) {
             return Found {
                 ranked,
                 roughly: Vec::new(),
@@ -199,7 +252,7 @@ fn against(
 
 /// The search in some evidence of a case.
 pub(super) fn search_of<'a>(
-    case: &DiagnosisInput,
+    case: &'a DiagnosisInput,
     evidence: &'a Evidence,
     settings: &Settings,
 ) -> Search<'a> {
@@ -217,6 +270,7 @@ pub(super) fn search_of<'a>(
         look,
         most_effects,
         model_error: ModelError::NONE,
+        unseen: (case.unseen.as_ref()).map(|unseen| &unseen.recorded.inputs),
         settings: *settings,
     }
 }

@@ -100,6 +100,8 @@ pub struct Estimates {
     pub effects: Vec<(&'static Effect, Vec<Number>)>,
     /// Constants of the formula of a term without a name; empty where it is none.
     pub formula: Vec<Number>,
+    /// Covariance of all that is free, in the fit's coordinates.
+    pub covariance: DMatrix<f64>,
 }
 
 /// Standard deviation of what is not in the residuals, in a quantity's unit.
@@ -259,6 +261,7 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
         formula: (last - constants..last)
             .map(|index| number(index, true))
             .collect(),
+        covariance,
     }
 }
 

@@ -1,5 +1,6 @@
 //! Recordings as a fit sees them: inputs, readings, their noise, and which samples count.
 
+use super::effort::Effort;
 use crate::plant::{
     CHANNELS, Channel, Nudging, PlantInputs, PlantParameters, PlantTrajectory, Trajectory,
     readings, true_trajectory,
@@ -41,6 +42,8 @@ pub struct Evidence {
     pub block: f64,
     /// Weight of a sample, where neighbours tell the same [1].
     pub worth: f64,
+    /// Effort of the search that looks at it.
+    pub effort: Effort,
     /// Motions measured, one per recording.
     nudgings: Vec<Nudging>,
     /// Shares found before.
@@ -76,6 +79,7 @@ impl Evidence {
             noise,
             block: BLOCK,
             worth: 1.0,
+            effort: Effort::default(),
             shares: Mutex::default(),
         }
     }
@@ -90,7 +94,10 @@ impl Evidence {
             recordings: chosen().map(|i| self.recordings[i].clone()).collect(),
             nudgings: chosen().map(|i| self.nudgings[i].clone()).collect(),
             shares: Mutex::default(),
-            ..*self
+            effort: self.effort.clone(),
+            noise: self.noise,
+            block: self.block,
+            worth: self.worth,
         }
     }
 
@@ -116,7 +123,8 @@ pub struct Prediction {
     pub guided: bool,
     /// One trajectory per recording.
     pub trajectories: Vec<PlantTrajectory>,
-    /// Measured less simulated, in standard deviations of the noise; recording by recording, channel by channel; NaN where nothing counts.
+    /// Measured less simulated, in standard deviations of the noise; recording by recording, channel by channel; NaN where nothing counts,
+    /// infinite where the simulation is no number.
     pub residuals: Vec<f64>,
 }
 
@@ -128,6 +136,7 @@ impl Evidence {
         guided: bool,
         known: Option<&Prediction>,
     ) -> Prediction {
+        self.effort.count();
         let reusable = |measured: &Measured| {
             known.filter(|known| {
                 if known.guided != guided
@@ -169,7 +178,12 @@ impl Evidence {
                 let pairs = measured.readings[channel]
                     .iter()
                     .zip(&trajectory.readings[channel]);
-                all.extend(pairs.map(|(measured, simulated)| (measured - simulated) / noise));
+                // A model that is no longer finite is as far off as can be: as a value that does not count it would be the best of all.
+                let residual = |(measured, simulated): (&f64, &f64)| match simulated.is_finite() {
+                    false if measured.is_finite() => f64::INFINITY,
+                    _ => (measured - simulated) / noise,
+                };
+                all.extend(pairs.map(residual));
             }
         }
         all

@@ -2,6 +2,7 @@
 
 use super::clean::Cleaning;
 use super::detectable::Detectable;
+use super::effort::EffortReport;
 use super::estimate::Estimates;
 use super::evidence::{Evidence, Prediction};
 use super::extent::{Largest, percentile_90};
@@ -20,7 +21,7 @@ use super::search::RoughFit;
 use super::settings::Settings;
 use super::tried::Tried;
 use super::unlisted::Shape;
-use crate::plant::{Channel, PlantParameters};
+use crate::plant::{CHANNELS, Channel, PlantParameters};
 
 /// The believed model, moved within its tolerances as far as recordings that it may not explain allow.
 #[derive(Debug)]
@@ -84,6 +85,8 @@ pub struct Diagnosis {
     pub evidence: Evidence,
     /// Readings set aside in each of them.
     pub cleanings: Vec<Cleaning>,
+    /// Effort of the search.
+    pub effort: EffortReport,
     /// Notes on the recordings for an engineer, a sentence each.
     pub notes: Vec<String>,
     /// Explanations, best first.
@@ -104,6 +107,8 @@ pub struct Diagnosis {
     pub detectable: Vec<Detectable>,
     /// Numbers of the best.
     pub estimates: Estimates,
+    /// Half of a 90 % band of each channel's prediction, in standard deviations of noise and numbers together [1].
+    pub half_widths: [f64; CHANNELS.len()],
     /// Shape of its term without a name, if it has one.
     pub shape: Option<Shape>,
     /// Where its effects act.

@@ -6,6 +6,7 @@
 
 use super::evidence::{Evidence, Prediction};
 use super::free::{Free, Prior};
+use super::normal_equations::weighted_products;
 use super::settings::HUBER;
 use crate::plant::PlantParameters;
 use nalgebra::{DMatrix, DVector};
@@ -94,7 +95,7 @@ impl Weighing<'_> {
         let pairs = residuals
             .iter()
             .zip(self.shares)
-            .filter(|(r, _)| !r.is_nan());
+            .filter(|(r, share)| !r.is_nan() && **share > 0.0);
         if self.bounded {
             let square = self.limit * self.limit;
             pairs
@@ -202,38 +203,8 @@ fn normal_equations(
     free: &[Free],
     values: &[f64],
 ) -> (DMatrix<f64>, DVector<f64>) {
-    let n = columns.len();
     let weights = weighing.weights(residuals);
-    let zeroed = |value: f64, w: f64| {
-        if w == 0.0 || !value.is_finite() {
-            0.0
-        } else {
-            value
-        }
-    };
-    let mut information = DMatrix::zeros(n, n);
-    let mut gradient = DVector::zeros(n);
-    for i in 0..n {
-        let weighted: Vec<f64> = columns[i]
-            .iter()
-            .zip(&weights)
-            .map(|(c, w)| w * zeroed(*c, *w))
-            .collect();
-        for j in 0..=i {
-            let sum: f64 = weighted
-                .iter()
-                .zip(&columns[j])
-                .map(|(a, b)| if *a == 0.0 { 0.0 } else { a * b })
-                .sum();
-            information[(i, j)] = sum;
-            information[(j, i)] = sum;
-        }
-        gradient[i] = weighted
-            .iter()
-            .zip(residuals)
-            .map(|(a, b)| if *a == 0.0 { 0.0 } else { a * b })
-            .sum();
-    }
+    let (mut information, mut gradient) = weighted_products(columns, residuals, &weights);
     for (i, f) in free.iter().enumerate() {
         let slope = f.departure_slope(values[i]);
         information[(i, i)] += slope * slope;
@@ -562,7 +533,8 @@ pub fn linearised_cost(
     if let Some((tried, _)) = step(free, values, &normal, &gradient, 1e-4, 3.0) {
         for ((f, (from, to)), column) in free.iter().zip(values.iter().zip(&tried)).zip(columns) {
             let moved = f.coordinate.of(*to) - f.coordinate.of(*from);
-            for (residual, slope) in adjusted.iter_mut().zip(column) {
+            let known = adjusted.iter_mut().zip(column);
+            for (residual, slope) in known.filter(|(_, slope)| slope.is_finite()) {
                 *residual += moved * slope;
             }
         }

@@ -255,7 +255,7 @@ impl FlangeDiagnosis {
         let flange = self.simulated.as_ref();
         account.add(
             SectionKind::Simulated,
-            flange.map(simulated).unwrap_or_default(),
+            (flange.map(|flange| simulated(flange, self.mass))).unwrap_or_default(),
         );
         let simulated_too = flange.map(unseen).unwrap_or_default();
         let paragraphs = measured.into_iter().chain(simulated_too).collect();

@@ -29,6 +29,12 @@ impl Hypothesis {
         self.unlisted()?.formula()
     }
 
+    /// The same without the derivatives of its fit, which are most of what it takes to keep: of one that is fitted again before they are asked for.
+    pub(super) fn without_columns(mut self) -> Self {
+        self.fit.columns = Vec::new();
+        self
+    }
+
     /// Names of the effects, sorted.
     pub fn names(&self) -> Vec<&'static str> {
         let mut names: Vec<&'static str> = self.effects.iter().map(|e| e.name).collect();

@@ -335,17 +335,21 @@ impl Search<'_> {
         let noise = self.left_alone(scale);
         let limit = noise + PROMISING * (rival - noise).max(0.0);
         let mut promising = self.promising(base, limit, scale, observer);
+        if self.is_spent() {
+            return Vec::new();
+        }
         if promising.first().is_some_and(|best| best.fit.rough > noise) {
             self.converge(&mut promising, observer);
         }
         let formulas = self.formulas(base, &promising, scale, observer);
-        let adequate = |h: &Hypothesis| scale.is_adequate(h) && self.term_shows(h);
+        let adequate =
+            |h: &Hypothesis| scale.is_adequate(h) && self.term_shows(h) && self.is_finite(h);
         let (mut found, others): (Vec<Hypothesis>, Vec<Hypothesis>) =
             formulas.into_iter().partition(adequate);
-        if found.is_empty() {
+        if found.is_empty() && !self.is_spent() {
             promising.retain(|h| h.fit.rough < noise);
             found = self.curves_in_full(base, &promising, observer);
-            found.retain(|h| scale.is_adequate(h));
+            found.retain(|h| scale.is_adequate(h) && self.is_finite(h));
         }
         self.put_named_first(&mut found, scale, observer);
         if !found.is_empty() {
@@ -368,8 +372,12 @@ impl Search<'_> {
         let base = &self.held(base);
         let promising = self.promising(base, HOPELESS * rival, scale, observer);
         let curves = self.curves(base, &promising, observer);
+        if self.is_spent() {
+            return self.in_full_of_curves(&curves);
+        }
         let mut found = self.formulas(base, &curves, scale, observer);
         found.extend(self.in_full_of_curves(&curves));
+        found.retain(|h| self.is_finite(h));
         found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.name_variables(base, &mut found, &promising);
         found
@@ -417,7 +425,10 @@ impl Search<'_> {
         let terms = terms(self.evidence, &base.fit.prediction);
         let mut ranked: Vec<Hypothesis> = terms
             .par_iter()
-            .map(|latent| self.with_latent(base, latent, &base.fit.columns, 1))
+            .map(|latent| {
+                self.with_latent(base, latent, &base.fit.columns, 1)
+                    .without_columns()
+            })
             .collect();
         self.sort_by_cost(&mut ranked);
         let left = |h: &Hypothesis| (self.latent_score(h) - noise).max(0.0);
@@ -449,11 +460,21 @@ impl Search<'_> {
 
     /// A second look at coarse curves, with as many knots as there may be.
     fn looked_at(&self, base: &Hypothesis, coarse: &[Hypothesis]) -> Vec<Hypothesis> {
-        let look = |coarse: &Hypothesis| match coarse.unlisted().and_then(refined) {
-            Some(fine) => self.with_latent(base, &fine, &[], LOOK),
-            None => self.refit(coarse, curve(ROUGH, LOOK)),
+        let noise = rough_noise(self.evidence);
+        let left = |h: &Hypothesis| (self.latent_score(h) - noise).max(0.0);
+        // A step with what was free before moving as it did: those that fall behind get no more.
+        let first = |coarse: &Hypothesis| match coarse.unlisted().and_then(refined) {
+            Some(fine) => self.with_latent(base, &fine, &base.fit.columns, 1),
+            None => self.refit(coarse, curve(ROUGH, 1)),
         };
-        coarse.par_iter().map(look).collect()
+        let first = |coarse: &Hypothesis| first(coarse).without_columns();
+        let mut looked: Vec<Hypothesis> = coarse.par_iter().map(first).collect();
+        self.sort_by_cost(&mut looked);
+        let near = NEAR * looked.first().map_or(0.0, left);
+        looked.truncate(FITTED);
+        looked.retain(|h| left(h) <= near);
+        let on = |h: &Hypothesis| self.refit(h, curve(ROUGH, LOOK - 1)).without_columns();
+        looked.par_iter().map(on).collect()
     }
 
     /// Goes on with the leading curves: what acts at one place of the stroke takes more steps than what acts all along it.

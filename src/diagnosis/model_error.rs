@@ -81,8 +81,8 @@ impl ModelError {
     /// That of one channel.
     pub fn cost_of(&self, channel: usize, residuals: &[f64]) -> f64 {
         let scale = self.variance[channel].sqrt();
-        let finite = residuals.iter().filter(|r| r.is_finite());
-        finite.map(|r| loss(r / scale, HUBER)).sum()
+        let counted = residuals.iter().filter(|r| !r.is_nan());
+        counted.map(|r| loss(r / scale, HUBER)).sum()
     }
 }
 

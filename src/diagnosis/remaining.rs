@@ -146,7 +146,9 @@ fn thinned(evidence: &Evidence, every: usize, noise: [f64; CHANNELS.len()]) -> E
         }
         kept
     };
-    Evidence::new(evidence.recordings.iter().map(thin).collect(), noise)
+    let mut thinned = Evidence::new(evidence.recordings.iter().map(thin).collect(), noise);
+    thinned.effort = evidence.effort.clone();
+    thinned
 }
 
 /// Effect after effect, as long as one more explains a part of what is left.
@@ -164,7 +166,7 @@ fn greedy(search: &Search<'_>, observer: &mut Observer<'_>) -> Hypothesis {
             observer(&Step::RoughFit.of(&other, detail));
             best = other;
         }
-        if best.effects.len() == search.most_effects {
+        if best.effects.len() == search.most_effects || search.is_spent() {
             break;
         }
         let candidates = search.screen(&best, stages, f64::INFINITY);

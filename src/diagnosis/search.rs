@@ -13,7 +13,7 @@ use super::progress::{Observer, Step};
 use super::scale::Scale;
 use super::settings::Settings;
 use crate::effects::Effect;
-use crate::plant::{Chain, PlantParameters};
+use crate::plant::{Chain, PlantInputs, PlantParameters};
 use rayon::prelude::*;
 
 /// Everything a search needs.
@@ -35,6 +35,8 @@ pub struct Search<'a> {
     pub most_effects: usize,
     /// What explanations leave beyond noise, by which their scores are weighed.
     pub model_error: ModelError,
+    /// Inputs of the recording that is to be predicted: an explanation must be finite there too.
+    pub unseen: Option<&'a PlantInputs>,
     /// Thresholds.
     pub settings: Settings,
 }
@@ -81,6 +83,11 @@ impl Search<'_> {
             fit: fit(self.evidence, from, (free, &[]), stages, limit),
             depends_on: Vec::new(),
         }
+    }
+
+    /// A checkpoint: whether the search is to end with the best that it has ([`super::effort`]).
+    pub(super) fn is_spent(&self) -> bool {
+        self.evidence.effort.is_spent()
     }
 
     /// Fits everything that is free in a hypothesis once more.
@@ -178,7 +185,7 @@ impl Search<'_> {
             asked: Vec::new(),
         };
         let mut tried: Vec<Vec<&'static str>> = vec![vec![]];
-        while climb.levels.len() <= self.most_effects && climb.full.is_empty() {
+        while climb.levels.len() <= self.most_effects && climb.full.is_empty() && !self.is_spent() {
             let parents = &climb.levels[climb.levels.len() - 1];
             let before = parents[0].fit.rough - noise;
             // Beside one that leaves noise alone, no other need be carried on.
@@ -193,9 +200,22 @@ impl Search<'_> {
                 .take(carried)
                 .filter(|h| self.rough_score(h) <= near)
                 .collect();
-            let children = self.children(&carried, &mut tried, observer);
+            let mut children = self.children(&carried, &mut tried, observer);
+            // Derivatives are asked for once more of those that may be carried on.
+            for h in children.iter_mut().skip(self.settings.carried_on) {
+                h.fit.columns = Vec::new();
+            }
+            let place = climb.levels.len() - 1;
+            for h in &mut climb.levels[place] {
+                h.fit.columns = Vec::new();
+            }
+            let parents = &climb.levels[place];
             let Some(best) = children.first() else { break };
             if self.rough_score(best) >= self.rough_score(&parents[0]) {
+                break;
+            }
+            if self.is_spent() {
+                climb.levels.push(children);
                 break;
             }
             let after = best.fit.rough - noise;
@@ -211,7 +231,7 @@ impl Search<'_> {
             } else if climb.full.first().is_some_and(|best| self.found(best) > 1) {
                 self.add_one_law(&mut climb, scale, observer);
             }
-            if climb.full.is_empty() && stuck && !leaves_noise {
+            if climb.full.is_empty() && stuck && !leaves_noise && !self.is_spent() {
                 // Nothing more helps: perhaps what there is explains all but what a held piston cannot show.
                 let parents = &climb.levels[climb.levels.len() - 1];
                 climb.full = self.in_full(parents, scale, &mut climb.done, observer);
@@ -258,7 +278,9 @@ impl Search<'_> {
             return weighed;
         }
         for round in 0..self.settings.rounds {
-            let Some(best) = full.first() else { break };
+            let Some(best) = full.first().filter(|_| !self.is_spent()) else {
+                break;
+            };
             let mut left = ModelError::of(self.evidence, &best.fit.prediction);
             if round == 0 && !left.is_none() {
                 weighed.settle_regulator(full, observer);
@@ -282,7 +304,10 @@ impl Search<'_> {
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let mut children = Vec::new();
-        for parent in parents {
+        for (place, parent) in parents.iter().enumerate() {
+            if place > 0 && self.is_spent() {
+                break;
+            }
             let score = self.rough_score(parent);
             for candidate in self.screen(parent, ROUGH, f64::INFINITY) {
                 let gain = score - self.rough_score(&candidate);
@@ -297,7 +322,9 @@ impl Search<'_> {
         children.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         let near = children.first().map_or(0.0, |h| self.rough_score(h));
         for leading in children.iter_mut().take(self.settings.fitted_in_full) {
-            if leading.effects.len() > 1 && self.rough_score(leading) > 3.0 * near {
+            if leading.effects.len() > 1 && self.rough_score(leading) > 3.0 * near
+                || self.is_spent()
+            {
                 break;
             }
             let refitted = self.refit(leading, Refit::ROUGH);
@@ -311,7 +338,7 @@ impl Search<'_> {
         // What is far behind stays there.
         let near = self.settings.far_behind * children.first().map_or(0.0, |h| self.rough_score(h));
         for leading in children.iter_mut().take(self.settings.fitted_in_full) {
-            if self.rough_score(leading) < near {
+            if self.rough_score(leading) < near && !self.is_spent() {
                 self.choose(leading);
             }
         }
@@ -334,6 +361,9 @@ impl Search<'_> {
             .take(self.settings.fitted_in_full)
             .take_while(|h| self.rough_score(h) <= leading + self.settings.given_up)
             .collect();
+        if self.is_spent() {
+            candidates.truncate(1);
+        }
         // The plainest first.
         candidates.sort_by_key(|h| h.fit.free.len());
         let mut full: Vec<Hypothesis> = Vec::new();
@@ -343,6 +373,9 @@ impl Search<'_> {
             };
             if full.iter().any(spared) {
                 continue;
+            }
+            if !full.is_empty() && self.is_spent() {
+                break;
             }
             let before = |known: &&Refined| {
                 known.rough == candidate.fit.rough && known.full.names() == candidate.names()
@@ -391,6 +424,9 @@ impl Search<'_> {
                 .map(move |start| (candidate, start))
         });
         for (candidate, start) in starts.take(MOST_ANEW) {
+            if self.is_spent() {
+                break;
+            }
             let mut other = candidate.clone();
             let own = other.numbers_of(&self.believed, other.effects.len() - 1);
             other.fit.values[own].copy_from_slice(&start);

@@ -1,5 +1,7 @@
 //! Thresholds of a diagnosis, each with its reason (docs/DIAGNOSIS.md).
 
+use super::effort::EffortLimit;
+
 /// Thresholds of the search and of what its answer names.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -23,6 +25,8 @@ pub struct Settings {
     pub least_odds: f64,
     /// Times that what no law explains of a part is looked at anew: the first look takes few samples.
     pub rounds: usize,
+    /// Limit of its effort.
+    pub limit: EffortLimit,
 }
 
 impl Settings {
@@ -38,6 +42,7 @@ impl Settings {
         look_elsewhere: 7.0,
         least_odds: 0.01,
         rounds: 3,
+        limit: EffortLimit::None,
     };
 }
 

@@ -6,6 +6,7 @@
 //! key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
 //! [rig]  chain = "moved_piston"                a part of the device ([`crate::plant::Chain`]); only that part's numbers are then asked for
 //! [[effect]]                                   physics beyond the believed model (`super::effects`)
+//! [known]                                      how sure a diagnosis is of it, and what its recordings covered (`known`)
 //! [latent]                                     physics that no known effect explains (`latent`)
 //! ```
 
@@ -22,6 +23,7 @@ use values::{check_together, pressure_drift, recordings, sensors};
 mod entry;
 mod improved;
 mod keys;
+mod known;
 mod latent;
 mod number;
 mod quantities;
@@ -29,7 +31,8 @@ mod quantities;
 pub(super) mod tests;
 mod values;
 
-pub use improved::improved_text;
+pub use improved::{Improved, improved_text};
+pub use known::{FREQUENCY_NAME, Known, coefficient_name, of_term};
 pub(super) use number::NUMBER_OR_TABLE;
 pub(super) use quantities::{blank, described_numbers};
 pub use values::{RecordingForceRamp, Tolerance};
@@ -62,6 +65,10 @@ pub struct RigFile {
     pub force_ramps: Vec<RecordingForceRamp>,
     /// Effects that the file names, in the order of the catalogue, with all their numbers.
     pub effects: Vec<PresentEffect>,
+    /// The rig without them and without a term that has no name.
+    pub bare: PlantParameters,
+    /// How sure a diagnosis is of it, and what its recordings covered.
+    pub known: Option<Known>,
 }
 
 impl RigFile {
@@ -86,15 +93,17 @@ pub fn load_rig(path: &Path) -> Result<RigFile, ScenarioError> {
 /// As [`load_rig`].
 pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     let document = Document::new(path, text, SCHEMA)?;
-    let keys: RigKeys = document.parse(&sections())?;
+    let mut keys: RigKeys = document.parse(&sections())?;
     let mut plant = quantities::blank();
     let tolerances = values::base(&document, &keys, &mut plant)?;
     check_together(&document, &plant)?;
     let effects = effects(&document, &keys.effect, &candidates(plant.chain), &plant)?;
+    let bare = plant.clone();
     for effect in &effects {
         effect.put_into(&mut plant);
     }
     plant.latent = latent::latent(&document, keys.latent.as_ref())?;
+    let known = known::known(&document, keys.known.take(), &plant, &effects)?;
     let (rate, noise) = sensors(&document, &keys, plant.chain)?;
     let pressure_drift = pressure_drift(&document, &keys)?;
     let recordings = recordings(&document, keys.recordings, plant.chain)?;
@@ -110,5 +119,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
         predict: recordings.predict,
         force_ramps: recordings.force_ramps,
         effects,
+        bare,
+        known,
     })
 }

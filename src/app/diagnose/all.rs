@@ -14,6 +14,7 @@ use super::DiagnoseArguments;
 use super::one::{Prepared, complete, is_case};
 use crate::case::is_cell_case;
 use crate::diagnosis::answer::{Answer, Verdict};
+use crate::diagnosis::effort::EffortLimit;
 use crate::replay::LoadedCell;
 
 /// Outcome of a case.
@@ -46,11 +47,12 @@ pub(super) fn run(
         Mutex::new(names.iter().cloned().enumerate().collect());
     let outcomes: Mutex<Vec<(usize, Outcome)>> = Mutex::default();
     let interruptible = Interruptible::of_many(names.len(), "cases are diagnosed", out);
+    let limit = arguments.limit();
     let work = || {
         let next = || locked(&waiting).pop_front();
         while let Some((index, name)) = next() {
             let case = arguments.case.join(&name);
-            let result = caught(|| one(&case, cell, &out.join(&name), standing));
+            let result = caught(|| one(&case, (cell, limit), &out.join(&name), standing));
             if result.is_ok() {
                 interruptible.one_more();
             }
@@ -96,7 +98,7 @@ fn caught(work: impl FnOnce() -> Result<Done, AppError>) -> Result<Done, String>
 
 fn one(
     case: &Path,
-    cell: Option<&LoadedCell>,
+    (cell, limit): (Option<&LoadedCell>, EffortLimit),
     out: &Path,
     standing: Standing,
 ) -> Result<Done, AppError> {
@@ -105,7 +107,7 @@ fn one(
     {
         return Ok(Done { answer, kept: true });
     }
-    let finished = Prepared::new(case, (cell, None), out, standing)?.run(&mut |_| ())?;
+    let finished = Prepared::new(case, (cell, None, limit), out, standing)?.run(&mut |_| ())?;
     Ok(Done {
         answer: finished.answer,
         kept: false,

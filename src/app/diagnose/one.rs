@@ -15,6 +15,7 @@ use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::Comparison;
 use crate::diagnosis::details::DETAILS_SCHEMA;
+use crate::diagnosis::effort::EffortLimit;
 use crate::diagnosis::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::plant::LawText;
@@ -34,6 +35,7 @@ enum Subject {
 /// A case that can be diagnosed, and a folder that its files can go to.
 pub(super) struct Prepared {
     subject: Subject,
+    settings: Settings,
     folder: OutputFolder,
 }
 
@@ -53,7 +55,7 @@ impl Prepared {
     /// Reads rig and recordings and takes a law to be tried, then makes the folder: bad input leaves nothing behind.
     pub(super) fn new(
         folder: &Path,
-        (cell, tried): (Option<&LoadedCell>, Option<LawText>),
+        (cell, tried, limit): (Option<&LoadedCell>, Option<LawText>, EffortLimit),
         out: &Path,
         standing: Standing,
     ) -> Result<Self, AppError> {
@@ -86,6 +88,10 @@ impl Prepared {
         }
         Ok(Self {
             subject,
+            settings: Settings {
+                limit,
+                ..Settings::default()
+            },
             folder: OutputFolder::prepare(out, &NAMES, standing)?,
         })
     }
@@ -130,8 +136,9 @@ impl Prepared {
         case: &Case,
         observer: &mut Observer<'_>,
     ) -> Result<Finished, AppError> {
-        let diagnosed = diagnose(case, &Settings::default(), observer)?;
-        let scene = scene(case, &diagnosed)?;
+        let mut diagnosed = diagnose(case, &self.settings, observer)?;
+        let scene = scene(case, &diagnosed);
+        let scene = diagnosed.answer.kept("the scene of diagnosis.rrd", scene);
         let Diagnosed {
             mut answer,
             improved,
@@ -140,22 +147,24 @@ impl Prepared {
             diagnosis,
             ..
         } = diagnosed;
-        let (mut shape, mut fit) = (None, flange_picture::picture(&answer, &comparison)?);
+        let mut fit = flange_picture::picture(&answer, &comparison);
+        let mut shape = None;
         if let Some(diagnosis) = &diagnosis {
-            shape = picture(diagnosis)?;
-            fit = fit_picture::picture(diagnosis)?;
+            shape = answer.kept("unlisted.svg", picture(diagnosis)).flatten();
+            fit = fit_picture::picture(diagnosis);
             if !diagnosis.best().finds_nothing() {
                 let how = how_to_run(case.cell(), &self.folder.path().join(IMPROVED));
                 answer.details.account.add(SectionKind::HowToRun, vec![how]);
             }
         }
+        let fit = answer.kept("fit.svg", fit).flatten();
         let outputs = Outputs {
             answer,
             improved: &improved,
             prediction: prediction.as_deref(),
             picture: shape.as_deref(),
             fit_picture: fit.as_deref(),
-            scene,
+            scene: scene.flatten(),
             comparison: &comparison,
         };
         outputs.write(&self.folder)

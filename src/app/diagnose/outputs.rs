@@ -72,7 +72,8 @@ pub(super) struct Finished {
 
 impl Outputs<'_> {
     /// Writes all of it.
-    pub(super) fn write(self, folder: &OutputFolder) -> Result<Finished, AppError> {
+    pub(super) fn write(mut self, folder: &OutputFolder) -> Result<Finished, AppError> {
+        self.answer.take_out_what_is_no_number();
         let document = self.answer.text()?;
         let details = &self.answer.details;
         let account = details.account.text(&details.case);

@@ -122,6 +122,16 @@ impl Account {
         }
     }
 
+    /// Adds a remark on the recordings and on what became of them.
+    pub fn remark(&mut self, sentence: &str) {
+        let paragraph = format!("{sentence}.");
+        let of = |section: &&mut AccountSection| section.kind == SectionKind::Recordings;
+        match self.sections.iter_mut().find(of) {
+            Some(section) => section.paragraphs.push(paragraph),
+            None => self.add(SectionKind::Recordings, vec![paragraph]),
+        }
+    }
+
     /// A part of it, if it says anything of that.
     #[must_use]
     pub fn section(&self, kind: SectionKind) -> Option<&AccountSection> {

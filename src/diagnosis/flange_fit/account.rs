@@ -3,11 +3,13 @@
 use super::report::{SimulatedFlange, SimulatedResult, SimulatedRun};
 use crate::quantity::significant;
 
+/// Logarithm of a moving mass over the rig file's from which it is said to be another [1].
+const OTHER_MASS: f64 = 0.1;
 /// Gain from which a log overshoots [1].
 const OVERSHOOTS: f64 = 1.05;
 
 /// The fitted flange, and what it gives of the runs that it was fitted to.
-pub(in super::super) fn simulated(flange: &SimulatedFlange) -> Vec<String> {
+pub(in super::super) fn simulated(flange: &SimulatedFlange, mass: f64) -> Vec<String> {
     let of = |name: &str| {
         let found = flange.numbers.iter().find(|number| number.name == name);
         found.map_or(f64::NAN, |number| number.value)
@@ -28,6 +30,7 @@ pub(in super::super) fn simulated(flange: &SimulatedFlange) -> Vec<String> {
         number("valve_time_s", 1e3),
         flange.solutions,
     )];
+    paragraphs.extend(other_mass(flange, mass));
     if flange.reading_gain > OVERSHOOTS {
         paragraphs.push(format!(
             "The log has the force read {} times a second behind two lags that overshoot: a step of the force first reads {} times as large. Peaks of the log are no peaks of the force.",
@@ -40,13 +43,39 @@ pub(in super::super) fn simulated(flange: &SimulatedFlange) -> Vec<String> {
     paragraphs
 }
 
+/// That the moving mass is another than the rig file's [kg], where it is.
+fn other_mass(flange: &SimulatedFlange, mass: f64) -> Option<String> {
+    let own = flange
+        .numbers
+        .iter()
+        .find(|number| number.name == "moving_mass_kg")?;
+    let [low, high] = own.interval?;
+    if (own.value / mass).ln().abs() < OTHER_MASS {
+        return None;
+    }
+    let holds = match (low..=high).contains(&mass) {
+        true => "the interval holds that of the rig file too",
+        false => {
+            "the rig file's lies outside: something moves with the slide that it does not count, or the simulation puts into the mass what it lacks elsewhere"
+        }
+    };
+    Some(format!(
+        "The moving mass comes to {} kg ({} to {}), {} times the {} kg of the rig file; {holds}.",
+        significant(own.value, 2),
+        significant(low, 2),
+        significant(high, 2),
+        significant(own.value / mass, 2),
+        significant(mass, 3),
+    ))
+}
+
 /// What it predicts of runs that it never saw.
 pub(in super::super) fn unseen(flange: &SimulatedFlange) -> Vec<String> {
     let unseen = flange.runs.iter().filter(|run| !run.fitted);
     unseen
         .map(|run| {
             format!(
-                "{}, by the simulation: {}. Least and largest are over the fits that count and the instants of reading.",
+                "{}, by the simulation: {}. Intervals are those of 90 %, from what the fits leave open and from how far each fitted run is from what the others say of it.",
                 run.recording,
                 beside(run)
             )

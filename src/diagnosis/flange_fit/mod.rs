@@ -8,6 +8,7 @@ mod course;
 mod prediction;
 pub mod report;
 mod residuals;
+mod scatter;
 mod sliding;
 mod solve;
 
@@ -16,6 +17,7 @@ use crate::plant::flange::{FlangeModel, Ripple};
 use prediction::{Logged, predict_run};
 use report::{FittedNumber, SimulatedFlange, SimulatedRun};
 use residuals::Targets;
+use scatter::{scatter, with_interval};
 use solve::Solution;
 
 /// Runs that are fitted to at most: the time grows with them.
@@ -53,6 +55,7 @@ pub fn fit_flange(
     let best = solutions.first()?;
     let models: Vec<FlangeModel> = solutions.iter().map(|s| s.model).collect();
     let ripple = sliding::ripple(&best.model, &logged[..targets.len()]);
+    let scatter = scatter(best, (&targets, &logged[..targets.len()]), mass, ripple);
     let (mut runs, mut forces) = (Vec::new(), Vec::new());
     for (index, run) in logged.iter().enumerate() {
         let Some(made) = predict_run(&models, ripple, run) else {
@@ -64,10 +67,10 @@ pub fn fit_flange(
             fitted: index < targets.len(),
             force_before_n: run.course.course.before,
             force_ramp_s: run.course.course.ramp,
-            peak_n: made.peak,
-            ringing_hz: made.ringing,
-            settling_s: made.settling,
-            sliding_spread_n: made.spread,
+            peak_n: with_interval(made.peak, scatter[0]),
+            ringing_hz: with_interval(made.ringing, scatter[1]),
+            settling_s: with_interval(made.settling, scatter[2]),
+            sliding_spread_n: made.spread.map(|spread| with_interval(spread, scatter[3])),
         });
         forces.push(Some((run.first, made.force)));
     }

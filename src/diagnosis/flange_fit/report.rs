@@ -58,9 +58,9 @@ pub struct SimulatedResult {
     pub recorded: f64,
     /// As simulated; the median over instants of reading and solutions.
     pub simulated: f64,
-    /// Least of these.
+    /// Lower end of its 90 % interval: what the fits leave open, and how far each fitted run is from what the others say of it.
     pub low: f64,
-    /// Largest of these.
+    /// Upper end.
     pub high: f64,
 }
 

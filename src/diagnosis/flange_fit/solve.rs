@@ -88,6 +88,17 @@ pub(super) fn solutions(targets: &[Targets], mass: f64) -> Vec<Solution> {
     found.into_iter().map(|(_, solution)| solution).collect()
 }
 
+/// Goes on from a flange with a fit to other runs.
+pub(super) fn refitted(targets: &[Targets], mass: f64, from: &FlangeModel) -> Solution {
+    let problem = Problem::new(targets, mass);
+    let numbers = from.numbers();
+    let mut x: Vec<f64> = (0..FLANGE_NUMBERS)
+        .map(|i| (numbers[i] / problem.usual[i]).ln() / USUAL[i].1)
+        .collect();
+    x.resize(FLANGE_NUMBERS + targets.len(), 0.0);
+    problem.followed(problem.place(x))
+}
+
 struct Problem<'a> {
     targets: &'a [Targets],
     usual: [f64; FLANGE_NUMBERS],

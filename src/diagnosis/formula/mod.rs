@@ -101,7 +101,8 @@ impl Search<'_> {
                 let here = &curve.fit.prediction.plant;
                 let beside: Vec<Free> =
                     (base.fit.free.iter().map(|f| f.from_where(here))).collect();
-                self.with_formula(base, &beside, candidate, ROUGH_ITERATIONS)
+                let fitted = self.with_formula(base, &beside, candidate, ROUGH_ITERATIONS);
+                fitted.without_columns()
             })
             .collect();
         for ((promised, ..), hypothesis) in promising.iter().zip(&fitted) {
@@ -113,12 +114,18 @@ impl Search<'_> {
             observer(&Step::Variation.of(hypothesis, detail));
         }
         self.sort_by_cost(&mut fitted);
+        if self.is_spent() {
+            fitted.truncate(1);
+        }
         let unexplained = |h: &&mut Hypothesis| h.fit.rough > noise;
         for leading in fitted.iter_mut().take(IN_FULL).filter(unexplained) {
+            if self.is_spent() {
+                break;
+            }
             self.widen(leading, (ROUGH, ROUGH_ITERATIONS), |fit| fit.rough);
         }
         self.sort_by_cost(&mut fitted);
-        if fitted.first().is_some_and(|best| best.fit.rough > noise) {
+        if fitted.first().is_some_and(|best| best.fit.rough > noise) && !self.is_spent() {
             self.add_products(base, &mut fitted, observer);
         }
         let Some(best) = fitted.first() else {
@@ -128,7 +135,7 @@ impl Search<'_> {
         let near = FAR * self.latent_score(best).max(noise);
         let mut full: Vec<Hypothesis> = Vec::new();
         for h in fitted.iter().take(IN_FULL) {
-            if self.latent_score(h) < near {
+            if self.latent_score(h) < near && (full.is_empty() || !self.is_spent()) {
                 full.push(self.formula_in_full(h, &full));
             }
         }
@@ -136,6 +143,7 @@ impl Search<'_> {
         let hopeless = HOPELESS * self.evidence.count() as f64;
         if let Some(best) = full.first_mut()
             && best.fit.cost() < hopeless
+            && !self.is_spent()
             && !scale.is_adequate(best)
         {
             self.widen(best, (FULL, FULL_ITERATIONS), Fit::cost);
@@ -324,14 +332,18 @@ impl Search<'_> {
                 let here = &leading.fit.prediction.plant;
                 let beside: Vec<Free> =
                     (base.fit.free.iter().map(|f| f.from_where(here))).collect();
-                self.with_formula(base, &beside, product, LOOK)
+                let fitted = self.with_formula(base, &beside, product, LOOK);
+                fitted.without_columns()
             })
             .collect();
         self.sort_by_cost(&mut looked);
         looked.truncate(IN_FULL);
         let gone_on: Vec<Hypothesis> = looked
             .par_iter()
-            .map(|h| self.refit(h, going_on(ROUGH, ROUGH_ITERATIONS)))
+            .map(|h| {
+                self.refit(h, going_on(ROUGH, ROUGH_ITERATIONS))
+                    .without_columns()
+            })
             .collect();
         for h in &gone_on {
             let detail = format!("{} {:.0}", text(h), self.latent_score(h));

@@ -51,7 +51,9 @@ impl Search<'_> {
         rough: &[Hypothesis],
         observer: &mut Observer<'_>,
     ) {
-        let Some(best) = full.first() else { return };
+        let Some(best) = full.first().filter(|_| !self.is_spent()) else {
+            return;
+        };
         let has_term = best.unlisted().is_some();
         let plainer = |h: &&Hypothesis| {
             !has_term
@@ -152,7 +154,8 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) {
-        let Some(best) = full.first().filter(|best| scale.is_explained(best)) else {
+        let reached = |best: &&Hypothesis| scale.is_explained(best) && !self.is_spent();
+        let Some(best) = full.first().filter(reached) else {
             return;
         };
         let limit = self.rough_reference(best, rough) - 2.0 * self.settings.least_odds.ln();
@@ -164,6 +167,7 @@ impl Search<'_> {
             .collect();
         close.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         let more: Vec<Hypothesis> = (close.into_iter().take(MOST_CLOSE))
+            .take_while(|_| !self.is_spent())
             .map(|h| self.rival(h, self.score(best)))
             .collect();
         for h in &more {
@@ -261,7 +265,7 @@ impl Search<'_> {
         );
         // In a cell a curve costs minutes.
         let in_cell = (self.evidence.recordings.iter()).any(|r| r.inputs.cell.is_some());
-        let asks = !in_cell && !climb.asked.contains(&none.names());
+        let asks = !in_cell && !climb.asked.contains(&none.names()) && !self.is_spent();
         let Some(single) = single.filter(|_| asks) else {
             return;
         };
@@ -297,6 +301,9 @@ impl Search<'_> {
         });
         bases.retain(|h| !asked.contains(&h.names()));
         for base in bases.into_iter().take(MOST_BASES) {
+            if self.is_spent() {
+                break;
+            }
             asked.push(base.names());
             let found = self.adequate_formulas(base, best.fit.rough, scale, observer);
             if !found.is_empty() {
@@ -319,17 +326,18 @@ impl Search<'_> {
         if scale.is_adequate(best)
             || best.unlisted().is_some()
             || self.believed.chain != Chain::Whole
+            || self.is_spent()
         {
             return;
         }
         let rival = best.fit.rough;
         let mut found = self.beside_fewer(best, (rough, asked), scale, observer);
-        if found.is_empty() && !scale.is_explained(best) {
+        if found.is_empty() && !scale.is_explained(best) && !self.is_spent() {
             found = self.adequate_formulas(best, rival, scale, observer);
         }
-        if found.is_empty() && !scale.is_explained(best) {
+        if found.is_empty() && !scale.is_explained(best) && !self.is_spent() {
             found = self.latent(unexplained, rival, scale, observer);
-            if scale.is_half_explained(best) {
+            if scale.is_half_explained(best) && !self.is_spent() {
                 found.extend(self.latent(best, rival, scale, observer));
             }
             found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
@@ -364,7 +372,9 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) {
-        let Some(formula) = found.first() else { return };
+        let Some(formula) = found.first().filter(|_| !self.is_spent()) else {
+            return;
+        };
         let from = self.where_its_term_was(formula);
         let most = self.settings.far_behind * self.left_alone(scale);
         let mut named = self.screen(&from, ROUGH, most);
@@ -435,6 +445,7 @@ impl Search<'_> {
         while let Some(best) = full.first()
             && best.effects.len() > self.shown.len()
             && best.unlisted().is_none()
+            && !self.is_spent()
         {
             let score = self.score(best);
             // Beside a model error a fit from another minimum says nothing new.
@@ -531,6 +542,7 @@ impl Search<'_> {
         while let Some(best) = full.first()
             && best.unlisted().is_none()
             && self.believed.chain == Chain::Whole
+            && !self.is_spent()
         {
             let own = self.shown.len()..best.effects.len();
             let sizes = own.map(|index| (index, self.influence(best, index)));
@@ -606,6 +618,7 @@ impl Search<'_> {
         while let Some(best) = full.first()
             && best.effects.len() < self.most_effects + self.shown.len()
             && (scale.is_adequate(best) || best.fit.rough - noise < scale.rough_spread())
+            && !self.is_spent()
         {
             let score = self.score(best);
             let least = scale.material_in_full(best.fit.cost());

@@ -142,6 +142,7 @@ mod tests {
             look: 1,
             most_effects: 1,
             model_error: ModelError::NONE,
+            unseen: None,
             settings: Settings::DEFAULT,
         };
         let joint = search.refit(&search.baseline(), Refit::FULL);

@@ -373,6 +373,7 @@ mod tests {
             look: 3,
             most_effects: 1,
             model_error: ModelError::NONE,
+            unseen: None,
             settings: Settings::DEFAULT,
         };
         let mut with_term = plant();
@@ -426,6 +427,7 @@ mod tests {
             look: 3,
             most_effects: 1,
             model_error: ModelError::NONE,
+            unseen: None,
             settings: Settings::DEFAULT,
         };
         let screened = search.screen(&search.baseline(), ROUGH, f64::INFINITY);

@@ -148,6 +148,12 @@ impl LawText {
         values
     }
 
+    /// Whether it has a value at a moment, of values of its constants, the first ones at least.
+    pub fn is_finite_at(&self, moment: &Moment, constants: &[f64]) -> bool {
+        let values = self.named_values(moment, constants);
+        self.expression.check_finite(&values).is_ok()
+    }
+
     /// Checks that it is finite at a moment, whatever its constants are within their ranges: as they are written, and each alone at its ends.
     ///
     /// # Errors

@@ -4,18 +4,31 @@ use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
 use super::super::check::plain;
 use super::super::effects::{WrittenEffect, append, as_written, remove_effects};
-use super::{RigFile, latent};
+use super::{Known, RigFile, known, latent};
 use crate::plant::Latent;
 
-/// Text of the improved file. `tolerated` are key (as in [`super::Tolerance`]), value, low and high of what was moved; what is not among them stands as it did.
-/// `effects` and `unnamed` are all that the improved rig has.
+/// What an improved file has beyond the believed one.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Improved<'a> {
+    /// Key (as in [`super::Tolerance`]), value, low and high of what was moved; what is not among them stands as it did.
+    pub tolerated: &'a [(&'a str, f64, f64, f64)],
+    /// All effects of the improved rig.
+    pub effects: &'a [WrittenEffect<'a>],
+    /// Its term without a name.
+    pub unnamed: Option<&'a Latent>,
+    /// How sure all of that is.
+    pub known: Option<&'a Known>,
+}
+
+/// Text of the improved file.
 #[must_use]
-pub fn improved_text(
-    rig: &RigFile,
-    tolerated: &[(&str, f64, f64, f64)],
-    effects: &[WrittenEffect<'_>],
-    unnamed: Option<&Latent>,
-) -> String {
+pub fn improved_text(rig: &RigFile, improved: &Improved<'_>) -> String {
+    let Improved {
+        tolerated,
+        effects,
+        unnamed,
+        known,
+    } = *improved;
     let mut document: DocumentMut = rig
         .text
         .parse()
@@ -29,6 +42,7 @@ pub fn improved_text(
         remove_effects(&mut document);
     }
     document.remove(latent::TABLE);
+    document.remove(known::TABLE);
     let mut text = document.to_string();
     if !text.ends_with('\n') {
         text.push('\n');
@@ -38,6 +52,9 @@ pub fn improved_text(
     }
     if let Some(unnamed) = unnamed {
         text.push_str(&latent::text(unnamed));
+    }
+    if let Some(known) = known {
+        text.push_str(&known::text(known));
     }
     text
 }

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::super::sections::keys;
 use super::entry::Entry;
+use super::known::KnownKeys;
 use super::number::{Number, NumberKeys};
 use super::quantities::{Described, described_numbers};
 
@@ -40,6 +41,7 @@ pub(super) struct RigKeys {
     #[serde(default)]
     pub effect: super::super::effects::EffectKeys,
     pub latent: Option<BTreeMap<String, Entry>>,
+    pub known: Option<KnownKeys>,
 }
 
 /// `[rig]`: how much of the device there is.
@@ -102,6 +104,7 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("", keys::<RigKeys>()),
         ("rig", keys::<PartKeys>()),
         ("recordings", keys::<RecordingsKeys>()),
+        ("known", keys::<KnownKeys>()),
         ("recordings.force_ramp", keys::<ForceRampKeys>()),
     ];
     sections.extend(TABLES.iter().map(|(table, keys)| (*table, &keys[..])));

@@ -253,7 +253,7 @@ pub(super) fn text(latent: &Latent) -> String {
 }
 
 /// A number that TOML reads as one with a fraction, so that a list holds numbers of one kind.
-fn float(text: &str) -> String {
+pub(super) fn float(text: &str) -> String {
     if text.contains(['.', 'e', 'E']) {
         text.to_owned()
     } else {

@@ -400,7 +400,14 @@ fn an_improved_file_reads_back_as_the_rig_that_was_found() {
             parameter.quantity.set(&mut expected, value);
         }
     }
-    let text = improved_text(&rig, &tolerated, &found, None);
+    let text = improved_text(
+        &rig,
+        &Improved {
+            tolerated: &tolerated,
+            effects: &found,
+            ..Improved::default()
+        },
+    );
     let improved = read(&text);
     assert_eq!(improved.plant, expected);
     assert_ne!(improved.plant, rig.plant);
@@ -410,7 +417,7 @@ fn an_improved_file_reads_back_as_the_rig_that_was_found() {
     assert_eq!(mass.key, "cylinder.moving_mass_kg");
     assert!((mass.tolerance - 0.0122).abs() < 1e-4, "{}", mass.tolerance);
     // Once more, with nothing found: the effects go, what else was found stays.
-    let again = read(&improved_text(&read(&text), &[], &[], None));
+    let again = read(&improved_text(&read(&text), &Improved::default()));
     assert!(again.effects.is_empty());
     assert_eq!(again.tolerances[1].value, mass.value);
 }
@@ -450,8 +457,18 @@ coulomb_force_n = { value = 13.2, low = 12.8, high = 13.6 }
 viscous_coefficient_n_s_per_m = 90.1234568
 presliding_displacement_m = 4.12345679e-5
 ";
-    assert_eq!(improved_text(&rig, &moved, &[friction], None), expected);
-    assert_eq!(improved_text(&rig, &[], &[], None), RIG);
+    assert_eq!(
+        improved_text(
+            &rig,
+            &Improved {
+                tolerated: &moved,
+                effects: &[friction],
+                ..Improved::default()
+            }
+        ),
+        expected
+    );
+    assert_eq!(improved_text(&rig, &Improved::default()), RIG);
 }
 
 /// Terms of either kind, in numbers as a file holds them.
@@ -488,17 +505,29 @@ fn terms() -> [Latent; 3] {
 fn a_term_without_a_name_reads_back_as_it_was_found() {
     let rig = read(RIG);
     for term in terms() {
-        let text = improved_text(&rig, &[], &[], Some(&term));
+        let text = improved_text(
+            &rig,
+            &Improved {
+                unnamed: Some(&term),
+                ..Improved::default()
+            },
+        );
         let mut expected = rig.plant.clone();
         expected.latent = Some(term);
         assert_eq!(read(&text).plant, expected, "{text}");
         // A file with a term in place of which another is found has that one alone.
-        let none = improved_text(&read(&text), &[], &[], None);
+        let none = improved_text(&read(&text), &Improved::default());
         assert_eq!(read(&none).plant, rig.plant);
     }
     let mut ragged = terms()[0].clone();
     ragged.coefficients[1] = -31.234_600_000_004;
-    let text = improved_text(&rig, &[], &[], Some(&ragged));
+    let text = improved_text(
+        &rig,
+        &Improved {
+            unnamed: Some(&ragged),
+            ..Improved::default()
+        },
+    );
     assert_eq!(read(&text).plant.latent, Some(terms()[0].clone()));
     assert!(text.ends_with(
         "[latent]\nport = \"piston_force\"\nvariable = \"stroke_m\"\ndirected = true\nfrom_m = 0.0123457\nto_m = 0.0234568\nvalue_n = [0.0, -31.2346, 4.0, 1.5e-7]\n"
@@ -507,7 +536,15 @@ fn a_term_without_a_name_reads_back_as_it_was_found() {
 
 #[test]
 fn a_term_that_is_not_right_is_refused_by_its_key() {
-    let [hats, _, waves] = terms().map(|term| improved_text(&read(RIG), &[], &[], Some(&term)));
+    let [hats, _, waves] = terms().map(|term| {
+        improved_text(
+            &read(RIG),
+            &Improved {
+                unnamed: Some(&term),
+                ..Improved::default()
+            },
+        )
+    });
     let says = |text: &str, right: &str, wrong: &str, expected: &str| {
         assert!(text.contains(right), "{text}");
         let text = text.replace(right, wrong);

@@ -39,6 +39,10 @@ pub fn schema() -> Value {
         "latent".to_owned(),
         json!({ "type": "object", "description": "Physics that no known effect explains, as a diagnosis writes it." }),
     );
+    tables.insert(
+        "known".to_owned(),
+        json!({ "type": "object", "description": "How sure a diagnosis is of the numbers and predictions, and what its recordings covered, as it writes it." }),
+    );
     json!({
         "$schema": DIALECT,
         "title": "A rig file of idc: a device, its contact and its sensors as their owner believes them to be, in SI",
