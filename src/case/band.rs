@@ -186,3 +186,75 @@ impl Predicted {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::ground::tests::{regulator, steps};
+    use super::*;
+    use std::collections::BTreeMap;
+
+    /// In the steady state the outlet is the gain times the set pressure.
+    #[test]
+    fn a_band_is_that_of_noise_and_numbers() {
+        let predicted = predicted_by(&regulator(), &steps(&[2e5, 2e5]));
+        let half = |i: usize| 0.5 * (predicted.high[0][i] - predicted.low[0][i]);
+        let expected = NORMAL_90 * 400f64.hypot(2e5 * 0.1 / EVEN);
+        assert!(
+            (half(199) / expected - 1.0).abs() < 1e-3,
+            "{} {expected}",
+            half(199)
+        );
+        assert!(
+            (half(0) / (NORMAL_90 * 400.0) - 1.0).abs() < 1e-3,
+            "{}",
+            half(0)
+        );
+        assert!(predicted.unknown.is_empty());
+    }
+
+    /// Two numbers that move the outlet alike and are known to be opposite leave it alone.
+    #[test]
+    fn correlations_count() {
+        let rig = regulator();
+        let gain = rig.tolerances[0].quantity;
+        let with = |correlation: f64| Known {
+            numbers: vec![("a".to_owned(), gain, 0.05), ("b".to_owned(), gain, 0.05)],
+            correlations: vec![correlation],
+            ..as_the_sheet_says(&rig)
+        };
+        let half = |known: &Known| {
+            let found = predicted((&rig.plant, &rig.bare), known, &steps(&[2e5, 2e5]));
+            0.5 * (found.high[0][199] - found.low[0][199]) / NORMAL_90
+        };
+        assert!(half(&with(1.0)) > half(&with(0.0)));
+        assert!(half(&with(0.0)) > half(&with(-0.99)));
+    }
+
+    #[test]
+    fn on_unknown_ground_the_model_without_what_was_found_lies_in_the_band() {
+        let rig = regulator();
+        let mut bare = rig.plant.clone();
+        rig.tolerances[0].quantity.set(&mut bare, 0.8);
+        let known = Known {
+            covered: BTreeMap::from([("outlet_pa".to_owned(), vec![0.0, 1e5])]),
+            ..as_the_sheet_says(&rig)
+        };
+        let found = predicted((&rig.plant, &bare), &known, &steps(&[1e5, 3e5]));
+        assert!(!found.is_unknown[90] && found.is_unknown[199]);
+        assert!(found.low[0][199] < 0.8 * 3e5, "{}", found.low[0][199]);
+        let names: Vec<String> = found
+            .columns(&[("regulator_pressure_pa", &found.readings[0])])
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect();
+        assert_eq!(
+            names,
+            [
+                "regulator_pressure_pa",
+                "regulator_pressure_pa_low",
+                "regulator_pressure_pa_high",
+                "known_ground"
+            ]
+        );
+    }
+}

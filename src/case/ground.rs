@@ -1,7 +1,7 @@
 //! Known ground: what recordings took a rig through, and where a prediction leaves it.
 //!
-//! Ranges of states and inputs, and planes of two of them: of a speed over the stroke, a step at the regulator over its outlet, the speed of the surface over
-//! the force. A plane knows another direction, a longer step or one that begins elsewhere, where each range by itself has seen its values.
+//! Ranges of states and inputs, and planes of two of them: of the speed over the stroke, and of what the regulator has still to follow over its outlet. A plane
+//! knows another direction, a longer step or one that begins elsewhere, where each range by itself has seen its values.
 
 use std::collections::BTreeMap;
 
@@ -9,24 +9,23 @@ use crate::diagnosis::details::UnknownGround;
 use crate::plant::{PlantInputs, PlantParameters, Trajectory, simulate};
 
 /// What there is at a sample, by name.
-const SERIES: [&str; 8] = [
+const SERIES: [&str; 7] = [
     "outlet_pa",
     "set_less_outlet_pa",
     "stroke_m",
     "speed_m_per_s",
     "force_n",
     "surface_rate_m_per_s",
-    "chamber_1_pa",
-    "chamber_2_pa",
+    "set_pressure_pa",
 ];
 /// Planes: one over another, by their places among the series.
-const PLANES: [(usize, usize); 3] = [(1, 0), (3, 2), (5, 4)];
+const PLANES: [(usize, usize); 2] = [(1, 0), (3, 2)];
 /// Parts of the range of what a plane is over.
 const PARTS: usize = 8;
 /// Share of its range by which a value may lie beyond it and still be known [1].
-const MARGIN: f64 = 0.1;
+const MARGIN: f64 = 0.25;
 /// The same of a plane: its parts are coarse [1].
-const PLANE_MARGIN: f64 = 0.2;
+const PLANE_MARGIN: f64 = 0.3;
 /// Time for which a rig that left known ground is not back on it [s].
 const LASTS: f64 = 0.1;
 /// Name of the longest time.
@@ -49,8 +48,7 @@ fn series(inputs: &PlantInputs, truth: &Trajectory) -> Values {
         of(&|i| truth.speed[i]),
         of(&|i| truth.contact_force[i]),
         of(&rate),
-        of(&|i| truth.pressures[0][i]),
-        of(&|i| truth.pressures[1][i]),
+        set.clone(),
     ]
 }
 
@@ -206,4 +204,73 @@ fn spans(time: &[f64], beyond: &dyn Fn(usize) -> Option<[f64; 2]>) -> Vec<std::o
     }
     found.retain(|span| span.len() > 1);
     found
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::plant::InitialState;
+    use crate::scenario::rig_file::{RigFile, from_text};
+    use std::path::Path;
+
+    /// A regulator whose gain is known to a tenth.
+    pub fn regulator() -> RigFile {
+        let text = "schema = 2\n[rig]\nchain = \"regulator\"\n[regulator]\ngain = { value = 1.0, tolerance = 0.1 }\ntime_constant_s = 0.1\n[sensors]\nrate_hz = 100\nregulator_pressure_pa = 400.0\n[recordings]\nfit = [\"a.csv\"]\n";
+        from_text(Path::new("rig.toml"), text).unwrap()
+    }
+
+    /// A second at each of some set pressures [Pa gauge].
+    pub fn steps(levels: &[f64]) -> PlantInputs {
+        let set_pressure: Vec<f64> = levels.iter().flat_map(|level| [*level; 100]).collect();
+        let count = set_pressure.len();
+        PlantInputs {
+            cell: None,
+            motion: None,
+            initial: InitialState::AtRest,
+            place: 0,
+            set_pressure,
+            extends: vec![true; count],
+            surface: vec![f64::NAN; count],
+            time: (0..count).map(|i| 0.01 * i as f64).collect(),
+        }
+    }
+
+    fn leaves(inputs: &PlantInputs) -> Vec<String> {
+        let plant = regulator().plant;
+        let fitted = steps(&[0.0, 1e5, 0.0, 2e5, 1e5, 0.0]);
+        let truth = simulate(&plant, &fitted).truth;
+        let covered = covered(std::iter::once((&fitted, &truth)));
+        let (flags, found) = unknown(&covered, &plant, inputs);
+        assert_eq!(flags.contains(&true), !found.is_empty());
+        let mut names: Vec<String> = found.into_iter().map(|ground| ground.variable).collect();
+        names.dedup();
+        names
+    }
+
+    #[test]
+    fn what_was_covered_is_known_and_what_leaves_it_is_not() {
+        assert!(leaves(&steps(&[0.0, 1e5, 0.0, 2e5, 1e5, 0.0])).is_empty());
+        assert!(leaves(&steps(&[0.0, 1.1e5, 0.0])).is_empty());
+        assert!(leaves(&steps(&[0.0, 4e5])).contains(&"outlet_pa".to_owned()));
+        assert_eq!(leaves(&steps(&[0.0; 9])), [DURATION]);
+    }
+
+    /// Large steps were seen both ways, and at a high outlet none downwards.
+    #[test]
+    fn a_step_from_where_none_began_is_unknown_ground() {
+        let plane = name_of(PLANES[0]);
+        let parts = [-1e5, 4e5].repeat(PARTS);
+        let covered = BTreeMap::from([
+            ("outlet_pa".to_owned(), vec![0.0, 4e5]),
+            ("set_less_outlet_pa".to_owned(), vec![-4e5, 4e5]),
+            (plane.clone(), parts),
+        ]);
+        let plant = regulator().plant;
+        let names = |levels: &[f64]| -> Vec<String> {
+            let (_, found) = unknown(&covered, &plant, &steps(levels));
+            found.into_iter().map(|ground| ground.variable).collect()
+        };
+        assert_eq!(names(&[0.0, 4e5, 0.0]), [plane]);
+        assert!(names(&[0.0, 4e5, 3e5]).is_empty());
+    }
 }
