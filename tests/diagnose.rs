@@ -1,5 +1,6 @@
 //! `idc diagnose`: planted physics is found, nothing is found in nothing, dirt does no harm, and what is wrong with a case is one line.
 
+mod effort;
 pub mod planted;
 mod tried;
 mod unlisted;
