@@ -76,25 +76,7 @@ impl Search<'_> {
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
         let noise = self.left_alone(scale);
-        let mut promising: Vec<(f64, &Hypothesis, Candidate)> = Vec::new();
-        for curve in curves {
-            let mut own = self.matches(curve);
-            own.sort_by(|a, b| a.promised.total_cmp(&b.promised));
-            // Polynomials beside them: a form with thresholds may bend to what a curve is wrong by.
-            let mut polynomials = 0;
-            let mut place = 0;
-            own.retain(|one| {
-                place += 1;
-                polynomials += usize::from(one.is_polynomial);
-                place <= OF_ONE_CURVE || (one.is_polynomial && polynomials <= POLYNOMIALS)
-            });
-            let own = own.into_iter();
-            promising.extend(own.map(|one| (one.promised, curve, one.candidate)));
-        }
-        promising.sort_by(|a, b| a.0.total_cmp(&b.0));
-        promising.truncate(FITTED);
-        let least = promising.first().map_or(0.0, |(promised, ..)| *promised);
-        promising.retain(|(promised, ..)| *promised <= UNPROMISING * least);
+        let promising = self.most_promising(curves);
         let mut fitted: Vec<Hypothesis> = promising
             .par_iter()
             .map(|(_, curve, candidate)| {
@@ -153,6 +135,33 @@ impl Search<'_> {
             observer(&Step::Variation.of(h, detail));
         }
         full
+    }
+
+    /// Formulas that promise most over the variables of some curves, with the curve that points at each.
+    fn most_promising<'h>(
+        &self,
+        curves: &'h [Hypothesis],
+    ) -> Vec<(f64, &'h Hypothesis, Candidate)> {
+        let mut promising: Vec<(f64, &'h Hypothesis, Candidate)> = Vec::new();
+        for curve in curves {
+            let mut own = self.matches(curve);
+            own.sort_by(|a, b| a.promised.total_cmp(&b.promised));
+            // Polynomials beside them: a form with thresholds may bend to what a curve is wrong by.
+            let mut polynomials = 0;
+            let mut place = 0;
+            own.retain(|one| {
+                place += 1;
+                polynomials += usize::from(one.is_polynomial);
+                place <= OF_ONE_CURVE || (one.is_polynomial && polynomials <= POLYNOMIALS)
+            });
+            let own = own.into_iter();
+            promising.extend(own.map(|one| (one.promised, curve, one.candidate)));
+        }
+        promising.sort_by(|a, b| a.0.total_cmp(&b.0));
+        promising.truncate(FITTED);
+        let least = promising.first().map_or(0.0, |(promised, ..)| *promised);
+        promising.retain(|(promised, ..)| *promised <= UNPROMISING * least);
+        promising
     }
 
     /// A formula fitted in full; one that is hopelessly behind others before the finest measure is left there.
