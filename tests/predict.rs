@@ -121,17 +121,27 @@ fn predict(bench: &Bench) -> Outcome {
     )
 }
 
-/// Columns of the prediction: time, regulator pressure, stroke, force, acceleration.
+/// Columns of the prediction: time, regulator pressure, stroke, force, acceleration. Each lies within its band, on ground that is known as long as nobody says what is not.
 fn columns(bench: &Bench) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(bench.path("out.csv")).unwrap();
     let (header, rows) = text.split_once('\n').unwrap();
-    assert_eq!(
-        header,
-        "time_s,regulator_pressure_pa,stroke_m,force_n,acceleration_m_per_s2"
-    );
-    rows.lines()
-        .map(|row| row.split(',').map(|field| field.parse().unwrap()).collect())
-        .collect()
+    let channels = "regulator_pressure_pa,stroke_m,force_n,acceleration_m_per_s2";
+    let bands = channels
+        .split(',')
+        .flat_map(|c| [format!("{c}_low"), format!("{c}_high")]);
+    let bands = bands.collect::<Vec<String>>().join(",");
+    assert_eq!(header, format!("time_s,{channels},{bands},known_ground"));
+    let row = |row: &str| -> Vec<f64> {
+        let mut all: Vec<f64> = row.split(',').map(|field| field.parse().unwrap()).collect();
+        for channel in 0..4 {
+            let [low, high] = [5, 6].map(|place| all[place + 2 * channel]);
+            assert!(low < all[1 + channel] && all[1 + channel] < high, "{row}");
+        }
+        assert_eq!(all[13], 1.0);
+        all.truncate(5);
+        all
+    };
+    rows.lines().map(row).collect()
 }
 
 #[test]

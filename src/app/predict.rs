@@ -27,7 +27,7 @@ pub(super) struct PredictArguments {
     rig: PathBuf,
     /// Recording whose inputs drive the rig; what it holds of measured columns is compared.
     inputs: PathBuf,
-    /// File for the predicted columns.
+    /// File for the predicted columns with their 90 % bands.
     #[arg(long, default_value = "prediction.csv", help_heading = "Output")]
     out: PathBuf,
     /// Put new results in place of old ones.

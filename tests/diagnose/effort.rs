@@ -60,11 +60,11 @@ fn a_limit_that_is_none_is_refused_in_one_line() {
     let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", OFFSET, Dirt::None);
     for (limit, expected) in [
-        (["--limit", "12"], "a time above zero with its unit"),
-        (["--limit", "-3s"], "a time above zero with its unit"),
-        (["--effort", "0"], "0 is not in 1.."),
+        ("--limit=12", "a time above zero with its unit"),
+        ("--limit=-3s", "a time above zero with its unit"),
+        ("--effort=0", "1.."),
     ] {
-        let outcome = diagnose(&bench, &[&["case", "--out", "out"], &limit[..]].concat());
+        let outcome = diagnose(&bench, &["case", "--out", "out", limit]);
         assert_eq!(outcome.code, 2, "{}", outcome.err);
         assert!(outcome.err.contains(expected), "{}", outcome.err);
     }
