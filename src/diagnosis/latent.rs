@@ -460,21 +460,12 @@ impl Search<'_> {
 
     /// A second look at coarse curves, with as many knots as there may be.
     fn looked_at(&self, base: &Hypothesis, coarse: &[Hypothesis]) -> Vec<Hypothesis> {
-        let noise = rough_noise(self.evidence);
-        let left = |h: &Hypothesis| (self.latent_score(h) - noise).max(0.0);
-        // A step with what was free before moving as it did: those that fall behind get no more.
-        let first = |coarse: &Hypothesis| match coarse.unlisted().and_then(refined) {
-            Some(fine) => self.with_latent(base, &fine, &base.fit.columns, 1),
-            None => self.refit(coarse, curve(ROUGH, 1)),
+        let look = |coarse: &Hypothesis| match coarse.unlisted().and_then(refined) {
+            Some(fine) => self.with_latent(base, &fine, &[], LOOK),
+            None => self.refit(coarse, curve(ROUGH, LOOK)),
         };
-        let first = |coarse: &Hypothesis| first(coarse).without_columns();
-        let mut looked: Vec<Hypothesis> = coarse.par_iter().map(first).collect();
-        self.sort_by_cost(&mut looked);
-        let near = NEAR * looked.first().map_or(0.0, left);
-        looked.truncate(FITTED);
-        looked.retain(|h| left(h) <= near);
-        let on = |h: &Hypothesis| self.refit(h, curve(ROUGH, LOOK - 1)).without_columns();
-        looked.par_iter().map(on).collect()
+        let look = |coarse: &Hypothesis| look(coarse).without_columns();
+        coarse.par_iter().map(look).collect()
     }
 
     /// Goes on with the leading curves: what acts at one place of the stroke takes more steps than what acts all along it.
