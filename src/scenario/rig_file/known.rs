@@ -23,7 +23,9 @@ use super::super::error::ScenarioError;
 use super::latent::float;
 use super::quantities::NUMBERS;
 use crate::effects::PresentEffect;
-use crate::plant::{Basis, CHANNELS, Latent, PlantParameters, Quantity, registry};
+use crate::plant::{
+    Basis, CHANNELS, Latent, MOST_CONSTANTS, PlantParameters, Quantity, registry,
+};
 
 /// Name of the table.
 pub(super) const TABLE: &str = "known";
@@ -142,6 +144,14 @@ fn quantity_of(name: &str, plant: &PlantParameters, effects: &[PresentEffect]) -
             .as_ref()
             .filter(|l| index < l.coefficients.len())?;
         return Some(of_term(latent, index));
+    }
+    // Of a law, constants that are exact for a diagnosis of this file are among them too.
+    let law = plant.own.iter().position(|law| law.text.name == owner);
+    if let Some(place) = law {
+        let constants = plant.own[place].text.constants.iter();
+        let index = constants.map(|c| c.name).position(|name| name == own)?;
+        let number = registry::OWN_CONSTANT.quantity();
+        return Some(number.of(place * MOST_CONSTANTS + index));
     }
     let effect = effects
         .iter()
