@@ -23,9 +23,7 @@ use super::super::error::ScenarioError;
 use super::latent::float;
 use super::quantities::NUMBERS;
 use crate::effects::PresentEffect;
-use crate::plant::{
-    Basis, CHANNELS, Latent, MOST_CONSTANTS, PlantParameters, Quantity, registry,
-};
+use crate::plant::{Basis, CHANNELS, Latent, MOST_CONSTANTS, PlantParameters, Quantity, registry};
 
 /// Name of the table.
 pub(super) const TABLE: &str = "known";
