@@ -19,7 +19,7 @@ use super::links::Link;
 use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms, root_mean_square};
 use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
-use super::statements::{FarAbove, TRUSTED, far_above, forbids_fully};
+use super::statements::{TRUSTED, far_above, forbids_fully};
 use super::unlisted::report::formula_text;
 use crate::effects::UNLISTED;
 use crate::effects::{Effect, Subsystem, Which};
@@ -179,21 +179,14 @@ impl Diagnosis {
     }
 
     /// The channel that known effects leave furthest above its noise, of those far above it.
-    fn far_above_with_names(&self) -> Option<FarAbove> {
+    fn far_above_with_names(&self) -> Option<usize> {
         let named = !self.best().effects.is_empty() && self.best().unlisted().is_none();
         self.far_above().filter(|_| named)
     }
 
     /// The channel that the best explanation leaves furthest above its noise, of those far above it.
-    pub(super) fn far_above(&self) -> Option<FarAbove> {
-        // What no law explains of a part is what everything was judged against.
-        let departure = self.largest.filter(|_| self.remaining.is_none());
-        let departure = departure.map(|largest| self.departure(largest));
-        far_above(
-            &self.misfits(),
-            &self.prediction_errors(),
-            departure.as_ref(),
-        )
+    pub(super) fn far_above(&self) -> Option<usize> {
+        far_above(&self.misfits(), &self.prediction_errors())
     }
 
     /// Whether known effects leave a channel far above its noise: then they do not explain the recordings.
@@ -203,15 +196,11 @@ impl Diagnosis {
 
     /// What known effects leave far above the noise, as an effect without a name: of them alone nothing is explained.
     fn far_above_without_a_name(&self) -> Option<FoundEffect> {
-        let far = self.far_above_with_names()?;
+        let channel = self.far_above_with_names()?;
         Some(FoundEffect {
             name: UNLISTED.to_owned(),
-            subsystem: Link::of(CHANNELS[far.channel])
-                .subsystem()
-                .name()
-                .to_owned(),
-            // Of recordings left out in turn it may be the fit to fewer of them.
-            confidence: if far.left_out { 0.5 * TRUSTED } else { TRUSTED },
+            subsystem: Link::of(CHANNELS[channel]).subsystem().name().to_owned(),
+            confidence: TRUSTED,
             doubts: Vec::new(),
             parameters: Vec::new(),
             depends_on: Vec::new(),

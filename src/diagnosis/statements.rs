@@ -1,10 +1,9 @@
 //! Rules that hold the statements of an answer to each other, in one place: a diagnosis is stated through them, and [`contradictions`] checks any answer.
 
 use super::answer::{Answer, Estimate, Extent, FoundEffect, Verdict};
-use super::details::{ChannelMisfit, Departure, IN_TURN, PredictionError, remaining_errors};
+use super::details::{ChannelMisfit, IN_TURN, PredictionError, remaining_errors};
 use super::doubt::Doubt;
 use super::localise::NOISE_ALONE;
-use super::recorded::COLUMNS;
 use crate::effects::UNLISTED;
 
 /// Probability from which an effect is stated as found [1].
@@ -17,8 +16,6 @@ const UNTRIED: f64 = 0.9;
 const DECADE: f64 = 10.0;
 /// Robust root mean square of a channel far above its noise, over the noise [1].
 pub const FAR: f64 = 3.0;
-/// 90th percentile of the size of noise, over its standard deviation [1].
-const NOISE_P90: f64 = 1.645;
 /// Growth of an error from the model as believed that is more than chance [1].
 const WORSE: f64 = 1.05;
 
@@ -67,31 +64,12 @@ pub fn in_headline(confidence: f64, doubts: &[Doubt]) -> bool {
     confidence >= IN_HEADLINE && !doubts.iter().any(|d| d.forbids())
 }
 
-/// A channel that is left far above its noise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FarAbove {
-    /// Its index.
-    pub channel: usize,
-    /// Whether that is so of recordings that were left out in turn alone, by a fit to fewer of them.
-    pub left_out: bool,
-}
-
-/// The channel that is left furthest above its noise, of those far above it: fitted to, kept back, or left out in turn.
+/// Index of the channel that is left furthest above its noise, of those far above it where it was fitted to or kept back. What a fit to fewer recordings leaves in
+/// the one left out says as much of the fit as of the explanation.
 #[must_use]
-pub fn far_above(
-    misfit: &[ChannelMisfit],
-    prediction: &[PredictionError],
-    departure: Option<&Departure>,
-) -> Option<FarAbove> {
+pub fn far_above(misfit: &[ChannelMisfit], prediction: &[PredictionError]) -> Option<usize> {
     let errors = remaining_errors(misfit, prediction);
-    let seen = errors.first().filter(|e| e.sigmas > FAR).map(|e| e.channel);
-    let in_turn = departure.filter(|d| d.left_out && d.p90_sigmas > FAR * NOISE_P90);
-    let in_turn = in_turn.and_then(|d| COLUMNS.iter().position(|c| *c == d.channel));
-    let far = |channel: usize| FarAbove {
-        channel,
-        left_out: seen.is_none(),
-    };
-    seen.or(in_turn).map(far)
+    errors.first().filter(|e| e.sigmas > FAR).map(|e| e.channel)
 }
 
 /// Whether a channel of a recording is predicted worse than by the model as believed.
@@ -118,12 +96,7 @@ pub fn contradictions(answer: &Answer) -> Vec<String> {
         found.extend(of_effect(effect, &details.account.headline));
     }
     let unlisted = answer.effects.iter().any(|e| e.name == UNLISTED);
-    // What no law explains of a part is what everything was judged against.
-    let departure = details
-        .departure
-        .as_ref()
-        .filter(|_| details.remaining.is_none());
-    let far = far_above(&details.misfit, &details.prediction, departure).is_some();
+    let far = far_above(&details.misfit, &details.prediction).is_some();
     let mut claim = |is: bool, what: &str| {
         if is {
             found.push(what.to_owned());
