@@ -70,7 +70,7 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     let mass = rig.plant.device.moving_mass;
     let cleaning = clean(time, &mut taken.readings, &rig.noise, mass);
     let mut notes = cleaning.account(&rig.noise);
-    notes.extend(of_model.unknown.iter().map(|ground| ground.words(&file)));
+    notes.extend(UnknownGround::words(&file, &of_model.unknown));
     let off: Vec<Error> = (0..COLUMNS.len())
         .filter_map(|channel| {
             let [measured, predicted] = [&taken.readings[channel], &predicted[channel]];

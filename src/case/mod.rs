@@ -407,9 +407,7 @@ fn of_plant(
         .unseen
         .as_ref()
         .map_or("", |unseen| unseen.name.as_str());
-    diagnosis
-        .notes
-        .extend(unknown.iter().map(|ground| ground.words(name)));
+    diagnosis.notes.extend(UnknownGround::words(name, &unknown));
     let [(_, Model { plant, .. }), ..] = models;
     let mut answer = diagnosis.answer(start.elapsed().as_secs_f64());
     answer.details.unknown_ground = unknown;

@@ -186,7 +186,7 @@ impl Diagnosis {
 
     /// The channel that the best explanation leaves furthest above its noise, of those far above it.
     pub(super) fn far_above(&self) -> Option<usize> {
-        far_above(&self.misfits(), &self.prediction_errors())
+        far_above(&self.misfits())
     }
 
     /// Whether known effects leave a channel far above its noise: then they do not explain the recordings.

@@ -144,19 +144,46 @@ pub struct UnknownGround {
 }
 
 impl UnknownGround {
-    /// In a sentence.
+    /// All of a recording in a sentence; none where there is none.
     #[must_use]
-    pub fn words(&self, recording: &str) -> String {
+    pub fn words(recording: &str, all: &[Self]) -> Option<String> {
+        /// Variables named at most.
+        const MOST: usize = 3;
+        let mut variables: Vec<&Self> = Vec::new();
+        for ground in all {
+            let beyond = |g: &Self| (g.covered[0] - g.value).max(g.value - g.covered[1]);
+            match variables.iter_mut().find(|g| g.variable == ground.variable) {
+                Some(known) if beyond(known) < beyond(ground) => *known = ground,
+                Some(_) => {}
+                None => variables.push(ground),
+            }
+        }
+        let first = all.iter().map(|g| g.start_s).fold(f64::INFINITY, f64::min);
+        let last = all
+            .iter()
+            .map(|g| g.end_s)
+            .fold(f64::NEG_INFINITY, f64::max);
         let shown = |value: f64| significant(value, 3);
-        format!(
-            "{recording} from {:.2} to {:.2} s is unknown ground, and the band of its prediction is wider there: {} comes to {}, and the recordings that were fitted to cover {} to {}",
-            self.start_s,
-            self.end_s,
-            self.variable.replace("_by_", " over "),
-            shown(self.value),
-            shown(self.covered[0]),
-            shown(self.covered[1])
-        )
+        let said = |g: &&Self| {
+            format!(
+                "{} comes to {}, of which {} to {} were covered",
+                g.variable.replace("_by_", " over "),
+                shown(g.value),
+                shown(g.covered[0]),
+                shown(g.covered[1])
+            )
+        };
+        let named: Vec<String> = variables.iter().take(MOST).map(said).collect();
+        let others = match variables.len().saturating_sub(MOST) {
+            0 => String::new(),
+            more => format!(", and {more} more"),
+        };
+        (!all.is_empty()).then(|| {
+            format!(
+                "{recording} leaves what the recordings fitted to covered, in stretches from {first:.2} to {last:.2} s, and the band of its prediction is wider there: {}{others}",
+                named.join("; ")
+            )
+        })
     }
 }
 

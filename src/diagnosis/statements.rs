@@ -64,11 +64,11 @@ pub fn in_headline(confidence: f64, doubts: &[Doubt]) -> bool {
     confidence >= IN_HEADLINE && !doubts.iter().any(|d| d.forbids())
 }
 
-/// Index of the channel that is left furthest above its noise, of those far above it where it was fitted to or kept back. What a fit to fewer recordings leaves in
-/// the one left out says as much of the fit as of the explanation.
+/// Index of the channel that is left furthest above its noise, of those far above it where it was fitted to. What is left in a recording that was left out or kept
+/// back says as much of the fit, and of ground that it does not know, as of the explanation.
 #[must_use]
-pub fn far_above(misfit: &[ChannelMisfit], prediction: &[PredictionError]) -> Option<usize> {
-    let errors = remaining_errors(misfit, prediction);
+pub fn far_above(misfit: &[ChannelMisfit]) -> Option<usize> {
+    let errors = remaining_errors(misfit, &[]);
     errors.first().filter(|e| e.sigmas > FAR).map(|e| e.channel)
 }
 
@@ -96,7 +96,7 @@ pub fn contradictions(answer: &Answer) -> Vec<String> {
         found.extend(of_effect(effect, &details.account.headline));
     }
     let unlisted = answer.effects.iter().any(|e| e.name == UNLISTED);
-    let far = far_above(&details.misfit, &details.prediction).is_some();
+    let far = far_above(&details.misfit).is_some();
     let mut claim = |is: bool, what: &str| {
         if is {
             found.push(what.to_owned());

@@ -107,7 +107,7 @@ fn places(
         if header.iter().take(index).any(|other| other == name) {
             return Err(refuse(name, "there twice".to_owned(), "it once".to_owned()));
         }
-        if known().any(|known| known == name) {
+        if known().any(|known| known == name) || is_of_band(name, known()) {
             continue;
         }
         if let Some(right) = known().find(|right| stem(right) == stem(name)) {
@@ -127,6 +127,13 @@ fn places(
         columns: columns.iter().map(|column| place(column.name)).collect(),
         ignored,
     })
+}
+
+/// Whether a column is an end of the band of a predicted column, or says where that is known ground: a prediction is read as a recording without them.
+fn is_of_band<'a>(name: &str, mut known: impl Iterator<Item = &'a str>) -> bool {
+    let ends = ["_low", "_high"];
+    let of = ends.into_iter().find_map(|end| name.strip_suffix(end));
+    name == "known_ground" || of.is_some_and(|of| known.any(|known| known == of))
 }
 
 /// Part of a column's name besides its unit: `force` of `force_n`, `force_kN` and `Force`.
