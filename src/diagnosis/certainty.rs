@@ -247,16 +247,16 @@ impl Diagnosis {
         };
         members.retain(|m| m.probability >= NAMED || own(m));
         members.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        // What is doubted of one law of several is open among them, and is no doubt that one is at work.
-        let several = members.len() > 1;
+        // A number of a law that is not known well is a doubt of that law, none that one of its family is at work.
         let mut doubts: Vec<Doubt> = (best.iter())
             .filter(|e| is_of(e))
             .flat_map(|e| self.doubts(e.name))
             .collect();
-        doubts.retain(|d| match d {
-            Doubt::AnotherDoesAsWell => false,
-            Doubt::AtEndOfRange | Doubt::SpansDecade => !several,
-            _ => true,
+        doubts.retain(|d| {
+            !matches!(
+                d,
+                Doubt::AnotherDoesAsWell | Doubt::AtEndOfRange | Doubt::SpansDecade
+            )
         });
         let likeliest = members.iter().map(|m| m.probability).fold(0.0, f64::max);
         let probability = stated(self.probability_of(&has, &|_| false), &doubts);

@@ -6,6 +6,7 @@ use super::details::{DETAILS_SCHEMA, Details, PredictedRun, RunReport};
 use super::flange::{AVERAGED, BAND, RunMetrics, spread, spread_of_sizes};
 use super::flange_fit::account::{simulated, unseen};
 use super::flange_fit::report::SimulatedFlange;
+use super::statements::{doubts_of, in_headline, stated};
 use super::words::listed;
 
 /// Knowledge of a flange from its runs.
@@ -90,21 +91,23 @@ impl FlangeDiagnosis {
     /// What is missing, as in diagnosis.json.
     fn effects(&self, missing: &[&str]) -> Vec<FoundEffect> {
         let estimate = |[value, low, high]: [f64; 3]| Estimate::new(value, low, high);
-        let effect = |name: &str, subsystem: &str, parameters: Vec<(&str, Estimate)>| FoundEffect {
-            name: name.to_owned(),
-            key: None,
-            subsystem: subsystem.to_owned(),
-            confidence: 1.0,
-            doubts: Vec::new(),
-            parameters: (parameters.into_iter())
-                .map(|(name, value)| (name.to_owned(), value))
-                .collect(),
-            depends_on: Vec::new(),
-            law: None,
-            unlisted: None,
+        let effect = |name: &str, subsystem: &str, parameters: Vec<(&str, Estimate)>| {
+            let numbers: Vec<Estimate> = parameters.iter().map(|(_, number)| *number).collect();
+            let doubts = doubts_of(&numbers);
+            FoundEffect {
+                name: name.to_owned(),
+                key: None,
+                subsystem: subsystem.to_owned(),
+                confidence: stated(1.0, &doubts),
+                doubts,
+                parameters: (parameters.into_iter())
+                    .map(|(name, value)| (name.to_owned(), value))
+                    .collect(),
+                depends_on: Vec::new(),
+                law: None,
+                unlisted: None,
+            }
         };
-        let impedance = self.impedance();
-        let stiffness = impedance.map(|z| z.max(0.0).powi(2) / self.mass);
         let mut ringing = vec![("frequency_hz", estimate(self.of(|s| s.frequency)))];
         let decays = self.decays();
         if !decays.is_empty() {
@@ -117,10 +120,7 @@ impl FlangeDiagnosis {
             effect(
                 "contact_impact",
                 "contact",
-                vec![
-                    ("contact_stiffness_n_per_m", estimate(stiffness)),
-                    ("peak_per_speed_n_s_per_m", estimate(impedance)),
-                ],
+                vec![("peak_per_speed_n_s_per_m", estimate(self.impedance()))],
             ),
             effect("contact_ringing", "contact", ringing),
             effect(
@@ -221,11 +221,16 @@ impl FlangeDiagnosis {
     #[must_use]
     pub fn account(&self) -> Account {
         let missing = self.missing();
-        let names: Vec<String> = missing.iter().map(|name| (*name).to_owned()).collect();
+        let effects = self.effects(&missing);
+        let stated = effects
+            .iter()
+            .filter(|e| in_headline(e.confidence, &e.doubts));
+        let names: Vec<String> = stated.map(|effect| effect.name.clone()).collect();
         let mut account = Account {
-            headline: match names.is_empty() {
-                true => "nothing is missing".to_owned(),
-                false => format!("missing: {}", listed(&names)),
+            headline: match (missing.is_empty(), names.is_empty()) {
+                (true, _) => "nothing is missing".to_owned(),
+                (_, true) => "what is missing is not settled: no number of it is known to better than a decade".to_owned(),
+                _ => format!("missing: {}", listed(&names)),
             },
             sections: Vec::new(),
         };

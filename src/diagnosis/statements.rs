@@ -166,9 +166,14 @@ fn of_effect(effect: &FoundEffect, headline: &str) -> Vec<String> {
         let what = Doubt::NotTriedBeyond.words();
         found.push(format!("{name} is stated above 90 %, and {what}"));
     }
-    let named = headline
-        .split(|c: char| !(c.is_alphanumeric() || c == '_'))
-        .any(|word| word == name);
+    // Of one kind of several joints each is named with its joint.
+    let joint = effect.parameters.iter().find(|(key, _)| key == "joint");
+    let named = match joint {
+        Some((_, joint)) => headline.contains(&format!("{name} (joint {})", joint.value)),
+        None => headline
+            .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .any(|word| word == name),
+    };
     if named && (forbidden.is_some() || probability < IN_HEADLINE) {
         found.push(format!(
             "{name} is in the headline, and is not to be stated"

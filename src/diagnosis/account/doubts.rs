@@ -20,12 +20,11 @@ impl Diagnosis {
             let family = families
                 .iter()
                 .find(|f| has(f, effect.vocabulary().0, effect.number_key()));
+            let may_stand = in_headline(confidence, &self.doubts(effect.name));
             let said = match family.filter(|f| f.probability >= TRUSTED) {
-                _ if confidence >= TRUSTED => name,
+                _ if confidence >= TRUSTED && may_stand => name,
                 Some(family) => format!("{} (which law is open)", family.words),
-                None if in_headline(confidence, &self.doubts(effect.name)) => {
-                    format!("perhaps {name}")
-                }
+                None if may_stand => format!("perhaps {name}"),
                 None => continue,
             };
             if !names.contains(&said) {
