@@ -521,7 +521,12 @@ fn rapier_and_the_plant_of_the_diagnosis_agree_on_a_leaned_tool_with_seals() {
     assert!(square - 1.0 < 0.25, "{square}");
     let answer = std::fs::read_to_string(bench.path("out/diagnosis.json")).unwrap();
     let answer: Answer = serde_json::from_str(&answer).unwrap();
-    assert_eq!(answer.verdict, Verdict::NothingMissing, "{:#?}", answer.effects);
+    assert_eq!(
+        answer.verdict,
+        Verdict::NothingMissing,
+        "{:#?}",
+        answer.effects
+    );
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use super::super::cross_validation::{Depth, left_out};
 use super::super::evidence::by_channel;
-use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, jacobian, rough_noise};
+use super::super::fit::{
+    FULL, Limit, ROUGH, Refit, Stage, Start, jacobian, robust_sum, rough_noise,
+};
 use super::super::free::{Free, free_of};
 use super::super::hypothesis::{Hypothesis, covers, stands_for};
 use super::super::progress::{Observer, Step};
@@ -561,6 +563,41 @@ impl Search<'_> {
             full.retain(|h| h.names() != lighter.names());
             full.insert(0, lighter);
         }
+    }
+
+    /// Fits the nominal model from where the best hypothesis has its tolerated numbers, where that is not hopeless and was not done: what explains by no more than
+    /// leading a fit to them is missing nothing.
+    pub(super) fn add_nominal(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
+        let is_nominal = |h: &Hypothesis| self.found(h) == 0 && h.unlisted().is_none();
+        if full.iter().any(is_nominal) || self.is_spent() {
+            return;
+        }
+        let Some(best) = full.first() else { return };
+        let mut bare = best.fit.prediction.plant.clone();
+        bare.latent = None;
+        let own = best.effects[self.shown.len()..].iter();
+        for parameter in own.flat_map(|effect| effect.parameters(&self.believed)) {
+            let nominal = parameter.quantity.get(&self.believed);
+            parameter.quantity.set(&mut bare, nominal);
+        }
+        let there = self.evidence.predict(&bare, false, None);
+        if robust_sum(&there.residuals) - best.fit.misfit > self.settings.given_up {
+            return;
+        }
+        let effects = self.shown.iter().map(|shown| shown.effect).collect();
+        let shown = self.shown.iter().flat_map(|shown| &shown.numbers);
+        let free = self.tolerated.iter().chain(shown);
+        let free: Vec<Free> = free.map(|f| f.from_where(&bare)).collect();
+        let nominal = self.fitted(
+            effects,
+            (&self.believed, None),
+            &free,
+            LAST,
+            Limit::of(LIGHTER),
+        );
+        observer(&Step::Variation.of(&nominal, format!("score {:.1}", self.score(&nominal))));
+        full.push(nominal);
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
     }
 
     /// What an effect of a hypothesis does to the channel that it moves most ([`Self::moved_by`]).
