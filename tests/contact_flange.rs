@@ -4,7 +4,8 @@ use std::path::Path;
 
 use idc_cell::cell::Cell;
 use idc_cell::diagnosis::flange::{ForceRamp, Run};
-use idc_cell::diagnosis::flange_fit::fit_flange;
+use idc_cell::diagnosis::flange_fit::report::SimulatedRun;
+use idc_cell::diagnosis::flange_fit::{fit_flange, predict_flange};
 use idc_cell::plant::flange::{FlangeCourse, FlangeModel, Reader, SAMPLED, flange_force};
 use idc_cell::recording::schema;
 use idc_cell::scenario::Scenario;
@@ -163,6 +164,14 @@ fn a_planted_flange_is_fitted_and_predicts_other_runs() {
     let fit = fit_flange(&[fitted], &[&faster, &ramped], 3.38).unwrap();
     assert!((fit.report.reading_rate_hz - 500.0).abs() < 1.0);
     assert!((fit.report.reading_gain - 1.43).abs() < 0.01);
+    // As the file of the fit has it, without a new fit.
+    let (again, _) = predict_flange(&fit.fitted, &faster).unwrap();
+    assert_eq!(again, fit.report.runs[1]);
+    let width = |run: &SimulatedRun| (run.peak_n.high / run.peak_n.low).ln();
+    // It comes at 0.2 m/s, where 0.12 m/s was covered: half the logarithm of that is added to half the interval.
+    let (half, beyond) = (fit.fitted.half_widths[0], 0.5 * (0.2f64 / 0.12).ln());
+    let least = 2.0 * half.hypot(0.9 * beyond);
+    assert!(width(&again) > least, "{again:?} {least}");
     for run in &fit.report.runs {
         let [peak, ringing, settling] = [run.peak_n, run.ringing_hz, run.settling_s];
         println!("{}: {peak:?} {ringing:?} {settling:?}", run.recording);

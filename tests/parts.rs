@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use idc_cell::diagnosis::answer::{Answer, FoundEffect, Verdict};
+use idc_cell::diagnosis::flange_fit::report::SimulatedRun;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -488,6 +489,25 @@ fn a_real_flange_fitted_to_one_run_predicts_another() {
         assert!(run.peak_n.error().abs() < 0.15, "{run:?}");
         assert!(run.ringing_hz.error().abs() < 0.1, "{run:?}");
         assert!(spread.error().abs() < 0.3, "{run:?}");
+    }
+    // The improved file predicts both in one call, without a new fit, and says what was not covered.
+    let within = |name: &str| case.path().join(name).display().to_string();
+    let files = runs.map(|run| within(&format!("{run}.parquet")));
+    let (improved, out) = (within("out/improved.toml"), within("predictions"));
+    let arguments = [
+        "predict", &improved, &files[0], &files[1], "--out", &out, "--json",
+    ];
+    let program = Command::new(env!("CARGO_BIN_EXE_idc"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    let document: serde_json::Value = serde_json::from_slice(&program.stdout).unwrap();
+    let other = &document["predictions"][1];
+    let again: SimulatedRun = serde_json::from_value(other["run"].clone()).unwrap();
+    assert_eq!(again, *predicted);
+    assert!(other["notes"].to_string().contains("speed of approach"));
+    for run in runs {
+        assert!(case.path().join(format!("predictions/{run}.csv")).is_file());
     }
     // A threshold that is crossed last by chaotic bounces: the fitted run's is met, the other's is not (docs/EVIDENCE.md).
     assert!(fitted.settling_s.error().abs() < 0.25, "{fitted:?}");

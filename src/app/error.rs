@@ -361,6 +361,14 @@ pub enum AppError {
     /// A diagnosis that cannot be written.
     #[error(transparent)]
     Answer(#[from] AnswerError),
+    /// A run of a contact flange whose simulated force cannot be measured.
+    #[error(
+        "{file}: the fitted flange's force never settles in this run, and nothing of it can be measured; expected a run nearer to those that it was fitted to"
+    )]
+    NeverSettles {
+        /// The recording.
+        file: String,
+    },
     /// The output would take the place of an input.
     #[error("--out is {file}, which is read here; expected another file")]
     Overwrites {

@@ -96,7 +96,10 @@ Examples:
       assets/proof/cases/case-03/ride.csv --out runs/believed.csv
   # The same as numbers for a program.
   idc predict assets/proof/cases/case-03/rig.toml \\
-      assets/proof/cases/case-03/ride.csv --out runs/again.csv --json";
+      assets/proof/cases/case-03/ride.csv --out runs/again.csv --json
+  # Several recordings in one call, a file each in a folder.
+  idc predict assets/proof/cases/case-03/rig.toml \\
+      assets/proof/cases/case-03/*.csv --out runs/predictions";
 
 /// `idc import`.
 pub(super) const IMPORT: &str = "\

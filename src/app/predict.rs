@@ -2,71 +2,157 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::Value;
 
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, is_same, prepare_file};
 use super::output::say;
 use super::progress;
-use crate::case::{check_finite, predict_table, predicted_by, read_rig, shown_columns};
+use crate::case::{
+    check_finite, predict_flange_run, predict_table, predicted_by, read_rig, shown_columns,
+};
 use crate::diagnosis::clean::clean;
 use crate::diagnosis::details::UnknownGround;
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::diagnosis::words::of_column;
+use crate::plant::Channel;
+use crate::plant::flange::FittedFlange;
 use crate::quantity::{counted, significant};
 use crate::recording::atomic::write_text;
-use crate::recording::csv::write_csv;
+use crate::recording::csv::columns_text;
 use crate::scenario::removal_table::is_removal_table;
-use crate::scenario::rig_file::load_rig;
+use crate::scenario::rig_file::{RigFile, load_rig};
 
 #[derive(Debug, Args)]
 pub(super) struct PredictArguments {
     /// Rig file.
     rig: PathBuf,
-    /// Recording whose inputs drive the rig; what it holds of measured columns is compared.
-    inputs: PathBuf,
-    /// File for the predicted columns with their 90 % bands.
-    #[arg(long, default_value = "prediction.csv", help_heading = "Output")]
-    out: PathBuf,
+    /// Recordings whose inputs drive the rig; what they hold of measured columns is compared.
+    #[arg(required = true, value_name = "INPUTS")]
+    inputs: Vec<PathBuf>,
+    /// File for the predicted columns with their 90 % bands; of several recordings a folder for one each. Default: prediction.csv, of several predictions.
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
     /// Put new results in place of old ones.
     #[arg(long, help_heading = "Output")]
     force: bool,
     /// Print nothing but errors.
     #[arg(long, help_heading = "Output")]
     quiet: bool,
-    /// Print as JSON how far off the prediction is.
+    /// Print as JSON how far off the predictions are.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
 }
 
-/// Predicts and writes.
+/// A prediction, not yet written.
+struct Made {
+    /// File that it is for.
+    out: PathBuf,
+    /// Its text.
+    csv: String,
+    /// What is printed of it.
+    said: String,
+    /// The same for a program.
+    document: Value,
+}
+
+/// Predicts and writes: all, or nothing.
 pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError> {
-    if is_removal_table(&arguments.rig) {
-        return of_table(arguments);
+    let outs = outs(arguments)?;
+    let all = arguments.inputs.iter().zip(outs);
+    let made: Vec<Made> = if is_removal_table(&arguments.rig) {
+        let made = all.map(|(inputs, out)| of_table(&arguments.rig, inputs, out));
+        made.collect::<Result<_, _>>()?
+    } else {
+        let rig = load_rig(&arguments.rig)?;
+        let of_rig = |(inputs, out): (&PathBuf, PathBuf)| match &rig.flange {
+            Some(flange) => of_flange((&rig, flange), inputs, out),
+            None => of_recording(&rig, inputs, out),
+        };
+        let hidden = arguments.quiet || arguments.json;
+        let spinner = progress::spinner("simulating", hidden);
+        let made: Result<Vec<Made>, AppError> = all.map(of_rig).collect();
+        spinner.finish_and_clear();
+        made?
+    };
+    for one in &made {
+        prepare_file(&one.out, "--out", Standing::of(arguments.force))?;
     }
-    let rig = load_rig(&arguments.rig)?;
-    let file = arguments.inputs.display().to_string();
-    let recording = read_rig(rig.plant.chain, &arguments.inputs)?;
+    for one in &made {
+        write_text(&one.out, &one.csv)?;
+    }
+    if arguments.json {
+        let mut documents: Vec<Value> = made.into_iter().map(|one| one.document).collect();
+        let document = match documents.len() {
+            1 => documents.remove(0),
+            _ => serde_json::json!({ "predictions": documents }),
+        };
+        say(&format!("{document:#}\n"))?;
+    } else if !arguments.quiet {
+        let said: Vec<String> = made.into_iter().map(|one| one.said).collect();
+        say(&said.join("\n"))?;
+    }
+    Ok(ExitCode::Done)
+}
+
+/// Files for the predictions, where they do no harm.
+fn outs(arguments: &PredictArguments) -> Result<Vec<PathBuf>, AppError> {
+    let several = arguments.inputs.len() > 1;
+    let default = if several {
+        "predictions"
+    } else {
+        "prediction.csv"
+    };
+    let out = arguments.out.clone().unwrap_or_else(|| default.into());
+    let of = |inputs: &PathBuf| match several {
+        true => out.join(inputs.with_extension("csv").file_name().unwrap_or_default()),
+        false => out.clone(),
+    };
+    let outs: Vec<PathBuf> = arguments.inputs.iter().map(of).collect();
+    let refuse = |out: &Path, reason: &str| AppError::OutputFile {
+        file: out.display().to_string(),
+        option: "--out",
+        reason: reason.to_owned(),
+    };
+    for (place, out) in outs.iter().enumerate() {
+        for input in arguments.inputs.iter().chain([&arguments.rig]) {
+            if is_same(input, out) {
+                return Err(AppError::Overwrites {
+                    file: out.display().to_string(),
+                });
+            }
+        }
+        if outs[..place].contains(out) {
+            let reason = "two of the recordings have this name, and their predictions would be one file; predict them in two calls";
+            return Err(refuse(out, reason));
+        }
+        let ending = out.extension();
+        if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("csv")) {
+            let reason = "a prediction is written as comma-separated values, and its name ends otherwise than in .csv";
+            return Err(refuse(out, reason));
+        }
+    }
+    Ok(outs)
+}
+
+/// Predicts a recording.
+fn of_recording(rig: &RigFile, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
+    let file = inputs.display().to_string();
+    let recording = read_rig(rig.plant.chain, inputs)?;
     let mut taken = recorded_of(rig.plant.chain, &file, &recording)?.of_sensors(rig.sensors());
-    prepare(arguments)?;
     let time = &taken.inputs.time;
-    let spinner = progress::spinner("simulating", arguments.quiet || arguments.json);
-    let of_model = predicted_by(&rig, &taken.inputs);
+    let of_model = predicted_by(rig, &taken.inputs);
     let predicted = &of_model.readings;
-    spinner.finish_and_clear();
-    let rig_file = arguments.rig.display().to_string();
-    check_finite(&rig_file, &file, time, predicted)?;
+    check_finite(&rig.path.display().to_string(), &file, time, predicted)?;
     let columns = of_model.columns(&shown_columns(rig.plant.chain, rig.sensors(), predicted));
     let columns: Vec<(&str, &[f64])> = (columns
         .iter()
         .map(|(name, values)| (name.as_str(), values.as_slice())))
     .collect();
-    write_csv(&arguments.out, time, &columns)?;
-    if arguments.quiet {
-        return Ok(ExitCode::Done);
-    }
+    let csv = columns_text(time, &columns)?;
     let mass = rig.plant.device.moving_mass;
     let cleaning = clean(time, &mut taken.readings, &rig.noise, mass);
     let mut notes = cleaning.account(&rig.noise);
@@ -82,59 +168,99 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
             })
         })
         .collect();
-    say(&if arguments.json {
-        json(arguments, (time.len(), &of_model.unknown), &notes, &off)
-    } else {
-        text(arguments, time.len(), &notes, &off)
-    })?;
-    Ok(ExitCode::Done)
+    let rms: BTreeMap<&str, f64> = off.iter().map(|e| (e.column, e.rms)).collect();
+    Ok(Made {
+        said: text(&out, time.len(), &notes, &off),
+        document: serde_json::json!({
+            "rig": rig.path.display().to_string(),
+            "inputs": file,
+            "prediction": out.display().to_string(),
+            "samples": time.len(),
+            "notes": notes,
+            "unknown_ground": of_model.unknown,
+            "rms_in_standard_deviations_of_noise": rms,
+        }),
+        out,
+        csv,
+    })
 }
 
-/// Makes sure that the prediction goes where it does no harm.
-fn prepare(arguments: &PredictArguments) -> Result<(), AppError> {
-    for input in [&arguments.rig, &arguments.inputs] {
-        if is_same(input, &arguments.out) {
-            return Err(AppError::Overwrites {
-                file: arguments.out.display().to_string(),
-            });
-        }
+/// Predicts a run of a contact flange that was fitted to others.
+fn of_flange(
+    (rig, flange): (&RigFile, &FittedFlange),
+    inputs: &Path,
+    out: PathBuf,
+) -> Result<Made, AppError> {
+    let file = inputs.display().to_string();
+    let Some(made) = predict_flange_run(rig, flange, inputs)? else {
+        return Err(AppError::NeverSettles { file });
+    };
+    let mut said = String::new();
+    // Writing into a text cannot fail.
+    for sentence in &made.notes {
+        let _ = writeln!(said, "note: {sentence}.");
     }
-    let ending = arguments.out.extension();
-    if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("csv")) {
-        return Err(AppError::OutputFile {
-            file: arguments.out.display().to_string(),
-            option: "--out",
-            reason: "a prediction is written as comma-separated values, and its name ends otherwise than in .csv".to_owned(),
-        });
+    let _ = writeln!(said, "{file}, predicted with 90 % interval; recorded");
+    let run = &made.run;
+    let spread = run.sliding_spread_n;
+    let results = [
+        ("peak of the impact", "N", Some(run.peak_n)),
+        ("ringing", "Hz", Some(run.ringing_hz)),
+        ("settling", "s", Some(run.settling_s)),
+        ("spread while sliding", "N", spread),
+    ];
+    for (what, unit, result) in results {
+        let Some(result) = result else { continue };
+        let shown = |value: f64| significant(value, 3);
+        let _ = writeln!(
+            said,
+            "{what:<24} {} {unit} ({} to {}); {} {unit}",
+            shown(result.simulated),
+            shown(result.low),
+            shown(result.high),
+            shown(result.recorded)
+        );
     }
-    prepare_file(&arguments.out, "--out", Standing::of(arguments.force))
+    let samples = made.time.len();
+    let _ = writeln!(said, "{samples} samples written to {}", out.display());
+    let force = COLUMNS[Channel::Force as usize];
+    Ok(Made {
+        csv: columns_text(&made.time, &[(force, &made.force)])?,
+        document: serde_json::json!({
+            "rig": rig.path.display().to_string(),
+            "inputs": file,
+            "prediction": out.display().to_string(),
+            "samples": samples,
+            "notes": made.notes,
+            "run": made.run,
+        }),
+        said,
+        out,
+    })
 }
 
 /// Predicts what comes off in the runs of a table.
-fn of_table(arguments: &PredictArguments) -> Result<ExitCode, AppError> {
-    let (rows, left) = predict_table(&arguments.rig, &arguments.inputs)?;
-    prepare(arguments)?;
-    write_text(&arguments.out, &rows)?;
-    let out = arguments.out.display();
-    if arguments.json {
-        let document = serde_json::json!({
-            "rig": arguments.rig.display().to_string(),
-            "inputs": arguments.inputs.display().to_string(),
-            "prediction": out.to_string(),
+fn of_table(rig: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
+    let (csv, left) = predict_table(rig, inputs)?;
+    Ok(Made {
+        said: format!(
+            "removed volume: RMS {} of ln(measured / predicted), {} % of the predicted volume, in {}\nwritten to {}\n",
+            significant(left.log, 2),
+            significant(100.0 * left.share, 2),
+            counted(left.rows, "row"),
+            out.display()
+        ),
+        document: serde_json::json!({
+            "rig": rig.display().to_string(),
+            "inputs": inputs.display().to_string(),
+            "prediction": out.display().to_string(),
             "rows": left.rows,
             "rows_without_prediction": left.nothing,
             "rms_of_log_volume": left.log,
-        });
-        say(&format!("{document:#}\n"))?;
-    } else if !arguments.quiet {
-        say(&format!(
-            "removed volume: RMS {} of ln(measured / predicted), {} % of the predicted volume, in {}\nwritten to {out}\n",
-            significant(left.log, 2),
-            significant(100.0 * left.share, 2),
-            counted(left.rows, "row")
-        ))?;
-    }
-    Ok(ExitCode::Done)
+        }),
+        csv,
+        out,
+    })
 }
 
 /// Error of the prediction of a column.
@@ -147,7 +273,7 @@ struct Error {
 }
 
 /// Printed text on columns with their errors in standard deviations of the noise.
-fn text(arguments: &PredictArguments, samples: usize, notes: &[String], off: &[Error]) -> String {
+fn text(out: &Path, samples: usize, notes: &[String], off: &[Error]) -> String {
     let mut text = String::new();
     // Writing into a text cannot fail.
     for sentence in notes {
@@ -161,29 +287,8 @@ fn text(arguments: &PredictArguments, samples: usize, notes: &[String], off: &[E
             significant(factor * rms * noise, 3)
         );
     }
-    let out = arguments.out.display();
-    let _ = writeln!(text, "{samples} samples written to {out}");
+    let _ = writeln!(text, "{samples} samples written to {}", out.display());
     text
-}
-
-/// The same for a program.
-fn json(
-    arguments: &PredictArguments,
-    (samples, unknown): (usize, &[UnknownGround]),
-    notes: &[String],
-    off: &[Error],
-) -> String {
-    let off: BTreeMap<&str, f64> = off.iter().map(|e| (e.column, e.rms)).collect();
-    let document = serde_json::json!({
-        "rig": arguments.rig.display().to_string(),
-        "inputs": arguments.inputs.display().to_string(),
-        "prediction": arguments.out.display().to_string(),
-        "samples": samples,
-        "notes": notes,
-        "unknown_ground": unknown,
-        "rms_in_standard_deviations_of_noise": off,
-    });
-    format!("{document:#}\n")
 }
 
 /// Root mean square of measured less predicted in standard deviations of the noise; none where nothing was measured.

@@ -91,6 +91,7 @@ pub(super) fn improved_rig(rig: &RigFile, diagnosis: &Diagnosis) -> String {
             effects: &effects,
             unnamed: diagnosis.best().unlisted(),
             known: Some(&known),
+            flange: None,
         },
     )
 }

@@ -5,6 +5,7 @@ mod band;
 mod cell;
 mod cell_account;
 mod error;
+mod flange_prediction;
 mod ground;
 mod improved;
 mod recordings;
@@ -18,11 +19,12 @@ use std::time::Instant;
 pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
 pub use error::CaseError;
+pub use flange_prediction::{FlangePrediction, predict_flange_run};
 pub use recordings::{check_finite, read_in_any_unit, read_rig, shown_columns};
 pub use removal_table::{RemovalCase, RemovalDiagnosed, predict_table};
 pub use rig::{RIG, rig_of, to_fit};
 
-use crate::diagnosis::answer::Answer;
+use crate::diagnosis::answer::{Answer, Estimate};
 use crate::diagnosis::comparison::{Comparison, of_flange};
 use crate::diagnosis::data_fault::fault::DataFault;
 use crate::diagnosis::data_fault::{as_read, refined, reported};
@@ -39,6 +41,7 @@ use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::servo::Axes;
 use crate::diagnosis::settings::Settings;
 use crate::effects::own_effect;
+use crate::plant::flange::FittedFlange;
 use crate::plant::{Chain, Channel, LawText, OwnLaw, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
@@ -485,7 +488,10 @@ fn of_flange_runs(
     let named = |(run, shown): &MeasuredRun| (run.name.clone(), shown.clone());
     let others: Vec<&MeasuredRun> = unseen.into_iter().collect();
     let fit = fit_flange(runs, &others, rig.plant.device.moving_mass);
-    let (simulated, forces) = fit.map_or((None, Vec::new()), |f| (Some(f.report), f.forces));
+    let (simulated, fitted, forces) = match fit {
+        Some(fit) => (Some(fit.report), Some(fit.fitted), fit.forces),
+        None => (None, None, Vec::new()),
+    };
     let diagnosis = FlangeDiagnosis {
         runs: runs.iter().map(named).collect(),
         unseen: unseen.map(named),
@@ -498,7 +504,7 @@ fn of_flange_runs(
     let runs: Vec<Run> = runs.iter().map(|(run, _)| run.clone()).collect();
     let comparison = of_flange(&runs, unseen.map(|(run, _)| run), &forces);
     Ok(Diagnosed {
-        improved: improved_flange(rig, &answer),
+        improved: improved_flange(rig, &answer, fitted.as_ref()),
         prediction: predicted_force(&comparison)?,
         answer,
         comparison,
@@ -507,26 +513,25 @@ fn of_flange_runs(
     })
 }
 
-/// The rig file of a flange: what was found has no place in it and stands there as comments.
-fn improved_flange(rig: &RigFile, answer: &Answer) -> String {
-    let mut improved = improved_text(rig, &Improved::default());
-    let line = |key: &str, value: f64, interval: Option<[f64; 2]>| {
-        let range = interval.map(|[low, high]| format!("   # {low:.3e} to {high:.3e}"));
-        format!("# {key} = {value:.5e}{}\n", range.unwrap_or_default())
-    };
+/// The rig file of a flange with the fitted one; what its runs show stands there as comments.
+fn improved_flange(rig: &RigFile, answer: &Answer, flange: Option<&FittedFlange>) -> String {
+    let mut improved = improved_text(
+        rig,
+        &Improved {
+            flange,
+            ..Improved::default()
+        },
+    );
     for effect in &answer.effects {
-        improved += &format!(
-            "\n# Found, and not simulated by this file: {}\n",
-            effect.name
-        );
-        for (key, number) in &effect.parameters {
-            improved += &line(key, number.value, Some([number.low, number.high]));
-        }
-    }
-    if let Some(flange) = &answer.details.flange {
-        improved += "\n# The flange as `idc diagnose` simulates it\n";
-        for number in &flange.numbers {
-            improved += &line(&number.name, number.value, number.interval);
+        improved += &format!("\n# Found in the runs: {}\n", effect.name);
+        for (
+            key,
+            Estimate {
+                value, low, high, ..
+            },
+        ) in &effect.parameters
+        {
+            improved += &format!("# {key} = {value:.5e}   # {low:.3e} to {high:.3e}\n");
         }
     }
     improved

@@ -149,27 +149,34 @@ pub(super) fn flange_runs(
     rig: &RigFile,
     folder: &Path,
 ) -> Result<(Vec<MeasuredRun>, Option<MeasuredRun>), CaseError> {
-    let shown = |name: &String| -> Result<MeasuredRun, CaseError> {
-        let path = folder.join(name);
-        let file = path.display().to_string();
-        let mut run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
-        let ramp = (rig.force_ramps.iter()).find(|ramp| fits(&ramp.recording, name));
-        run.force_ramp = ramp.map(|ramp| ForceRamp {
-            before: ramp.before,
-            time: ramp.time,
-        });
-        let refused = |source: NoContact| CaseError::NoContact {
-            folder: folder.display().to_string(),
-            source,
-        };
-        let shown = run.metrics().map_err(refused)?;
-        Ok((run, shown))
-    };
+    let shown = |name: &String| flange_run(rig, folder, name);
     let runs = to_fit(rig, folder)?
         .iter()
         .map(shown)
         .collect::<Result<_, _>>()?;
     Ok((runs, rig.predict.as_ref().map(shown).transpose()?))
+}
+
+/// A run of a contact flange in a folder.
+pub(super) fn flange_run(
+    rig: &RigFile,
+    folder: &Path,
+    name: &str,
+) -> Result<MeasuredRun, CaseError> {
+    let path = folder.join(name);
+    let file = path.display().to_string();
+    let mut run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
+    let ramp = (rig.force_ramps.iter()).find(|ramp| fits(&ramp.recording, name));
+    run.force_ramp = ramp.map(|ramp| ForceRamp {
+        before: ramp.before,
+        time: ramp.time,
+    });
+    let refused = |source: NoContact| CaseError::NoContact {
+        folder: folder.display().to_string(),
+        source,
+    };
+    let shown = run.metrics().map_err(refused)?;
+    Ok((run, shown))
 }
 
 #[cfg(test)]

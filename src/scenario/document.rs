@@ -294,6 +294,7 @@ fn expected_value(expected: &str, key: &str) -> String {
                 "arm.drives",
                 "command",
                 "recordings.force_ramp",
+                "flange.fit",
                 "valve",
             ]
             .contains(&key) =>

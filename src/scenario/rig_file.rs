@@ -8,6 +8,7 @@
 //! [[effect]]                                   physics beyond the believed model (`super::effects`)
 //! [known]                                      how sure a diagnosis is of it, and what its recordings covered (`known`)
 //! [latent]                                     physics that no known effect explains (`latent`)
+//! [flange]                                     a contact flange as it was fitted to runs (`flange`)
 //! ```
 
 use std::path::{Path, PathBuf};
@@ -17,10 +18,12 @@ use super::effects::effects;
 use super::error::ScenarioError;
 use crate::effects::{PresentEffect, candidates};
 use crate::plant::PlantParameters;
+use crate::plant::flange::FittedFlange;
 use keys::{RigKeys, sections};
 use values::{check_together, pressure_drift, recordings, sensors};
 
 mod entry;
+mod flange;
 mod improved;
 mod keys;
 mod known;
@@ -69,6 +72,8 @@ pub struct RigFile {
     pub bare: PlantParameters,
     /// How sure a diagnosis is of it, and what its recordings covered.
     pub known: Option<Known>,
+    /// A contact flange as a diagnosis has fitted it.
+    pub flange: Option<FittedFlange>,
 }
 
 impl RigFile {
@@ -104,6 +109,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     }
     plant.latent = latent::latent(&document, keys.latent.as_ref())?;
     let known = known::known(&document, keys.known.take(), &plant, &effects)?;
+    let flange = flange::flange(&document, keys.flange.as_ref(), plant.chain)?;
     let (rate, noise) = sensors(&document, &keys, plant.chain)?;
     let pressure_drift = pressure_drift(&document, &keys)?;
     let recordings = recordings(&document, keys.recordings, plant.chain)?;
@@ -121,5 +127,6 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
         effects,
         bare,
         known,
+        flange,
     })
 }

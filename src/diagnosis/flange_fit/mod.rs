@@ -13,7 +13,7 @@ mod sliding;
 mod solve;
 
 use super::flange::{Run, RunMetrics};
-use crate::plant::flange::{FlangeModel, Ripple};
+use crate::plant::flange::{CoveredRuns, FittedFlange, FlangeModel, Ripple};
 use prediction::{Logged, predict_run};
 use report::{FittedNumber, SimulatedFlange, SimulatedRun};
 use residuals::Targets;
@@ -26,6 +26,8 @@ const MOST: usize = 4;
 const ACCEPTED: [f64; 3] = [0.03, 0.02, 0.05];
 /// Share of the best's cost by which another may be worse and still counts [1].
 const ALIKE: f64 = 0.06;
+/// Power of a setting by which a number may be wrong where the setting was not covered [1].
+const BEYOND: f64 = 0.5;
 /// Half a 95 % interval by the standard deviation [1].
 const HALF: f64 = 1.96;
 
@@ -33,8 +35,10 @@ const HALF: f64 = 1.96;
 pub struct FlangeFit {
     /// What it says.
     pub report: SimulatedFlange,
+    /// What predicts other runs.
+    pub fitted: FittedFlange,
     /// Force that it gives of each run, from a sample on [N]; nothing where a run cannot be simulated.
-    pub forces: Vec<Option<(usize, Vec<f64>)>>,
+    pub forces: Vec<Option<ForceFrom>>,
 }
 
 /// Fits a flange of a moving mass [kg] to runs and simulates these and others; none where there is no run to fit to.
@@ -56,23 +60,18 @@ pub fn fit_flange(
     let models: Vec<FlangeModel> = solutions.iter().map(|s| s.model).collect();
     let ripple = sliding::ripple(&best.model, &logged[..targets.len()]);
     let scatter = scatter(best, (&targets, &logged[..targets.len()]), mass, ripple);
+    let fitted = FittedFlange {
+        models,
+        reader,
+        ripple,
+        half_widths: scatter,
+        covered: covered(fitted.iter().take(MOST).map(|(_, shown)| shown)),
+    };
     let (mut runs, mut forces) = (Vec::new(), Vec::new());
     for (index, run) in logged.iter().enumerate() {
-        let Some(made) = predict_run(&models, ripple, run) else {
-            forces.push(None);
-            continue;
-        };
-        runs.push(SimulatedRun {
-            recording: run.run.name.clone(),
-            fitted: index < targets.len(),
-            force_before_n: run.course.course.before,
-            force_ramp_s: run.course.course.ramp,
-            peak_n: with_interval(made.peak, scatter[0]),
-            ringing_hz: with_interval(made.ringing, scatter[1]),
-            settling_s: with_interval(made.settling, scatter[2]),
-            sliding_spread_n: made.spread.map(|spread| with_interval(spread, scatter[3])),
-        });
-        forces.push(Some((run.first, made.force)));
+        let (simulated, force) = predicted_by(&fitted, run, index < targets.len()).unzip();
+        runs.extend(simulated);
+        forces.push(force);
     }
     Some(FlangeFit {
         report: SimulatedFlange {
@@ -82,8 +81,67 @@ pub fn fit_flange(
             solutions: solutions.len(),
             runs,
         },
+        fitted,
         forces,
     })
+}
+
+/// Force of a run, from a sample on [N].
+type ForceFrom = (usize, Vec<f64>);
+
+/// What a fitted flange gives of a run: its results, and its force; none of a run that cannot be simulated.
+#[must_use]
+pub fn predict_flange(
+    flange: &FittedFlange,
+    (run, shown): &(Run, RunMetrics),
+) -> Option<(SimulatedRun, ForceFrom)> {
+    predicted_by(flange, &Logged::new(run, shown, flange.reader), false)
+}
+
+fn predicted_by(
+    flange: &FittedFlange,
+    run: &Logged<'_>,
+    fitted: bool,
+) -> Option<(SimulatedRun, ForceFrom)> {
+    let made = predict_run(&flange.models, flange.ripple, run)?;
+    let beyond = match fitted {
+        true => [0.0; 3],
+        false => flange.covered.beyond(settings_of(run.shown)),
+    };
+    // Of what was not covered a number may go with a power of it that is wrong by a half.
+    let half = (flange.half_widths).map(|half| half.hypot(BEYOND * beyond.iter().sum::<f64>()));
+    let simulated = SimulatedRun {
+        recording: run.run.name.clone(),
+        fitted,
+        force_before_n: run.course.course.before,
+        force_ramp_s: run.course.course.ramp,
+        peak_n: with_interval(made.peak, half[0]),
+        ringing_hz: with_interval(made.ringing, half[1]),
+        settling_s: with_interval(made.settling, half[2]),
+        sliding_spread_n: made.spread.map(|spread| with_interval(spread, half[3])),
+    };
+    Some((simulated, (run.first, made.force)))
+}
+
+/// Speed of approach [m/s], force before and after contact [N] of a run.
+#[must_use]
+pub fn settings_of(shown: &RunMetrics) -> [f64; 3] {
+    [shown.approach, shown.before, shown.desired]
+}
+
+/// What some runs cover.
+fn covered<'a>(runs: impl Iterator<Item = &'a RunMetrics> + Clone) -> CoveredRuns {
+    let ends = |value: fn(&RunMetrics) -> f64| {
+        let values = runs.clone().map(value);
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| {
+            [a.min(v), b.max(v)]
+        })
+    };
+    CoveredRuns {
+        approach: ends(|shown| shown.approach),
+        before: ends(|shown| shown.before),
+        desired: ends(|shown| shown.desired),
+    }
 }
 
 /// Those that count as well as the best, by their cost with that of the fitted runs' results.

@@ -10,6 +10,7 @@
 
 mod arm_motion;
 mod contact;
+mod fitted;
 mod motion;
 mod reader;
 mod regulation;
@@ -21,6 +22,7 @@ mod structure;
 mod tests;
 
 pub use arm_motion::towards_part;
+pub use fitted::{CoveredRuns, FittedFlange};
 pub use motion::{FlangeCourse, SAMPLED, flange_force, flange_force_stepped};
 pub use reader::Reader;
 pub use ripple::{Ripple, rippled};

@@ -4,8 +4,9 @@ use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
 use super::super::check::plain;
 use super::super::effects::{WrittenEffect, append, as_written, remove_effects};
-use super::{Known, RigFile, known, latent};
+use super::{Known, RigFile, flange, known, latent};
 use crate::plant::Latent;
+use crate::plant::flange::FittedFlange;
 
 /// What an improved file has beyond the believed one.
 #[derive(Debug, Clone, Copy, Default)]
@@ -18,6 +19,8 @@ pub struct Improved<'a> {
     pub unnamed: Option<&'a Latent>,
     /// How sure all of that is.
     pub known: Option<&'a Known>,
+    /// A contact flange as it was fitted.
+    pub flange: Option<&'a FittedFlange>,
 }
 
 /// Text of the improved file.
@@ -28,6 +31,7 @@ pub fn improved_text(rig: &RigFile, improved: &Improved<'_>) -> String {
         effects,
         unnamed,
         known,
+        flange,
     } = *improved;
     let mut document: DocumentMut = rig
         .text
@@ -43,6 +47,7 @@ pub fn improved_text(rig: &RigFile, improved: &Improved<'_>) -> String {
     }
     document.remove(latent::TABLE);
     document.remove(known::TABLE);
+    document.remove(flange::TABLE);
     let mut text = document.to_string();
     if !text.ends_with('\n') {
         text.push('\n');
@@ -55,6 +60,9 @@ pub fn improved_text(rig: &RigFile, improved: &Improved<'_>) -> String {
     }
     if let Some(known) = known {
         text.push_str(&known::text(known));
+    }
+    if let Some(flange) = flange {
+        text.push_str(&flange::text(flange));
     }
     text
 }

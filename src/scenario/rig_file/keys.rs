@@ -7,9 +7,11 @@ use serde::Deserialize;
 
 use super::super::sections::keys;
 use super::entry::Entry;
+use super::flange::FlangeKeys;
 use super::known::KnownKeys;
 use super::number::{Number, NumberKeys};
 use super::quantities::{Described, described_numbers};
+use crate::plant::flange::FlangeModel;
 
 /// Numbers of a table, by key.
 pub(super) type Numbers = BTreeMap<String, Number>;
@@ -42,6 +44,7 @@ pub(super) struct RigKeys {
     pub effect: super::super::effects::EffectKeys,
     pub latent: Option<BTreeMap<String, Entry>>,
     pub known: Option<KnownKeys>,
+    pub flange: Option<FlangeKeys>,
 }
 
 /// `[rig]`: how much of the device there is.
@@ -105,6 +108,8 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("rig", keys::<PartKeys>()),
         ("recordings", keys::<RecordingsKeys>()),
         ("known", keys::<KnownKeys>()),
+        ("flange", keys::<FlangeKeys>()),
+        ("flange.fit", &FlangeModel::NAMES),
         ("recordings.force_ramp", keys::<ForceRampKeys>()),
     ];
     sections.extend(TABLES.iter().map(|(table, keys)| (*table, &keys[..])));

@@ -5,6 +5,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::*;
+use crate::plant::flange::{
+    CoveredRuns, FLANGE_NUMBERS, FittedFlange, FlangeModel, Reader, Ripple,
+};
 use crate::plant::{Basis, ContactLaw, Latent, Port, SensorErrors, Variable};
 
 /// A rig file as its owner writes it.
@@ -624,4 +627,57 @@ fn a_term_that_is_not_right_is_refused_by_its_key() {
         "cosine_pa = [95.5]",
         "`latent.cosine_pa` is a list of 1, expected a list of 2",
     );
+}
+
+#[test]
+fn a_fitted_flange_is_written_and_read_back() {
+    let rig = "schema = 2\n[rig]\nchain = \"contact_flange\"\n[cylinder]\nmoving_mass_kg = 3.38\n[regulator]\ntime_constant_s = 0.05\n[sensors]\nforce_n = 0.1\n";
+    let model = |mass: f64| {
+        let mut numbers = [0.5; FLANGE_NUMBERS];
+        numbers[0] = mass;
+        FlangeModel::of(&numbers)
+    };
+    let fitted = FittedFlange {
+        models: vec![model(3.4), model(1.0 / 3.0)],
+        reader: Reader {
+            period: 1.0 / 480.0,
+            gain: 1.43,
+        },
+        ripple: Some(Ripple {
+            ratio: 0.02,
+            bandwidth: 15.0,
+        }),
+        half_widths: [0.3, 0.2, 0.5, 0.25],
+        covered: CoveredRuns {
+            approach: [0.1, 0.25],
+            before: [10.0, 100.0],
+            desired: [35.0, 100.0],
+        },
+    };
+    let written = Improved {
+        flange: Some(&fitted),
+        ..Improved::default()
+    };
+    let text = improved_text(&read(rig), &written);
+    let again = read(&text);
+    assert_eq!(again.flange.as_ref(), Some(&fitted));
+    // A second diagnosis writes its own in place of it.
+    assert_eq!(
+        improved_text(&again, &written).matches("[flange]").count(),
+        1
+    );
+    let refused = |from: &str, to: &str, says: &str| {
+        assert!(text.contains(from), "{from}");
+        let error = from_text(Path::new("rig.toml"), &text.replacen(from, to, 1));
+        let words = error.unwrap_err().to_string();
+        assert!(words.contains(says), "{words}");
+    };
+    refused("head_mass_kg = 5e-1\n", "", "head_mass_kg");
+    refused("head_mass_kg", "head_mass", "head_mass");
+    refused(
+        "arm_ripple_bandwidth_hz = 1.5e1\n",
+        "",
+        "arm_ripple_bandwidth_hz",
+    );
+    refused("moving_mass_kg = 3.4e0", "moving_mass_kg = -1", "expected");
 }

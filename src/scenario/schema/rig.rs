@@ -43,6 +43,10 @@ pub fn schema() -> Value {
         "known".to_owned(),
         json!({ "type": "object", "description": "How sure a diagnosis is of the numbers and predictions, and what its recordings covered, as it writes it." }),
     );
+    tables.insert(
+        "flange".to_owned(),
+        json!({ "type": "object", "description": "A contact flange as a diagnosis has fitted it to runs, as it writes it." }),
+    );
     json!({
         "$schema": DIALECT,
         "title": "A rig file of idc: a device, its contact and its sensors as their owner believes them to be, in SI",
