@@ -136,7 +136,7 @@ pub(super) fn text(flange: &FittedFlange) -> String {
         let _ = writeln!(text, "{key} = {value}");
     };
     let list = |values: &[f64]| {
-        let values: Vec<String> = values.iter().map(|value| format!("{value:.4e}")).collect();
+        let values: Vec<String> = values.iter().map(|value| format!("{value:e}")).collect();
         format!("[{}]", values.join(", "))
     };
     line("reading_period_s", format!("{:e}", flange.reader.period));
