@@ -11,7 +11,7 @@ use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
 use super::{Climb, Search, same};
 use crate::effects::Effect;
-use crate::plant::{CHANNELS, Chain, Latent, PlantParameters};
+use crate::plant::{CHANNELS, Chain, Latent, PlantParameters, Quantity};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -573,21 +573,21 @@ impl Search<'_> {
             return;
         }
         let Some(best) = full.first() else { return };
-        let mut bare = best.fit.prediction.plant.clone();
-        bare.latent = None;
-        let own = best.effects[self.shown.len()..].iter();
-        for parameter in own.flat_map(|effect| effect.parameters(&self.believed)) {
-            let nominal = parameter.quantity.get(&self.believed);
-            parameter.quantity.set(&mut bare, nominal);
+        let shown = self.shown.iter().flat_map(|shown| &shown.numbers);
+        let free = self.tolerated.iter().chain(shown);
+        let free: Vec<Free> = free
+            .map(|f| f.from_where(&best.fit.prediction.plant))
+            .collect();
+        let mut bare = self.believed.clone();
+        for f in &free {
+            f.quantity
+                .set(&mut bare, f.quantity.get(&best.fit.prediction.plant));
         }
         let there = self.evidence.predict(&bare, false, None);
         if robust_sum(&there.residuals) - best.fit.misfit > self.settings.given_up {
             return;
         }
         let effects = self.shown.iter().map(|shown| shown.effect).collect();
-        let shown = self.shown.iter().flat_map(|shown| &shown.numbers);
-        let free = self.tolerated.iter().chain(shown);
-        let free: Vec<Free> = free.map(|f| f.from_where(&bare)).collect();
         let nominal = self.fitted(
             effects,
             (&self.believed, None),
@@ -603,11 +603,23 @@ impl Search<'_> {
     /// What an effect of a hypothesis does to the channel that it moves most ([`Self::moved_by`]).
     fn influence(&self, hypothesis: &Hypothesis, index: usize) -> f64 {
         let plant = &hypothesis.fit.prediction.plant;
+        let own = hypothesis.effects[index].parameters(&self.believed);
+        let nominal = |quantity: &Quantity| quantity.get(&self.believed);
         let mut bare = plant.clone();
-        for parameter in hypothesis.effects[index].parameters(&self.believed) {
-            parameter
-                .quantity
-                .set(&mut bare, parameter.quantity.get(&self.believed));
+        if own.iter().all(|p| nominal(&p.quantity).is_finite()) {
+            for parameter in &own {
+                parameter
+                    .quantity
+                    .set(&mut bare, nominal(&parameter.quantity));
+            }
+        } else {
+            // Another law stands in its place, such as that of air at one temperature: no number of it puts that back.
+            bare = self.believed.clone();
+            bare.latent.clone_from(&plant.latent);
+            let is_own = |f: &Free| own.iter().any(|p| p.quantity.is(&f.quantity));
+            for f in hypothesis.fit.free.iter().filter(|f| !is_own(f)) {
+                f.quantity.set(&mut bare, f.quantity.get(plant));
+            }
         }
         self.moved_by(plant, &bare)
     }
