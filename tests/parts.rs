@@ -505,7 +505,7 @@ fn a_real_flange_fitted_to_one_run_predicts_another() {
     let other = &document["predictions"][1];
     let again: SimulatedRun = serde_json::from_value(other["run"].clone()).unwrap();
     assert_eq!(again, *predicted);
-    assert!(other["notes"].to_string().contains("speed of approach"));
+    assert!(other["notes"].to_string().contains("desired force of 55"));
     for run in runs {
         assert!(case.path().join(format!("predictions/{run}.csv")).is_file());
     }

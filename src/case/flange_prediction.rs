@@ -40,7 +40,7 @@ pub fn predict_flange_run(
             let (recorded, shown) = &measured;
             FlangePrediction {
                 time: recorded.time[first..first + force.len()].to_vec(),
-                notes: not_covered(&name, flange, settings_of(shown)),
+                notes: not_covered(&name, flange, settings_of(recorded, shown)),
                 run,
                 force,
             }

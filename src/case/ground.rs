@@ -135,9 +135,7 @@ pub(super) fn unknown(
                     continue;
                 };
                 let until = inputs.time[span.end - 1] + LASTS;
-                for i in span.start..inputs.time.partition_point(|t| *t <= until) {
-                    flags[i] = true;
-                }
+                flags[span.start..inputs.time.partition_point(|t| *t <= until)].fill(true);
                 found.push(UnknownGround {
                     variable: name.to_owned(),
                     start_s: inputs.time[span.start],

@@ -44,6 +44,7 @@ pub struct Free {
 
 impl Free {
     /// The same, of a sensor's drift no further than the sheet allows: a multiple of that explains any slow loss, and so hides a leak.
+    #[must_use]
     pub fn within_sheet(&self) -> Self {
         match self.prior {
             Prior::Normal { mean, deviation } if self.quantity.is(&PRESSURE_DRIFT.quantity()) => {

@@ -141,7 +141,9 @@ fn beside_contact(mut rows: Vec<[f64; 2]>, contact: &[[f64; 3]]) -> Vec<[f64; 2]
         }
         let after = dot(&column, &column).sqrt();
         if after > NOTHING_NEW * before {
-            column.iter_mut().for_each(|value| *value /= after);
+            for value in column.iter_mut() {
+                *value /= after;
+            }
             basis.push(column);
         }
     }

@@ -65,7 +65,7 @@ pub fn fit_flange(
         reader,
         ripple,
         half_widths: scatter,
-        covered: covered(fitted.iter().take(MOST).map(|(_, shown)| shown)),
+        covered: covered(fitted.iter().take(MOST)),
     };
     let (mut runs, mut forces) = (Vec::new(), Vec::new());
     for (index, run) in logged.iter().enumerate() {
@@ -106,10 +106,11 @@ fn predicted_by(
     let made = predict_run(&flange.models, flange.ripple, run)?;
     let beyond = match fitted {
         true => [0.0; 3],
-        false => flange.covered.beyond(settings_of(run.shown)),
+        false => flange.covered.beyond(settings_of(run.run, run.shown)),
     };
     // Of what was not covered a number may go with a power of it that is wrong by a half.
-    let half = (flange.half_widths).map(|half| half.hypot(BEYOND * beyond.iter().sum::<f64>()));
+    let half = (flange.half_widths)
+        .map(|half| half.hypot(BEYOND * beyond.into_iter().fold(0.0, f64::max)));
     let simulated = SimulatedRun {
         recording: run.run.name.clone(),
         fitted,
@@ -123,24 +124,27 @@ fn predicted_by(
     Some((simulated, (run.first, made.force)))
 }
 
-/// Speed of approach [m/s], force before and after contact [N] of a run.
+/// Speed of approach [m/s], force that the flange comes with and force after contact [N] of a run.
 #[must_use]
-pub fn settings_of(shown: &RunMetrics) -> [f64; 3] {
-    [shown.approach, shown.before, shown.desired]
+pub fn settings_of(run: &Run, shown: &RunMetrics) -> [f64; 3] {
+    let before = run.force_ramp.map_or(shown.desired, |ramp| ramp.before);
+    [shown.approach, before, shown.desired]
 }
 
 /// What some runs cover.
-fn covered<'a>(runs: impl Iterator<Item = &'a RunMetrics> + Clone) -> CoveredRuns {
-    let ends = |value: fn(&RunMetrics) -> f64| {
-        let values = runs.clone().map(value);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| {
-            [a.min(v), b.max(v)]
-        })
-    };
+fn covered<'a>(runs: impl Iterator<Item = &'a (Run, RunMetrics)>) -> CoveredRuns {
+    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    for (run, shown) in runs {
+        for ([low, high], value) in ends.iter_mut().zip(settings_of(run, shown)) {
+            *low = low.min(value);
+            *high = high.max(value);
+        }
+    }
+    let [approach, before, desired] = ends;
     CoveredRuns {
-        approach: ends(|shown| shown.approach),
-        before: ends(|shown| shown.before),
-        desired: ends(|shown| shown.desired),
+        approach,
+        before,
+        desired,
     }
 }
 
