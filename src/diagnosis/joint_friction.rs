@@ -141,7 +141,7 @@ fn beside_contact(mut rows: Vec<[f64; 2]>, contact: &[[f64; 3]]) -> Vec<[f64; 2]
         }
         let after = dot(&column, &column).sqrt();
         if after > NOTHING_NEW * before {
-            for value in column.iter_mut() {
+            for value in &mut column {
                 *value /= after;
             }
             basis.push(column);
