@@ -349,7 +349,7 @@ class Examination:
         text = self.take(where, text, rf"(?P<odds>{NUMBER}) to 1\b(?!\.)", lambda m: {"odds": 10 ** near(math.log10(float(m.group("odds"))))})
         text = self.take(where, text, rf"1 to (?P<odds>{NUMBER})", lambda m: {"odds": 10 ** -near(-math.log10(float(m.group("odds"))))})
         # Counts of what was tried stand in no file; 95 % is the level of every interval.
-        for known in (r"those of 95 %", r"95 % interval", r"chambers? [12]", r"of \d+ other explanations", r"none of the \d+ effects", r"of the \d+ experiments", r"joint \d", r"all \d+ recordings", r"in \d+ stretches that make [\d.]+ s", r"m/s2|mm2|cm3"):
+        for known in (r"those of 95 %", r"at no more than 90 %", r"95 % interval", r"chambers? [12]", r"of \d+ other explanations", r"none of the \d+ effects", r"of the \d+ experiments", r"joint \d", r"all \d+ recordings", r"in \d+ stretches that make [\d.]+ s", r"m/s2|mm2|cm3"):
             text = re.sub(known, " ", text)
         if self.of.json["remaining"] or any(e["name"] == "unlisted" for e in of.json["effects"]):
             return  # A part of the device or a term without a name: its own numbers are those of diagnosis.json.
