@@ -397,10 +397,10 @@ fn of_plant(
         ("the improved model", model),
         ("the explanation as it was fitted", best.clone()),
         (
-            "the believed model within its tolerances",
+            "the nominal model within its tolerances",
             with(&diagnosis.baseline.plant),
         ),
-        ("the believed model", with(&diagnosis.believed)),
+        ("the nominal model", with(&diagnosis.believed)),
     ];
     let (predicted, notes) = first_prediction((input, faults), &models);
     diagnosis.notes.extend(notes);

@@ -13,7 +13,7 @@ use super::fit::with_values;
 use super::free::{Free, free_of};
 use super::hypothesis::Hypothesis;
 use super::search::Search;
-use super::search::finish::BELOW_NOISE;
+use super::search::influence::BELOW_NOISE;
 use crate::effects::Effect;
 use crate::plant::CHANNELS;
 use nalgebra::DVector;

@@ -110,14 +110,14 @@ pub fn diagnose(
     }
 }
 
-/// Puts the first explanation that stays finite over what the recording to be predicted reaches before those that do not, and takes these out: the believed
+/// Puts the first explanation that stays finite over what the recording to be predicted reaches before those that do not, and takes these out: the nominal
 /// model within its tolerances where all fail. Returns what was taken out, a sentence each.
 fn finite_first(search: &Search<'_>, ranked: &mut Vec<Ranked>) -> Vec<String> {
     let mut notes = Vec::new();
     while !search.is_finite(&ranked[0].hypothesis) {
         let names = ranked[0].hypothesis.spoken_names();
         if names.is_empty() {
-            notes.push("no model stays finite over the recording that is to be predicted, the believed one neither".to_owned());
+            notes.push("no model stays finite over the recording that is to be predicted, the nominal one neither".to_owned());
             break;
         }
         let names = listed(&names);

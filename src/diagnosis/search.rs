@@ -1,6 +1,8 @@
 //! Which effects explain what the believed model leaves.
 
 pub(super) mod finish;
+mod formulas;
+pub(super) mod influence;
 mod modular;
 mod screen;
 

@@ -16,7 +16,7 @@ const UNTRIED: f64 = 0.9;
 const DECADE: f64 = 10.0;
 /// Robust root mean square of a channel far above its noise, over the noise [1].
 pub const FAR: f64 = 3.0;
-/// Growth of an error from the model as believed that is more than chance [1].
+/// Growth of an error from the nominal model that is more than chance [1].
 const WORSE: f64 = 1.05;
 
 /// Probability that is stated of an effect for which the evidence gives one.
@@ -72,13 +72,13 @@ pub fn far_above(misfit: &[ChannelMisfit]) -> Option<usize> {
     errors.first().filter(|e| e.sigmas > FAR).map(|e| e.channel)
 }
 
-/// Whether a channel of a recording is predicted worse than by the model as believed.
+/// Whether a channel of a recording is predicted worse than by the nominal model.
 #[must_use]
 pub fn is_worse(believed: f64, improved: f64, sigmas: f64) -> bool {
     sigmas > NOISE_ALONE && improved > WORSE * believed
 }
 
-/// Whether a channel is predicted worse than by the model as believed, or the recording that was kept back not to its noise.
+/// Whether a channel is predicted worse than by the nominal model, or the recording that was kept back not to its noise.
 #[must_use]
 pub fn forbids_fully(misfit: &[ChannelMisfit], prediction: &[PredictionError]) -> bool {
     let worse = |m: &ChannelMisfit| is_worse(m.believed_rms, m.improved_rms, m.improved_sigmas);
@@ -117,7 +117,7 @@ pub fn contradictions(answer: &Answer) -> Vec<String> {
     claim(
         answer.explained == Some(Extent::Fully)
             && forbids_fully(&details.misfit, &details.prediction),
-        "it is explained fully, and a channel is worse than as believed or above its noise where it was not fitted to",
+        "it is explained fully, and a channel is worse than nominal or above its noise where it was not fitted to",
     );
     for family in &details.families {
         let most = family

@@ -3,6 +3,9 @@
 use super::evidence::{Evidence, Measured, Prediction};
 use super::fit::Fit;
 use super::free::{Free, Prior};
+use super::model_error::ModelError;
+use super::search::Search;
+use super::settings::Settings;
 use crate::device::DeviceParameters;
 use crate::effects::Coordinate;
 use crate::plant::{
@@ -95,5 +98,21 @@ pub(super) fn fit(residuals: Vec<f64>, column: Vec<f64>, value: f64) -> Fit {
         prior: 0.0,
         columns: vec![column],
         information: DMatrix::from_element(1, 1, known),
+    }
+}
+
+/// A search in recordings with nothing tolerated and nothing to look for.
+pub(super) fn search(evidence: &Evidence) -> Search<'_> {
+    Search {
+        evidence,
+        believed: plant(),
+        tolerated: Vec::new(),
+        candidates: Vec::new(),
+        shown: Vec::new(),
+        look: 3,
+        most_effects: 1,
+        model_error: ModelError::NONE,
+        unseen: None,
+        settings: Settings::DEFAULT,
     }
 }

@@ -207,7 +207,7 @@ def verdict(answer, planted, alike):
     named = bool(found) and found[0][0] == own and likely == [own]
     stands = any(full == own for full, _, _ in found) or any(own in a["effects"] or name in a["effects"] for a in answer["alternatives"])
     odds = stands and bool(found) and not sure and ((name, found[0][1]) in alike or found[0][0] == own or found[0][1] == name)
-    worse = [p["channel"] for p in answer["details"]["prediction"] if p["after"] > p["believed"] + 0.1 * (p["noise"] or 0.0)]
+    worse = [p["channel"] for p in answer["prediction"] if p["after"] > p["believed"] + 0.1 * (p["noise"] or 0.0)]
     fully = answer.get("explained") == "fully" and bool(worse)
     return named, odds, sure, fully, found, worse
 

@@ -116,6 +116,19 @@ fn only(faults: &[DataFault], channel: Option<Channel>) -> Kind {
     faults[0].kind
 }
 
+/// Recordings whose force is held for ten samples.
+fn held_force() -> DiagnosisInput {
+    case_of(
+        &plant(),
+        |_, _| {},
+        |_, _, r| {
+            for i in 0..r[2].len() {
+                r[2][i] = r[2][i - i % 10];
+            }
+        },
+    )
+}
+
 #[test]
 fn nothing_planted_is_nothing_found() {
     let faults = read(|_, _, _| {});
@@ -169,15 +182,7 @@ fn a_channel_that_stands_still_or_is_held_is_found_and_its_copies_are_set_aside(
         panic!("{faults:?}");
     };
     assert!((start - 2.0).abs() < 0.01 && (end - 2.8).abs() < 0.01);
-    let mut case = case_of(
-        &plant(),
-        |_, _| {},
-        |_, _, r| {
-            for i in 0..r[2].len() {
-                r[2][i] = r[2][i - i % 10];
-            }
-        },
-    );
+    let mut case = held_force();
     take_off(&mut case);
     let Kind::Held(period) = only(&case.data_faults, Some(Channel::Force)) else {
         panic!("{:?}", case.data_faults);
@@ -369,15 +374,7 @@ fn a_column_in_another_unit_is_in_si_once_its_factor_is_found() {
 /// Held readings that were set aside stood in the account as thousands of lost ones.
 #[test]
 fn readings_that_are_set_aside_are_not_called_lost() {
-    let mut case = case_of(
-        &plant(),
-        |_, _| {},
-        |_, _, r| {
-            for i in 0..r[2].len() {
-                r[2][i] = r[2][i - i % 10];
-            }
-        },
-    );
+    let mut case = held_force();
     take_off(&mut case);
     let notes = prepare(&case).unwrap().notes;
     assert!(

@@ -14,7 +14,7 @@ const SET_ASIDE_MOST: f64 = 0.1;
 const LEAST_SPAN: f64 = 0.02;
 /// Relative distance within which rows have one level of a setting.
 const LEVEL: f64 = 0.005;
-/// Odds by which rows must tell a threshold or a sag from an exponent of the force to be named: the believed law with another number is the plainer one.
+/// Odds by which rows must tell a threshold or a sag from an exponent of the force to be named: the nominal law with another number is the plainer one.
 const TELLS: f64 = 10.0;
 
 /// A deviation with its value and interval.
@@ -81,7 +81,7 @@ pub struct RemovalDiagnosis {
     pub found: TableLaw,
     /// Deviations found.
     pub effects: Vec<Told>,
-    /// Probability that the volume goes with the force otherwise than believed, whatever the form [1], and of each form that was looked at.
+    /// Probability that the volume goes with the force otherwise than nominal, whatever the form [1], and of each form that was looked at.
     pub by_force: (f64, Vec<(Deviation, f64)>),
     /// Deviations that were looked for and are not needed, with the values that they would have beside those found.
     pub not_needed: Vec<Told>,
@@ -312,7 +312,7 @@ fn levels(rows: &[TableRow], of: impl Fn(&TableRow) -> f64) -> usize {
     count
 }
 
-/// -2 ln of the likelihood of each model, in which forms of the force's law are told from one another by as many measurements as there are levels of the force:
+/// -2 ln of the likelihood of each model, in which forms of the force's law are held apart by as many measurements as there are levels of the force:
 /// rows at one level all say the same of what happens between two.
 struct Forms {
     deviance: Vec<f64>,

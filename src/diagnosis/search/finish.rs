@@ -1,17 +1,14 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
 use super::super::cross_validation::{Depth, left_out};
-use super::super::evidence::by_channel;
-use super::super::fit::{
-    FULL, Limit, ROUGH, Refit, Stage, Start, jacobian, robust_sum, rough_noise,
-};
+use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, rough_noise};
 use super::super::free::{Free, free_of};
 use super::super::hypothesis::{Hypothesis, covers, stands_for};
 use super::super::progress::{Observer, Step};
 use super::super::scale::Scale;
-use super::{Climb, Search, same};
+use super::{Search, same};
 use crate::effects::Effect;
-use crate::plant::{CHANNELS, Chain, Latent, PlantParameters, Quantity};
+use crate::plant::Chain;
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -19,21 +16,10 @@ const CHANCE: f64 = 6.0;
 const MOST_CLOSE: usize = 6;
 /// Effects that only the finest measure shows which are fitted, of those that promise most.
 const MOST_SMALL: usize = 3;
-/// Influence of an effect on the channel that it moves most below which it is not named, in standard deviations of that channel's noise [1].
-pub(in crate::diagnosis) const BELOW_NOISE: f64 = 0.5;
-/// Error in time that is forgiven where that is judged [s].
-const FORGIVEN: f64 = 1e-3;
 /// Iterations of a rough fit without one of the effects.
-const LIGHTER: usize = 8;
+pub(super) const LIGHTER: usize = 8;
 /// The last stages of a full fit, for what is all but there.
-const LAST: &[Stage] = FULL.split_at(FULL.len() - 2).1;
-
-/// Known effects that are fitted from where a formula stands, at most.
-const MOST_DIRECT: usize = 2;
-/// Share of the mismatch that the best effect must leave for a formula to be asked for at once [1].
-const ONE_LEAVES: f64 = 0.25;
-/// Sets of effects beside which a formula is asked for at a time, at most.
-const MOST_BASES: usize = 3;
+pub(super) const LAST: &[Stage] = FULL.split_at(FULL.len() - 2).1;
 
 /// A fit again from where a richer hypothesis stands.
 fn again(richer: &Hypothesis) -> Refit<'_> {
@@ -222,220 +208,6 @@ impl Search<'_> {
         }
     }
 
-    /// Whether one effect leaves so much of the mismatch that formulas are asked for at once.
-    pub(super) fn asks_early(&self, best: &Hypothesis, scale: &Scale) -> bool {
-        let noise = rough_noise(self.evidence) + scale.rough_spread();
-        best.fit.rough > noise && scale.left_roughly(best) > ONE_LEAVES
-    }
-
-    /// Puts formulas that leave noise alone in a climb, beside fewer of the leading child's effects, with those of the children that do so too.
-    pub(super) fn formulas_beside_fewer(
-        &self,
-        climb: &mut Climb,
-        children: &[Hypothesis],
-        scale: &Scale,
-        observer: &mut Observer<'_>,
-    ) {
-        let fewer: Vec<Hypothesis> = climb.levels.iter().flatten().cloned().collect();
-        let fewer = (&fewer[..], &mut climb.asked);
-        let formulas = self.beside_fewer(&children[0], fewer, scale, observer);
-        let Some(first) = formulas.first() else {
-            return;
-        };
-        // A full fit has never gained as much as a hopeless one would have to.
-        let most = self.rough_score(first) + self.settings.given_up;
-        let near = children.iter().filter(|h| self.rough_score(h) < most);
-        let near: Vec<Hypothesis> = near.cloned().collect();
-        let mut full = self.in_full(&near, scale, &mut climb.done, observer);
-        full.retain(|h| scale.is_adequate(h));
-        full.extend(formulas);
-        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        climb.full = full;
-    }
-
-    /// Adds formulas that leave noise alone by themselves where two named effects do: two of the list may stand in for one law that it does not hold. As
-    /// many are looked at, a formula must score better by what two effects cost for that.
-    pub(super) fn add_one_law(
-        &self,
-        climb: &mut Climb,
-        scale: &Scale,
-        observer: &mut Observer<'_>,
-    ) {
-        let (none, single) = (
-            &climb.levels[0][0],
-            climb.levels.get(1).map(|level| &level[0]),
-        );
-        // In a cell a curve costs minutes.
-        let in_cell = (self.evidence.recordings.iter()).any(|r| r.inputs.cell.is_some());
-        let asks = !in_cell && !climb.asked.contains(&none.names()) && !self.is_spent();
-        let Some(single) = single.filter(|_| asks) else {
-            return;
-        };
-        climb.asked.push(none.names());
-        let mut found = self.adequate_formulas(none, single.fit.rough, scale, observer);
-        let allowed = self.score(&climb.full[0]) - 2.0 * self.settings.look_elsewhere;
-        found.retain(|h| h.formula().is_some() && self.score(h) < allowed);
-        climb.full.extend(found);
-        (climb.full).sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-    }
-
-    /// Formulas that leave noise alone beside fewer of an explanation's effects, none of them first; of the first of these sets that has such. What was asked
-    /// for before is not asked for again.
-    fn beside_fewer(
-        &self,
-        best: &Hypothesis,
-        (rough, asked): (&[Hypothesis], &mut Vec<Vec<&'static str>>),
-        scale: &Scale,
-        observer: &mut Observer<'_>,
-    ) -> Vec<Hypothesis> {
-        if self.believed.chain != Chain::Whole {
-            return Vec::new();
-        }
-        let within = |h: &&Hypothesis| {
-            let mut own = h.effects.iter();
-            h.effects.len() < best.effects.len()
-                && own.all(|effect| best.effects.iter().any(|e| e.name == effect.name))
-        };
-        let mut bases: Vec<&Hypothesis> = rough.iter().filter(within).collect();
-        bases.sort_by(|a, b| {
-            let fewer = a.effects.len().cmp(&b.effects.len());
-            fewer.then(self.rough_score(a).total_cmp(&self.rough_score(b)))
-        });
-        bases.retain(|h| !asked.contains(&h.names()));
-        for base in bases.into_iter().take(MOST_BASES) {
-            if self.is_spent() {
-                break;
-            }
-            asked.push(base.names());
-            let found = self.adequate_formulas(base, best.fit.rough, scale, observer);
-            if !found.is_empty() {
-                return found;
-            }
-        }
-        Vec::new()
-    }
-
-    /// Where no known effects explain the mismatch to the noise, puts a term without a name first if it does so, beside fewer of them or none; where they do
-    /// not explain it at all, if it explains more.
-    pub(super) fn add_unlisted(
-        &self,
-        full: &mut Vec<Hypothesis>,
-        (unexplained, rough, asked): (&Hypothesis, &[Hypothesis], &mut Vec<Vec<&'static str>>),
-        scale: &Scale,
-        observer: &mut Observer<'_>,
-    ) {
-        let Some(best) = full.first() else { return };
-        if scale.is_adequate(best)
-            || best.unlisted().is_some()
-            || self.believed.chain != Chain::Whole
-            || self.is_spent()
-        {
-            return;
-        }
-        let rival = best.fit.rough;
-        let mut found = self.beside_fewer(best, (rough, asked), scale, observer);
-        if found.is_empty() && !scale.is_explained(best) && !self.is_spent() {
-            found = self.adequate_formulas(best, rival, scale, observer);
-        }
-        if found.is_empty() && !scale.is_explained(best) && !self.is_spent() {
-            found = self.latent(unexplained, rival, scale, observer);
-            if scale.is_half_explained(best) && !self.is_spent() {
-                found.extend(self.latent(best, rival, scale, observer));
-            }
-            found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        }
-        let mut found = found.into_iter();
-        if let Some(first) = found.next()
-            && self.score(&first) < self.score(&full[0])
-        {
-            let spared =
-                |h: &Hypothesis| scale.is_adequate(h) || self.score(h) <= self.score(&first);
-            let without = (first.unlisted().is_some()).then(|| self.without_term(&first));
-            match without.filter(spared) {
-                Some(without) => {
-                    let detail = format!("without a term {:.1}", self.score(&without));
-                    observer(&Step::Variation.of(&without, detail));
-                    full.insert(0, without);
-                }
-                None => {
-                    full.insert(0, first);
-                    full.extend(found);
-                    full[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-                }
-            }
-        }
-    }
-
-    /// Puts a known effect in the place of the best formula where it leaves noise alone too: a rough fit of the believed model may have been bent so far
-    /// that no known effect promised anything beside it, and where the formula has put what is tolerated one does. A law of the list is the likelier one.
-    pub(in crate::diagnosis) fn put_named_first(
-        &self,
-        found: &mut Vec<Hypothesis>,
-        scale: &Scale,
-        observer: &mut Observer<'_>,
-    ) {
-        let Some(formula) = found.first().filter(|_| !self.is_spent()) else {
-            return;
-        };
-        let from = self.where_its_term_was(formula);
-        let most = self.settings.far_behind * self.left_alone(scale);
-        let mut named = self.screen(&from, ROUGH, most);
-        named.retain(|h| self.rough_score(h) < most);
-        named.truncate(self.settings.fitted_in_full);
-        // From where the formula has put the rest: a held piston may draw that elsewhere.
-        let there = Refit {
-            start: Start::Here,
-            stages: LAST,
-            ..Refit::FULL
-        };
-        let mut direct: Vec<Hypothesis> = (named.iter().take(MOST_DIRECT))
-            .map(|h| self.refit(h, there))
-            .filter(|h| scale.is_adequate(h))
-            .collect();
-        direct.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-        if direct.is_empty() {
-            for h in &mut named {
-                *h = self.refit(h, Refit::ROUGH.from(Start::Here));
-            }
-            // One that leaves more than noise where the piston is held does so in full.
-            named.retain(|h| h.fit.rough < self.left_alone(scale));
-            direct = self.in_full(&named, scale, &mut Vec::new(), observer);
-            direct.retain(|h| scale.is_adequate(h));
-        }
-        let allowed = self.score(&found[0]) + self.settings.look_elsewhere;
-        if let Some(first) = direct.into_iter().next()
-            && self.score(&first) < allowed
-        {
-            found.insert(0, first);
-        }
-    }
-
-    /// The known effects of a hypothesis with a term, where they are beside it, with the piston held and without the term.
-    pub(in crate::diagnosis) fn where_its_term_was(&self, formula: &Hypothesis) -> Hypothesis {
-        let own = formula.unlisted().map_or(0, Latent::numbers);
-        let mut free = formula.fit.free_from_here();
-        free.truncate(free.len() - own);
-        let mut plant = formula.fit.prediction.plant.clone();
-        plant.latent = None;
-        let effects = formula.effects.clone();
-        let mut from = self.fitted(effects, (&plant, None), &free, ROUGH, Limit::of(0));
-        let at = &from.fit;
-        from.fit.columns = jacobian(self.evidence, &at.prediction, &free, &at.values, 0);
-        from
-    }
-
-    /// A hypothesis without its term, fitted again from where it is.
-    fn without_term(&self, hypothesis: &Hypothesis) -> Hypothesis {
-        let own = hypothesis.unlisted().map_or(0, Latent::numbers);
-        let mut free = hypothesis.fit.free_from_here();
-        free.truncate(free.len() - own);
-        let mut plant = hypothesis.fit.prediction.plant.clone();
-        plant.latent = None;
-        let effects = hypothesis.effects.clone();
-        let free = self.settled(free);
-        self.fitted(effects, (&plant, None), &free, LAST, Refit::FULL.limit)
-    }
-
     /// Takes effects out of the best hypothesis as long as it scores better without, the last one too: a rough fit of the believed model may have come to
     /// rest where an effect of no size let a full one go on. Beside a model error an effect must also gain more than what all of them leave: less may
     /// be a part of that error.
@@ -495,7 +267,7 @@ impl Search<'_> {
 
     /// A hypothesis without one of its effects, fitted in full from where it was; what the effect freed is held to its tolerance again. Nothing where a
     /// rough fit is hopeless already.
-    fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
+    pub(super) fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
         let fit = &hypothesis.fit;
         let plant = &fit.prediction.plant;
         let own = hypothesis.tolerated(&self.believed);
@@ -537,121 +309,6 @@ impl Search<'_> {
         }
         let effects = rough.effects;
         Some(self.fitted(effects, from, &free, FULL, Refit::FULL.limit))
-    }
-
-    /// Takes out of the best hypothesis of a whole device what moves no channel by a share of its noise: recordings long enough show what nobody would miss.
-    pub(super) fn drop_below_noise(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
-        while let Some(best) = full.first()
-            && best.unlisted().is_none()
-            && self.believed.chain == Chain::Whole
-            && !self.is_spent()
-        {
-            let own = self.shown.len()..best.effects.len();
-            let sizes = own.map(|index| (index, self.influence(best, index)));
-            let Some((index, size)) = sizes.min_by(|a, b| a.1.total_cmp(&b.1)) else {
-                break;
-            };
-            if size >= BELOW_NOISE {
-                break;
-            }
-            let name = best.effects[index].name;
-            observer(&Step::Variation.of(best, format!("{name} moves {size:.2} sigmas at most")));
-            let Some(lighter) = self.without(best, index) else {
-                break;
-            };
-            full.retain(|h| !h.effects.iter().any(|effect| effect.name == name));
-            full.retain(|h| h.names() != lighter.names());
-            full.insert(0, lighter);
-        }
-    }
-
-    /// Fits the nominal model from where the best hypothesis has its tolerated numbers, where that is not hopeless and was not done: what explains by no more than
-    /// leading a fit to them is missing nothing.
-    pub(super) fn add_nominal(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
-        let is_nominal = |h: &Hypothesis| self.found(h) == 0 && h.unlisted().is_none();
-        if full.iter().any(is_nominal) || self.is_spent() {
-            return;
-        }
-        let Some(best) = full.first() else { return };
-        let shown = self.shown.iter().flat_map(|shown| &shown.numbers);
-        let free = self.tolerated.iter().chain(shown);
-        let free: Vec<Free> = free
-            .map(|f| f.from_where(&best.fit.prediction.plant))
-            .collect();
-        let mut bare = self.believed.clone();
-        for f in &free {
-            f.quantity
-                .set(&mut bare, f.quantity.get(&best.fit.prediction.plant));
-        }
-        let there = self.evidence.predict(&bare, false, None);
-        if robust_sum(&there.residuals) - best.fit.misfit > self.settings.given_up {
-            return;
-        }
-        let effects = self.shown.iter().map(|shown| shown.effect).collect();
-        let nominal = self.fitted(
-            effects,
-            (&self.believed, None),
-            &free,
-            LAST,
-            Limit::of(LIGHTER),
-        );
-        observer(&Step::Variation.of(&nominal, format!("score {:.1}", self.score(&nominal))));
-        full.push(nominal);
-        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-    }
-
-    /// What an effect of a hypothesis does to the channel that it moves most ([`Self::moved_by`]).
-    fn influence(&self, hypothesis: &Hypothesis, index: usize) -> f64 {
-        let plant = &hypothesis.fit.prediction.plant;
-        let own = hypothesis.effects[index].parameters(&self.believed);
-        let nominal = |quantity: &Quantity| quantity.get(&self.believed);
-        let mut bare = plant.clone();
-        if own.iter().all(|p| nominal(&p.quantity).is_finite()) {
-            for parameter in &own {
-                parameter
-                    .quantity
-                    .set(&mut bare, nominal(&parameter.quantity));
-            }
-        } else {
-            // Another law stands in its place, such as that of air at one temperature: no number of it puts that back.
-            bare = self.believed.clone();
-            bare.latent.clone_from(&plant.latent);
-            let is_own = |f: &Free| own.iter().any(|p| p.quantity.is(&f.quantity));
-            for f in hypothesis.fit.free.iter().filter(|f| !is_own(f)) {
-                f.quantity.set(&mut bare, f.quantity.get(plant));
-            }
-        }
-        self.moved_by(plant, &bare)
-    }
-
-    /// Whether a term moves a channel by a share of its noise that somebody would miss.
-    pub(in crate::diagnosis) fn term_shows(&self, hypothesis: &Hypothesis) -> bool {
-        let plant = &hypothesis.fit.prediction.plant;
-        let mut bare = plant.clone();
-        bare.latent = None;
-        self.moved_by(plant, &bare) >= BELOW_NOISE
-    }
-
-    /// What tells a description from a bare one in the channel that it moves most, root mean square, in standard deviations of its noise, with an error in time
-    /// of 1 ms forgiven: an impact that is met a little earlier is a spike, and no matter [1].
-    fn moved_by(&self, plant: &PlantParameters, bare: &PlantParameters) -> f64 {
-        let with = self.evidence.predict(plant, false, None);
-        let without = self.evidence.predict(bare, false, None);
-        let shares = self.evidence.shares(FORGIVEN, false);
-        let moved: Vec<f64> = (with.residuals.iter().zip(&without.residuals))
-            .zip(shares.iter())
-            .map(|((with, without), share)| (with - without) * share)
-            .collect();
-        let mut sums = [[0.0; 2]; CHANNELS.len()];
-        for (_, channel, moved) in by_channel(self.evidence, &moved) {
-            let [squares, count] = &mut sums[channel as usize];
-            for change in moved.iter().filter(|change| change.is_finite()) {
-                *squares += change * change;
-                *count += 1.0;
-            }
-        }
-        let sizes = sums.map(|[squares, count]| (squares / f64::max(count, 1.0)).sqrt());
-        sizes.into_iter().fold(0.0, f64::max)
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good. What a law is a little wrong by at an impact, an effect

@@ -116,9 +116,7 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::super::input::tolerated;
-    use super::super::super::model_error::ModelError;
-    use super::super::super::settings::Settings;
-    use super::super::super::test_evidence::{evidence_of, plant};
+    use super::super::super::test_evidence::{evidence_of, plant, search};
     use super::*;
     use crate::plant::registry;
 
@@ -134,16 +132,9 @@ mod tests {
         let stairs = |first: f64| (0..500).map(|i| first + 4e4 * f64::from(i / 100)).collect();
         let evidence = evidence_of(&truth, vec![stairs(1.6e5), stairs(2.2e5)]);
         let mut search = Search {
-            evidence: &evidence,
-            believed: plant(),
             tolerated: vec![tolerated(gain, 1.0, 0.1)],
-            candidates: Vec::new(),
-            shown: Vec::new(),
             look: 1,
-            most_effects: 1,
-            model_error: ModelError::NONE,
-            unseen: None,
-            settings: Settings::DEFAULT,
+            ..search(&evidence)
         };
         let joint = search.refit(&search.baseline(), Refit::FULL);
         let mut full = vec![joint.clone()];

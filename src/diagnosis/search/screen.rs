@@ -349,9 +349,7 @@ fn best_of_each(promises: Vec<Promise>) -> Vec<Promise> {
 mod tests {
     use super::super::super::evidence::Evidence;
     use super::super::super::fit::{ROUGH, Refit};
-    use super::super::super::model_error::ModelError;
-    use super::super::super::settings::Settings;
-    use super::super::super::test_evidence::{evidence_of, plant};
+    use super::super::super::test_evidence::{evidence_of, plant, search};
     use super::*;
     use crate::effects::every;
     use crate::plant::{Basis, Port, Variable};
@@ -363,18 +361,10 @@ mod tests {
         registry::FORCE_BIAS.quantity().set(&mut truth, 6.0);
         let evidence = evidence_of(&truth, vec![vec![2e5; 300]]);
         let search = Search {
-            evidence: &evidence,
-            believed: plant(),
-            tolerated: Vec::new(),
             candidates: every()
                 .filter(|e| e.name == "force_sensor_bias_drift")
                 .collect(),
-            shown: Vec::new(),
-            look: 3,
-            most_effects: 1,
-            model_error: ModelError::NONE,
-            unseen: None,
-            settings: Settings::DEFAULT,
+            ..search(&evidence)
         };
         let mut with_term = plant();
         with_term.latent = Some(Latent {
@@ -419,16 +409,8 @@ mod tests {
         let recordings = [0.3, 2.4, -1.5].into_iter().flat_map(of).collect();
         let evidence = Evidence::new(recordings, [400.0, 2e-5, 0.8, 0.15]);
         let search = Search {
-            evidence: &evidence,
-            believed: plant(),
-            tolerated: Vec::new(),
             candidates: every().filter(|e| e.name == "tool_runout").collect(),
-            shown: Vec::new(),
-            look: 3,
-            most_effects: 1,
-            model_error: ModelError::NONE,
-            unseen: None,
-            settings: Settings::DEFAULT,
+            ..search(&evidence)
         };
         let screened = search.screen(&search.baseline(), ROUGH, f64::INFINITY);
         let found = search.refit(&screened[0], Refit::FULL);

@@ -5,6 +5,9 @@ use super::{FlangeModel, Reader, Ripple};
 /// Logarithm of a ratio by which runs at one setting differ [1].
 const REPEATED: f64 = 0.05;
 
+/// Speed [m/s] and force [N] below which a setting is as good as none.
+const LEAST: [f64; 2] = [1e-3, 1.0];
+
 /// What runs a flange was fitted to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoveredRuns {
@@ -21,15 +24,14 @@ impl CoveredRuns {
     /// end; 0 within.
     #[must_use]
     pub fn beyond(&self, [approach, before, desired]: [f64; 3]) -> [f64; 3] {
-        let of = |value: f64, [low, high]: [f64; 2]| match value {
-            _ if value < low => (low / value).ln(),
-            _ if value > high => (value / high).ln(),
-            _ => 0.0,
+        let of = |value: f64, [low, high]: [f64; 2], least: f64| {
+            let [value, low, high] = [value, low, high].map(|setting| setting.max(least).ln());
+            (low - value).max(value - high)
         };
         let beyond = [
-            of(approach, self.approach),
-            of(before, self.before),
-            of(desired, self.desired),
+            of(approach, self.approach, LEAST[0]),
+            of(before, self.before, LEAST[1]),
+            of(desired, self.desired, LEAST[1]),
         ];
         beyond.map(|log| if log > REPEATED { log } else { 0.0 })
     }
@@ -48,4 +50,33 @@ pub struct FittedFlange {
     pub half_widths: [f64; 4],
     /// What runs it was fitted to.
     pub covered: CoveredRuns,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_leave_what_was_covered_by_their_ratio_to_it() {
+        let covered = CoveredRuns {
+            approach: [0.1, 0.2],
+            before: [10.0, 50.0],
+            desired: [35.0, 50.0],
+        };
+        assert_eq!(covered.beyond([0.15, 10.0, 51.0]), [0.0; 3]);
+        let close = |found: [f64; 3], expected: [f64; 3]| {
+            let near = found
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-12);
+            assert!(near, "{found:?} {expected:?}");
+        };
+        let ln = f64::ln;
+        close(covered.beyond([0.3, 5.0, 35.0]), [ln(1.5), ln(2.0), 0.0]);
+        // A flange that comes with no force at all is as far from 10 N as one with 1 N.
+        close(
+            covered.beyond([0.05, 0.0, 100.0]),
+            [ln(2.0), ln(10.0), ln(2.0)],
+        );
+    }
 }

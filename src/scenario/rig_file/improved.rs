@@ -8,7 +8,7 @@ use super::{Known, RigFile, flange, known, latent};
 use crate::plant::Latent;
 use crate::plant::flange::FittedFlange;
 
-/// What an improved file has beyond the believed one.
+/// What an improved file has beyond the nominal one.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Improved<'a> {
     /// Key (as in [`super::Tolerance`]), value, low and high of what was moved; what is not among them stands as it did.
