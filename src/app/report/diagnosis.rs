@@ -8,6 +8,7 @@ use crate::diagnosis::answer::{Answer, Estimate, FoundEffect, Verdict};
 use crate::diagnosis::comparison::{Compared, Comparison};
 use crate::diagnosis::details::remaining_errors;
 use crate::diagnosis::recorded::COLUMNS;
+use crate::diagnosis::statements::TRUSTED;
 use crate::diagnosis::words::{CHANNEL_WORDS, capital, in_unit, of_column, percent, yardstick};
 use crate::effects::UNLISTED;
 use crate::effects::meaning;
@@ -72,7 +73,8 @@ fn lead(answer: &Answer) -> Vec<String> {
         let words = effect.meaning();
         (words != meaning("")).then(|| capital(&words) + ".")
     };
-    let known = answer.effects.iter().filter(|e| e.name != UNLISTED);
+    let known = answer.effects.iter();
+    let known = known.filter(|e| e.name != UNLISTED && e.confidence >= TRUSTED);
     let mut lead: Vec<String> = known.filter_map(said).collect();
     let faults = answer.details.data_faults.iter();
     lead.extend(faults.map(|fault| capital(&fault.words) + "."));

@@ -68,9 +68,11 @@ impl Diagnosis {
         words
     }
 
-    /// Families of which more than one law may be at work, a sentence each.
+    /// Families of which more than one law may be at work, or that are surer than their law, a sentence each.
     pub(super) fn family_words(&self) -> Vec<String> {
-        let families = self.families().into_iter().filter(|f| f.members.len() > 1);
+        let surer = |f: &FamilyReport| f.members.iter().all(|m| m.probability < f.probability);
+        let families = self.families().into_iter();
+        let families = families.filter(|f| f.members.len() > 1 || surer(f));
         let words = families.map(|family| {
             let laws = family.members.iter().map(|m| {
                 let name = match &m.key {

@@ -83,9 +83,18 @@ impl DataFault {
         }
     }
 
-    /// In a sentence without its stop, as notes are.
+    /// In a sentence without its stop, as notes are, of one that was taken off.
     #[must_use]
     pub fn words(&self) -> String {
+        let end = match self.kind {
+            Kind::Noise(_) => "",
+            _ => "; taken off before anything else was looked for",
+        };
+        self.sentence() + end
+    }
+
+    /// What it is.
+    pub(super) fn sentence(&self) -> String {
         let name = self.recording.as_deref().unwrap_or("all recordings");
         let index = self.channel.unwrap_or(Channel::Stroke) as usize;
         let channel = match self.channel {
@@ -138,12 +147,8 @@ impl DataFault {
             ),
         };
         format!(
-            "in {name} {what} (probability {}){}",
-            percent(self.probability),
-            match self.kind {
-                Kind::Noise(_) => "",
-                _ => "; taken off before anything else was looked for",
-            }
+            "in {name} {what} (probability {})",
+            percent(self.probability)
         )
     }
 }

@@ -1,6 +1,7 @@
 //! An answer with the faults of its data.
 
 use super::super::answer::{Answer, Estimate};
+use super::super::statements::TRUSTED;
 use super::super::words::{CHANNEL_WORDS, listed};
 use super::fault::{DataFault, Kind};
 use super::report::DataFaultReport;
@@ -10,10 +11,8 @@ use crate::plant::Channel;
 #[must_use]
 pub fn reported(mut answer: Answer, faults: &[DataFault]) -> Answer {
     let mut all: Vec<DataFaultReport> = faults.iter().map(DataFault::report).collect();
-    let late = answer
-        .effects
-        .iter()
-        .find(|e| e.name == "channel_time_offset");
+    let mut late = answer.effects.iter();
+    let late = late.find(|e| e.name == "channel_time_offset" && e.confidence >= TRUSTED);
     if let Some(late) = late
         && let Some((_, Estimate { value, .. })) = late.parameters.first()
     {
@@ -21,7 +20,10 @@ pub fn reported(mut answer: Answer, faults: &[DataFault]) -> Answer {
             probability: late.confidence,
             ..DataFault::of(Kind::ClockOffset(*value), Channel::Force, None, 0.0)
         };
-        all.push(fault.report());
+        all.push(DataFaultReport {
+            words: format!("{}; named by the search", fault.sentence()),
+            ..fault.report()
+        });
     }
     if !faults.is_empty() {
         let mut kinds: Vec<String> = Vec::new();
@@ -44,4 +46,32 @@ pub fn reported(mut answer: Answer, faults: &[DataFault]) -> Answer {
     }
     answer.details.data_faults = all;
     answer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::answer::tests::answer;
+    use super::*;
+
+    /// An offset of the force's stamps that the search held for 16 % likely stood on the page as a fault that had been taken off.
+    #[test]
+    fn a_late_channel_that_the_search_names_is_a_fault_once_it_is_trusted() {
+        let faults_at = |confidence: f64| {
+            let mut answer = answer();
+            let effect = &mut answer.effects[0];
+            effect.name = "channel_time_offset".to_owned();
+            effect.parameters = vec![("offset_s".to_owned(), Estimate::new(0.03, 0.02, 0.04))];
+            effect.confidence = confidence;
+            reported(answer, &[]).details.data_faults
+        };
+        assert!(faults_at(0.16).is_empty());
+        let [fault] = &faults_at(0.98)[..] else {
+            panic!("{:?}", faults_at(0.98));
+        };
+        assert_eq!(
+            (fault.kind.as_str(), fault.value),
+            ("clock_offset", Some(0.03))
+        );
+        assert!(!fault.words.contains("taken off"), "{}", fault.words);
+    }
 }
