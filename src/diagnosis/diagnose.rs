@@ -22,7 +22,7 @@ use super::progress::{Observer, Step};
 use super::ranking::{Ranked, rank};
 use super::regime::regimes;
 use super::remaining::Remaining;
-use super::ruled_out::ruled_out;
+use super::ruled_out::{add_exchanged, ruled_out};
 use super::search::{RoughFit, Search};
 use super::settings::Settings;
 use super::tried::Tried;
@@ -59,6 +59,7 @@ pub fn diagnose(
     let is_spent = search.is_spent();
     let effort = evidence.effort.report();
     notes.extend(effort.note());
+    notes.extend(evidence.effort.note_of_formulas());
     let depth = match is_spent {
         true => Depth::OneStep,
         false => Depth::Refit(LEFT_OUT),
@@ -238,6 +239,7 @@ fn against(
         found.append(&mut seeded);
         found.sort_by(|a, b| search.score(a).total_cmp(&search.score(b)));
     }
+    add_exchanged(&search, &mut found, observer);
     let mut ranked = rank(&search, found);
     let whole = remaining.whole(evidence);
     let search = search_of(case, &whole, settings);

@@ -57,6 +57,8 @@ struct Count {
     passed: AtomicU64,
     /// Evaluations at the checkpoint that stopped the search; 0 where none did.
     stopped: AtomicU64,
+    /// Evaluations from which no formula was asked for any more; 0 where all were.
+    without_formulas: AtomicU64,
 }
 
 impl Effort {
@@ -87,6 +89,27 @@ impl Effort {
             model_evaluations: stopped.unwrap_or_else(|| self.evaluations()),
             stopped: stopped.is_some(),
         }
+    }
+
+    /// A checkpoint of the search for formulas: whether one is to be asked for no more, past so many evaluations or at a limit.
+    pub(super) fn is_past(&self, most: u64) -> bool {
+        let evaluations = self.evaluations();
+        let past = evaluations >= most;
+        if past {
+            let first = &self.0.without_formulas;
+            let _ = first.compare_exchange(0, evaluations, Ordering::Relaxed, Ordering::Relaxed);
+        }
+        past || self.is_spent()
+    }
+
+    /// In a sentence for people that no formula was asked for any more, where that is so.
+    pub(super) fn note_of_formulas(&self) -> Option<String> {
+        let count = self.0.without_formulas.load(Ordering::Relaxed);
+        (count > 0).then(|| {
+            format!(
+                "no further law that the list does not hold was looked for after {count} model evaluations: where none leaves noise alone by then, what is left is rarely one law"
+            )
+        })
     }
 
     /// Evaluations at which a limit stopped the search; none where it came to its own end.
@@ -142,5 +165,21 @@ mod tests {
         assert_eq!(walk(&Effort::default()), None);
         // Once stopped, it stays so.
         assert!(timed.is_spent());
+    }
+
+    #[test]
+    fn past_its_evaluations_no_formula_is_asked_for_and_that_is_said_with_where_it_began() {
+        let effort = Effort::default();
+        (0..9).for_each(|_| effort.count());
+        assert!(!effort.is_past(10));
+        assert_eq!(effort.note_of_formulas(), None);
+        (0..2).for_each(|_| effort.count());
+        assert!(effort.is_past(10));
+        effort.count();
+        assert!(effort.is_past(10));
+        let note = effort.note_of_formulas().unwrap();
+        assert!(note.contains("after 11 model evaluations"), "{note}");
+        // The search itself goes on.
+        assert!(!effort.report().stopped);
     }
 }

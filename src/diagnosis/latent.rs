@@ -331,6 +331,9 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
+        if self.asks_no_more() {
+            return Vec::new();
+        }
         let base = &self.held(base);
         let noise = self.left_alone(scale);
         let limit = noise + PROMISING * (rival - noise).max(0.0);
@@ -369,6 +372,9 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
+        if self.asks_no_more() {
+            return Vec::new();
+        }
         let base = &self.held(base);
         let promising = self.promising(base, HOPELESS * rival, scale, observer);
         let curves = self.curves(base, &promising, observer);
@@ -381,6 +387,11 @@ impl Search<'_> {
         found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.name_variables(base, &mut found, &promising);
         found
+    }
+
+    /// Whether so much was evaluated that no formula is asked for any more.
+    fn asks_no_more(&self) -> bool {
+        self.evidence.effort.is_past(self.settings.formulas_within)
     }
 
     /// Curves that are told apart by what they leave of recordings that were left out, fitted in full, best first.

@@ -38,8 +38,8 @@ def scale_of(d):
         if e["name"] == "force_sensor_gain_error":
             gain = e["parameters"]["gain"]["value"]
     for n in d.get("tolerated", []):
-        if bore is None and n["name"] == "cylinder.bore_m":
-            bore = n["value"]
+        if bore is None and n["key"] == "cylinder.bore_m":
+            bore = n["found"]["value"]
     return gain * ((bore or 0.025) / 0.025) ** 2
 
 

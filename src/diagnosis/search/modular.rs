@@ -18,7 +18,7 @@ use crate::plant::Channel;
 
 /// Residual by the step of a coordinate below which a channel does not depend on it, in standard deviations of its noise [1].
 const NOTHING: f64 = 1e-6;
-/// Explanations that are fitted again with the regulator's numbers held; those behind them are given up.
+/// Explanations that are fitted again with the regulator's numbers held; those behind them are given up, and those that leave far more.
 const MOST: usize = 6;
 
 impl Search<'_> {
@@ -34,6 +34,8 @@ impl Search<'_> {
             let own = settled.iter().find(|own| same(own, free, &self.believed));
             *free = *own.unwrap_or(free);
         }
+        let hopeless = self.settings.far_behind * self.score(&full[0]);
+        full.retain(|h| self.score(h) <= hopeless);
         full.truncate(MOST);
         for hypothesis in full {
             *hypothesis = self.refit(hypothesis, Refit::FINEST.from(Start::Here));
