@@ -198,7 +198,7 @@ mod tests {
         let names: Vec<Vec<&str>> = found.iter().map(Hypothesis::names).collect();
         assert_eq!(names, [vec![gain.name], vec![bore.name]]);
         // It was fitted, not only put there: a force by pressure of 5 % more takes a bore of 2.5 % more.
-        let off = found[1].fit.values[0] / plant().device.cylinder.bore;
+        let off = found[1].fit.values[0] / plant().device.bore;
         assert!((1.01..1.04).contains(&off), "{off}");
         // What excludes another effect of the explanation stands in no one's place.
         let both = Hypothesis {
