@@ -4,7 +4,7 @@ use super::answer::Estimate;
 use super::details::{FamilyMember, FamilyReport};
 use super::doubt::Doubt;
 use super::estimate::Number;
-use super::family::{FAMILIES, Family, family_of};
+use super::family::{FAMILIES, Family, family_of, is_alike};
 use super::finding::Diagnosis;
 use super::fit::robust_sum;
 use super::hypothesis::Hypothesis;
@@ -68,9 +68,9 @@ impl Diagnosis {
             _ => h.effects.iter().any(|e| e.name == name),
         };
         let own = self.best().effects.iter().find(|e| e.name == name);
-        // A law that excludes it is no explanation without what it stands for: the probability weighs that.
+        // A law that excludes it or is of its family is no explanation without what it stands for: the probability weighs that.
         let in_place =
-            |h: &Hypothesis| own.is_some_and(|own| h.effects.iter().any(|e| e.excludes(own)));
+            |h: &Hypothesis| own.is_some_and(|own| h.effects.iter().any(|e| is_alike(e, own)));
         self.probability_of(&has, &in_place)
     }
 

@@ -40,6 +40,12 @@ pub(super) fn family_of(effect: &Effect) -> Option<&'static Family> {
     family(effect.vocabulary().0, effect.number_key())
 }
 
+/// Whether an effect may stand in another's place: it excludes that, or is of its family.
+pub(super) fn is_alike(effect: &Effect, other: &Effect) -> bool {
+    let family = family_of(effect);
+    effect.excludes(other) || (family.is_some() && family == family_of(other))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! Worth of an explanation of a part of the device: the same without each of its effects, and with the laws that could stand in an effect's place.
 
-use super::family::family_of;
+use super::family::is_alike;
 use super::fit::{FULL, Fit, Limit, Stage, fit};
 use super::free::free_of;
 use super::hypothesis::Hypothesis;
@@ -46,16 +46,12 @@ pub fn ruled_out(search: &Search<'_>, best: &Hypothesis, channel: Channel) -> Ve
 pub(super) fn exchanges(search: &Search<'_>, best: &Hypothesis) -> Vec<Vec<&'static Effect>> {
     let mut variants = Vec::new();
     for (place, effect) in best.effects.iter().enumerate() {
-        let alike = |rival: &Effect| {
-            let family = family_of(rival);
-            rival.excludes(effect) || (family.is_some() && family == family_of(effect))
-        };
         let fits = |rival: &Effect| {
             let mut others = best.effects.iter().enumerate();
             others.all(|(other, e)| other == place || !rival.excludes(e))
         };
         let rivals = search.candidates.iter().copied();
-        for rival in rivals.filter(|r| r.name != effect.name && alike(r) && fits(r)) {
+        for rival in rivals.filter(|r| r.name != effect.name && is_alike(r, effect) && fits(r)) {
             let mut other = best.effects.clone();
             other[place] = rival;
             variants.push(other);
