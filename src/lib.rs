@@ -89,6 +89,7 @@ pub mod scenario;
 pub mod sensing;
 pub mod shell;
 pub mod simulation;
+pub mod stats;
 #[cfg(feature = "cli")]
 pub mod tasks;
 #[cfg(feature = "cli")]

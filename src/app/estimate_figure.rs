@@ -2,9 +2,7 @@
 
 use crate::figure::{Panel, Role, Series, Stroke};
 use crate::recording::{Recording, schema};
-
-/// Deviations from the estimate to either end of the 95 % band [1].
-const BAND: f64 = 1.959_964;
+use crate::stats::{NORMAL_95, median};
 
 /// Both ends of the band; nothing without an estimator.
 pub(super) fn band(recording: &Recording) -> Vec<Series<'_>> {
@@ -13,7 +11,7 @@ pub(super) fn band(recording: &Recording) -> Vec<Series<'_>> {
     };
     let end = |label: &str, side: f64| {
         let pairs = estimated.iter().zip(deviation);
-        let values: Vec<f64> = pairs.map(|(e, d)| e + side * BAND * d).collect();
+        let values: Vec<f64> = pairs.map(|(e, d)| e + side * NORMAL_95 * d).collect();
         line(recording, label, values, Role::Band, Stroke::Raw)
     };
     vec![end("95 % band", -1.0), end("", 1.0)]
@@ -27,21 +25,19 @@ pub(super) fn error_panel(recording: &Recording) -> Option<Panel<'_>> {
     const WIDEST: f64 = 20.0;
     let (estimated, deviation) = estimate(recording)?;
     let force = &recording.channel(schema::CONTACT_FORCE)?.values;
-    let mut pressed: Vec<f64> = force
+    let pressed = force
         .iter()
         .zip(deviation)
         .filter(|(force, _)| **force > TOUCH_FORCE)
-        .map(|(_, deviation)| *deviation)
-        .collect();
-    pressed.sort_by(f64::total_cmp);
-    let widest = WIDEST * pressed.get(pressed.len() / 2)?;
+        .map(|(_, deviation)| *deviation);
+    let widest = WIDEST * median(pressed)?;
     let shown = |i: usize| force[i] > TOUCH_FORCE && deviation[i] <= widest;
     let over = |of: &dyn Fn(usize) -> f64| -> Vec<f64> {
         let value = |i| if shown(i) { of(i) } else { f64::NAN };
         (0..force.len()).map(value).collect()
     };
     let end = |label: &str, side: f64| {
-        let values = over(&|i| side * BAND * deviation[i]);
+        let values = over(&|i| side * NORMAL_95 * deviation[i]);
         line(recording, label, values, Role::Band, Stroke::Plain)
     };
     let error = over(&|i| estimated[i] - force[i]);

@@ -11,10 +11,10 @@
 use nalgebra::DMatrix;
 
 use super::ground::unknown;
-use crate::diagnosis::band::NORMAL_90;
 use crate::diagnosis::details::UnknownGround;
 use crate::plant::{CHANNELS, PlantInputs, PlantParameters, simulate};
 use crate::scenario::rig_file::{Known, RigFile};
+use crate::stats::NORMAL_90;
 
 /// Half width of a number's tolerance over the standard deviation of what may lie anywhere in it [1].
 const EVEN: f64 = 1.732;

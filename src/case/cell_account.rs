@@ -10,6 +10,7 @@ use crate::diagnosis::words::{of_column, with_interval};
 use crate::plant::{Channel, simulate};
 use crate::quantity::{significant, with_unit};
 use crate::replay::LoadedCell;
+use crate::stats::NORMAL_95;
 
 /// Adds joints, servos and places, and the errors of what is predicted of the arm.
 pub(super) fn add_cell(diagnosed: &mut Diagnosed, cell: &LoadedCell, read: &CellCase) {
@@ -54,7 +55,7 @@ fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String>
                 "From their commands to their encoders the joints answer at {}, {}; what is left of joints 1 to {} is {} times the encoders' noise.",
                 with_interval(
                     servo.bandwidth,
-                    [-1.96, 1.96].map(|z| servo.bandwidth + z * servo.deviation),
+                    [-NORMAL_95, NORMAL_95].map(|z| servo.bandwidth + z * servo.deviation),
                     "Hz"
                 ),
                 if servo.differs() {
@@ -73,7 +74,7 @@ fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String>
             friction.joint + 1,
             with_interval(
                 friction.friction,
-                [-1.96, 1.96].map(|z| friction.friction + z * friction.deviation),
+                [-NORMAL_95, NORMAL_95].map(|z| friction.friction + z * friction.deviation),
                 "N m"
             ),
             with_unit(friction.believed, "N m"),

@@ -13,9 +13,7 @@ use super::evidence::{Evidence, by_channel};
 use super::extent::percentile_90;
 use super::ranking::Ranked;
 use crate::plant::CHANNELS;
-
-/// Standard deviations to either side in a 90 % band of a normal distribution [1].
-pub const NORMAL_90: f64 = 1.645;
+use crate::stats::NORMAL_90;
 
 /// Half of a 90 % band of each channel, in standard deviations of noise and numbers together [1].
 pub(super) fn half_widths(

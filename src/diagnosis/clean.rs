@@ -3,9 +3,10 @@
 //! A reading is wild only if it stands alone and what it says of the rig is denied by another sensor (`wild`); impacts are seen by more than one.
 
 use crate::plant::CHANNELS;
-use crate::recording::csv::{median_step, plausible_range};
+use crate::recording::csv::plausible_range;
 
 use super::recorded::{COLUMNS, QUANTITIES};
+use crate::stats::median_step;
 use departure::noise_of;
 pub(super) use departure::{departures, lagrange};
 

@@ -15,13 +15,14 @@ use super::hypothesis::Hypothesis;
 use super::ranking::Ranked;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::{Latent, PlantParameters};
+use crate::stats::{NORMAL_95, median_step};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 /// Standard deviation of what a law leaves out, as a share of its own effect [1].
 const IDEALISATION_OF_NUMBERS: f64 = 0.005;
 /// Standard deviations to either side in a 95 % interval [1].
-const INTERVAL: f64 = 1.96;
+const INTERVAL: f64 = NORMAL_95;
 
 /// Share of a range, in the fit's coordinate, within which a number stands at its end [1]: a prior keeps a tolerated one a little short of it.
 const AT_LIMIT: f64 = 0.01;
@@ -119,13 +120,8 @@ fn allowance(believed: &PlantParameters, free: &Free, value: f64, sample: f64) -
 
 /// The median distance of samples [s] of the slowest recording.
 fn longest_sample(evidence: &Evidence) -> f64 {
-    let medians = evidence.recordings.iter().map(|measured| {
-        let mut steps: Vec<f64> = (measured.inputs.time.windows(2))
-            .map(|pair| pair[1] - pair[0])
-            .collect();
-        steps.sort_by(f64::total_cmp);
-        steps[steps.len() / 2]
-    });
+    let recordings = evidence.recordings.iter();
+    let medians = recordings.map(|measured| median_step(&measured.inputs.time));
     medians.fold(0.0, f64::max)
 }
 

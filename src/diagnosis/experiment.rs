@@ -41,7 +41,7 @@ impl Limits {
             surfaces.iter().sum::<f64>() / surfaces.len() as f64
         };
         let pressures = inputs().flat_map(|i| i.set_pressure.iter().copied());
-        let steps = inputs().map(|i| crate::recording::csv::median_step(&i.time));
+        let steps = inputs().map(|i| crate::stats::median_step(&i.time));
         Self {
             step: steps.fold(f64::INFINITY, f64::min),
             pressure: pressures.fold(0.0, f64::max),

@@ -6,6 +6,7 @@ use super::evidence::by_channel;
 use super::ranking::Ranked;
 use super::remaining::Remaining;
 use crate::plant::{CHANNELS, Channel};
+use crate::stats::quantile;
 
 /// 90th percentile of a departure up to which it is near the noise, in standard deviations [1]: of noise alone it is 1.64.
 pub(super) const NEAR_NOISE: f64 = 2.0;
@@ -91,12 +92,7 @@ impl Largest {
 
 /// 90th percentile of the size of what is finite; none where nothing is.
 pub(super) fn percentile_90(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut sizes: Vec<f64> = values.filter(|v| v.is_finite()).map(f64::abs).collect();
-    if sizes.is_empty() {
-        return None;
-    }
-    let place = (0.9 * (sizes.len() - 1) as f64) as usize;
-    Some(*sizes.select_nth_unstable_by(place, f64::total_cmp).1)
+    quantile(values.filter(|v| v.is_finite()).map(f64::abs), 0.9)
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use super::free::{Free, Prior};
 use super::normal_equations::weighted_products;
 use super::settings::HUBER;
 use crate::plant::PlantParameters;
+use crate::stats::quantile;
 use nalgebra::{DMatrix, DVector};
 
 /// Step of the difference quotients in the fit's coordinate [1].
@@ -132,19 +133,10 @@ impl Weighing<'_> {
 /// Where the loss turns from square to proportional for now: far out while much is unexplained, because a proportional loss has no curvature and
 /// converges slowly; at `HUBER` in the end.
 fn limit_for(residuals: &[f64], shares: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = residuals
-        .iter()
-        .zip(shares)
-        .filter(|(r, _)| r.is_finite())
-        .map(|(r, share)| (r * share).abs())
-        .collect();
-    if sizes.is_empty() {
-        return HUBER;
-    }
-    let high = sizes.len() * 49 / 50;
-    let quantile = *sizes.select_nth_unstable_by(high, f64::total_cmp).1;
+    let finite = residuals.iter().zip(shares).filter(|(r, _)| r.is_finite());
+    let high = quantile(finite.map(|(r, share)| (r * share).abs()), 0.98);
     // Of noise alone, one in fifty is beyond 2.33.
-    HUBER * (quantile / 2.5).max(1.0)
+    HUBER * (high.unwrap_or(0.0) / 2.5).max(1.0)
 }
 
 fn prior_sum(free: &[Free], values: &[f64]) -> f64 {

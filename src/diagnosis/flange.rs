@@ -7,6 +7,7 @@
 //! F_peak largest force of the impact [N], F_0 force desired before it [N]. Each run gives one number of each kind, so that their intervals come from how
 //! they differ from run to run (Student's t), with the force sampled as it was. What cannot be told without pressure and stroke is said to be so.
 
+use crate::stats::{median, student_95};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -245,7 +246,7 @@ impl Run {
             return Err(never());
         }
         let approach = mean(&self.speed[approaching.clone()]);
-        let before = median(&self.desired[approaching]);
+        let before = median(self.desired[approaching].iter().copied()).unwrap_or(0.0);
         if approach.is_nan() || approach < COMES {
             return Err(NoContact::Stands {
                 run: run(),
@@ -256,7 +257,12 @@ impl Run {
         if left < PRESSED {
             return Err(NoContact::Short { run: run(), left });
         }
-        let desired = median(&self.desired[self.between(contact + 0.3, contact + 1.5)]);
+        let desired = median(
+            self.desired[self.between(contact + 0.3, contact + 1.5)]
+                .iter()
+                .copied(),
+        )
+        .unwrap_or(0.0);
         if desired <= 0.0 {
             return Err(NoContact::Undesired {
                 run: run(),
@@ -351,15 +357,13 @@ pub fn spread_of_sizes(values: &[f64]) -> [f64; 3] {
 
 /// A mean with its 95 % interval from how values differ; of one value alone, what such values differ by at worst is not known and half of it is taken.
 pub fn spread(values: &[f64]) -> [f64; 3] {
-    /// Student's t at 97.5 % by degrees of freedom.
-    const T: [f64; 10] = [12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23];
     let centre = mean(values);
     if values.len() < 2 {
         return [centre, 0.5 * centre, 1.5 * centre];
     }
     let free = values.len() - 1;
     let sample = deviation(values) * (values.len() as f64 / free as f64).sqrt();
-    let half = T[free.min(T.len()) - 1] * sample / (values.len() as f64).sqrt();
+    let half = student_95(free as f64) * sample / (values.len() as f64).sqrt();
     [centre, centre - half, centre + half]
 }
 
@@ -371,12 +375,6 @@ pub(super) fn deviation(values: &[f64]) -> f64 {
     let centre = mean(values);
     let squares: f64 = values.iter().map(|v| (v - centre).powi(2)).sum();
     (squares / values.len().max(1) as f64).sqrt()
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Means over [`AVERAGED`] about each time.

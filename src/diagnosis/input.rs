@@ -10,6 +10,7 @@ use crate::effects::{Coordinate, Effect};
 use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, Quantity};
 use crate::recording::csv::plausible_range;
+use crate::stats::median;
 
 /// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
 pub(super) const OTHER_NOISE: f64 = 1.5;
@@ -210,20 +211,12 @@ fn missing(
 /// Noise of each channel: the sheet's, unless the recordings show clearly another.
 fn believed_noise(cleanings: &[Cleaning], sheet: &[f64; CHANNELS.len()]) -> [f64; CHANNELS.len()] {
     std::array::from_fn(|channel| {
-        let mut found: Vec<f64> = cleanings
-            .iter()
-            .filter_map(|cleaning| cleaning.noise[channel])
-            .filter(|noise| *noise > 0.0)
-            .collect();
-        found.sort_by(f64::total_cmp);
-        match found.get(found.len() / 2) {
-            Some(noise)
-                if !(1.0 / OTHER_NOISE..OTHER_NOISE).contains(&(noise / sheet[channel])) =>
-            {
-                *noise
-            }
-            _ => sheet[channel],
-        }
+        let found = cleanings.iter().filter_map(|c| c.noise[channel]);
+        let sheet = sheet[channel];
+        let clear = |noise: &f64| !(1.0 / OTHER_NOISE..OTHER_NOISE).contains(&(noise / sheet));
+        median(found.filter(|noise| *noise > 0.0))
+            .filter(clear)
+            .unwrap_or(sheet)
     })
 }
 

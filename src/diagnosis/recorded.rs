@@ -7,6 +7,7 @@ use crate::plant::{
 use crate::quantity::counted;
 use crate::recording::gaps::{Gap, longest_gap, longest_pause};
 use crate::recording::{Recording, RecordingError, schema};
+use crate::stats::median;
 use std::sync::Arc;
 
 /// Quantities of the channels in a recording, in the order of [`CHANNELS`].
@@ -276,10 +277,8 @@ pub fn run_of(file: &str, name: &str, recording: &Recording) -> Result<Run, Reco
 fn first_level(time: &[f64], readings: &[f64]) -> f64 {
     const FEW: usize = 5;
     let within = time.partition_point(|t| t - time[0] <= 1.0).max(FEW);
-    let mut first: Vec<f64> = readings.iter().copied().take(within).collect();
-    first.retain(|p| p.is_finite());
-    first.sort_by(f64::total_cmp);
-    first.get(first.len() / 2).copied().unwrap_or(0.0)
+    let first = readings.iter().copied().take(within);
+    median(first.filter(|p| p.is_finite())).unwrap_or(0.0)
 }
 
 impl Recorded {

@@ -13,7 +13,6 @@ pub mod answer;
 mod fit;
 mod law;
 mod select;
-mod student;
 #[cfg(test)]
 mod tests;
 

@@ -9,9 +9,7 @@ use super::parameters::Tolerances;
 use super::seals::Seals;
 use crate::device::DeviceParameters;
 use crate::physics::piston::PistonAreas;
-
-/// Standard deviations to either side of the 95 % band of a normal distribution [1].
-const NORMAL_FACTOR: f64 = 1.959_964;
+use crate::stats::NORMAL_95;
 
 /// Standard deviations to either side of the 95 % band of a sum of independent contributions, some of them even within limits.
 ///
@@ -19,7 +17,7 @@ const NORMAL_FACTOR: f64 = 1.959_964;
 /// one with nothing else (1) 1.645 within 0.05 % of the closed form, two equal ones (0.5) 1.851 (exact 1.902). Fitted to sums of one even and one
 /// normal contribution, from which it is off by less than 0.01; as JCGM 100:2008, G.2 asks where limits prevail.
 pub(super) fn coverage_factor(fourth_powers: f64) -> f64 {
-    NORMAL_FACTOR - fourth_powers * (0.119 + 0.196 * fourth_powers)
+    NORMAL_95 - fourth_powers * (0.119 + 0.196 * fourth_powers)
 }
 
 /// Estimate after a sample.
@@ -57,7 +55,7 @@ impl EstimatorOutput {
 
     /// Standard deviation of the normal distribution that has this 95 % band [N].
     pub fn normal_deviation(&self) -> f64 {
-        self.standard_deviation * self.coverage_factor / NORMAL_FACTOR
+        self.standard_deviation * self.coverage_factor / NORMAL_95
     }
 
     /// Whether the 95 % band covers a force [N].

@@ -7,4 +7,4 @@ mod layout;
 mod series;
 
 pub use layout::{Dated, Device, FleetError, Layout, date_of_day, scan};
-pub use series::{Change, ChangeKind, Trend, change, median, trend};
+pub use series::{Change, ChangeKind, Trend, change, trend};

@@ -4,6 +4,7 @@
 //! series without a change is named as often as that probability says, whatever its scatter is like (A. N. Pettitt's idea, Appl. Statist. 28, 1979, with
 //! least squares in place of ranks). Days are taken to scatter independently.
 
+use crate::stats::{mean, student_95};
 use rand::{SeedableRng, seq::SliceRandom};
 use rand_chacha::ChaCha8Rng;
 
@@ -48,18 +49,6 @@ pub struct Change {
     pub probability: f64,
 }
 
-/// The median; none of nothing.
-#[must_use]
-pub fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len().checked_sub(1)? / 2;
-    Some(match sorted.len() % 2 {
-        0 => 0.5 * (sorted[middle] + sorted[middle + 1]),
-        _ => sorted[middle],
-    })
-}
-
 /// The trend of a series of days; none of few.
 #[must_use]
 pub fn trend(days: &[f64], values: &[f64]) -> Option<Trend> {
@@ -79,23 +68,11 @@ pub fn trend(days: &[f64], values: &[f64]) -> Option<Trend> {
         .map(|(d, v)| (v - value - slope * (d - day)).powi(2))
         .sum();
     let free = count as f64 - 2.0;
-    let half = student(free) * (left / free / square).sqrt();
+    let half = student_95(free) * (left / free / square).sqrt();
     (square > 0.0).then_some(Trend {
         slope,
         interval: [slope - half, slope + half],
     })
-}
-
-/// Student's quantile of 97.5 %, by Fisher's expansion: to a hundredth from five degrees of freedom on.
-fn student(free: f64) -> f64 {
-    let z: f64 = 1.959_964;
-    let first = (z.powi(3) + z) / 4.0 / free;
-    let second = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0 / free.powi(2);
-    z + first + second
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// The change that a series shows best; none of few days, or of one that stands still.
@@ -126,7 +103,7 @@ pub fn change(days: &[f64], values: &[f64], seed: u64) -> Option<Change> {
     });
     let probability = (as_much.count() + 1) as f64 / (SHUFFLED + 1) as f64;
     let free = count as f64 - 3.0;
-    let likely = (whole - most) * student(free).powi(2) / free;
+    let likely = (whole - most) * student_95(free).powi(2) / free;
     let near: Vec<f64> = (shapes.iter().zip(&own))
         .filter(|(shape, gain)| shape.kind == shapes[best].kind && most - **gain <= likely)
         .map(|(shape, _)| shape.day)
@@ -237,6 +214,5 @@ mod tests {
         });
         let held = held.count();
         assert!((180..=199).contains(&held), "{held}");
-        assert!((student(10.0) - 2.228).abs() < 0.005 && (student(38.0) - 2.024).abs() < 0.002);
     }
 }

@@ -7,8 +7,8 @@ use super::error::ImportError;
 use super::log::{Series, read_log};
 use super::map::{Clock, ImportMap};
 use super::rows::Remark;
-use crate::recording::csv::median_step;
 use crate::recording::{RecordedChannel, Recording};
+use crate::stats::median_step;
 
 /// Steps of a series beyond which nothing is read off between two of its samples.
 const GAP: f64 = 3.0;

@@ -8,7 +8,7 @@
 
 use super::assemble::read_off;
 use super::log::Series;
-use crate::recording::csv::median_step;
+use crate::stats::median_step;
 
 /// Correlation below which two quantities say nothing of each other's clock [1].
 const LEAST: f64 = 0.5;

@@ -7,9 +7,9 @@ use super::log::Series;
 use super::lone::lone;
 use super::map::{ChannelMap, Column, FileMap, Pressure};
 use super::units::{self, LogUnit, UNITS};
-use crate::recording::csv::median_step;
 use crate::recording::thousandfold::thousandfold;
 use crate::recording::{Recording, Unit};
+use crate::stats::median_step;
 use nalgebra::{DMatrix, DVector};
 
 /// Atmosphere, and what it is at most away from that at sea level and on hills [Pa].

@@ -10,12 +10,10 @@ use super::log::Series;
 use super::map::{ChannelMap, ImportMap};
 use super::units::LogUnit;
 use crate::recording::Unit;
-use crate::recording::csv::median_step;
+use crate::stats::{NORMAL_MAD, median, median_step};
 
 /// Median steps from which a step is a gap.
 const GAP: f64 = 3.0;
-/// Median absolute deviation of a normal distribution over its standard deviation [1].
-const NORMAL_MAD: f64 = 1.4826;
 /// Distinct values over samples below which a channel may be quantised, and share of its steps that must be whole.
 const FEW: f64 = 0.5;
 const WHOLE: f64 = 0.99;
@@ -116,16 +114,11 @@ pub(super) fn finding(series: &Series, channel: &ChannelMap) -> Finding {
 /// Standard deviation of white noise on a smooth trajectory.
 #[must_use]
 pub fn noise(values: &[f64]) -> Option<f64> {
-    let mut bends: Vec<f64> = values
-        .windows(3)
-        .map(|w| (w[2] - 2.0 * w[1] + w[0]).abs())
-        .collect();
+    let bends = values.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).abs());
     if bends.len() < 20 {
         return None;
     }
-    let middle = bends.len() / 2;
-    let (_, median, _) = bends.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(NORMAL_MAD * *median / 6.0f64.sqrt())
+    Some(NORMAL_MAD * median(bends)? / 6.0f64.sqrt())
 }
 
 /// The step of a converter: the least difference of distinct values, where the others are whole multiples of it.

@@ -5,13 +5,13 @@
 //! ```
 
 use crate::recording::Unit;
+use crate::stats::{NORMAL_MAD, median};
 
 /// Values on either side of one that make its neighbourhood.
 const BESIDE: usize = 5;
 /// Standard deviations from which a value is far.
 const FAR: f64 = 20.0;
 /// Median absolute deviation of a normal distribution over its standard deviation [1].
-const NORMAL_MAD: f64 = 1.4826;
 /// Part of the others' range by which a single value, and one that comes back often, lies outside of it.
 const OUTSIDE: [f64; 2] = [0.5, 2.0];
 /// Share of the values that single ones are at most, and those that come back.
@@ -42,7 +42,7 @@ pub(super) fn lone(values: &[f64], unit: Unit) -> Option<Lone> {
         .zip(&middles)
         .map(|(x, m)| (x - m).abs())
         .collect();
-    let scale = NORMAL_MAD * median(away.clone());
+    let scale = NORMAL_MAD * median(away.iter().copied()).unwrap_or(0.0);
     let far: Vec<usize> = (0..values.len())
         .filter(|i| away[*i] > FAR * scale && away[*i] > 1e-9 * values[*i].abs())
         .collect();
@@ -126,13 +126,7 @@ fn range(values: &[f64]) -> [f64; 2] {
 fn middle(values: &[f64], at: usize) -> f64 {
     let from = at.saturating_sub(BESIDE);
     let to = (at + BESIDE + 1).min(values.len());
-    median(values[from..to].to_vec())
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    let (_, median, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    *median
+    median(values[from..to].iter().copied()).unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::statistics::{extent, largest, moments, root_mean_square};
 use super::window::Window;
 use super::{MetricsError, Timing};
 use crate::recording::{Recording, Unit, schema};
+use crate::stats::NORMAL_95;
 
 /// Share of a level that counts as steady: its last fifth, one second at most.
 const STEADY_SHARE: f64 = 0.2;
@@ -412,7 +413,7 @@ fn sensors(summary: &mut BenchSummary, run: &Run<'_>) {
         let covered = pressed
             .iter()
             .zip(&errors)
-            .filter(|(i, error)| error.abs() <= 1.959_964 * deviation[**i])
+            .filter(|(i, error)| error.abs() <= NORMAL_95 * deviation[**i])
             .count();
         summary.estimated_force_coverage_percent =
             Some(100.0 * covered as f64 / pressed.len() as f64);

@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use super::measured_motion::MeasuredMotion;
+use crate::stats::median;
 
 /// Time for which the piston is held [s]: several times as long as a chamber takes to fill.
 const HELD: f64 = 0.5;
@@ -89,23 +90,12 @@ fn level(time: &[f64], readings: &[f64]) -> Option<f64> {
         .map(|(time, reading)| (*time, *reading))
         .collect();
     let pairs = (few.iter().enumerate()).flat_map(|(i, a)| few[..i].iter().map(move |b| (a, b)));
-    let slope = median(pairs.map(|(a, b)| (a.1 - b.1) / (a.0 - b.0)).collect()).unwrap_or(0.0);
+    let slope = median(pairs.map(|(a, b)| (a.1 - b.1) / (a.0 - b.0))).unwrap_or(0.0);
     let mut starts: Vec<f64> = (few.iter())
         .map(|(at, reading)| reading - slope * (at - time[0]))
         .collect();
     starts.sort_by(f64::total_cmp);
     starts.get(1).or(starts.first()).copied()
-}
-
-/// Median of values, the mean of the two in the middle of an even number; none of none.
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    let upper = *values.get(middle)?;
-    Some(match values.len() % 2 {
-        0 => 0.5 * (values[middle - 1] + upper),
-        _ => upper,
-    })
 }
 
 #[cfg(test)]

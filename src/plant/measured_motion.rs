@@ -7,6 +7,7 @@
 //! K tricube weights (Cleveland 1979), W half-width [s]: the largest that predicts a reading from the others about as well as the best one does, because
 //! derivatives need more smoothing than the readings themselves. Samples may be at unlike distances.
 
+use crate::stats::median;
 use nalgebra::{Matrix4, Vector4};
 
 /// Motion along extension, one value of each per sample; NaN where too few readings are near.
@@ -42,17 +43,14 @@ impl MeasuredMotion {
             .filter(|(_, x)| x.is_finite())
             .map(|(t, x)| (*t, *x))
             .collect();
-        let mut steps: Vec<f64> = known.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
-        if steps.is_empty() {
+        let Some(usual) = median(known.windows(2).map(|pair| pair[1].0 - pair[0].0)) else {
             let nothing = vec![f64::NAN; time.len()];
             return Self {
                 stroke: nothing.clone(),
                 speed: nothing.clone(),
                 acceleration: nothing,
             };
-        }
-        let middle = steps.len() / 2;
-        let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        };
         let width = best_width(&known, usual);
         let fitted = time.iter().map(|t| Cubic::at(&known, *t, width));
         let fitted: Vec<[f64; 3]> = fitted

@@ -18,6 +18,7 @@ use super::trajectory::Trajectory;
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::regulator::RegulatorState;
 use crate::physics::valve::ValvePosition;
+use crate::stats::median_step;
 
 /// A simulated recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,7 +133,7 @@ pub fn true_trajectory(
     let mut entered = 0.0;
     let law = plant.contact.in_recording(inputs.place);
     let rate = law.rate(mass);
-    let usual = usual_step(&inputs.time);
+    let usual = median_step(&inputs.time);
     let mut contact_friction = ContactFriction::default();
     for i in 0..count {
         state.valve = if inputs.extends[i] {
@@ -359,13 +360,6 @@ fn hold(
 
 /// Steps into which a sample is cut where links swing.
 const FLEXING_PARTS: f64 = 2.0;
-
-/// The median distance of samples [s].
-fn usual_step(time: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
-}
 
 impl Trajectory {
     /// The variables at a sample.

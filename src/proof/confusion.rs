@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 
 use super::outcome::Outcome;
 use super::reliability::Reliability;
-use super::summary::percentile;
 use crate::laboratory::LOST;
 use crate::quantity::binomial::upper_bound;
 use crate::quantity::significant;
+use crate::stats::{median, quantile};
 
 /// 90th percentile of a prediction's error from which an explanation is not a full one [standard deviations].
 const FAR: f64 = 4.0;
@@ -154,15 +154,14 @@ fn sizes(text: &mut String, outcomes: &[Outcome]) {
             continue;
         };
         let these = of_size(all, size);
-        let median = |of: &dyn Fn(&Outcome) -> f64| {
-            let values: Vec<f64> = these.iter().map(|o| of(o)).collect();
-            percentile(&values, 0.5).unwrap_or(f64::NAN)
-        };
+        let of_these =
+            |of: &dyn Fn(&Outcome) -> f64| median(these.iter().map(|o| of(o))).unwrap_or(f64::NAN);
         let names: Vec<&String> = these.iter().flat_map(|o| o.parameters.keys()).collect();
         let mut numbers: Vec<String> = names
             .iter()
             .map(|name| {
-                let value = median(&|o| o.parameters.get(*name).copied().unwrap_or(f64::NAN).abs());
+                let value =
+                    of_these(&|o| o.parameters.get(*name).copied().unwrap_or(f64::NAN).abs());
                 format!("{name} {}", short(value))
             })
             .collect();
@@ -171,8 +170,8 @@ fn sizes(text: &mut String, outcomes: &[Outcome]) {
         let _ = writeln!(
             text,
             " {size} | {} | {} | {} |",
-            short(median(&|o| o.share)),
-            short(median(&|o| o.shows)),
+            short(of_these(&|o| o.share)),
+            short(of_these(&|o| o.shows)),
             numbers.join(", ")
         );
     }
@@ -231,11 +230,10 @@ fn numbers(text: &mut String, outcomes: &[Outcome]) {
         let errors: Vec<f64> = named.iter().flat_map(|o| o.score.errors.clone()).collect();
         let covered: usize = named.iter().map(|o| o.score.covered).sum();
         let percent = |share| {
-            percentile(&errors, share)
+            quantile(errors.iter().copied(), share)
                 .map_or_else(|| "-".to_owned(), |e| format!("{:.2} %", 100.0 * e))
         };
-        let median =
-            |values: Vec<f64>| percentile(&values, 0.5).map_or_else(|| "-".to_owned(), short);
+        let middle = |values: Vec<f64>| median(values).map_or_else(|| "-".to_owned(), short);
         let _ = writeln!(
             text,
             "| {size} | {} | {} | {} | {covered}/{} | {} | {} |",
@@ -243,8 +241,8 @@ fn numbers(text: &mut String, outcomes: &[Outcome]) {
             percent(0.5),
             percent(0.9),
             errors.len(),
-            median(named.iter().map(|o| o.score.overlap).collect()),
-            median(named.iter().filter_map(|o| o.score.prediction).collect()),
+            middle(named.iter().map(|o| o.score.overlap).collect()),
+            middle(named.iter().filter_map(|o| o.score.prediction).collect()),
         );
     }
 }

@@ -10,12 +10,12 @@ use super::error::ProofError;
 use super::outcome::Made;
 use super::prove::{Diagnose, score};
 use super::score::CaseScore;
-use super::summary::percentile;
 use super::sweep::{Course, carry_out};
 use crate::diagnosis::answer::Answer;
 use crate::effects::UNLISTED;
 use crate::laboratory::{Known, Recipe, SealedEffect, law_case, write_case};
 use crate::recording::atomic::UnfinishedFolder;
+use crate::stats::quantile;
 
 /// Seed of the first device.
 const FIRST_SEED: u64 = 2_000_000;
@@ -276,7 +276,8 @@ pub fn laws_page(outcomes: &[LawOutcome]) -> String {
     count("unseen recording within 2 sigma", &LawOutcome::predicted);
     count("answered", &|o| o.score.answered.is_some());
     let seconds: Vec<f64> = outcomes.iter().filter_map(|o| o.score.seconds).collect();
-    let [median, most] = [0.5, 1.0].map(|share| percentile(&seconds, share).unwrap_or(f64::NAN));
+    let [median, most] =
+        [0.5, 1.0].map(|share| quantile(seconds.iter().copied(), share).unwrap_or(f64::NAN));
     let _ = writeln!(text, "- seconds: median {median:.0}, worst {most:.0}\n");
     text += "Unseen: 90th percentile of the prediction's error in the worst channel, in standard deviations of its noise; 1.64 is perfect. Shows: all that is\n\
 concealed, in standard deviations beside all that is tolerated.\n\n\

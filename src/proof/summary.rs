@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::reliability::Reliability;
 use super::score::CaseScore;
+use crate::stats::{median, quantile};
 
 /// Claims that a proof must reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,18 +96,15 @@ impl ProofSummary {
             clean: count(&empty, &|c| c.named_exactly),
             unlisted: count(&|c| c.unlisted, &|c| c.named_exactly && c.placed),
             verdicts: count(&any, &|c| c.verdict_right),
-            errors: percentile(&errors, 0.5)
-                .zip(percentile(&errors, 0.9))
+            errors: quantile(errors.iter().copied(), 0.5)
+                .zip(quantile(errors.iter().copied(), 0.9))
                 .map(|(a, b)| [a, b]),
             covered: [exact.iter().map(|c| c.covered).sum(), errors.len()],
-            half_width: percentile(&widths, 0.5),
-            overlap: percentile(&at_work.map(|c| c.overlap).collect::<Vec<f64>>(), 0.5),
+            half_width: quantile(widths.iter().copied(), 0.5),
+            overlap: median(at_work.map(|c| c.overlap)),
             predicted: count(&any, &within),
             reliability: Reliability::of(cases.iter().flat_map(|case| &case.stated)),
-            seconds: percentile(
-                &cases.iter().filter_map(|c| c.seconds).collect::<Vec<f64>>(),
-                0.5,
-            ),
+            seconds: median(cases.iter().filter_map(|c| c.seconds)),
             cases,
         }
     }
@@ -239,14 +237,6 @@ fn line(case: &CaseScore) -> String {
     )
 }
 
-/// The value below which a share of the values lies.
-pub(super) fn percentile(values: &[f64], share: f64) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let last = sorted.len().checked_sub(1)?;
-    Some(sorted[(share * last as f64).round() as usize])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -298,11 +288,5 @@ mod tests {
         bad[1].prediction = None;
         let short = ProofSummary::new(bad).shortfalls(&Claims::PAGE);
         assert_eq!(short.len(), 6, "{short:?}");
-    }
-
-    #[test]
-    fn percentiles_are_of_the_sorted_values() {
-        assert_eq!(percentile(&[3.0, 1.0, 2.0], 0.5), Some(2.0));
-        assert_eq!(percentile(&[], 0.5), None);
     }
 }

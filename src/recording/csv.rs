@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::atomic::write_atomic;
 use super::{RecordedChannel, Recording, RecordingError};
+use crate::stats::median_step;
 use columns::{COLUMNS, Column, TIME};
 
 mod cell;
@@ -18,7 +19,7 @@ mod table;
 mod tests;
 
 pub use cell::{CellRecording, read_cell_csv};
-pub use columns::{column_of, median_step, plausible_range};
+pub use columns::{column_of, plausible_range};
 pub use edge_profile::EdgeProfile;
 pub use named::{NamedColumns, read_named};
 

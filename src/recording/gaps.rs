@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::csv::median_step;
+use crate::stats::median_step;
 
 /// Longest pause between two samples of one recording: this [s], or so many usual steps, whichever is longer.
 const PAUSE: f64 = 1.0;

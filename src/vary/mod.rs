@@ -14,5 +14,5 @@ pub use additive::Varied;
 pub use latin::LatinHypercube;
 pub use points::{Points, Sampling};
 pub use share::{Share, shares_of_variance};
-pub use statistics::{QUANTILES, quantiles, rank_correlation};
+pub use statistics::{QUANTILES, rank_correlation};
 pub use variable::{Values, Variable, VaryError};

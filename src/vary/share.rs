@@ -16,6 +16,7 @@ use rand::{Rng, SeedableRng, seq::SliceRandom};
 use rand_chacha::ChaCha8Rng;
 
 use super::additive::{Varied, parted};
+use crate::stats::{mean, quantile, quantiles};
 
 /// Values up to which a variable's runs are grouped by value, if there are two runs a value in the mean.
 const FEW: usize = 30;
@@ -121,7 +122,7 @@ impl Index<'_> {
         let value = self.of(all)?;
         let drawn = all.len().min(DRAWN);
         let some: Vec<usize> = (0..drawn).map(|place| place * all.len() / drawn).collect();
-        let mut turns: Vec<f64> = (0..TURNS)
+        let turns: Vec<f64> = (0..TURNS)
             .filter_map(|_| {
                 let again: Vec<usize> = (0..drawn)
                     .map(|_| random.random_range(0..all.len()))
@@ -129,19 +130,14 @@ impl Index<'_> {
                 self.of(&again)
             })
             .collect();
-        turns.sort_by(f64::total_cmp);
-        let mean = turns.iter().sum::<f64>() / turns.len() as f64;
-        let at =
-            |turns: &[f64], share: f64| turns[((turns.len() - 1) as f64 * share).round() as usize];
+        let mean = mean(&turns);
+        let ends = quantiles(&turns, &[0.025, 0.975])?;
         let end = |turn: f64| (value + turn - mean).clamp(0.0, 1.0);
-        let mut shuffled: Vec<f64> = (0..TURNS)
-            .filter_map(|_| self.shuffled(&some, &mut random))
-            .collect();
-        shuffled.sort_by(f64::total_cmp);
+        let shuffled = (0..TURNS).filter_map(|_| self.shuffled(&some, &mut random));
         Some(Share {
             value: value.clamp(0.0, 1.0),
-            interval: [end(at(&turns, 0.025)), end(at(&turns, 0.975))],
-            shuffled: at(&shuffled, SHUFFLED).clamp(0.0, 1.0),
+            interval: [end(ends[0]), end(ends[1])],
+            shuffled: quantile(shuffled, SHUFFLED)?.clamp(0.0, 1.0),
         })
     }
 

@@ -1,21 +1,7 @@
-//! Quantiles, and correlation of ranks.
+//! Shares of a sweep that are reported, and correlation of ranks.
 
-/// Shares that are told [1].
+/// Shares of which the quantiles are reported [1].
 pub const QUANTILES: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
-
-/// Values below which these shares of all lie, straight between neighbours; of numbers that are known (not NaN).
-#[must_use]
-pub fn quantiles(values: &[f64], shares: &[f64]) -> Option<Vec<f64>> {
-    let mut known: Vec<f64> = values.iter().copied().filter(|v| !v.is_nan()).collect();
-    known.sort_by(f64::total_cmp);
-    let last = known.len().checked_sub(1)? as f64;
-    let at = |share: &f64| {
-        let place = share.clamp(0.0, 1.0) * last;
-        let (low, high) = (known[place.floor() as usize], known[place.ceil() as usize]);
-        low + (high - low) * place.fract()
-    };
-    Some(shares.iter().map(at).collect())
-}
 
 /// Spearman's correlation of ranks, from -1 to 1: whether one grows with the other, however; none where one of them stands still.
 #[must_use]
@@ -58,14 +44,6 @@ fn ranks(values: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn quantiles_lie_straight_between_neighbours() {
-        let values = [4.0, f64::NAN, 1.0, 2.0, 3.0];
-        let found = quantiles(&values, &[0.0, 0.5, 0.9, 1.0]).unwrap();
-        assert_eq!(found, [1.0, 2.5, 3.7, 4.0]);
-        assert_eq!(quantiles(&[f64::NAN], &[0.5]), None);
-    }
 
     #[test]
     fn ranks_see_what_grows_however_it_grows() {

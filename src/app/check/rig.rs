@@ -8,10 +8,10 @@ use crate::case::{Case, CaseError, read_in_any_unit, read_rig, rig_of, to_fit};
 use crate::diagnosis::input::{DiagnosisInput, prepare};
 use crate::diagnosis::recorded::{COLUMNS, recorded_of};
 use crate::plant::{Chain, InitialState};
-use crate::recording::csv::median_step;
 use crate::recording::thousandfold::thousandfold;
 use crate::scenario::rig_file::{RigFile, load_rig};
 use crate::shell::word;
+use crate::stats::median_step;
 
 /// Share by which a recording's rate may differ from the sheet's.
 const OTHER_RATE: f64 = 0.05;

@@ -14,6 +14,7 @@ use crate::recording::board::{
     Board, BoardLine, BoardRole, Cloud, CloudGroup, Lane, Sheet, SheetPlot,
 };
 use crate::recording::scene::Scene;
+use crate::stats::{NORMAL_95, quantile};
 
 /// Recordings that are drawn at most; tabs beyond would not fit the screen.
 const MOST_SHEETS: usize = 10;
@@ -23,8 +24,6 @@ const MOST_SAMPLES: usize = 60_000;
 const LATE: f64 = 0.05;
 /// Points of a cloud at most, evenly over the samples: more are a blot.
 const MOST_POINTS: usize = 4000;
-/// Standard deviations to either end of a 95 % band [1].
-const BAND: f64 = 1.959_964;
 /// Noise bands that a plot of what is left shows at least [1].
 const BANDS_SHOWN: f64 = 2.5;
 /// Share of the samples that such a plot holds at least, and the room beyond them [1].
@@ -163,7 +162,7 @@ fn row(
         let noise = answer.details.noise.iter();
         let noise = noise.filter(|noise| noise.channel == COLUMNS[index]);
         let guides = noise.flat_map(|noise| {
-            let half = BAND * factor * noise.standard_deviation;
+            let half = NORMAL_95 * factor * noise.standard_deviation;
             let yardstick = yardstick(answer.details.remaining.is_some());
             [half, -half].map(|end| (format!("95 % of {yardstick} [{unit}]"), end))
         });
@@ -183,11 +182,9 @@ fn usual_range(lines: &[BoardLine], guides: &[(String, f64)]) -> Option<[f64; 2]
     let band = guides.iter().map(|(_, value)| value.abs());
     let mut most = BANDS_SHOWN * band.fold(0.0, f64::max);
     for line in lines {
-        let mut sizes: Vec<f64> = line.values.iter().map(|value| value.abs()).collect();
-        sizes.retain(|size| size.is_finite());
-        sizes.sort_by(f64::total_cmp);
-        let usual = sizes.get((USUAL * sizes.len() as f64) as usize);
-        most = most.max(ROOM * usual.copied().unwrap_or_default());
+        let sizes = line.values.iter().map(|value| value.abs());
+        let usual = quantile(sizes.filter(|size| size.is_finite()), USUAL);
+        most = most.max(ROOM * usual.unwrap_or_default());
     }
     (most > 0.0).then_some([-most, most])
 }

@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::super::error::AppError;
 use super::work::{Asked, Diagnosed, Started, Told};
 use crate::design::{number, spoken};
-use crate::fleet::{Change, ChangeKind, Layout, change, date_of_day, median, trend};
+use crate::fleet::{Change, ChangeKind, Layout, change, date_of_day, trend};
 use crate::quantity::counted;
 use crate::recording::provenance::SourceFile;
+use crate::stats::{NORMAL_MAD, median};
 use crate::tasks::{Head, Plan, Store};
 
 /// The document.
@@ -467,9 +468,9 @@ fn unlike(devices: &[DeviceFound]) -> Vec<(String, String)> {
                     .iter()
                     .find(|s| s.effect.is_empty() && s.number == series.number)?;
                 let last = &own.values[own.values.len().saturating_sub(LATELY)..];
-                let middle = median(last)?;
+                let middle = median(last.iter().copied())?;
                 let off: Vec<f64> = last.iter().map(|value| (value - middle).abs()).collect();
-                Some((middle, 1.4826 * median(&off)?))
+                Some((middle, NORMAL_MAD * median(off)?))
             };
             let others = devices.iter().filter(|other| other.name != device.name);
             let others: Vec<(f64, f64)> = others.filter_map(lately).collect();
@@ -477,11 +478,11 @@ fn unlike(devices: &[DeviceFound]) -> Vec<(String, String)> {
                 continue;
             };
             let middles: Vec<f64> = others.iter().map(|other| other.0).collect();
-            let middle = median(&middles).unwrap_or(own);
+            let middle = median(middles.iter().copied()).unwrap_or(own);
             let off: Vec<f64> = middles.iter().map(|value| (value - middle).abs()).collect();
             let scatter: Vec<f64> = others.iter().map(|other| other.1).collect();
-            let spread = 1.4826 * median(&off).unwrap_or(0.0);
-            let spread = spread.max(median(&scatter).unwrap_or(0.0));
+            let spread = NORMAL_MAD * median(off).unwrap_or(0.0);
+            let spread = spread.max(median(scatter).unwrap_or(0.0));
             if spread > 0.0 && (own - middle).abs() > UNLIKE * spread {
                 let (name, unit) = spoken(&series.number);
                 let what = format!(

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use crate::import::findings::{Finding, findings};
 use crate::import::rows::Stray;
 use crate::import::{ImportMap, Imported, LogNote, Remark};
-use crate::recording::csv::median_step;
 use crate::recording::gaps::{longest_pause, parts};
+use crate::stats::median_step;
 
 /// Gaps and rows that are listed, at most.
 const LISTED: usize = 3;

@@ -7,9 +7,7 @@ use crate::diagnosis::unlisted::report::{ShapeRow, UnlistedReport};
 use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
 use crate::figure::{Band, Horizontal, Panel, Role, Series, Stroke};
 use crate::page::Chart;
-
-/// Standard deviations to either end of a 95 % band [1].
-const BAND: f64 = 1.959_964;
+use crate::stats::{NORMAL_95, quantiles};
 
 /// Origin subtracted from the times of a recording [s]: nothing, unless they are those of a clock, which single precision cannot tell apart.
 pub(super) fn origin(recording: &Compared) -> f64 {
@@ -98,7 +96,7 @@ pub(super) fn channel<'a>(
     });
     let noise = answer.details.noise.iter();
     let noise = noise.filter(|n| n.channel == COLUMNS[index]).map(|n| {
-        let half = BAND * factor * n.standard_deviation;
+        let half = NORMAL_95 * factor * n.standard_deviation;
         Band {
             label: yardstick(answer.details.remaining.is_some()).to_owned(),
             from: -half,
@@ -136,11 +134,9 @@ pub(in crate::app) fn variable(name: &str) -> (&str, &'static str, f64) {
 pub(in crate::app) fn most_of(values: &[f64]) -> Option<[f64; 2]> {
     const BEYOND: f64 = 0.01;
     const ROOM: f64 = 0.35;
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let last = sorted.len().checked_sub(1)?;
-    let at = |share: f64| sorted[(share * last as f64).round() as usize];
-    let (low, high) = (at(BEYOND).min(0.0), at(1.0 - BEYOND).max(0.0));
+    let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let ends = quantiles(&finite, &[BEYOND, 1.0 - BEYOND])?;
+    let (low, high) = (ends[0].min(0.0), ends[1].max(0.0));
     let room = ROOM * (high - low);
     (room > 0.0).then_some([low - room, high + room])
 }

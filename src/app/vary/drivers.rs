@@ -17,8 +17,9 @@ use crate::quantity::{column, counted};
 use crate::recording::RecordingError;
 use crate::recording::long_table::{LongColumn, read_columns};
 use crate::recording::provenance::SourceFile;
+use crate::stats::quantiles;
 use crate::tasks::Head;
-use crate::vary::{QUANTILES, Varied, quantiles, rank_correlation, shares_of_variance};
+use crate::vary::{QUANTILES, Varied, rank_correlation, shares_of_variance};
 
 /// The document.
 pub(in super::super) const SWEEP: &str = "vary.json";

@@ -11,7 +11,8 @@ use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
 use crate::page::{Block, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::{UNKNOWN, column, number};
 use crate::recording::long_table::LongColumn;
-use crate::vary::{QUANTILES, quantiles};
+use crate::stats::quantiles;
+use crate::vary::QUANTILES;
 
 /// Metrics that are drawn.
 const DRAWN: usize = 4;

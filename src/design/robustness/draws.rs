@@ -12,7 +12,8 @@ use crate::design::candidate::{Evaluate, EvaluateError, Outcome};
 use crate::design::limits::Limit;
 use crate::design::result::Candidate;
 use crate::design::study::Study;
-use crate::vary::{LatinHypercube, quantiles};
+use crate::stats::quantiles;
+use crate::vary::LatinHypercube;
 
 /// A draw that was simulated.
 struct Simulated {

@@ -10,8 +10,8 @@
 
 mod check;
 mod draws;
-mod normal;
 
+use crate::stats::{normal_quantile, normal_share_below};
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -91,9 +91,9 @@ impl Scatter {
                 bounds,
             } => {
                 let ends =
-                    bounds.map(|bound| normal::share_below((bound - mean) / standard_deviation));
+                    bounds.map(|bound| normal_share_below((bound - mean) / standard_deviation));
                 let share = ends[0] + share * (ends[1] - ends[0]);
-                let value = mean + standard_deviation * normal::quantile(share);
+                let value = mean + standard_deviation * normal_quantile(share);
                 value.clamp(bounds[0], bounds[1])
             }
         };

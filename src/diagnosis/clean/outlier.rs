@@ -10,6 +10,7 @@
 
 use super::departure::{departure, departures};
 use crate::plant::CHANNELS;
+use crate::stats::{NORMAL_MAD, median};
 
 /// Departure from which a reading may be wild, in standard deviations of noise and of what happens around it [1].
 const FAR: f64 = 12.0;
@@ -77,18 +78,11 @@ impl Sight<'_> {
             return false;
         }
         let around = index.saturating_sub(AROUND)..(index + AROUND + 1).min(departures.len());
-        let mut others: Vec<f64> = around
+        let others = around
             .filter(|other| other.abs_diff(index) > 2)
             .map(|other| departures[other].abs())
-            .filter(|other| other.is_finite())
-            .collect();
-        if others.is_empty() {
-            return false;
-        }
-        let middle = others.len() / 2;
-        // Median of |z| to standard deviation of a normal distribution.
-        let spread = 1.4826 * *others.select_nth_unstable_by(middle, f64::total_cmp).1;
-        if size <= FAR * spread {
+            .filter(|other| other.is_finite());
+        if median(others).is_none_or(|median| size <= FAR * NORMAL_MAD * median) {
             return false;
         }
         let near = index.saturating_sub(2)..(index + 3).min(departures.len());

@@ -12,6 +12,7 @@ use super::curvature::{LEAST_STRETCHES, curvatures};
 use super::fault::{DataFault, Kind};
 use crate::plant::registry::{REGULATOR_DEAD_TIME, REGULATOR_TIME_CONSTANT};
 use crate::plant::{Channel, simulate};
+use crate::stats::median;
 
 /// Samples that are compared, at most, of each recording and channel.
 const SAMPLES: usize = 900;
@@ -235,9 +236,8 @@ fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     let Some(first) = those.first() else {
         return Vec::new();
     };
-    let mut scales: Vec<f64> = those.iter().map(|f| f.scale).collect();
-    scales.sort_by(f64::total_cmp);
-    let scale = scales[scales.len() / 2];
+    let scales: Vec<f64> = those.iter().map(|f| f.scale).collect();
+    let scale = median(scales.iter().copied()).unwrap_or(first.scale);
     // Physics makes lags too, and never by the same share of the time in all channels.
     let alike = scales
         .iter()

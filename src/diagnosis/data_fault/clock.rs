@@ -10,6 +10,7 @@ use super::super::input::DiagnosisInput;
 use super::curvature::curvature_ratio;
 use super::fault::{DataFault, Kind};
 use crate::plant::Channel;
+use crate::stats::{mean, median_step};
 
 /// Departure of a clock from true time that is worth a word [1].
 pub(super) const WORTH: f64 = 0.004;
@@ -18,11 +19,9 @@ const FARTHEST: f64 = 0.15;
 
 /// Mean step of the stamps, gaps apart [s].
 fn step(time: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let known: Vec<f64> = steps.into_iter().filter(|h| *h < 1.5 * usual).collect();
-    known.iter().sum::<f64>() / known.len() as f64
+    let usual = median_step(time);
+    let steps = time.windows(2).map(|pair| pair[1] - pair[0]);
+    mean(&steps.filter(|h| *h < 1.5 * usual).collect::<Vec<f64>>())
 }
 
 /// Clock of a whole log, in true time.

@@ -27,6 +27,7 @@ mod zero;
 pub use refined::refined;
 pub use reported::reported;
 
+use crate::stats::median;
 use fault::{DataFault, Kind};
 
 use super::input::{DiagnosisInput, NamedRecording};
@@ -231,8 +232,7 @@ pub fn as_read(
                 _ => {}
             }
         }
-        periods.sort_by(f64::total_cmp);
-        let period = periods.get(periods.len() / 2).copied();
+        let period = median(periods);
         if scale != 1.0 || offset != 0.0 || period.is_some() {
             let at = |t: f64| {
                 let sampled = period.map_or(t, |period| held(t - start, period) + start);

@@ -4,6 +4,7 @@ use super::super::clean::{clean, departures};
 use super::super::input::{DiagnosisInput, OTHER_NOISE};
 use super::fault::{DataFault, Kind};
 use crate::plant::CHANNELS;
+use crate::stats::median;
 
 /// Samples within which departures of white noise from their neighbours' cubic are alike, and up to which a period is sought.
 const LAGS: [usize; 2] = [5, 40];
@@ -42,9 +43,7 @@ pub(super) fn louder(case: &DiagnosisInput) -> Vec<DataFault> {
         .collect();
     let of = |(channel, sheet): (usize, f64)| {
         let shown = cleanings.iter().filter_map(|c| c.noise[channel]);
-        let mut shown: Vec<f64> = shown.filter(|noise| *noise > 0.0).collect();
-        shown.sort_by(f64::total_cmp);
-        let noise = *shown.get(shown.len() / 2)?;
+        let noise = median(shown.filter(|noise| *noise > 0.0))?;
         let louder = noise > OTHER_NOISE * sheet;
         louder.then(|| DataFault::of(Kind::Noise(noise), CHANNELS[channel], None, 0.99))
     };

@@ -10,6 +10,7 @@ use super::super::autocorrelation::integrated_autocorrelation_time;
 use super::super::evidence::{Evidence, by_channel};
 use super::fault::{DataFault, Kind};
 use crate::plant::Channel;
+use crate::stats::{NORMAL_MAD, median};
 
 /// Time on either side of a jump from which its size is taken [s].
 const BESIDE: f64 = 0.8;
@@ -99,16 +100,9 @@ fn sides(
 
 /// Mean and standard deviation, wild ones set aside.
 fn level(values: &[f64]) -> (f64, f64) {
-    let median = |mut of: Vec<f64>| -> f64 {
-        let middle = of.len() / 2;
-        match of.is_empty() {
-            true => 0.0,
-            false => *of.select_nth_unstable_by(middle, f64::total_cmp).1,
-        }
-    };
-    let middle = median(values.to_vec());
-    // Of normal noise the middle size is two thirds of its standard deviation.
-    let usual = median(values.iter().map(|v| (v - middle).abs()).collect()) / 0.6745;
+    let middle = median(values.iter().copied()).unwrap_or(0.0);
+    let sizes = values.iter().map(|v| (v - middle).abs());
+    let usual = NORMAL_MAD * median(sizes).unwrap_or(0.0);
     let kept = values
         .iter()
         .filter(|v| (*v - middle).abs() <= WILD * usual);

@@ -2,6 +2,7 @@
 
 /// Departure of a reading from the line through its neighbours, in standard deviations of such departures, beyond which nothing is read between samples [1]:
 /// an impact is not a line.
+use crate::stats::{NORMAL_MAD, median};
 const STEEP: f64 = 8.0;
 
 /// The last multiple of a period [s].
@@ -26,13 +27,8 @@ pub(super) fn read_at(time: &[f64], values: &[f64], at: impl Fn(f64) -> f64) -> 
 fn steep(values: &[f64]) -> Vec<bool> {
     let bend = |i: usize| values[i - 1] - 2.0 * values[i] + values[i + 1];
     let last = values.len() - 1;
-    let mut bends: Vec<f64> = (1..last)
-        .map(|i| bend(i).abs())
-        .filter(|b| b.is_finite())
-        .collect();
-    bends.sort_by(f64::total_cmp);
-    // Median of the size to standard deviation.
-    let usual = 1.4826 * bends.get(bends.len() / 2).copied().unwrap_or(0.0);
+    let bends = (1..last).map(|i| bend(i).abs()).filter(|b| b.is_finite());
+    let usual = NORMAL_MAD * median(bends).unwrap_or(0.0);
     let is_steep = |i: usize| i > 0 && i < last && bend(i).abs() > STEEP * usual;
     (0..=last).map(is_steep).collect()
 }

@@ -4,6 +4,7 @@ use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::line::Line;
 use crate::plant::CHANNELS;
+use crate::stats::{median, median_step};
 
 /// Time for which a channel must stand still to be frozen [s].
 const LEAST_TIME: f64 = 0.1;
@@ -41,11 +42,6 @@ pub(super) fn keep_firsts(values: &mut [f64]) {
     }
 }
 
-fn median(mut lengths: Vec<usize>) -> usize {
-    lengths.sort_unstable();
-    lengths.get(lengths.len() / 2).copied().unwrap_or(0)
-}
-
 /// Channels that stand still for a while. A reading at the end of its range is clipped, not frozen; one of a channel that hardly varies, or of a coarse converter,
 /// stands still in many places.
 pub(super) fn frozen(case: &DiagnosisInput) -> Vec<DataFault> {
@@ -54,7 +50,8 @@ pub(super) fn frozen(case: &DiagnosisInput) -> Vec<DataFault> {
         let time = &recording.recorded.inputs.time;
         for (channel, values) in CHANNELS.into_iter().zip(&recording.recorded.readings) {
             let runs = runs(values);
-            let usual = median(runs.iter().map(|[first, last]| last - first + 1).collect());
+            let usual =
+                median(runs.iter().map(|[first, last]| (last - first + 1) as f64)).unwrap_or(0.0);
             let finite = || values.iter().copied().filter(|v| v.is_finite());
             let ends = [
                 finite().fold(f64::INFINITY, f64::min),
@@ -62,7 +59,7 @@ pub(super) fn frozen(case: &DiagnosisInput) -> Vec<DataFault> {
             ];
             let long = |[first, last]: &[usize; 2]| {
                 let count = last - first + 1;
-                count >= LEAST_RUN.max((LONGER * usual as f64) as usize)
+                count >= LEAST_RUN.max((LONGER * usual) as usize)
                     && time[*last] - time[*first] >= LEAST_TIME
                     && !ends.contains(&values[*first])
             };
@@ -124,9 +121,7 @@ fn period(time: &[f64], values: &[f64]) -> Option<f64> {
     }
     let starts: Vec<f64> = runs.iter().map(|[first, _]| time[*first]).collect();
     let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    let mut apart: Vec<f64> = starts.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = apart.len() / 2;
-    let usual = *apart.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let usual = median_step(&starts);
     // Counted on from change to change; now and then two samples are equal by chance, or frozen.
     let mut number = 0.0;
     let mut numbered = vec![(0.0, starts[0])];

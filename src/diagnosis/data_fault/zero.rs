@@ -4,6 +4,7 @@ use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::free_air::{CLEAR, in_the_air};
 use crate::plant::{CHANNELS, Channel, InitialState, simulate};
+use crate::stats::{NORMAL_MAD, median};
 
 /// Share of the atmosphere by which that of a day may differ [1].
 const WEATHER: f64 = 0.06;
@@ -110,7 +111,7 @@ fn zero(case: &DiagnosisInput, recording: &NamedRecording, channel: Channel) -> 
 /// Mean of the load cell's readings in the air, which say its zero whatever went before, and its standard error.
 fn zero_in_the_air(case: &DiagnosisInput, recording: &NamedRecording) -> Option<(f64, f64)> {
     let force = &recording.recorded.readings[Channel::Force as usize];
-    let mut air: Vec<f64> = in_the_air(recording)
+    let air: Vec<f64> = in_the_air(recording)
         .into_iter()
         .map(|i| force[i])
         .collect();
@@ -118,17 +119,10 @@ fn zero_in_the_air(case: &DiagnosisInput, recording: &NamedRecording) -> Option<
         return None;
     }
     // What moves shakes the load cell: the middle, and as few independent readings as a motion leaves.
-    let middle = air.len() / 2;
-    let median = *air.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let mut apart: Vec<f64> = air.iter().map(|f| (f - median).abs()).collect();
-    let spread = *apart.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745;
+    let middle = median(air.iter().copied())?;
+    let spread = NORMAL_MAD * median(air.iter().map(|f| (f - middle).abs()))?;
     let noise = case.noise[Channel::Force as usize];
-    (spread < 3.0 * noise).then(|| {
-        (
-            median,
-            spread.max(noise) / (apart.len() as f64 / 20.0).sqrt(),
-        )
-    })
+    (spread < 3.0 * noise).then(|| (middle, spread.max(noise) / (air.len() as f64 / 20.0).sqrt()))
 }
 
 /// The same from the rest at the start.

@@ -14,6 +14,7 @@ mod solve;
 
 use super::flange::{Run, RunMetrics};
 use crate::plant::flange::{CoveredRuns, FittedFlange, FlangeModel, Ripple};
+use crate::stats::NORMAL_95;
 use prediction::{Logged, predict_run};
 use report::{FittedNumber, SimulatedFlange, SimulatedRun};
 use residuals::Targets;
@@ -29,7 +30,7 @@ const ALIKE: f64 = 0.06;
 /// Power of a setting by which a number may be wrong where the setting was not covered [1].
 const BEYOND: f64 = 0.5;
 /// Half a 95 % interval by the standard deviation [1].
-const HALF: f64 = 1.96;
+const HALF: f64 = NORMAL_95;
 
 /// A flange fitted to runs.
 pub struct FlangeFit {

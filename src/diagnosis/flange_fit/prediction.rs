@@ -5,6 +5,7 @@ use super::course::RunCourse;
 use super::report::SimulatedResult;
 use super::sliding::spreads;
 use crate::plant::flange::{FlangeCourse, FlangeModel, Reader, Ripple, SAMPLED, flange_force};
+use crate::stats::median;
 
 /// Time before contact from which a run is simulated [s].
 const LEAD: f64 = 0.3;
@@ -124,12 +125,12 @@ pub(super) fn predict_run(
         return None;
     }
     let beside = |recorded: f64, of: &dyn Fn(&LoggedResult) -> f64| {
-        let [simulated, low, high] = median_and_range(results.iter().map(of).collect());
+        let values: Vec<f64> = results.iter().map(of).collect();
         SimulatedResult {
             recorded,
-            simulated,
-            low,
-            high,
+            simulated: median(values.iter().copied()).unwrap_or(f64::NAN),
+            low: values.iter().copied().fold(f64::INFINITY, f64::min),
+            high: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         }
     };
     let shown = run.shown;
@@ -146,12 +147,4 @@ pub(super) fn predict_run(
         spread,
         force: first,
     })
-}
-
-/// Median, least and largest of at least one value.
-fn median_and_range(mut values: Vec<f64>) -> [f64; 3] {
-    values.sort_by(f64::total_cmp);
-    let last = values.len() - 1;
-    let median = 0.5 * (values[last / 2] + values[values.len() / 2]);
-    [median, values[0], values[last]]
 }

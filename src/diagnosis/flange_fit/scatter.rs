@@ -13,14 +13,12 @@ use super::report::SimulatedResult;
 use super::residuals::Targets;
 use super::solve::{Solution, refitted};
 use crate::plant::flange::{FlangeModel, Ripple};
+use crate::stats::student_90;
 
 /// What is to be expected of the logarithms of peak, ringing, settling and spread [1].
 const EXPECTED: [f64; 4] = [0.15, 0.1, 0.25, 0.25];
 /// Runs that it is worth.
 const WORTH: f64 = 4.0;
-/// Student's t of a 90 % interval, from 4 degrees of freedom on; the normal distribution's beyond.
-const STUDENT: [f64; 8] = [2.132, 2.015, 1.943, 1.895, 1.860, 1.833, 1.812, 1.796];
-const NORMAL: f64 = 1.645;
 
 /// Half of a 90 % interval of the logarithms of peak, ringing, settling and spread [1].
 pub(super) type Scatter = [f64; 4];
@@ -64,8 +62,7 @@ pub(super) fn scatter(
 
 fn half(expected: f64, [squares, count]: [f64; 2]) -> f64 {
     let variance = (WORTH * expected * expected + squares) / (WORTH + count);
-    let student = STUDENT.get(count as usize).copied().unwrap_or(NORMAL);
-    student * variance.sqrt()
+    student_90(WORTH + count) * variance.sqrt()
 }
 
 /// A result with its 90 % interval.

@@ -11,6 +11,7 @@ mod candidate;
 mod grammar;
 mod matching;
 
+use crate::stats::median;
 use rayon::prelude::*;
 
 use self::candidate::{Candidate, modulated};
@@ -236,12 +237,10 @@ impl Search<'_> {
                 let of = |i| trajectory.truth.moment(&measured.inputs, i).of(variable);
                 values.extend((0..count).map(of).filter(|value: &f64| value.is_finite()));
             }
-            if !values.is_empty() {
-                let middle = values.len() / 2;
-                let median = *values.select_nth_unstable_by(middle, f64::total_cmp).1;
-                if variable != Variable::PressureDifference {
-                    typical = typical.with(variable, median);
-                }
+            if variable != Variable::PressureDifference
+                && let Some(median) = median(values)
+            {
+                typical = typical.with(variable, median);
             }
         }
         typical.pressures[1] = typical.pressures[1].max(1e5);

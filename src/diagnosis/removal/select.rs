@@ -2,7 +2,7 @@
 
 use super::fit::{Fit, fit, rms};
 use super::law::{Deviation, TableLaw, TableRow};
-use super::student::{chance_beyond, t_exceeded};
+use crate::stats::{chance_beyond, student_95, student_exceeded};
 
 /// Chance that a table of a believed law that is right names anything at all.
 pub(super) const FALSE_ALARM: f64 = 0.05;
@@ -248,7 +248,10 @@ fn set_aside(
         let Some(worst) = (0..rows.len()).max_by(|a, b| size(*a).total_cmp(&size(*b))) else {
             break;
         };
-        let limit = t_exceeded(SET_ASIDE / (2.0 * rows.len() as f64), fitted.freedom() - 1);
+        let limit = student_exceeded(
+            SET_ASIDE / (2.0 * rows.len() as f64),
+            (fitted.freedom() - 1) as f64,
+        );
         if size(worst) <= limit {
             break;
         }
@@ -405,7 +408,7 @@ fn sure_by_levels(rows: &[TableRow], believed: &TableLaw, fitted: &Fit, of: Devi
         .min(fitted.freedom())
         .max(1);
     let off = (fitted.law.number(of) - believed.number(of)) / error.max(f64::MIN_POSITIVE);
-    1.0 - chance_beyond(off, freedom)
+    1.0 - chance_beyond(off, freedom as f64)
 }
 
 /// What each further number must better a fit by to be named: as much as chance does in one table of twenty, shared among the candidates.
@@ -415,7 +418,7 @@ fn price(fitted: &Fit, candidates: usize) -> f64 {
     (1..=fitted.free.len())
         .map(|number| {
             let freedom = (rows as usize).saturating_sub(hidden + number).max(1);
-            let t = t_exceeded(FALSE_ALARM / (2.0 * candidates as f64), freedom);
+            let t = student_exceeded(FALSE_ALARM / (2.0 * candidates as f64), freedom as f64);
             rows * (t * t / freedom as f64).ln_1p()
         })
         .sum()
@@ -426,7 +429,7 @@ fn interval(fitted: &Fit, of: Deviation) -> [f64; 3] {
     let value = fitted.law.number(of);
     let place = fitted.free.iter().position(|free| *free == of);
     let error = place.map_or(0.0, |place| fitted.errors[place]);
-    let reach = t_exceeded(0.025, fitted.freedom()) * error;
+    let reach = student_95(fitted.freedom() as f64) * error;
     match of {
         Deviation::Coefficient => [value, value * (-reach).exp(), value * reach.exp()],
         Deviation::Threshold | Deviation::Sag => [value, (value - reach).max(0.0), value + reach],

@@ -12,6 +12,7 @@ use super::super::evidence::{Evidence, Prediction};
 use super::super::hypothesis::Hypothesis;
 use super::super::links::lacking;
 use crate::plant::{Basis, CHANNELS, Latent, Port};
+use crate::stats::{NORMAL_MAD, quantiles};
 
 /// Ranges of the variable.
 const RANGES: usize = 60;
@@ -88,11 +89,11 @@ pub fn needed(
         }
     }
     let width = (to - from) / RANGES as f64;
-    let ranges = ranges.iter_mut().enumerate();
+    let ranges = ranges.into_iter().enumerate();
     ranges
         .filter(|(_, values)| values.len() >= LEAST)
         .filter_map(|(index, values)| {
-            let (value, error) = median(values);
+            let (value, error) = middle(&values)?;
             (error < UNSURE * peak_to_peak).then_some(Needed {
                 at: from + width * (index as f64 + 0.5),
                 value,
@@ -147,9 +148,11 @@ fn samples(
 }
 
 /// Median with its standard error, from the quartiles as of a normal distribution.
-fn median(values: &mut [f64]) -> (f64, f64) {
-    values.sort_by(f64::total_cmp);
-    let count = values.len();
-    let deviation = (values[3 * count / 4] - values[count / 4]) / 1.349;
-    (values[count / 2], 1.253 * deviation / (count as f64).sqrt())
+fn middle(values: &[f64]) -> Option<(f64, f64)> {
+    let quartiles = quantiles(values, &[0.25, 0.5, 0.75])?;
+    let deviation = 0.5 * NORMAL_MAD * (quartiles[2] - quartiles[0]);
+    Some((
+        quartiles[1],
+        1.253 * deviation / (values.len() as f64).sqrt(),
+    ))
 }

@@ -1,6 +1,7 @@
 //! Kind of a term's curve, in words that physics is known by.
 
 use crate::plant::{Basis, Latent};
+use crate::stats::median;
 
 /// Places at which a curve is judged.
 const PLACES: usize = 201;
@@ -50,10 +51,8 @@ pub fn form(latent: &Latent, visited: [f64; 2]) -> Form {
         return Form::Periodic;
     }
     let values = over(latent, visited);
-    let mut sorted = values.clone();
-    sorted.sort_by(f64::total_cmp);
     // What it is in most places: an offset that some tolerated number took the other half of.
-    let usual = sorted[sorted.len() / 2];
+    let usual = median(values.iter().copied()).unwrap_or(0.0);
     let largest = values
         .iter()
         .fold(0.0f64, |most, v| most.max((v - usual).abs()));

@@ -16,9 +16,10 @@ use super::balance::{self, Needed};
 use super::form::{Form, form};
 use crate::effects::Coordinate;
 use crate::plant::{Basis, Latent};
+use crate::stats::NORMAL_95;
 
 /// Standard deviations to either side in a 95 % interval [1].
-const INTERVAL: f64 = 1.96;
+const INTERVAL: f64 = NORMAL_95;
 /// Places of the curve.
 const PLACES: usize = 161;
 /// Rows of the table.

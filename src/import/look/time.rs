@@ -8,7 +8,7 @@ use crate::import::map::Column;
 use crate::import::stamps::are_whole_seconds;
 use crate::import::units::{self, LogUnit};
 use crate::recording::Unit;
-use crate::recording::csv::median_step;
+use crate::stats::median_step;
 
 /// Rates that are usual of an actuator's log, and units in the order in which they are tried [Hz].
 const USUAL: std::ops::RangeInclusive<f64> = 20.0..=20e3;

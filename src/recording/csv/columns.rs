@@ -83,14 +83,3 @@ pub fn column_of(quantity: &str, unit: Unit) -> String {
         _ => column_name(quantity, unit),
     }
 }
-
-/// The median distance of increasing times [s]; 0 for less than two.
-#[must_use]
-pub fn median_step(time: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if steps.is_empty() {
-        return 0.0;
-    }
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
-}
