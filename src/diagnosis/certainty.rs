@@ -3,11 +3,12 @@
 use super::answer::Estimate;
 use super::details::{FamilyMember, FamilyReport};
 use super::doubt::Doubt;
-use super::estimate::Number;
-use super::family::{FAMILIES, Family, family_of};
+use super::estimate::{Estimates, Number, estimates};
+use super::family::{FAMILIES, Family, family_of, scaling};
 use super::finding::Diagnosis;
 use super::fit::robust_sum;
 use super::hypothesis::Hypothesis;
+use super::ranking::Ranked;
 use super::scale::IMMATERIAL;
 use super::statements::{doubts_of, stated};
 use crate::effects::{Effect, LINK_EFFECTS, NUMBERS_OFF, UNLISTED, every};
@@ -228,14 +229,14 @@ impl Diagnosis {
             let probability = match best.iter().any(|e| e.name == effect.name) {
                 true => self.confidence(effect.name),
                 false => {
-                    let with = |r: &&super::ranking::Ranked| {
-                        r.hypothesis.effects.iter().any(|e| e.name == effect.name)
-                    };
+                    let with =
+                        |r: &&Ranked| r.hypothesis.effects.iter().any(|e| e.name == effect.name);
                     let with = self.ranked.iter().filter(with);
                     with.map(|r| r.probability).sum::<f64>().min(1.0)
                 }
             };
             members.push(FamilyMember {
+                number: scaling(&name, key).and_then(|_| self.number_with(effect)),
                 name,
                 key: key.map(str::to_owned),
                 probability,
@@ -265,6 +266,29 @@ impl Diagnosis {
             words: family.words.to_owned(),
             probability: probability.max(likeliest),
             members,
+        }
+    }
+}
+
+impl Diagnosis {
+    /// The number of an effect as the likeliest explanation with it has it.
+    fn number_with(&self, effect: &Effect) -> Option<Estimate> {
+        let has = |r: &Ranked| r.hypothesis.effects.iter().any(|e| e.name == effect.name);
+        let of = |estimates: &Estimates| {
+            let mut own = estimates
+                .effects
+                .iter()
+                .filter(|(e, _)| e.name == effect.name);
+            let mut numbers = own.next()?.1.iter().filter(|n| n.reported);
+            numbers.next().map(Estimate::from)
+        };
+        match self.ranked.iter().position(has)? {
+            0 => of(&self.estimates),
+            at => of(&estimates(
+                &self.believed,
+                &self.ranked[at..],
+                &self.evidence,
+            )),
         }
     }
 }
