@@ -3,7 +3,7 @@
 use super::answer::Estimate;
 use super::details::{FamilyMember, FamilyReport};
 use super::doubt::Doubt;
-use super::estimate::{Estimates, Number, estimates};
+use super::estimate::{Number, estimates};
 use super::family::{FAMILIES, Family, family_of, scaling};
 use super::finding::Diagnosis;
 use super::fit::robust_sum;
@@ -271,25 +271,14 @@ impl Diagnosis {
 }
 
 impl Diagnosis {
-    /// The number of an effect as the likeliest explanation with it has it.
+    /// The number of an effect given the likeliest explanation with it: no other widens its interval.
     fn number_with(&self, effect: &Effect) -> Option<Estimate> {
-        let has = |r: &Ranked| r.hypothesis.effects.iter().any(|e| e.name == effect.name);
-        let of = |estimates: &Estimates| {
-            let mut own = estimates
-                .effects
-                .iter()
-                .filter(|(e, _)| e.name == effect.name);
-            let mut numbers = own.next()?.1.iter().filter(|n| n.reported);
-            numbers.next().map(Estimate::from)
-        };
-        match self.ranked.iter().position(has)? {
-            0 => of(&self.estimates),
-            at => of(&estimates(
-                &self.believed,
-                &self.ranked[at..],
-                &self.evidence,
-            )),
-        }
+        let has = |r: &&Ranked| r.hypothesis.effects.iter().any(|e| e.name == effect.name);
+        let given = self.ranked.iter().find(has)?;
+        let of_it = estimates(&self.believed, std::slice::from_ref(given), &self.evidence);
+        let mut own = of_it.effects.iter().filter(|(e, _)| e.name == effect.name);
+        let mut numbers = own.next()?.1.iter().filter(|n| n.reported);
+        numbers.next().map(Estimate::from)
     }
 }
 

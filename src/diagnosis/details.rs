@@ -126,7 +126,7 @@ pub struct FamilyMember {
     pub key: Option<String>,
     /// Probability that it is the one [1].
     pub probability: f64,
-    /// Its number as the likeliest explanation with it has it, of a law that scales what others of its family scale; none of others, and in files that are older.
+    /// Its number given that it is the one, of a law that scales what others of its family scale; none of others, and in files that are older.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub number: Option<Estimate>,
 }

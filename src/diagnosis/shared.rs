@@ -1,27 +1,31 @@
 //! What several cases know together of a family: which of its members is at work in all of them, where some share a part.
 //!
 //! ```text
-//! P(m) ~ w(m) ((1 - d) B(as stated) + d B(otherwise)),   w(m) = max(0.01, product of p_i(m) over that of the likeliest member)
-//! B = product over parts of   int N(u; 0, T^2) product of N(u_i; u, s_i^2) du / product of N(u_i; 0, s_i^2 + T^2)          (Marshall, Rajguru and Slosar 2006)
+//! P(m) ~ w(m) product over parts of Q,   w(m) = max(0.001, product of p_i(m) over that of the likeliest member)
+//! Q = (1 - d) B(all) + d/2 (mean of B(all but i) + 1)           of a part that cases share
+//! Q = (1 - d) + d B(all)                                       of parts that are each their own, together
+//! B = int N(u; 0, T^2) product of N(u_i; u, s_i^2) du / product of N(u_i; 0, s_i^2 + T^2)          (Marshall, Rajguru and Slosar 2006)
 //! u_i = k ln(v_i / nominal)
 //! ```
 //!
 //! v_i number of the member in case i, k the power with which it scales what all of its family scale, u_i +- s_i that scale, T its prior: log-normal about nominal.
-//! p_i probability of the member in case i alone. B is the odds of one value in all cases of a part against a value for each: it grows with every value that
-//! agrees, and falls where they do not. Of a member whose parts are each their own it is 1. d is the doubt of what is stated: of a part that is stated to be shared,
-//! that it is not; of parts that are not, that they are off alike all the same (one drawing, one sheet copied), and B(otherwise) is that of the opposite.
+//! p_i probability of the member in case i alone. B is the odds of one value in several cases against a value for each: it grows with every value that agrees, and
+//! falls where they do not. d is the doubt of what is stated: of a part that is stated to be shared, that one case has another or each its own; of parts that are
+//! each their own, that they are off alike all the same (one drawing, one sheet copied).
 //!
 //! The cost of each case has the same penalty for each member's number, as if its prior had the same width in units of what the recordings resolve (Schwarz): so
-//! has the scale here, whichever member moves it. The cases' own odds lean on the same laws and are wrong alike: together they count for no more than what is
-//! stated of a member of a family at least.
+//! has the scale here, whichever member moves it. The cases' own odds lean on the same laws and may be wrong alike: together they come to no more than the most
+//! that is stated of anything.
 
 /// Standard deviation of the prior of a scale [1]: a bore or a gain is usually 5 % off, and a bore acts by its square.
 const PRIOR: f64 = 0.1;
 /// Least standard deviation of a scale, as a share of its departure from nominal, and of itself [1]: what a model leaves out differs from case to case by no less,
 /// and a load cell or a regulator is no more linear.
 const MODEL: [f64; 2] = [0.05, 1e-3];
-/// Least odds of a member by the cases' own [1].
-const LEAST: f64 = 0.01;
+/// Least probability of a member in a case: below it none is named [1].
+const LEAST_OF_CASE: f64 = 0.01;
+/// Least odds of a member by all cases' own [1].
+const LEAST: f64 = 1e-3;
 /// Standard deviations of a number that is shown at the least size with nine chances in ten, at the least penalty [1].
 const SHOWN: f64 = 3.0;
 
@@ -57,47 +61,83 @@ pub struct InAll {
 pub fn together(members: &[InAll]) -> Vec<f64> {
     let own = |m: &InAll| -> f64 {
         let all = m.cases.iter();
-        all.map(|c| c.probability.max(LEAST).ln()).sum()
+        all.map(|c| c.probability.max(LEAST_OF_CASE).ln()).sum()
     };
     let own: Vec<f64> = members.iter().map(own).collect();
     let likeliest = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let weigh = |(member, own): (&InAll, &f64)| {
-        let [stated, otherwise] = member.agreement();
-        let [stated, otherwise] = [
-            (1.0 - member.doubt).ln() + stated,
-            member.doubt.ln() + otherwise,
-        ];
-        let most = stated.max(otherwise);
-        let sum = (stated - most).exp() + (otherwise - most).exp();
-        (own - likeliest).max(LEAST.ln()) + most + sum.ln()
-    };
+    let weigh =
+        |(member, own): (&InAll, &f64)| (own - likeliest).max(LEAST.ln()) + member.agreement();
     let logarithms: Vec<f64> = members.iter().zip(&own).map(weigh).collect();
-    let most = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let weights: Vec<f64> = logarithms.iter().map(|l| (l - most).exp()).collect();
-    let sum: f64 = weights.iter().sum();
-    weights.iter().map(|w| w / sum).collect()
+    let sum = log_sum(&logarithms);
+    logarithms.iter().map(|l| (l - sum).exp()).collect()
 }
 
 impl InAll {
-    /// Logarithms of B as stated and otherwise.
-    fn agreement(&self) -> [f64; 2] {
+    /// Logarithm of the product of Q.
+    fn agreement(&self) -> f64 {
         let mut parts: Vec<usize> = self.cases.iter().map(|c| c.part).collect();
         parts.sort_unstable();
         parts.dedup();
         if parts.len() == self.cases.len() {
             let all: Vec<[f64; 2]> = self.cases.iter().filter_map(|c| c.scale).collect();
-            return [0.0, log_odds_of_one(&all)];
+            let alike = self.doubt.ln() + log_odds_of_one(&all);
+            return log_sum(&[(1.0 - self.doubt).ln(), alike]);
         }
-        let of_part = |part: &usize| log_odds_of_one(&self.scales(*part));
-        [parts.iter().map(of_part).sum(), 0.0]
+        let of_part = |part: &usize| {
+            let ways: Vec<f64> = self.ways(*part).into_iter().map(|(way, _)| way).collect();
+            log_sum(&ways)
+        };
+        parts.iter().map(of_part).sum()
     }
 
-    /// What the cases of a part say of its scale.
-    #[must_use]
-    pub fn scales(&self, part: usize) -> Vec<[f64; 2]> {
-        let own = self.cases.iter().filter(|c| c.part == part);
-        own.filter_map(|c| c.scale).collect()
+    /// Ways in which the cases of a part may have it: terms of Q by their logarithms, each with the cases that have one value.
+    fn ways(&self, part: usize) -> Vec<(f64, Vec<usize>)> {
+        let tells = |i: &usize| self.cases[*i].part == part && self.cases[*i].scale.is_some();
+        let all: Vec<usize> = (0..self.cases.len()).filter(tells).collect();
+        let but = |left: usize| {
+            all.iter()
+                .copied()
+                .filter(|i| *i != left)
+                .collect::<Vec<_>>()
+        };
+        let odds = |of: &[usize]| log_odds_of_one(&self.scales(of));
+        let half = (0.5 * self.doubt).ln();
+        let each = half - (all.len().max(1) as f64).ln();
+        let apart = all.iter().map(|left| but(*left));
+        let mut ways: Vec<(f64, Vec<usize>)> = apart.map(|of| (each + odds(&of), of)).collect();
+        ways.push((half, Vec::new()));
+        ways.push(((1.0 - self.doubt).ln() + odds(&all), all));
+        ways
     }
+
+    /// What cases say of the scale.
+    fn scales(&self, cases: &[usize]) -> Vec<[f64; 2]> {
+        cases.iter().filter_map(|i| self.cases[*i].scale).collect()
+    }
+
+    /// Cases of a part that have one value by the likeliest way, and that value; none where each has its own.
+    #[must_use]
+    pub fn one_value(&self, part: usize) -> Option<(Vec<usize>, [f64; 2])> {
+        let likeliest = self
+            .ways(part)
+            .into_iter()
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        let cases = likeliest
+            .map(|(_, cases)| cases)
+            .filter(|c| !c.is_empty())?;
+        let value = common(&self.scales(&cases));
+        Some((cases, value))
+    }
+}
+
+/// Logarithm of a sum of terms that are given by their logarithms.
+fn log_sum(logarithms: &[f64]) -> f64 {
+    let most = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    most + logarithms
+        .iter()
+        .map(|l| (l - most).exp())
+        .sum::<f64>()
+        .ln()
 }
 
 /// Standard deviation of a scale's logarithm that is not below what a model permits [1].
@@ -116,9 +156,8 @@ fn log_odds_of_one(scales: &[[f64; 2]]) -> f64 {
         - scales.iter().map(alone).sum::<f64>()
 }
 
-/// The one value of a part by all its cases: logarithm of the scale, and one standard deviation [1].
-#[must_use]
-pub fn common(scales: &[[f64; 2]]) -> [f64; 2] {
+/// The one value of several cases: logarithm of the scale, and one standard deviation [1].
+fn common(scales: &[[f64; 2]]) -> [f64; 2] {
     let (mut sum, mut weight) = (0.0, PRIOR.powi(-2));
     for scale in scales {
         let own = permitted(*scale).powi(-2);
@@ -236,10 +275,37 @@ mod tests {
     }
 
     #[test]
+    fn a_case_that_has_another_part_than_it_states_is_told_from_those_that_agree() {
+        let mut cases: Vec<InCase> = (drawn(5, 0.0, 0.03, 1e-3).into_iter())
+            .map(|scale| InCase {
+                probability: 0.5,
+                scale: Some(scale),
+                part: 0,
+            })
+            .collect();
+        let agree = |cases: &[InCase]| {
+            let all = InAll {
+                cases: cases.to_vec(),
+                doubt: STATED,
+            };
+            all.one_value(0)
+        };
+        assert_eq!(agree(&cases).unwrap().0, [0, 1, 2, 3, 4]);
+        cases[2].scale = Some([-0.01, 1e-3]);
+        let (those, [value, _]) = agree(&cases).unwrap();
+        assert_eq!(those, [0, 1, 3, 4]);
+        assert!((value - 0.03).abs() < 2e-3, "{value}");
+        for (i, case) in cases.iter_mut().enumerate() {
+            case.scale = Some([0.02 * i as f64 - 0.04, 1e-3]);
+        }
+        assert_eq!(agree(&cases), None);
+    }
+
+    #[test]
     fn cases_that_say_nothing_of_it_speak_against_one_gain_and_the_own_odds_count_once() {
         let mut all = drawn(4, 0.0, 0.03, 2e-3);
         assert!(gain_and_bore(&all, STATED)[0] > 0.99);
-        all.extend([not_shown(0.005); 2]);
+        all.extend([not_shown(0.005); 3]);
         assert!(gain_and_bore(&all, STATED)[0] < 0.05);
         let member = |probability: f64| InAll {
             cases: (0..12)
@@ -252,8 +318,8 @@ mod tests {
             doubt: STATED,
         };
         let own = together(&[member(0.3), member(0.6), member(0.0)]);
-        let of = |weight: f64| weight / 1.02;
-        for (own, expected) in own.iter().zip([of(0.01), of(1.0), of(0.01)]) {
+        let of = |weight: f64| weight / 1.002;
+        for (own, expected) in own.iter().zip([of(1e-3), of(1.0), of(1e-3)]) {
             assert!((own - expected).abs() < 1e-12, "{own:?}");
         }
     }

@@ -93,15 +93,12 @@ pub(super) fn run(
 
 /// What the cases know together, by the parts that their rig files state.
 fn known_together(folder: &Path, outcomes: &[Outcome]) -> Vec<SharedFamily> {
-    let case = |outcome: &'_ Outcome| {
-        let rig = load_rig(&folder.join(&outcome.name).join(RIG)).ok();
-        rig.map(|rig| rig.shares)
-    };
     let cases = outcomes.iter().filter_map(|outcome| {
         Some(SharingCase {
             name: &outcome.name,
             answer: &outcome.result.as_ref().ok()?.answer,
-            shares: case(outcome)?,
+            // A table of runs has no rig.
+            rig: load_rig(&folder.join(&outcome.name).join(RIG)).ok()?,
         })
     });
     shared(&cases.collect::<Vec<_>>())

@@ -1,22 +1,26 @@
 //! What the cases of `--all` know together of a part that their rig files state to be one: which member of a family is at work in all of them.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
 use crate::diagnosis::answer::{Answer, Estimate};
 use crate::diagnosis::details::{FamilyMember, FamilyReport};
 use crate::diagnosis::family::{Scaling, scaling};
 use crate::diagnosis::shared::{
-    InAll, InCase, NOT_STATED, SAME_NOMINAL, STATED, common, not_shown, together,
+    InAll, InCase, NOT_STATED, SAME_NOMINAL, STATED, not_shown, together,
 };
 use crate::diagnosis::statements::TRUSTED;
-use crate::diagnosis::words::{capital, listed, percent};
-use crate::quantity::{DIGITS, significant};
-use crate::scenario::rig_file::Shares;
+use crate::diagnosis::words::{capital, listed, percent, wrapped};
+use crate::effects::{Effect, candidates, numbers_off};
+use crate::plant::Chain;
+use crate::quantity::{DIGITS, significant, with_unit};
+use crate::scenario::rig_file::RigFile;
 
 /// Standard deviations to either side in a 95 % interval [1].
 const INTERVAL: f64 = 1.96;
+/// Probability from which a case names a family [1]: as likely as not, which a doubt leaves of one that the evidence is sure of.
+const NAMED: f64 = 0.99 * TRUSTED;
+/// Share by which two nominal values differ that are one [1].
+const SAME: f64 = 1e-9;
 
 /// A case that was diagnosed.
 pub(super) struct SharingCase<'a> {
@@ -24,8 +28,8 @@ pub(super) struct SharingCase<'a> {
     pub name: &'a str,
     /// Its answer.
     pub answer: &'a Answer,
-    /// Parts that its rig file states.
-    pub shares: Shares,
+    /// Its rig file.
+    pub rig: RigFile,
 }
 
 /// A family in several cases.
@@ -50,7 +54,7 @@ struct SharedMember {
     name: String,
     /// Key of the rig file's number that is off.
     #[serde(skip_serializing_if = "Option::is_none")]
-    key: Option<String>,
+    key: Option<&'static str>,
     /// Part that it is of.
     part: &'static str,
     /// Probability, given that one and the same member is at work in all of the cases [1].
@@ -71,8 +75,11 @@ struct SharedPart {
     identity: String,
     /// Its cases.
     cases: Vec<String>,
-    /// Its one value over the nominal one [1].
-    factor: Estimate,
+    /// Those that have one value; none where each has its own.
+    agreeing: Vec<String>,
+    /// That value over the nominal one [1].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    factor: Option<Estimate>,
 }
 
 /// Each family that two cases at least name.
@@ -93,11 +100,56 @@ pub(super) fn shared(cases: &[SharingCase<'_>]) -> Vec<SharedFamily> {
 /// The report of a family in a case that names it.
 fn named<'a>(case: &SharingCase<'a>, family: &str) -> Option<&'a FamilyReport> {
     let mut families = case.answer.details.families.iter();
-    families.find(|f| f.name == family && f.probability >= TRUSTED)
+    families.find(|f| f.name == family && f.probability >= NAMED)
 }
 
-/// A member by its name and key.
-type Law<'a> = (&'a FamilyMember, &'static Scaling);
+/// A law that scales what its family scales.
+#[derive(Clone, Copy)]
+struct Law {
+    effect: &'static Effect,
+    scaling: &'static Scaling,
+}
+
+impl Law {
+    /// Those of a family that a diagnosis of a rig looks at.
+    fn of(rig: &RigFile, family: &str) -> Vec<Self> {
+        let chain = rig.plant.chain;
+        let all = candidates(chain).into_iter().chain(numbers_off(chain));
+        let laws = all.filter_map(|effect| {
+            let scaling = scaling(effect.vocabulary().0, effect.number_key())?;
+            (scaling.family == family).then_some(Self { effect, scaling })
+        });
+        laws.collect()
+    }
+
+    /// Its number in a rig, as the file has it.
+    fn nominal(&self, rig: &RigFile) -> f64 {
+        let mut numbers = self.effect.parameters(&rig.plant).into_iter();
+        numbers
+            .next()
+            .map_or(f64::NAN, |n| n.quantity.get(&rig.plant))
+    }
+
+    /// Identity of its part in a case.
+    fn part<'b>(&self, case: &'b SharingCase<'_>) -> Option<&'b str> {
+        case.rig.shares.of(self.scaling.part)
+    }
+
+    fn is(&self, member: &FamilyMember) -> bool {
+        self.effect.vocabulary().0 == member.name
+            && self.effect.number_key() == member.key.as_deref()
+    }
+
+    /// Least size of the scale's logarithm with which it would have been named in a case that names nothing [1].
+    fn least_shown(&self, answer: &Answer) -> Option<f64> {
+        let mut detectable = answer.details.detectable.iter();
+        let name = self.effect.vocabulary().0;
+        let own = detectable.find(|d| self.effect.number_key().is_none() && d.effect == name)?;
+        let number = own.parameters.first()?;
+        let least = self.scaling.power * (number.value / number.without?).ln();
+        least.is_finite().then_some(least)
+    }
+}
 
 /// A family with the cases that tell of it.
 struct Together<'a> {
@@ -105,7 +157,7 @@ struct Together<'a> {
     /// Those that name it first, `naming` of them, then those that would have shown it.
     cases: Vec<&'a SharingCase<'a>>,
     naming: usize,
-    laws: Vec<Law<'a>>,
+    laws: Vec<Law>,
 }
 
 impl<'a> Together<'a> {
@@ -116,26 +168,20 @@ impl<'a> Together<'a> {
         if naming.len() < 2 {
             return None;
         }
-        let mut laws: Vec<Law<'a>> = Vec::new();
-        for member in naming
-            .iter()
-            .filter_map(|c| named(c, &report.name))
-            .flat_map(|f| &f.members)
-        {
-            let known = |(law, _): &Law<'_>| law.name == member.name && law.key == member.key;
-            if let Some(scaling) = scaling(&member.name, member.key.as_deref())
-                && !laws.iter().any(known)
+        let mut laws: Vec<Law> = Vec::new();
+        for law in naming.iter().flat_map(|c| Law::of(&c.rig, &report.name)) {
+            if !laws
+                .iter()
+                .any(|known| known.effect.name == law.effect.name)
             {
-                laws.push((member, scaling));
+                laws.push(law);
             }
         }
         let tells = |case: &&SharingCase<'_>| {
-            let mut laws = laws.iter();
-            laws.any(|(law, scaling)| {
-                let own = case.shares.of(scaling.part);
-                let shares =
-                    own.is_some() && naming.iter().any(|c| c.shares.of(scaling.part) == own);
-                shares && least_shown(case.answer, law).is_some()
+            laws.iter().any(|law| {
+                let own = law.part(case);
+                let shares = own.is_some() && naming.iter().any(|c| law.part(c) == own);
+                shares && law.least_shown(case.answer).is_some()
             })
         };
         let count = naming.len();
@@ -148,9 +194,9 @@ impl<'a> Together<'a> {
         })
     }
 
-    /// Identities of a part that more than one of the cases state, each with the first of them.
-    fn groups(&self, scaling: &Scaling) -> Vec<(&'a str, usize)> {
-        let identity = |i: usize| self.cases[i].shares.of(scaling.part);
+    /// Identities of a law's part that more than one of the cases state, each with the first of them.
+    fn groups(&self, law: &Law) -> Vec<(&'a str, usize)> {
+        let identity = |i: usize| law.part(self.cases[i]);
         let mut groups: Vec<(&str, usize)> = Vec::new();
         for first in 0..self.cases.len() {
             let again = |i: usize| identity(i) == identity(first);
@@ -164,49 +210,73 @@ impl<'a> Together<'a> {
         groups
     }
 
-    /// The number of a law in a case that names the family.
-    fn number(&self, index: usize, law: &FamilyMember) -> Option<Estimate> {
-        let report = named(self.cases[index], &self.report.name)?;
-        let number = member(report, law)?.number?;
-        number.at_limit.is_none().then_some(number)
+    /// Scale in a case by a member's number, over the nominal one: its logarithm, and its standard deviation [1].
+    fn scale_by(&self, index: usize, member: &FamilyMember) -> Option<[f64; 2]> {
+        let law = self.laws.iter().find(|law| law.is(member))?;
+        let number = member.number.filter(|n| n.at_limit.is_none())?;
+        let nominal = law.nominal(&self.cases[index].rig);
+        let at = |value: f64| law.scaling.power * (value / nominal).ln();
+        let deviation = (at(number.high) - at(number.low)).abs() / (2.0 * INTERVAL);
+        let scale = [at(number.value), deviation];
+        scale.iter().all(|v| v.is_finite()).then_some(scale)
+    }
+
+    /// A law in a case: its probability there, and the scale.
+    fn in_case(&self, index: usize, law: &Law) -> (f64, Option<[f64; 2]>) {
+        let case = self.cases[index];
+        let Some(report) = named(case, &self.report.name) else {
+            // What is not named says nothing of what it is not.
+            return (1.0, law.least_shown(case.answer).map(not_shown));
+        };
+        let own = report.members.iter().find(|m| law.is(m));
+        let listed: f64 = report.members.iter().map(|m| m.probability).sum();
+        let likeliest = report
+            .members
+            .iter()
+            .map(|m| m.probability)
+            .fold(0.0, f64::max);
+        let absent = |law: &&Law| !report.members.iter().any(|m| law.is(m));
+        let of_rig = Law::of(&case.rig, &self.report.name);
+        let absent = of_rig.iter().filter(absent).count().max(1) as f64;
+        // Laws that act alike are not all fitted: those that were not share what is left of the family.
+        let left = (report.probability - listed).max(0.0) / absent;
+        // All of them scale one and the same, so that another's number tells it too.
+        let others = own.into_iter().chain(&report.members);
+        let mut scales = others.filter_map(|m| self.scale_by(index, m));
+        // By the evidence none is likelier than that of the answer, whatever doubts leave of it.
+        let of_answer = |m: &FamilyMember| {
+            let mut effects = case.answer.effects.iter();
+            effects.any(|e| e.name == m.name && e.key == m.key)
+        };
+        let probability = match own {
+            // Where a piston is moved, force by pressure is all that is seen: whichever was fitted, the others do as well.
+            _ if case.rig.plant.chain == Chain::MovedPiston => 1.0,
+            Some(member) if of_answer(member) => likeliest,
+            Some(member) => member.probability,
+            None => left,
+        };
+        (probability, scales.next())
     }
 
     /// A law in all cases.
-    fn in_all(&self, (law, scaling): &Law<'_>) -> InAll {
-        let groups = self.groups(scaling);
-        let numbers = (0..self.cases.len()).map(|i| self.number(i, law));
-        let numbers: Vec<Option<Estimate>> = numbers.collect();
+    fn in_all(&self, law: &Law) -> InAll {
+        let groups = self.groups(law);
+        let nominal = |index: usize| law.nominal(&self.cases[index].rig);
         let of_case = |index: usize| {
-            let case = self.cases[index];
-            let own = case.shares.of(scaling.part);
+            let own = law.part(self.cases[index]);
             let part = groups.iter().find(|(identity, _)| Some(*identity) == own);
-            // One part has one number, whatever its files take for the nominal one.
             let part = part.map_or(index, |(_, first)| *first);
-            let nominal = numbers[part].or(numbers[index]).and_then(|n| n.without);
-            let scale = match (numbers[index], nominal) {
-                (Some(number), Some(nominal)) => of_number(&number, nominal, scaling.power),
-                _ if index >= self.naming => {
-                    let least = least_shown(case.answer, law);
-                    least.map(|least| not_shown(scaling.power * least.ln()))
-                }
-                _ => None,
-            };
-            let report = named(case, &self.report.name);
+            let (probability, scale) = self.in_case(index, law);
+            // One part has one number, whatever its files take for the nominal one.
+            let shift = law.scaling.power * (nominal(index) / nominal(part)).ln();
             InCase {
-                // What is not named says nothing of what it is not.
-                probability: report.map_or(1.0, |report| {
-                    member(report, law).map_or(0.0, |m| m.probability)
-                }),
-                scale,
+                probability,
+                scale: scale.map(|[at, deviation]| [at + shift, deviation]),
                 part,
             }
         };
-        let nominals = numbers.iter().flatten().filter_map(|n| n.without);
-        let nominals: Vec<f64> = nominals.collect();
-        let differ = nominals
-            .iter()
-            .any(|n| (n / nominals[0] - 1.0).abs() > 1e-9);
-        let doubt = match (groups.is_empty() && !differ, self.stated(scaling)) {
+        let differ = (1..self.naming).any(|i| (nominal(i) / nominal(0) - 1.0).abs() > SAME);
+        let doubt = match (groups.is_empty() && !differ, self.stated(law)) {
             (true, false) => NOT_STATED,
             (true, true) => SAME_NOMINAL,
             (false, _) => STATED,
@@ -218,14 +288,13 @@ impl<'a> Together<'a> {
     }
 
     /// Whether every case that names the family states which part it has.
-    fn stated(&self, scaling: &Scaling) -> bool {
+    fn stated(&self, law: &Law) -> bool {
         let mut naming = self.cases[..self.naming].iter();
-        naming.all(|c| c.shares.of(scaling.part).is_some())
+        naming.all(|c| law.part(c).is_some())
     }
 
     fn family(&self) -> SharedFamily {
-        let shares = |(_, scaling): &Law<'_>| !self.groups(scaling).is_empty();
-        let decided = self.laws.iter().any(shares);
+        let decided = self.laws.iter().any(|law| !self.groups(law).is_empty());
         let all: Vec<InAll> = self.laws.iter().map(|law| self.in_all(law)).collect();
         let members = self.laws.iter().zip(&all).zip(together(&all));
         let mut members: Vec<SharedMember> = members
@@ -244,16 +313,27 @@ impl<'a> Together<'a> {
         }
     }
 
-    fn member(&self, (law, scaling): &Law<'_>, all: &InAll, probability: f64) -> SharedMember {
-        let factor = |logarithm: f64| (logarithm / scaling.power).exp();
+    fn member(&self, law: &Law, all: &InAll, probability: f64) -> SharedMember {
+        let factor = |logarithm: f64| (logarithm / law.scaling.power).exp();
+        let names = |cases: &[usize]| {
+            cases
+                .iter()
+                .map(|i| self.cases[*i].name.to_owned())
+                .collect()
+        };
         let part = |(identity, first): (&str, usize)| {
-            let own = (0..self.cases.len()).filter(|i| all.cases[*i].part == first);
-            let [at, deviation] = common(&all.scales(first));
-            let [low, high] = [-INTERVAL, INTERVAL].map(|z| factor(at + z * deviation));
+            let of_it = |i: &usize| all.cases[*i].part == first;
+            let own: Vec<usize> = (0..self.cases.len()).filter(of_it).collect();
+            let one = all.one_value(first);
+            let value = one.as_ref().map(|(_, [at, deviation])| {
+                let [low, high] = [-INTERVAL, INTERVAL].map(|z| factor(at + z * deviation));
+                Estimate::new(factor(*at), low, high)
+            });
             SharedPart {
                 identity: identity.to_owned(),
-                cases: own.map(|i| self.cases[i].name.to_owned()).collect(),
-                factor: Estimate::new(factor(at), low, high),
+                cases: names(&own),
+                agreeing: one.map_or_else(Vec::new, |(agreeing, _)| names(&agreeing)),
+                factor: value,
             }
         };
         let scales = all.cases[..self.naming].iter().filter_map(|c| c.scale);
@@ -261,83 +341,44 @@ impl<'a> Together<'a> {
         let least = factors.iter().copied().fold(f64::INFINITY, f64::min);
         let most = factors.iter().copied().fold(0.0, f64::max);
         SharedMember {
-            name: law.name.clone(),
-            key: law.key.clone(),
-            part: scaling.part,
+            name: law.effect.vocabulary().0.to_owned(),
+            key: law.effect.number_key(),
+            part: law.scaling.part,
             probability,
-            shared: self.groups(scaling).into_iter().map(part).collect(),
+            shared: self.groups(law).into_iter().map(part).collect(),
             range: (!factors.is_empty()).then_some([least, most]),
-            stated: self.stated(scaling),
+            stated: self.stated(law),
         }
     }
 }
 
-/// A law in the report of its family.
-fn member<'a>(report: &'a FamilyReport, law: &FamilyMember) -> Option<&'a FamilyMember> {
-    let mut members = report.members.iter();
-    members.find(|m| m.name == law.name && m.key == law.key)
-}
-
-/// The scale's logarithm that a number comes to, and its standard deviation; none where it is not above zero.
-fn of_number(number: &Estimate, nominal: f64, power: f64) -> Option<[f64; 2]> {
-    let at = |value: f64| power * (value / nominal).ln();
-    let scale = [
-        at(number.value),
-        (at(number.high) - at(number.low)).abs() / (2.0 * INTERVAL),
-    ];
-    scale.iter().all(|v| v.is_finite()).then_some(scale)
-}
-
-/// Least number over the nominal one with which a law would have been named in a case that names nothing [1].
-fn least_shown(answer: &Answer, law: &FamilyMember) -> Option<f64> {
-    let mut detectable = answer.details.detectable.iter();
-    let own = detectable.find(|d| law.key.is_none() && d.effect == law.name)?;
-    let number = own.parameters.first()?;
-    let factor = number.value / number.without?;
-    (factor > 0.0 && factor.is_finite()).then_some(factor)
-}
-
 impl SharedFamily {
-    /// It in words, a line each; without shared parts what would let the cases decide.
+    /// It in words, a paragraph each; without shared parts what would let the cases decide.
     pub(super) fn text(&self) -> String {
         let words = capital(&self.words);
         let count = self.cases.len();
         if self.members.is_empty() {
-            return format!(
-                "{words} in {count} cases: where they have a part in common, [shares] in their rig.toml says so, and they decide together which it is\n"
+            let words = format!(
+                "{words} in {count} cases: where they have a part in common, [shares] in their rig.toml says so, and they decide together which it is."
             );
+            return wrapped("", &words);
         }
-        let mut text = format!("{words} in {count} cases, together:\n");
-        let name = |m: &SharedMember| match &m.key {
-            Some(key) => format!("{} ({key})", m.name),
-            None => m.name.clone(),
-        };
-        let wide = self.members.iter().map(|m| name(m).chars().count()).max();
-        let wide = wide.unwrap_or_default();
+        let mut text = format!("{words} in {count} cases. Where it is the same in all:\n");
         for member in &self.members {
-            let (name, probability) = (name(member), percent(member.probability));
-            let what = member.what();
-            // Writing into a text cannot fail.
-            let _ = writeln!(text, "  {name:<wide$}  {probability:>7}  {what}");
+            text += &wrapped("- ", &member.words());
         }
         if !self.not_shown_in.is_empty() {
             let names = listed(&self.not_shown_in);
-            let _ = writeln!(
-                text,
-                "  with a part of these, and nothing of it to be seen: {names}"
-            );
+            let words = format!("With a part of these, and nothing of it to be seen: {names}.");
+            text += &wrapped("  ", &words);
         }
-        let open = self
-            .members
-            .iter()
-            .filter(|m| m.shared.is_empty() && !m.stated);
+        let open = self.members.iter();
+        let open = open.filter(|m| m.shared.is_empty() && !m.stated);
         let open: Vec<String> = open.map(|m| m.part.replace('_', " ")).collect();
         if self.members[0].probability < 1.0 - SAME_NOMINAL && !open.is_empty() {
-            let _ = writeln!(
-                text,
-                "  what [shares] does not say: which {} each case has",
-                listed(&open)
-            );
+            let open = listed(&open);
+            let words = format!("Not stated in [shares]: which {open} each case has.");
+            text += &wrapped("  ", &words);
         }
         text
     }
@@ -345,30 +386,45 @@ impl SharedFamily {
 
 impl SharedMember {
     /// What the cases find of it, or would have to.
-    fn what(&self) -> String {
+    fn words(&self) -> String {
         let shown = |value: f64| significant(value, DIGITS);
         let part = self.part.replace('_', " ");
-        let range = self.range.map(|[least, most]| {
-            format!("between {} and {} of nominal", shown(least), shown(most))
-        });
-        let range = range.unwrap_or_else(|| "not known".to_owned());
         let of_part = |shared: &SharedPart| {
-            let Estimate {
-                value, low, high, ..
-            } = shared.factor;
+            let identity = &shared.identity;
+            let Some(factor) = shared.factor else {
+                let count = shared.cases.len();
+                return format!("no one value of {part} {identity} in its {count} cases");
+            };
+            let others = shared.cases.iter().filter(|c| !shared.agreeing.contains(c));
+            let others: Vec<String> = others.cloned().collect();
+            let but = match others.is_empty() {
+                true => String::new(),
+                false => format!(" (not in {})", listed(&others)),
+            };
             format!(
-                "{} ({} to {}) of nominal in {} cases with {part} {}",
-                shown(value),
-                shown(low),
-                shown(high),
-                shared.cases.len(),
-                shared.identity
+                "{} ({} to {}) of nominal in {} cases with {part} {identity}{but}",
+                shown(factor.value),
+                shown(factor.low),
+                shown(factor.high),
+                shared.agreeing.len(),
             )
         };
         let shared: Vec<String> = self.shared.iter().map(of_part).collect();
-        match shared.is_empty() {
-            true => format!("each {part} its own, all {range}"),
-            false => format!("{}; the cases alone: {range}", listed(&shared)),
-        }
+        let what = match shared.is_empty() {
+            true => format!("each {part} its own"),
+            false => listed(&shared),
+        };
+        let range = self.range.map(|[least, most]| {
+            let apart = with_unit(100.0 * (most / least - 1.0), "%");
+            let [least, most] = [shown(least), shown(most)];
+            format!("; each alone from {least} to {most}, {apart} apart")
+        });
+        let name = match self.key {
+            Some(key) => format!("{} ({key})", self.name),
+            None => self.name.clone(),
+        };
+        let probability = percent(self.probability);
+        let range = range.unwrap_or_default();
+        format!("{name} {probability}: {what}{range}.")
     }
 }
