@@ -410,9 +410,10 @@ impl SharedMember {
             )
         };
         let shared: Vec<String> = self.shared.iter().map(of_part).collect();
-        let what = match shared.is_empty() {
-            true => format!("each {part} its own"),
-            false => listed(&shared),
+        let what = match (shared.is_empty(), self.stated) {
+            (true, true) => format!("each {part} its own"),
+            (true, false) => format!("{part}s of which nothing is stated"),
+            (false, _) => listed(&shared),
         };
         let range = self.range.map(|[least, most]| {
             let apart = with_unit(100.0 * (most / least - 1.0), "%");
@@ -426,5 +427,118 @@ impl SharedMember {
         let probability = percent(self.probability);
         let range = range.unwrap_or_default();
         format!("{name} {probability}: {what}{range}.")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::scenario::rig_file::from_text;
+
+    /// Bore of the rig file to start from [m].
+    const BORE: f64 = 0.0211;
+
+    /// That rig with another bore, and parts that it states.
+    fn rig(bore: f64, shares: &str) -> RigFile {
+        let text = include_str!("../../../assets/new/rig.toml");
+        let text = text.replace("bore_m = 0.0211 ", &format!("bore_m = {bore} "));
+        let text = format!("{text}\n[shares]\n{shares}\n");
+        from_text(Path::new("rig.toml"), &text).unwrap()
+    }
+
+    fn answer(details: &str) -> Answer {
+        let text = format!(
+            r#"{{"schema":1,"verdict":"nothing_missing","effects":[],"mismatch":[],"seconds":0.0,"alternatives":[],{details}}}"#
+        );
+        serde_json::from_str(&text).unwrap()
+    }
+
+    /// A case that names the family: probability of its members, a gain and a bore [m], each to 0.2 %.
+    fn naming([gain, bore]: [f64; 2], of_gain: f64, value: f64) -> Answer {
+        let number = |value: f64| {
+            let [low, high] = [0.998 * value, 1.002 * value];
+            format!(r#"{{"value":{value},"low":{low},"high":{high}}}"#)
+        };
+        answer(&format!(
+            r#""families":[{{"name":"force_by_pressure","words":"another scale of force by pressure","probability":{value},"members":[
+                {{"name":"force_sensor_gain_error","probability":{of_gain},"number":{}}},
+                {{"name":"number_off","key":"cylinder.bore_m","probability":{},"number":{}}}]}}]"#,
+            number(gain),
+            value - of_gain,
+            number(bore)
+        ))
+    }
+
+    const SHOWN: &str = r#""detectable":[{"effect":"force_sensor_gain_error","parameters":[{"name":"gain","value":1.004,"without":1.0}]}]"#;
+
+    /// The family by cases, each with its bore [m], what it shares and its answer.
+    fn of(cases: &[(f64, &str, Answer)]) -> Option<SharedFamily> {
+        let names: Vec<String> = (0..cases.len()).map(|i| format!("case-{i}")).collect();
+        let cases = cases.iter().zip(&names);
+        let cases: Vec<SharingCase<'_>> = cases
+            .map(|((bore, shares, answer), name)| SharingCase {
+                name,
+                answer,
+                rig: rig(*bore, shares),
+            })
+            .collect();
+        shared(&cases).pop()
+    }
+
+    const LC_7: &str = "force_sensor = \"LC-7\"";
+
+    #[test]
+    fn a_case_that_would_have_shown_it_is_told_from_those_that_agree() {
+        let named = || naming([1.03, BORE * 1.015], 0.5, 1.0);
+        let all = [(BORE, LC_7, named()), (BORE, LC_7, named())];
+        let two = of(&all).unwrap();
+        let three = [&all[..], &[(BORE, LC_7, answer(SHOWN))]].concat();
+        let found = of(&three).unwrap();
+        assert_eq!(found.not_shown_in, ["case-2"]);
+        let gain = |f: &SharedFamily| {
+            let mut members = f.members.iter();
+            let own = members.find(|m| m.part == "force_sensor").unwrap();
+            (own.probability, own.shared[0].agreeing.len())
+        };
+        assert_eq!(gain(&two).1, 2);
+        assert!(gain(&found).0 < 0.2 * gain(&two).0, "{found:?}");
+        assert!(found.text().contains("case-2"), "{}", found.text());
+        // One with another load cell says nothing of this one.
+        let other = [
+            &all[..],
+            &[(BORE, "force_sensor = \"LC-8\"", answer(SHOWN))],
+        ]
+        .concat();
+        assert!(of(&other).unwrap().not_shown_in.is_empty());
+    }
+
+    #[test]
+    fn a_bore_of_one_cylinder_is_one_whatever_its_files_say_of_it() {
+        let same = "cylinder = \"C-1\"";
+        let cases = [
+            (BORE, same, naming([1.03, 0.0214], 0.2, 1.0)),
+            (0.0207, same, naming([1.06, 0.0214], 0.2, 1.0)),
+        ];
+        let found = of(&cases).unwrap();
+        let bore = found.members.iter().find(|m| m.part == "cylinder").unwrap();
+        let part = &bore.shared[0];
+        assert_eq!((part.identity.as_str(), part.agreeing.len()), ("C-1", 2));
+        // Over the first file's.
+        let factor = part.factor.unwrap().value;
+        assert!((factor - 0.0214 / BORE).abs() < 1e-4, "{factor}");
+        assert!(bore.probability > 0.5, "{found:?}");
+    }
+
+    #[test]
+    fn nothing_is_told_of_one_case_or_of_a_family_that_few_name() {
+        let named = |value: f64| naming([1.03, BORE * 1.015], 0.5 * value, value);
+        assert!(of(&[(BORE, LC_7, named(1.0)), (BORE, LC_7, answer(SHOWN))]).is_none());
+        assert!(of(&[(BORE, LC_7, named(1.0)), (BORE, LC_7, named(0.4))]).is_none());
+        let apart = [(BORE, LC_7, named(1.0)), (BORE, "", named(1.0))];
+        let found = of(&apart).unwrap();
+        assert!(found.members.is_empty());
+        assert!(found.text().contains("[shares]"), "{}", found.text());
     }
 }
