@@ -9,7 +9,7 @@
 //! ```
 //!
 //! v_i number of the member in case i, k the power with which it scales what all of its family scale, u_i +- s_i that scale, T its prior: log-normal about nominal.
-//! p_i probability of the member in case i alone. B is the odds of one value in several cases against a value for each: it grows with every value that agrees, and
+//! p_i probability of the member in case i alone, 0.01 at least. B is the odds of one value in several cases against a value for each: it grows with every value that agrees, and
 //! falls where they do not. d is the doubt of what is stated: of a part that is stated to be shared, that one case has another or each its own; of parts that are
 //! each their own, that they are off alike all the same (one drawing, one sheet copied).
 //!

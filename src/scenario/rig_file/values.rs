@@ -257,7 +257,7 @@ pub(super) fn pressure_drift(
 }
 
 /// Parts that a rig may share with others, by their keys in `[shares]`: rigs that state the same identity have the same part. Only parts that a family of laws
-/// tells apart (`diagnosis::family::scale`); what is not stated is not assumed.
+/// tells apart (`diagnosis::family::scaling`); what is not stated is not assumed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Shares(BTreeMap<&'static str, String>);
 
