@@ -1,6 +1,8 @@
 //! Rigs with a part of the device: recordings by equations of their own, with the physics planted, diagnosed by the program; and the public sets where
 //! they are there.
 
+mod together;
+
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;

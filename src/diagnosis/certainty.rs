@@ -3,11 +3,12 @@
 use super::answer::Estimate;
 use super::details::{FamilyMember, FamilyReport};
 use super::doubt::Doubt;
-use super::estimate::Number;
-use super::family::{FAMILIES, Family, family_of, is_alike};
+use super::estimate::{Number, estimates};
+use super::family::{FAMILIES, Family, family_of, is_alike, scaling};
 use super::finding::Diagnosis;
 use super::fit::robust_sum;
 use super::hypothesis::Hypothesis;
+use super::ranking::Ranked;
 use super::scale::IMMATERIAL;
 use super::statements::{doubts_of, stated};
 use crate::effects::{Effect, LINK_EFFECTS, NUMBERS_OFF, UNLISTED, every};
@@ -228,14 +229,14 @@ impl Diagnosis {
             let probability = match best.iter().any(|e| e.name == effect.name) {
                 true => self.confidence(effect.name),
                 false => {
-                    let with = |r: &&super::ranking::Ranked| {
-                        r.hypothesis.effects.iter().any(|e| e.name == effect.name)
-                    };
+                    let with =
+                        |r: &&Ranked| r.hypothesis.effects.iter().any(|e| e.name == effect.name);
                     let with = self.ranked.iter().filter(with);
                     with.map(|r| r.probability).sum::<f64>().min(1.0)
                 }
             };
             members.push(FamilyMember {
+                number: scaling(&name, key).and_then(|_| self.number_with(effect)),
                 name,
                 key: key.map(str::to_owned),
                 probability,
@@ -266,6 +267,18 @@ impl Diagnosis {
             probability: probability.max(likeliest),
             members,
         }
+    }
+}
+
+impl Diagnosis {
+    /// The number of an effect given the likeliest explanation with it: no other widens its interval.
+    fn number_with(&self, effect: &Effect) -> Option<Estimate> {
+        let has = |r: &&Ranked| r.hypothesis.effects.iter().any(|e| e.name == effect.name);
+        let given = self.ranked.iter().find(has)?;
+        let of_it = estimates(&self.believed, std::slice::from_ref(given), &self.evidence);
+        let mut own = of_it.effects.iter().filter(|(e, _)| e.name == effect.name);
+        let mut numbers = own.next()?.1.iter().filter(|n| n.reported);
+        numbers.next().map(Estimate::from)
     }
 }
 

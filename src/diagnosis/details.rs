@@ -126,6 +126,9 @@ pub struct FamilyMember {
     pub key: Option<String>,
     /// Probability that it is the one [1].
     pub probability: f64,
+    /// Its number given that it is the one, of a law that scales what others of its family scale; none of others, and in files that are older.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub number: Option<Estimate>,
 }
 
 /// A stretch in which a prediction leaves what the recordings covered that its model was fitted to.

@@ -150,9 +150,11 @@ fn settled(fit: &Fit) -> Vec<f64> {
 }
 
 /// Variance of each free quantity of the first explanation over those that have it too, weighed by their probabilities, in the fit's coordinates
-/// (Bayesian model averaging: Hoeting et al., Stat. Sci. 14, 1999).
-fn between_models(ranked: &[Ranked]) -> Vec<f64> {
+/// (Bayesian model averaging: Hoeting et al., Stat. Sci. 14, 1999). A number that an effect has beyond its tolerance is another than the tolerated one: where a
+/// look-alike stands in the effect's place, that says nothing of it.
+fn between_models(believed: &PlantParameters, ranked: &[Ranked]) -> Vec<f64> {
     let best = &ranked[0].hypothesis.fit;
+    let first = ranked[0].hypothesis.tolerated(believed);
     let of = |(index, free): (usize, &Free)| {
         let here = free.coordinate.of(best.values[index]);
         let (mut squares, mut sum) = (0.0, 0.0);
@@ -165,7 +167,9 @@ fn between_models(ranked: &[Ranked]) -> Vec<f64> {
                 continue;
             }
             let same = |f: &Free| f.quantity.is(&free.quantity);
-            if let Some(place) = fit.free.iter().position(same) {
+            let of_effect = |place: &usize| *place >= other.hypothesis.tolerated(believed);
+            let place = fit.free.iter().position(same);
+            if let Some(place) = place.filter(|place| (index >= first) == of_effect(place)) {
                 squares +=
                     other.probability * (free.coordinate.of(fit.values[place]) - here).powi(2);
                 sum += other.probability;
@@ -192,7 +196,7 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
     }
     at_least(&mut covariance, &settled(fit));
     let first = hypothesis.tolerated(believed);
-    for (index, between) in between_models(ranked).into_iter().enumerate() {
+    for (index, between) in between_models(believed, ranked).into_iter().enumerate() {
         covariance[(index, index)] += between;
     }
     let sample = longest_sample(evidence);
@@ -296,7 +300,8 @@ mod tests {
     use crate::diagnosis::free::Prior;
     use crate::diagnosis::hypothesis::Hypothesis;
     use crate::diagnosis::input::tolerated;
-    use crate::diagnosis::test_evidence::fit;
+    use crate::diagnosis::test_evidence::{fit, plant};
+    use crate::effects::{NUMBERS_OFF, every};
     use crate::plant::registry;
 
     #[test]
@@ -324,11 +329,31 @@ mod tests {
             left_out: None,
         };
         let alone = [ranked(1.0, 1.0)];
-        assert_eq!(between_models(&alone), [0.0]);
+        assert_eq!(between_models(&plant(), &alone), [0.0]);
         let mut other = ranked(0.0, 0.5);
         other.hypothesis.fit.free.clear();
         let three = [ranked(1.0, 0.35), ranked(3.0, 0.15), other];
-        assert!((between_models(&three)[0] - 0.3 * 4.0).abs() < 1e-12);
+        assert!((between_models(&plant(), &three)[0] - 0.3 * 4.0).abs() < 1e-12);
+        // A bore 4 % off, and in its place a gain with the bore within its tolerance: the interval of a real piston held the nominal bore so.
+        let bore = NUMBERS_OFF[0].parameters(&plant())[0].quantity;
+        let gain = every().find(|e| e.name == "force_sensor_gain_error");
+        let of = |value, effect: &'static Effect, tolerated: usize| {
+            let mut ranked = ranked(value, 0.5);
+            ranked.hypothesis.effects = vec![effect];
+            let own = ranked.hypothesis.fit.free[0];
+            let free = vec![
+                Free {
+                    quantity: bore,
+                    ..own
+                };
+                1 + tolerated
+            ];
+            ranked.hypothesis.fit.free = free;
+            ranked.hypothesis.fit.values = vec![value; 1 + tolerated];
+            ranked
+        };
+        let alike = [of(0.026, &NUMBERS_OFF[0], 0), of(0.025, gain.unwrap(), 1)];
+        assert_eq!(between_models(&plant(), &alike), [0.0]);
     }
 
     #[test]

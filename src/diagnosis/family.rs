@@ -28,6 +28,34 @@ pub static FAMILIES: [Family; 10] = [
     Family { name: "removal_by_force", words: "another law of the force", members: &["removal_force_exponent", "removal_threshold_force", "tool_speed_sag"] },
 ];
 
+/// How a member of a family moves what all of its family scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scaling {
+    /// Name of the family.
+    pub family: &'static str,
+    /// Name of the law, of a number of the rig file that is off its key.
+    member: &'static str,
+    /// Part that it is of, as `[shares]` of a rig file names it.
+    pub part: &'static str,
+    /// Power of its number over the nominal one with which that scales [1].
+    pub power: f64,
+}
+
+/// Members whose number scales one and the same, each by a part of its own: force by pressure goes with the bore's square, and with either gain.
+#[rustfmt::skip] // A table: one member a line.
+static SCALINGS: [Scaling; 3] = [
+    Scaling { family: "force_by_pressure", member: "cylinder.bore_m", part: "cylinder", power: 2.0 },
+    Scaling { family: "force_by_pressure", member: "force_sensor_gain_error", part: "force_sensor", power: 1.0 },
+    Scaling { family: "force_by_pressure", member: "regulator_gain_error", part: "regulator", power: 1.0 },
+];
+
+/// What a law scales, by its name in an answer, of `number_off` with its key; none of most.
+#[must_use]
+pub fn scaling(name: &str, key: Option<&str>) -> Option<&'static Scaling> {
+    let name = if name == NUMBER_OFF { key? } else { name };
+    SCALINGS.iter().find(|s| s.member == name)
+}
+
 /// The family of a law by its name in an answer, of `number_off` with its key.
 #[must_use]
 pub fn family(name: &str, key: Option<&str>) -> Option<&'static Family> {
@@ -64,6 +92,26 @@ mod tests {
         members.sort_unstable();
         members.dedup();
         assert_eq!(members.len(), count);
+    }
+
+    #[test]
+    fn what_scales_is_of_the_family_that_it_scales() {
+        for scaling in &SCALINGS {
+            let of = FAMILIES
+                .iter()
+                .find(|f| f.members.contains(&scaling.member));
+            assert_eq!(of.map(|f| f.name), Some(scaling.family));
+        }
+        let of = |name, key| scaling(name, key).map(|s| (s.part, s.power));
+        assert_eq!(
+            of(NUMBER_OFF, Some("cylinder.bore_m")),
+            Some(("cylinder", 2.0))
+        );
+        assert_eq!(
+            of("force_sensor_gain_error", None),
+            Some(("force_sensor", 1.0))
+        );
+        assert_eq!(of("gap_leakage", None), None);
     }
 
     #[test]

@@ -52,6 +52,7 @@ mod scale;
 pub mod search;
 pub mod servo;
 pub mod settings;
+pub mod shared;
 pub mod spectrum;
 pub mod statements;
 #[cfg(test)]

@@ -294,6 +294,7 @@ mod tests {
                     name: "coulomb_viscous_friction".to_owned(),
                     key: None,
                     probability: 0.5,
+                    number: None,
                 };
                 a.details.families = vec![FamilyReport {
                     name: "dry_friction".to_owned(),

@@ -6,6 +6,7 @@
 //! key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
 //! [rig]  chain = "moved_piston"                a part of the device ([`crate::plant::Chain`]); only that part's numbers are then asked for
 //! [[effect]]                                   physics beyond the believed model (`super::effects`)
+//! [shares]  force_sensor = "LC-7"              a part that other rigs have too, by its serial number ([`Shares`])
 //! [known]                                      how sure a diagnosis is of it, and what its recordings covered (`known`)
 //! [latent]                                     physics that no known effect explains (`latent`)
 //! [flange]                                     a contact flange as it was fitted to runs (`flange`)
@@ -20,7 +21,7 @@ use crate::effects::{PresentEffect, candidates};
 use crate::plant::PlantParameters;
 use crate::plant::flange::FittedFlange;
 use keys::{RigKeys, sections};
-use values::{check_together, pressure_drift, recordings, sensors};
+use values::{check_together, pressure_drift, recordings, sensors, shares};
 
 mod entry;
 mod flange;
@@ -38,7 +39,7 @@ pub use improved::{Improved, improved_text};
 pub use known::{FREQUENCY_NAME, Known, coefficient_name, of_term};
 pub(super) use number::NUMBER_OR_TABLE;
 pub(super) use quantities::{blank, described_numbers};
-pub use values::{RecordingForceRamp, Tolerance};
+pub use values::{RecordingForceRamp, Shares, Tolerance};
 
 /// Version of the format.
 const SCHEMA: u32 = 2;
@@ -70,6 +71,8 @@ pub struct RigFile {
     pub effects: Vec<PresentEffect>,
     /// The rig without them and without a term that has no name.
     pub bare: PlantParameters,
+    /// Parts that other rigs may have too.
+    pub shares: Shares,
     /// How sure a diagnosis is of it, and what its recordings covered.
     pub known: Option<Known>,
     /// A contact flange as a diagnosis has fitted it.
@@ -112,6 +115,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     let flange = flange::flange(&document, keys.flange.as_ref(), plant.chain)?;
     let (rate, noise) = sensors(&document, &keys, plant.chain)?;
     let pressure_drift = pressure_drift(&document, &keys)?;
+    let shares = shares(&document, keys.shares)?;
     let recordings = recordings(&document, keys.recordings, plant.chain)?;
     Ok(RigFile {
         path: path.to_owned(),
@@ -126,6 +130,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
         force_ramps: recordings.force_ramps,
         effects,
         bare,
+        shares,
         known,
         flange,
     })

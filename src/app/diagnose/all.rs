@@ -12,10 +12,12 @@ use super::super::output::say;
 use super::super::progress;
 use super::DiagnoseArguments;
 use super::one::{Prepared, complete, is_case};
-use crate::case::is_cell_case;
+use super::shared::{SharedFamily, SharingCase, shared};
+use crate::case::{RIG, is_cell_case};
 use crate::diagnosis::answer::{Answer, Verdict};
 use crate::diagnosis::effort::EffortLimit;
 use crate::replay::LoadedCell;
+use crate::scenario::rig_file::load_rig;
 
 /// Outcome of a case.
 struct Outcome {
@@ -81,7 +83,25 @@ pub(super) fn run(
         .unwrap_or_else(PoisonError::into_inner);
     outcomes.sort_by_key(|(index, _)| *index);
     let outcomes: Vec<Outcome> = outcomes.into_iter().map(|(_, outcome)| outcome).collect();
-    report(arguments, out, &outcomes)
+    // A cell's cases have one file of it, and no parts to tell apart.
+    let shared = match cell {
+        Some(_) => Vec::new(),
+        None => known_together(&arguments.case, &outcomes),
+    };
+    report(arguments, out, &outcomes, &shared)
+}
+
+/// What the cases know together, by the parts that their rig files state.
+fn known_together(folder: &Path, outcomes: &[Outcome]) -> Vec<SharedFamily> {
+    let cases = outcomes.iter().filter_map(|outcome| {
+        Some(SharingCase {
+            name: &outcome.name,
+            answer: &outcome.result.as_ref().ok()?.answer,
+            // A table of runs has no rig.
+            rig: load_rig(&folder.join(&outcome.name).join(RIG)).ok()?,
+        })
+    });
+    shared(&cases.collect::<Vec<_>>())
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
@@ -170,6 +190,7 @@ fn report(
     arguments: &DiagnoseArguments,
     out: &Path,
     outcomes: &[Outcome],
+    shared: &[SharedFamily],
 ) -> Result<ExitCode, AppError> {
     if arguments.json {
         for outcome in outcomes {
@@ -179,8 +200,14 @@ fn report(
             };
             say(&format!("{line}\n"))?;
         }
+        if !shared.is_empty() {
+            say(&format!("{}\n", serde_json::json!({ "shared": shared })))?;
+        }
     } else if !arguments.quiet {
         say(&table(outcomes))?;
+        for family in shared {
+            say(&format!("\n{}", family.text()))?;
+        }
         say(&format!("written to {}\n", out.display()))?;
     }
     let failed: Vec<&Outcome> = outcomes.iter().filter(|o| o.result.is_err()).collect();

@@ -96,6 +96,7 @@ fn families(diagnosis: &RemovalDiagnosis) -> Vec<FamilyReport> {
             name: of.name().to_owned(),
             key: None,
             probability: own(*of).map_or(*probability, |v| effect(diagnosis, v).confidence),
+            number: None,
         })
         .collect();
     members.sort_by(|a, b| b.probability.total_cmp(&a.probability));

@@ -43,6 +43,8 @@ pub(super) struct RigKeys {
     #[serde(default)]
     pub effect: super::super::effects::EffectKeys,
     pub latent: Option<BTreeMap<String, Entry>>,
+    #[serde(default)]
+    pub shares: SharesKeys,
     pub known: Option<KnownKeys>,
     pub flange: Option<FlangeKeys>,
 }
@@ -52,6 +54,15 @@ pub(super) struct RigKeys {
 #[serde(deny_unknown_fields)]
 pub(super) struct PartKeys {
     pub chain: Option<String>,
+}
+
+/// `[shares]`: identities of parts that other rigs may have too, a serial number or a name.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SharesKeys {
+    pub cylinder: Option<String>,
+    pub force_sensor: Option<String>,
+    pub regulator: Option<String>,
 }
 
 /// `[recordings]`.
@@ -107,6 +118,7 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         ("", keys::<RigKeys>()),
         ("rig", keys::<PartKeys>()),
         ("recordings", keys::<RecordingsKeys>()),
+        ("shares", keys::<SharesKeys>()),
         ("known", keys::<KnownKeys>()),
         ("flange", keys::<FlangeKeys>()),
         ("flange.fit", &FlangeModel::NAMES),

@@ -213,6 +213,34 @@ fn a_sensor_that_is_not_named_is_not_there_and_one_must_be() {
 }
 
 #[test]
+fn parts_that_are_shared_are_stated_by_an_identity_and_not_assumed() {
+    let stated = "[shares]\nforce_sensor = \" LC-7 \"\n";
+    let rig = read(&(RIG.to_owned() + stated));
+    let of = ["cylinder", "force_sensor", "regulator"].map(|part| rig.shares.of(part));
+    assert_eq!(of, [None, Some("LC-7"), None]);
+    assert_eq!(read(RIG).shares.of("force_sensor"), None);
+    // An improved file is of the same parts.
+    let improved = improved_text(&rig, &Improved::default());
+    assert_eq!(read(&improved).shares, rig.shares);
+    let instead = |keys: &str| format!("[shares]\n{keys}\n\n[effect.channel_time_offset]");
+    let refuse = |keys: &str, says: &str| {
+        refused("[effect.channel_time_offset]", &instead(keys), says);
+    };
+    refuse(
+        "force_senser = \"LC-7\"",
+        "48:1: unknown key `shares.force_senser`; did you mean `force_sensor`?",
+    );
+    refuse(
+        "regulator = 7",
+        "48:13: `shares.regulator` is 7, expected a text in quotes",
+    );
+    refuse(
+        "cylinder = \" \"",
+        "48:1: `shares.cylinder` is \" \", expected a text",
+    );
+}
+
+#[test]
 fn values_in_common_units_are_recognised() {
     refused(
         "atmosphere_pa = 101325.0",

@@ -1,11 +1,13 @@
 //! From the numbers of a rig file to the rig's description, each checked to be plausible as SI.
 
+use std::collections::BTreeMap;
+
 use super::super::check::{Section, checked, plain};
 use super::super::document::{Document, join};
 use super::super::error::ScenarioError;
 use super::super::suggestion::advice;
 use super::super::units::Unit;
-use super::keys::{Numbers, RecordingsKeys, RigKeys, sections};
+use super::keys::{Numbers, RecordingsKeys, RigKeys, SharesKeys, sections};
 use super::number::Number;
 use super::quantities::{DRIFT, NUMBERS, SENSOR_KEYS, needs, split};
 use crate::plant::{Chain, PlantParameters, Quantity, registry};
@@ -252,6 +254,35 @@ pub(super) fn pressure_drift(
         None => Ok(0.0),
         Some(number) => exact(&section, key, number, range),
     }
+}
+
+/// Parts that a rig may share with others, by their keys in `[shares]`: rigs that state the same identity have the same part. Only parts that a family of laws
+/// tells apart (`diagnosis::family::scaling`); what is not stated is not assumed.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Shares(BTreeMap<&'static str, String>);
+
+impl Shares {
+    /// Identity of a part; none where the file does not state it.
+    #[must_use]
+    pub fn of(&self, part: &str) -> Option<&str> {
+        self.0.get(part).map(String::as_str)
+    }
+}
+
+/// Identities of the parts that a file states.
+pub(super) fn shares(document: &Document<'_>, keys: SharesKeys) -> Result<Shares, ScenarioError> {
+    let section = Section::new(document, "shares");
+    let mut shares = BTreeMap::new();
+    for (key, identity) in [
+        ("cylinder", keys.cylinder),
+        ("force_sensor", keys.force_sensor),
+        ("regulator", keys.regulator),
+    ] {
+        if let Some(identity) = identity {
+            shares.insert(key, section.text(key, &identity)?.trim().to_owned());
+        }
+    }
+    Ok(Shares(shares))
 }
 
 /// The force that a contact flange is told before contact, and how it grows to the desired one after it.

@@ -33,6 +33,7 @@ pub fn schema() -> Value {
         }),
     );
     tables.insert("recordings".to_owned(), recordings());
+    tables.insert("shares".to_owned(), shares());
     let effects = Chain::ALL.into_iter().flat_map(candidates);
     tables.insert("effect".to_owned(), super::super::effects::schema(effects));
     tables.insert(
@@ -101,6 +102,28 @@ fn recordings() -> Value {
         },
         "additionalProperties": false,
     })
+}
+
+/// `[shares]`.
+fn shares() -> Value {
+    let part = |text: &str| json!({ "type": "string", "description": text });
+    let mut table = table_of(Map::from_iter([
+        (
+            "cylinder".to_owned(),
+            part("Identity of the cylinder, such as its serial number."),
+        ),
+        (
+            "force_sensor".to_owned(),
+            part("Identity of the load cell."),
+        ),
+        (
+            "regulator".to_owned(),
+            part("Identity of the pressure regulator."),
+        ),
+    ]));
+    table["description"] =
+        "Parts that other rigs may have too: those that state the same identity have the same part, and `idc diagnose --all` finds one value for it.".into();
+    table
 }
 
 fn table_of(properties: Map<String, Value>) -> Value {
