@@ -14,9 +14,8 @@ use crate::effects::{Effect, candidates, numbers_off};
 use crate::plant::Chain;
 use crate::quantity::{DIGITS, significant, with_unit};
 use crate::scenario::rig_file::RigFile;
+use crate::stats::NORMAL_95;
 
-/// Standard deviations to either side in a 95 % interval [1].
-const INTERVAL: f64 = 1.96;
 /// Probability from which a case names a family [1]: as likely as not, which a doubt leaves of one that the evidence is sure of.
 const NAMED: f64 = 0.99 * TRUSTED;
 /// Share by which two nominal values differ that are one [1].
@@ -216,7 +215,7 @@ impl<'a> Together<'a> {
         let number = member.number.filter(|n| n.at_limit.is_none())?;
         let nominal = law.nominal(&self.cases[index].rig);
         let at = |value: f64| law.scaling.power * (value / nominal).ln();
-        let deviation = (at(number.high) - at(number.low)).abs() / (2.0 * INTERVAL);
+        let deviation = (at(number.high) - at(number.low)).abs() / (2.0 * NORMAL_95);
         let scale = [at(number.value), deviation];
         scale.iter().all(|v| v.is_finite()).then_some(scale)
     }
@@ -326,7 +325,7 @@ impl<'a> Together<'a> {
             let own: Vec<usize> = (0..self.cases.len()).filter(of_it).collect();
             let one = all.one_value(first);
             let value = one.as_ref().map(|(_, [at, deviation])| {
-                let [low, high] = [-INTERVAL, INTERVAL].map(|z| factor(at + z * deviation));
+                let [low, high] = [-NORMAL_95, NORMAL_95].map(|z| factor(at + z * deviation));
                 Estimate::new(factor(*at), low, high)
             });
             SharedPart {
