@@ -1,9 +1,9 @@
 //! From the numbers of a rig file to the rig's description, each checked to be plausible as SI.
 
 use super::super::check::{Section, checked, plain};
-use super::super::document::{Document, join};
+use super::super::document::Document;
 use super::super::error::ScenarioError;
-use super::super::suggestion::advice;
+use super::super::suggestion::{advice, join};
 use super::super::units::Unit;
 use super::keys::{Numbers, RecordingsKeys, RigKeys, sections};
 use super::number::Number;
