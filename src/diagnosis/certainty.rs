@@ -1,8 +1,8 @@
 //! How sure a diagnosis is of its effects and of the families that they are of.
 
-use super::answer::Estimate;
 use super::details::{FamilyMember, FamilyReport};
 use super::doubt::Doubt;
+use super::estimate::Estimate;
 use super::estimate::Number;
 use super::family::{FAMILIES, Family, family_of, is_alike};
 use super::finding::Diagnosis;
