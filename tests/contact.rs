@@ -9,9 +9,10 @@ use idc_cell::control::law::{DriveLimit, JointLaw};
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::seal_friction::SealFriction;
 use idc_cell::plant::{ContactLaw, ContactParameters, ForceTerms, Periodic, Relief, StepContact};
+use idc_cell::simulation::contact::ToolBall;
 use idc_cell::simulation::contact::{ContactReading, Touch};
 use idc_cell::simulation::slide::{self, SlideCarrier};
-use idc_cell::simulation::world::{ToolBall, World, WorldDescription};
+use idc_cell::simulation::world::{World, WorldDescription};
 use idc_cell::workpiece::{TriangleMesh, load_mesh};
 
 use crate::common::project;

@@ -1,4 +1,4 @@
-//! No circle of imports among more than two files.
+//! No circle of imports among files.
 //!
 //! A file imports the file in which a name that it uses is defined, whoever re-exports it on the way. `mod child;` and a re-export alone are no imports.
 
@@ -9,8 +9,10 @@ use crate::source::{Sources, Token, sources, tokens};
 /// A file as a module.
 struct Module {
     file: String,
-    /// Its words that stand in no `use`.
+    /// Its words that stand in no `use` and in no `mod` line.
     body: Vec<Token>,
+    /// Modules with files that it declares.
+    children: Vec<String>,
     /// Items that it defines.
     defined: BTreeSet<String>,
     imports: Vec<Import>,
@@ -78,7 +80,8 @@ fn leaves(tree: &[Token], mut at: usize, head: &[String], found: &mut Vec<Import
 
 impl Module {
     fn new(file: &str, tokens: &[Token]) -> Self {
-        let (mut body, mut imports, mut defined) = (Vec::new(), Vec::new(), BTreeSet::new());
+        let (mut body, mut children, mut imports) = (Vec::new(), Vec::new(), Vec::new());
+        let mut defined = BTreeSet::new();
         let mut at = 0;
         while at < tokens.len() {
             let before = at.checked_sub(1).map_or("", |it| tokens[it].text.as_str());
@@ -89,6 +92,10 @@ impl Module {
                     for import in &mut imports[known..] {
                         import.public = before == "pub" || before == ")";
                     }
+                }
+                "mod" if tokens.get(at + 2).is_some_and(|it| it.text == ";") => {
+                    children.push(tokens[at + 1].text.clone());
+                    at += 3;
                 }
                 _ => {
                     let kinds = [
@@ -113,16 +120,10 @@ impl Module {
         Self {
             file,
             body,
+            children,
             defined,
             imports,
         }
-    }
-
-    /// Modules with files that it declares.
-    fn children(&self) -> Vec<String> {
-        let declared = self.body.windows(3);
-        let declared = declared.filter(|it| it[0].text == "mod" && it[2].text == ";");
-        declared.map(|it| it[1].text.clone()).collect()
     }
 
     /// Paths of its body, each of at least two words.
@@ -160,8 +161,8 @@ impl Modules {
                 panic!("{name} is declared, but has no file");
             };
             let module = Module::new(file, &sources[file]);
-            for child in module.children() {
-                wanted.push([path.clone(), vec![child]].concat());
+            for child in &module.children {
+                wanted.push([path.clone(), vec![child.clone()]].concat());
             }
             found.insert(path, module);
         }
@@ -252,7 +253,7 @@ pub fn product_files(sources: &Sources) -> BTreeSet<String> {
     modules.into_values().map(|module| module.file).collect()
 }
 
-/// Groups of more than two files that all import one another, by whatever way.
+/// Groups of files that all import one another, by whatever way.
 fn circles(sources: &Sources) -> Vec<BTreeSet<String>> {
     let modules = Modules::new(sources);
     let edges = modules.edges();
@@ -274,10 +275,9 @@ fn circles(sources: &Sources) -> Vec<BTreeSet<String>> {
         others.map(|other| (*other).to_owned()).collect()
     };
     let circles: BTreeSet<BTreeSet<String>> = edges.keys().map(|file| circle(file)).collect();
-    circles
-        .into_iter()
-        .filter(|circle| circle.len() > 2)
-        .collect()
+    // That of a file in no circle is empty.
+    let circles = circles.into_iter();
+    circles.filter(|circle| !circle.is_empty()).collect()
 }
 
 /// The imports within a circle, to be read.
@@ -297,7 +297,7 @@ fn told(sources: &Sources, circle: &BTreeSet<String>) -> String {
 }
 
 #[test]
-fn no_circle_of_imports_has_more_than_two_files() {
+fn no_files_import_one_another_in_a_circle() {
     let sources = sources();
     let found = circles(&sources);
     let text: Vec<String> = found.iter().map(|circle| told(&sources, circle)).collect();
@@ -318,22 +318,22 @@ fn imported(files: &[(&str, &str)], by: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_planted_circle_of_three_is_found_and_one_of_two_is_left() {
-    let three = |last: &'static str| {
-        planted(&[
+fn planted_circles_of_three_and_of_two_are_found() {
+    let found = |last: &'static str| {
+        circles(&planted(&[
             ("lib.rs", "mod a; mod b; mod c; mod d;"),
             ("a.rs", "use crate::b::B; pub struct A;"),
             ("b.rs", "pub struct B; fn f() { super::c::g() }"),
             ("c.rs", last),
             ("d.rs", "use crate::{a::A, b::B};"),
-        ])
+        ]))
     };
-    let found = circles(&three(
-        "use crate::{d, a::{self as x}}; pub fn g() { x::A; d::nothing }",
-    ));
-    let names = ["a.rs", "b.rs", "c.rs"].map(str::to_owned);
-    assert_eq!(found, [BTreeSet::from(names)]);
-    assert!(circles(&three("use crate::b::B; pub fn g() {}")).is_empty());
+    let of = |files: &[&str]| BTreeSet::from_iter(files.iter().map(|file| (*file).to_owned()));
+    let three = "use crate::{d, a::{self as x}}; pub fn g() { x::A; d::nothing }";
+    assert_eq!(found(three), [of(&["a.rs", "b.rs", "c.rs"])]);
+    let two = "use crate::b::B; pub fn g() {}";
+    assert_eq!(found(two), [of(&["b.rs", "c.rs"])]);
+    assert!(found("pub fn g() {}").is_empty());
 }
 
 #[test]
@@ -343,9 +343,12 @@ fn a_name_is_followed_to_the_file_that_defines_it() {
             ("lib.rs", "mod a; mod b;"),
             (
                 "a/mod.rs",
-                "mod x; mod y; pub use x::X; pub use y::*; pub struct Own; pub use self::x::X as Z;",
+                "mod x; mod y; pub use x::{X, x}; pub use y::*; pub struct Own; pub use self::x::X as Z;",
             ),
-            ("a/x.rs", "pub struct X; impl X { pub fn new() {} }"),
+            (
+                "a/x.rs",
+                "pub struct X; impl X { pub fn new() {} } pub fn x() {}",
+            ),
             (
                 "a/y.rs",
                 "pub(in super::super) fn v() {} pub const W: u8 = 1; pub mod deep;",

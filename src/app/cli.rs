@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory as _, Parser, Subcommand};
 
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
@@ -141,8 +141,8 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Prove(arguments) => super::prove::run(arguments),
         Command::Laboratory(arguments) => super::prove::run_laboratory(arguments),
         Command::Schema(arguments) => super::schema::run(arguments),
-        Command::Completions(arguments) => super::manual::completions(arguments),
-        Command::Man(arguments) => super::manual::man(arguments),
+        Command::Completions(arguments) => super::manual::completions(arguments, Cli::command()),
+        Command::Man(arguments) => super::manual::man(arguments, Cli::command()),
     }
 }
 

@@ -1,8 +1,8 @@
 //! `idc compare`: several runs, or several diagnoses, side by side.
 
+mod numbers;
 mod page;
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -11,12 +11,13 @@ use serde_json::{Value, json};
 use super::error::{AppError, ExitCode};
 use super::files::{DIAGNOSIS, SAMPLES, SUMMARY, Standing, is_same, prepare_file};
 use super::output::say;
-use super::report::{Label, ROLES, RunResult, read_json, read_run};
-use crate::diagnosis::answer::{Answer, Estimate};
+use super::report::{Label, RunResult, read_json, read_run};
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::estimate::Estimate;
 use crate::diagnosis::words::{capital, of_column, percent, spoken};
 use crate::page::html;
-use crate::quantity::{change, optional, significant};
 use crate::recording::atomic::write_text;
+use numbers::{Compared, MOST, Row, text};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -33,8 +34,6 @@ Examples:
 
 /// Parameter of an effect that says which joint it is about.
 const JOINT: &str = "joint";
-/// Folders at most: as many as there are colours.
-const MOST: usize = ROLES.len();
 
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {
@@ -53,25 +52,6 @@ pub(super) struct CompareArguments {
     /// Print the numbers as JSON.
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
-}
-
-/// Numbers side by side: name, unit, key, and one value per folder.
-struct Row {
-    name: String,
-    unit: String,
-    key: String,
-    factor: f64,
-    values: Vec<Option<f64>>,
-}
-
-/// Quantities compared.
-struct Compared {
-    names: Vec<String>,
-    /// A sentence per folder.
-    verdicts: Vec<String>,
-    rows: Vec<Row>,
-    /// Runs whose signals are drawn, by their places.
-    drawn: Vec<(usize, RunResult<'static>)>,
 }
 
 /// Compares and prints.
@@ -261,84 +241,6 @@ fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
     }
 }
 
-impl Row {
-    fn shown(&self, place: usize) -> String {
-        optional(self.values[place].map(|v| self.factor * v), &self.unit)
-    }
-
-    /// Change against the first; none where either is absent, or the first is nothing.
-    fn change(&self, place: usize) -> Option<String> {
-        let (first, own) = (self.values[0]?, self.values[place]?);
-        let share = 100.0 * (own - first) / first.abs();
-        match share {
-            _ if own == first => Some("=".to_owned()),
-            share if !share.is_finite() => None,
-            share if share.abs() >= 1000.0 => Some(format!("x{}", significant(own / first, 2))),
-            share => Some(change(share)),
-        }
-    }
-}
-
-fn text(compared: &Compared) -> String {
-    let mut text = String::new();
-    // Writing into a text cannot fail.
-    for (name, verdict) in compared.names.iter().zip(&compared.verdicts) {
-        let _ = writeln!(text, "{name}: {verdict}");
-    }
-    text.push('\n');
-    let mut table: Vec<Vec<String>> = vec![vec![String::new()]];
-    table[0].extend(short(&compared.names));
-    for row in &compared.rows {
-        let unit = match row.unit.is_empty() {
-            true => String::new(),
-            false => format!(" [{}]", row.unit),
-        };
-        let mut cells = vec![format!("{}{unit}", row.name), row.shown(0)];
-        cells.extend((1..row.values.len()).map(|place| match row.change(place) {
-            Some(change) => format!("{} ({change})", row.shown(place)),
-            None => row.shown(place),
-        }));
-        table.push(cells);
-    }
-    let count = compared.names.len() + 1;
-    let width = |column: usize| {
-        let cells = table.iter().map(|cells| cells[column].chars().count());
-        cells.max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..count).map(width).collect();
-    for cells in &table {
-        let _ = write!(text, "{:<1$}", cells[0], widths[0]);
-        for (cell, width) in cells.iter().zip(&widths).skip(1) {
-            let _ = write!(text, "  {cell:>width$}");
-        }
-        text.push('\n');
-    }
-    text
-}
-
-/// The ends of folders' paths by which they are told apart: their last parts, or as many more as it takes.
-fn short(names: &[String]) -> Vec<String> {
-    let parts = |name: &String| -> Vec<String> {
-        let parts = Path::new(name).components();
-        let parts = parts.map(|part| part.as_os_str().display().to_string());
-        parts.collect()
-    };
-    let parts: Vec<Vec<String>> = names.iter().map(parts).collect();
-    let most = parts.iter().map(Vec::len).max().unwrap_or(1);
-    let ends = |count: usize| -> Vec<String> {
-        let end = |parts: &Vec<String>| parts[parts.len().saturating_sub(count)..].join("/");
-        parts.iter().map(end).collect()
-    };
-    let differ = |count: &usize| {
-        let mut ends = ends(*count);
-        ends.sort();
-        ends.dedup();
-        ends.len() == names.len()
-    };
-    // The same folder twice is called the same.
-    ends((1..=most).find(differ).unwrap_or(1))
-}
-
 fn print_json(compared: &Compared, out: Option<&Path>) -> Result<ExitCode, AppError> {
     let row = |row: &Row| json!({"key": row.key, "name": row.name, "values": row.values});
     let document = json!({
@@ -349,22 +251,4 @@ fn print_json(compared: &Compared, out: Option<&Path>) -> Result<ExitCode, AppEr
     });
     say(&format!("{}\n", serde_json::to_string_pretty(&document)?))?;
     Ok(ExitCode::Done)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn folders_are_called_by_the_ends_that_differ() {
-        let called = |names: &[&str]| {
-            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-            short(&names)
-        };
-        assert_eq!(called(&["runs/step", "runs/push/"]), ["step", "push"]);
-        let both = ["runs/mine/found", "runs/yours/found"];
-        assert_eq!(called(&both), ["mine/found", "yours/found"]);
-        assert_eq!(called(&["a", "a"]), ["a", "a"]);
-        assert_eq!(called(&["found", "other/found"]), ["found", "other/found"]);
-    }
 }

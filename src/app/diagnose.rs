@@ -118,7 +118,17 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         .transpose()?;
     let cell = cell.as_ref();
     if arguments.all {
-        return all::run(arguments, cell, &out, standing);
+        // One at a time on all processors is no slower in all, and each is done sooner.
+        let jobs = arguments.jobs.map_or(1, usize::from);
+        let silent = arguments.quiet || arguments.json;
+        let of = (cell, arguments.limit());
+        let outcomes = all::run(&arguments.case, of, &out, standing, jobs, silent)?;
+        // A cell's cases have one file of it, and no parts to tell apart.
+        let shared = match cell {
+            Some(_) => Vec::new(),
+            None => all::known_together(&arguments.case, &outcomes),
+        };
+        return all::report(&outcomes, &shared, &out, arguments.quiet, arguments.json);
     }
     if standing == Standing::Keep
         && let Some(answer) = one::complete(&out)

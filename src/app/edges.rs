@@ -14,10 +14,10 @@ use super::output::say;
 use super::progress;
 use crate::recording::atomic::write_text;
 use crate::workpiece::{
-    Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, MeshFault, PartFile, TriangleMesh,
-    WorkpieceError, list_edges,
+    EdgeCurve, EdgeList, EdgeSearch, MeshFault, PartFile, TriangleMesh, WorkpieceError, list_edges,
 };
 use glam::DVec3;
+use part::{MeshUnit, convexity, kind};
 
 #[derive(Debug, Args)]
 pub(super) struct EdgesArguments {
@@ -38,33 +38,6 @@ pub(super) struct EdgesArguments {
     /// Print them as JSON.
     #[arg(long, help_heading = "Output")]
     json: bool,
-}
-
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum MeshUnit {
-    Mm,
-    M,
-    Inch,
-}
-
-impl MeshUnit {
-    /// Its length [m].
-    fn length(self) -> f64 {
-        match self {
-            Self::Mm => 1e-3,
-            Self::M => 1.0,
-            Self::Inch => 0.0254,
-        }
-    }
-
-    /// As `mesh_unit` of a scenario has it.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Mm => "mm",
-            Self::M => "m",
-            Self::Inch => "inch",
-        }
-    }
 }
 
 pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
@@ -104,7 +77,10 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     spinner.finish_and_clear();
     if let Some(out) = &arguments.out {
         prepare_file(out, "--out", Standing::of(arguments.force))?;
-        write_text(out, &page::page(arguments, unit, &mesh, &list))?;
+        write_text(
+            out,
+            &page::page((&arguments.mesh, unit, angle), &mesh, &list),
+        )?;
     }
     say(&if arguments.json {
         json(arguments, &mesh, &list)
@@ -157,22 +133,6 @@ fn json(arguments: &EdgesArguments, mesh: &TriangleMesh, list: &EdgeList) -> Str
         "loops": list.loops.iter().map(described).collect::<Vec<_>>(),
     });
     format!("{document:#}\n")
-}
-
-fn kind(curve: &EdgeCurve) -> &'static str {
-    match curve.kind {
-        CurveKind::Straight => "straight",
-        CurveKind::Arc { .. } => "arc",
-        CurveKind::Polyline => "polyline",
-    }
-}
-
-fn convexity(curve: &EdgeCurve) -> &'static str {
-    match curve.convexity {
-        Convexity::Convex => "convex",
-        Convexity::Concave => "concave",
-        Convexity::Mixed => "mixed",
-    }
 }
 
 fn described(curve: &EdgeCurve) -> serde_json::Value {

@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Command, CommandFactory as _};
+use clap::{Args, Command};
 
-use super::cli::Cli;
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
@@ -50,17 +49,19 @@ pub(super) struct ManArguments {
     force: bool,
 }
 
-/// Prints the completions of a shell.
-pub(super) fn completions(arguments: &CompletionArguments) -> Result<ExitCode, AppError> {
+/// Prints the completions of a program in a shell.
+pub(super) fn completions(
+    arguments: &CompletionArguments,
+    mut program: Command,
+) -> Result<ExitCode, AppError> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Cli::command(), "idc", &mut script);
+    clap_complete::generate(arguments.shell, &mut program, "idc", &mut script);
     say(&String::from_utf8_lossy(&script))?;
     Ok(ExitCode::Done)
 }
 
-/// Prints the program's page, or writes all of them.
-pub(super) fn man(arguments: &ManArguments) -> Result<ExitCode, AppError> {
-    let mut program = Cli::command();
+/// Prints a program's page, or writes all of them.
+pub(super) fn man(arguments: &ManArguments, mut program: Command) -> Result<ExitCode, AppError> {
     // Commands get what the program has for all of them.
     program.build();
     let Some(folder) = &arguments.out else {

@@ -8,10 +8,11 @@ use crate::cell::{Cell, DeviceShape};
 use crate::collision::{Body, Mount, Role};
 use crate::drawing::{CrossSection, cross_section};
 use crate::path::{Phase, Reference};
+use crate::recording::colour::Colour;
 use crate::recording::csv::EdgeProfile;
 use crate::recording::finished_edge::FinishedEdge;
 use crate::recording::scene::{
-    CollisionShape, Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits,
+    CollisionShape, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits,
     ScenePoses, SceneShape,
 };
 use crate::recording::{Recording, RecordingError, schema};

@@ -7,7 +7,9 @@ mod estimated;
 mod finished_edge;
 mod judged;
 mod provenance;
+mod robustness;
 mod run;
+mod run_result;
 mod signals;
 mod tables;
 
@@ -15,6 +17,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::Value;
 
 use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
@@ -35,7 +38,8 @@ use crate::recording::parquet::read_parquet;
 
 pub(super) use charts::{lacking, most_of, variable};
 pub(super) use provenance::sources;
-pub(super) use run::{Label, RunResult, labels, of_run, page_of_run};
+pub(super) use run::{of_run, page_of_run};
+pub(super) use run_result::{Label, RunResult, labels};
 pub(super) use signals::{ROLES, chart_groups};
 
 /// For the help.
@@ -147,8 +151,9 @@ pub(super) fn of_diagnosis(answer: &Answer, comparison: &Comparison) -> String {
 }
 
 /// The page of a design study: design.json, and front.svg and robustness.svg where there are such.
-pub(super) fn of_design(document: &serde_json::Value, pictures: [Option<&str>; 2]) -> String {
-    html(&design::page(document, pictures))
+pub(super) fn of_design(document: &Value, [front, robustness]: [Option<&str>; 2]) -> String {
+    let robustness = robustness::robustness(document, robustness);
+    html(&design::page(document, front, robustness))
 }
 
 /// A run as its folder has it.

@@ -11,8 +11,46 @@ mod variants;
 
 pub use cell_run::{Finished, run_cell};
 pub(super) use cell_run::{Listener, RunPart};
-pub(super) use command::{RunArguments, put_in, run};
+pub(super) use command::{RunArguments, put_in};
 pub(super) use numbers::{Numbers, can_run, metric_names, numbers};
 pub(super) use settings::blamed;
 pub(super) use source::Source;
 pub(super) use table::{FINISHED, most_telling};
+
+use super::error::{AppError, ExitCode};
+use super::files::{VARIED, is_same};
+use crate::scenario::{ScenarioTemplate, load_any};
+use command::one;
+use settings::product;
+
+/// Runs a scenario, or each of its variants.
+pub(super) fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
+    let mut variants = product(&arguments.settings)?;
+    let Some(template) = (!arguments.settings.is_empty() || !arguments.effects.is_empty())
+        .then(|| ScenarioTemplate::read(&arguments.scenario))
+        .transpose()?
+    else {
+        return one(arguments, load_any(&arguments.scenario)?, None);
+    };
+    let effects = put_in(&arguments.effects, &template)?;
+    for variant in &mut variants {
+        variant.edits.splice(0..0, effects.iter().cloned());
+    }
+    if let Some(input) = (variants.iter())
+        .map(|variant| arguments.folder().join(&variant.name).join(VARIED))
+        .find(|copy| is_same(copy, &arguments.scenario))
+    {
+        let file = input.display().to_string();
+        return Err(AppError::Overwrites { file });
+    }
+    let [alone] = variants.as_slice() else {
+        if arguments.view.is_some() {
+            let runs = variants.len();
+            return Err(AppError::ViewOfSeveral { runs });
+        }
+        return variants::run(arguments, &template, &variants);
+    };
+    let scenario =
+        (template.with(&alone.edits)).map_err(|error| blamed(error, &alone.edits, &template))?;
+    one(arguments, scenario, Some((&template, alone)))
+}

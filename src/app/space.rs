@@ -5,8 +5,9 @@ use glam::{DQuat, DVec3};
 use crate::drawing::{self, CELL_EYE, Solid, edge_direction};
 use crate::page::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
 use crate::quantity::with_unit;
+use crate::recording::colour::Colour;
 use crate::recording::error_scale::ErrorScale;
-use crate::recording::scene::{Colour, Scene};
+use crate::recording::scene::Scene;
 
 /// Millimetres a metre.
 pub(super) const MILLIMETRES: f64 = 1e3;

@@ -15,8 +15,7 @@ use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
 use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, sought};
 use crate::plant::{CHANNELS, InitialState, PlantInputs, PlantParameters, Quantity, registry};
 use crate::recording::csv::{CellRecording, read_cell_csv};
-use crate::recording::read_table;
-use crate::recording::samples::cell_recording;
+use crate::recording::samples::{cell_recording, read_table};
 use crate::replay::{Drive, LoadedCell};
 use crate::scenario::RecordedCell;
 

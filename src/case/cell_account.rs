@@ -1,8 +1,8 @@
 //! Additions to the account of a cell: which joint, and where on the path.
 
-use super::Diagnosed;
 use super::cell::CellCase;
 use crate::diagnosis::account::SectionKind;
+use crate::diagnosis::details::Details;
 use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::mismatch::{Interval, without_effects};
 use crate::diagnosis::recorded::COLUMNS;
@@ -13,11 +13,12 @@ use crate::replay::LoadedCell;
 use crate::stats::NORMAL_95;
 
 /// Adds joints, servos and places, and the errors of what is predicted of the arm.
-pub(super) fn add_cell(diagnosed: &mut Diagnosed, cell: &LoadedCell, read: &CellCase) {
-    let Some(diagnosis) = &diagnosed.diagnosis else {
-        return;
-    };
-    let details = &mut diagnosed.answer.details;
+pub(super) fn add_cell(
+    details: &mut Details,
+    diagnosis: &Diagnosis,
+    cell: &LoadedCell,
+    read: &CellCase,
+) {
     details.prediction.extend(read.of_arm.iter().cloned());
     let account = &mut details.account;
     account.add(SectionKind::Arm, arm(cell, read, diagnosis));

@@ -24,12 +24,13 @@ pub use recordings::{check_finite, read_in_any_unit, read_rig, shown_columns};
 pub use removal_table::{RemovalCase, RemovalDiagnosed, predict_table};
 pub use rig::{RIG, rig_of, to_fit};
 
-use crate::diagnosis::answer::{Answer, Estimate};
+use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::{Comparison, of_flange};
 use crate::diagnosis::data_fault::fault::DataFault;
 use crate::diagnosis::data_fault::{as_read, refined, reported};
 use crate::diagnosis::details::UnknownGround;
 use crate::diagnosis::diagnose as search;
+use crate::diagnosis::estimate::Estimate;
 use crate::diagnosis::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
 use crate::diagnosis::flange_answer::FlangeDiagnosis;
@@ -306,7 +307,9 @@ pub fn diagnose(
             let improved = improved.unwrap_or_else(|error| format!("# Not written: {error}\n"));
             let of_data = (&read.input, &read.input.data_faults[..]);
             let mut diagnosed = of_plant(of_data, diagnosis, improved, plant, start);
-            cell_account::add_cell(&mut diagnosed, cell, read);
+            if let Some(diagnosis) = &diagnosed.diagnosis {
+                cell_account::add_cell(&mut diagnosed.answer.details, diagnosis, cell, read);
+            }
             diagnosed
         }
         Kind::Flange { rig, runs, unseen } => of_flange_runs(rig, runs, unseen.as_deref(), start)?,

@@ -6,7 +6,8 @@ use super::error::CaseError;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Chain};
 use crate::recording::csv::{read_csv, read_csv_in_any_unit, read_readings};
-use crate::recording::{Recording, RecordingError, read_table};
+use crate::recording::samples::read_table;
+use crate::recording::{Recording, RecordingError};
 
 /// Reads a recording: a Parquet table by its extension, otherwise comma-separated values. Of a rig with a part of the device not every input is asked for.
 ///

@@ -108,7 +108,7 @@ impl Cell {
         let tool_path = setup.tool_path(&stance).map_err(refused)?;
         ball::check(&setup.scenario, &setup.part)?;
         stroke::check(&setup.scenario, &setup.part, &tool_path)?;
-        let gravity_on_edge = supply::check(&setup.scenario, &tool_path)?;
+        let gravity_on_edge = supply::check(&setup.scenario, &setup.passes, &tool_path)?;
         cutting::check(&setup.scenario, &tool_path)?;
         let axial_share = tool_path.share(&tool_path.at(0.5 * tool_path.length()));
         let controller = controller(&setup.scenario, axial_share)?;

@@ -132,7 +132,7 @@ impl Setup {
     /// Whether the whole job can be done with part and tool standing otherwise.
     #[must_use]
     pub fn is_possible(&self, stance: &Stance) -> bool {
-        let supplied = |path: &ToolPath| supply::check(&self.scenario, path).is_ok();
+        let supplied = |path: &ToolPath| supply::check(&self.scenario, &self.passes, path).is_ok();
         self.tool_path(stance).as_ref().is_ok_and(supplied) && self.tried(stance, Plan::new).is_ok()
     }
 

@@ -1,14 +1,17 @@
 //! Whether supply and weight allow the desired force all along the edge.
 
 use super::error::CellError;
-use super::setup::passes;
 use crate::device::PressureMap;
 use crate::path::{Pass, ToolPath};
 use crate::scenario::{Scenario, attainable_set_pressure};
 
 /// The supply must give the force wherever the wrist turns, and gravity alone must not press harder than asked for. Returns the least and greatest
 /// component of gravity along the tool's axis [m/s2].
-pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2], CellError> {
+pub(super) fn check(
+    scenario: &Scenario,
+    passes: &[Pass],
+    tool_path: &ToolPath,
+) -> Result<[f64; 2], CellError> {
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     let map = PressureMap::new(&scenario.device.parameters);
     let device = &scenario.device.parameters;
@@ -20,7 +23,7 @@ pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<[f64; 2
         let share = tool_path.share(&station);
         let gravity = scenario.simulation.gravity.dot(station.axis);
         range = [range[0].min(gravity), range[1].max(gravity)];
-        for Pass { force, .. } in passes(scenario) {
+        for &Pass { force, .. } in passes {
             let axial = force * share;
             let needed = map.unlimited(axial, gravity);
             if needed < 0.0 {

@@ -35,6 +35,15 @@ impl Scored {
     }
 }
 
+/// A design that could be simulated.
+pub(super) type Good = (Arc<Judged>, Scored);
+
+/// The design, if it could be simulated.
+pub(super) fn good(judged: &Arc<Judged>) -> Option<Good> {
+    let scored = judged.result.as_ref().ok()?;
+    Some((judged.clone(), scored.clone()))
+}
+
 /// A part of the search: its stretch of the budget, and the designs that were known when it began.
 #[derive(Debug, Clone, Copy, Default)]
 struct Stage {
@@ -133,6 +142,13 @@ impl<'a> Archive<'a> {
     /// All designs so far, by their values.
     pub fn all(&self) -> Vec<Arc<Judged>> {
         self.known().values().cloned().collect()
+    }
+
+    /// Those that keep all limits.
+    pub fn feasible(&self) -> Vec<Good> {
+        let all = self.all();
+        let good = all.iter().filter_map(good);
+        good.filter(|(_, scored)| scored.feasible()).collect()
     }
 
     fn known(&self) -> std::sync::MutexGuard<'_, BTreeMap<Vec<u64>, Arc<Judged>>> {

@@ -8,6 +8,9 @@ use serde::Deserialize;
 use crate::scenario::schema::plain_schema;
 use crate::scenario::sections::keys;
 
+/// Seed of the search, and of the draws.
+pub(super) const DEFAULT_SEED: u64 = 1;
+
 /// Version of the format.
 pub(super) const SCHEMA: u32 = 1;
 
@@ -175,9 +178,8 @@ pub(super) fn study_sections() -> Vec<(&'static str, &'static [&'static str])> {
 #[cfg(test)]
 mod tests {
     use super::super::robustness::DEFAULT_RUNS;
-    use super::super::study::{
-        DEFAULT_EVALUATIONS, DEFAULT_FRONT_POINTS, DEFAULT_METRIC, DEFAULT_SEED,
-    };
+    use super::super::study::{DEFAULT_EVALUATIONS, DEFAULT_FRONT_POINTS, DEFAULT_METRIC};
+    use super::DEFAULT_SEED;
 
     #[test]
     fn the_schema_tells_the_defaults_that_are_taken() {

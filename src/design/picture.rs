@@ -4,39 +4,23 @@
 
 mod overlay;
 mod robustness;
+mod style;
 
-use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::error::DesignError;
 use super::label::axis;
-use super::result::{Candidate, LimitState, StudyResult};
-
-const PX: i32 = 10;
-const WIDTH: i32 = 960 * PX;
-const HEIGHT: i32 = 620 * PX;
-const FONT: &str = "Arial, Liberation Sans, Helvetica, sans-serif";
-// The library writes four fifths of these.
-const TEXT: i32 = 17 * PX;
-const LARGE: i32 = 22 * PX;
-// Colours that the colour-blind tell apart (M. Okabe and K. Ito, "Color Universal Design", 2008).
-const FRONT: RGBColor = RGBColor(0x00, 0x72, 0xB2);
-const CHOSEN: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
-const LIMIT: RGBColor = RGBColor(0xCC, 0x79, 0xA7);
-const DARK: RGBColor = RGBColor(0x22, 0x22, 0x22);
-const GREY: RGBColor = RGBColor(0x77, 0x77, 0x77);
-const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
-/// Room left around what must be seen, as a share of its extent: for the labels above the start and below the chosen design.
-const MARGIN: f64 = 0.12;
-/// The start is drawn on the edge if it lies further from the front than this many times the front's extent.
-const FAR: f64 = 3.0;
-
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+use super::result::{Candidate, StudyResult};
+use style::{
+    Area, CHOSEN, Chart, DARK, Drawn, FONT, FRONT, GREY, GRID, LARGE, MARGIN, PX, TEXT, extent,
+    inside, limits_of, svg, tick, written,
+};
 
 pub use robustness::robustness_svg;
+
+const HEIGHT: i32 = 620 * PX;
+/// The start is drawn on the edge if it lies further from the front than this many times the front's extent.
+const FAR: f64 = 3.0;
 
 /// The picture as SVG; none if the study has no second objective.
 ///
@@ -46,20 +30,14 @@ pub fn front_svg(result: &StudyResult) -> Result<Option<String>, DesignError> {
     let Some(trade_off) = &result.objectives.trade_off else {
         return Ok(None);
     };
-    let mut svg = String::new();
-    draw(&mut svg, result, trade_off).map_err(|error| DesignError::Picture(error.to_string()))?;
-    let size = format!("width=\"{WIDTH}\" height=\"{HEIGHT}\"");
-    let shown = format!("width=\"{}\" height=\"{}\"", WIDTH / PX, HEIGHT / PX);
-    Ok(Some(svg.replacen(&size, &shown, 1)))
+    svg(HEIGHT, |root| draw(root, result, trade_off)).map(Some)
 }
 
-fn draw(svg: &mut String, result: &StudyResult, trade_off: &str) -> Drawn {
-    let root = SVGBackend::with_string(svg, (WIDTH as u32, HEIGHT as u32)).into_drawing_area();
-    root.fill(&WHITE)?;
-    heading(&root, result)?;
+fn draw(root: &Area<'_>, result: &StudyResult, trade_off: &str) -> Drawn {
+    heading(root, result)?;
     let names = &result.objectives;
     let [across, up] = ranges(result, trade_off);
-    let mut chart = ChartBuilder::on(&root)
+    let mut chart = ChartBuilder::on(root)
         .margin_top(96 * PX)
         .margin_right(28 * PX)
         .margin_bottom(8 * PX)
@@ -92,18 +70,13 @@ fn draw(svg: &mut String, result: &StudyResult, trade_off: &str) -> Drawn {
     overlay::tints(&chart, &limits)?;
     series(&mut chart, result, [across, up])?;
     overlay::words(&chart, &limits)?;
-    overlay::marks(&chart, result, [across, up])?;
-    root.present()
+    overlay::marks(&chart, result, [across, up])
 }
 
 /// Title, and a legend in one row below it.
-fn heading(root: &DrawingArea<SVGBackend<'_>, Shift>, result: &StudyResult) -> Drawn {
-    let style = |size: i32| {
-        let anchor = Pos::new(HPos::Left, VPos::Center);
-        (FONT, size).into_font().color(&DARK).pos(anchor)
-    };
+fn heading(root: &Area<'_>, result: &StudyResult) -> Drawn {
     let title = result.title.replace(char::is_control, " ");
-    root.draw(&Text::new(title, (88 * PX, 28 * PX), style(LARGE)))?;
+    root.draw(&Text::new(title, (88 * PX, 28 * PX), written(LARGE)))?;
     let y = 62 * PX;
     let dot = |x: i32, radius: i32, fill: ShapeStyle| Circle::new((x, y), radius, fill);
     let mut x = 88 * PX;
@@ -111,7 +84,7 @@ fn heading(root: &DrawingArea<SVGBackend<'_>, Shift>, result: &StudyResult) -> D
     root.draw(&Text::new(
         "keeps the limits",
         (x + 20 * PX, y),
-        style(TEXT),
+        written(TEXT),
     ))?;
     x += 160 * PX;
     let key = [(x, y), (x + 26 * PX, y)];
@@ -120,11 +93,11 @@ fn heading(root: &DrawingArea<SVGBackend<'_>, Shift>, result: &StudyResult) -> D
     root.draw(&Text::new(
         "front: none is better in both",
         (x + 34 * PX, y),
-        style(TEXT),
+        written(TEXT),
     ))?;
     x += 262 * PX;
     root.draw(&dot(x + 8 * PX, 7 * PX, CHOSEN.filled()))?;
-    root.draw(&Text::new("chosen", (x + 22 * PX, y), style(TEXT)))?;
+    root.draw(&Text::new("chosen", (x + 22 * PX, y), written(TEXT)))?;
     x += 98 * PX;
     overlay::start_mark(root, (x + 8 * PX, y), result.start.feasible)?;
     let start = if result.start.feasible {
@@ -132,7 +105,7 @@ fn heading(root: &DrawingArea<SVGBackend<'_>, Shift>, result: &StudyResult) -> D
     } else {
         "start, breaks a limit"
     };
-    root.draw(&Text::new(start, (x + 22 * PX, y), style(TEXT)))?;
+    root.draw(&Text::new(start, (x + 22 * PX, y), written(TEXT)))?;
     Ok(())
 }
 
@@ -159,22 +132,6 @@ fn ranges(result: &StudyResult, trade_off: &str) -> [(f64, f64); 2] {
         let margin = MARGIN * (high - low).max(least);
         (low - margin, high + margin)
     })
-}
-
-fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    })
-}
-
-/// Limits on a metric.
-fn limits_of<'a>(result: &'a StudyResult, key: &'a str) -> impl Iterator<Item = &'a LimitState> {
-    let limits = result.chosen.limits.iter();
-    limits.filter(move |limit| limit.key == key)
-}
-
-fn inside([x, y]: [f64; 2], [across, up]: [(f64, f64); 2]) -> bool {
-    (across.0..=across.1).contains(&x) && (up.0..=up.1).contains(&y)
 }
 
 fn series(chart: &mut Chart<'_, '_>, result: &StudyResult, ranges: [(f64, f64); 2]) -> Drawn {
@@ -205,21 +162,4 @@ fn series(chart: &mut Chart<'_, '_>, result: &StudyResult, ranges: [(f64, f64); 
             .map(|point| Circle::new(*point, 4 * PX, FRONT.filled())),
     )?;
     Ok(())
-}
-
-/// A tick with as many decimals as its axis needs.
-fn tick(value: f64, (low, high): (f64, f64)) -> String {
-    let step = (high - low) / 8.0;
-    let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
-    let text = format!("{value:.decimals$}");
-    let text = if text
-        .trim_start_matches('-')
-        .chars()
-        .all(|c| c == '0' || c == '.')
-    {
-        text.trim_start_matches('-').to_owned()
-    } else {
-        text
-    };
-    text.replace('-', "\u{2212}")
 }

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::archive::{Archive, Judged, Scored};
+use super::archive::{Archive, Good, Judged, Scored, good};
 use super::candidate::Evaluate;
 use super::error::DesignError;
 use super::evolve::evolve;
@@ -73,7 +73,7 @@ pub fn run(
     };
     let budgets = shares.map(|share| (share * study.evaluations as f64) as usize);
     hunt(&archive, &goal, [budgets[0], budgets[1]], (study.seed, 0))?;
-    let best = best(&archive, &goal)?;
+    let hunted = best(&archive, &goal)?;
     if study.trade_off.is_some() {
         let other = Goal {
             aim: Aim::TradeOff,
@@ -87,10 +87,10 @@ pub fn run(
         )?;
         let before: usize = budgets[..4].iter().sum();
         archive.begin(before, before + budgets[4]);
-        levels(&archive, &goal, &other, best.1.trade_off, budgets[4])?;
+        levels(&archive, &goal, &other, hunted.1.trade_off, budgets[4])?;
     }
     let left = study.evaluations - budgets.iter().sum::<usize>();
-    let mut result = conclude::conclude(&archive, &goal, &start, left)?;
+    let mut result = conclude::conclude(&archive, &goal, &start, best(&archive, &goal)?, left)?;
     if let Some(scattering) = &study.scattering {
         let budget = study.evaluations + draws;
         let done = |done| progress(study.evaluations + done, budget);
@@ -106,14 +106,6 @@ pub fn run(
 /// The starting design cannot be simulated, or a metric is unknown.
 pub fn check_start(study: &Study, evaluator: &dyn Evaluate) -> Result<(), DesignError> {
     start(&Archive::new(study, evaluator, &|_, _| ())).map(drop)
-}
-
-/// A design that could be simulated.
-type Good = (Arc<Judged>, Scored);
-
-fn good(judged: &Arc<Judged>) -> Option<Good> {
-    let scored = judged.result.as_ref().ok()?;
-    Some((judged.clone(), scored.clone()))
 }
 
 /// The starting design, after a check that every metric of the file is one.
@@ -233,11 +225,8 @@ fn levels(
     let levels: Vec<[f64; 2]> = even.iter().map(|ceiling| [*ceiling; 2]).collect();
     let first = (FIRST_LOOK * budget as f64) as usize;
     look(archive, goal, &levels, first)?;
-    let points: Vec<[f64; 2]> = archive
-        .all()
-        .iter()
-        .filter_map(good)
-        .filter(|(_, scored)| scored.feasible())
+    let feasible = archive.feasible().into_iter();
+    let points: Vec<[f64; 2]> = feasible
         .map(|(_, scored)| [scored.trade_off, scored.objective])
         .collect();
     let gaps = widest_gaps(&points, &non_dominated(&points), levels.len());

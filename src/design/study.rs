@@ -10,7 +10,8 @@ use crate::scenario::error::Place;
 
 use super::candidate::{Design, Outcome, scenario_key};
 use super::file::{
-    BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys, study_sections,
+    BoundKeys, DEFAULT_SEED, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys,
+    study_sections,
 };
 use super::limits::{Limit, LimitQuantity, Side};
 use super::robustness::{Scattering, scattering};
@@ -19,7 +20,6 @@ use super::variable::{Variable, variable};
 /// Metric that is minimised unless the file says otherwise.
 pub(super) const DEFAULT_METRIC: &str = "coefficient_of_variation_percent";
 pub(super) const DEFAULT_EVALUATIONS: usize = 2000;
-pub(super) const DEFAULT_SEED: u64 = 1;
 pub(super) const DEFAULT_FRONT_POINTS: usize = 8;
 
 /// A checked study.

@@ -1,11 +1,10 @@
 //! The result as a plain table for the terminal, in at most 80 columns; what is longer goes on below, and nothing is cut.
 
-mod robustness;
-
 use std::fmt::Write;
 
 use super::label::{number, symbol, with_unit};
 use super::result::{ActiveBound, Candidate, Sensitivity, StudyResult};
+use super::robustness::KeptShare;
 use super::study::Study;
 use super::variable::{Domain, Variable};
 use crate::quantity::change as percent;
@@ -28,7 +27,7 @@ pub fn text(study: &Study, result: &StudyResult) -> String {
     binding(&mut out, result);
     steps(&mut out, result);
     front(&mut out, result);
-    robustness::robustness(&mut out, result);
+    robustness(&mut out, result);
     search(&mut out, result);
     out
 }
@@ -321,6 +320,38 @@ fn front(out: &mut String, result: &StudyResult) {
     if count > rows {
         line(out, &format!("  ({rows} of {count} points)"));
     }
+}
+
+/// How robust the chosen design is.
+fn robustness(out: &mut String, result: &StudyResult) {
+    let Some(robustness) = &result.robustness else {
+        return;
+    };
+    out.push('\n');
+    let title = format!("Robustness: {} draws at the chosen design", robustness.runs);
+    line(out, &format!("{title:<48} {:>7}  95 % interval", "keep"));
+    shared(out, "all limits", &robustness.all_limits);
+    for limit in &robustness.limits {
+        shared(out, &limit.limit, &limit.share);
+    }
+    heading(
+        out,
+        "Quantiles of the draws",
+        &columns(["5 %", "50 %"], "95 %"),
+    );
+    for told in &robustness.quantiles {
+        let ends = [told.percent_5, told.percent_50].map(number);
+        row(out, &told.metric, ends, &number(told.percent_95));
+    }
+    for (reason, count) in &robustness.failed {
+        line(out, &format!("  {count:>6}  {reason}"));
+    }
+}
+
+fn shared(out: &mut String, name: &str, share: &KeptShare) {
+    let [low, high] = share.interval_percent;
+    let told = format!("{:>5.0} %  {low:.0} to {high:.0} %", share.share_percent);
+    named_line(out, &format!("  {name}"), 49, &told);
 }
 
 fn search(out: &mut String, result: &StudyResult) {

@@ -350,7 +350,8 @@ impl Device {
         let leaks = if parameters.leakage.is_none() && disturbance.leaks == [0.0; 2] {
             LeakFlows::default()
         } else {
-            self.leak_flows(air, pressures, disturbance.leaks)
+            let chambers = [0, 1].map(|i| (pressures[i], self.temperature_of(air, i)));
+            LeakFlows::new(&self.parameters, &self.flow, chambers, disturbance.leaks)
         };
         let mut rates = AirState::default();
         let mut ledger = EnergyLedger::default();

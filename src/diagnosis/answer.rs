@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::details::Details;
 use super::doubt::Doubt;
-use super::estimate::Limit;
+use super::estimate::Estimate;
+use super::mismatch::Mismatch;
 use super::unlisted::report::UnlistedReport;
 use super::words::spoken;
 use crate::effects::UNLISTED;
@@ -156,50 +157,6 @@ impl FoundEffect {
         let (words, unit, factor) = spoken(self.key.as_deref().unwrap_or(name));
         (words, unit.to_owned(), factor)
     }
-}
-
-/// A number with its 95 % interval, in the unit that its name ends with.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
-    /// Value.
-    pub value: f64,
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-    /// End of its range at which the value stands, if it does: the recordings ask for more than it may be.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub at_limit: Option<Limit>,
-    /// Value without the effect; none where there is none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub without: Option<f64>,
-}
-
-impl Estimate {
-    /// A value with its interval, between the ends of its range.
-    #[must_use]
-    pub const fn new(value: f64, low: f64, high: f64) -> Self {
-        Self {
-            value,
-            low,
-            high,
-            at_limit: None,
-            without: None,
-        }
-    }
-}
-
-/// Where a recording differs from the model without the effects.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Mismatch {
-    /// File name.
-    pub recording: String,
-    /// Column.
-    pub channel: String,
-    /// From [s].
-    pub start_s: f64,
-    /// Until [s].
-    pub end_s: f64,
 }
 
 /// A set of effects that would do as well, or nearly.

@@ -1,9 +1,8 @@
 //! How sure a diagnosis is of its effects and of the families that they are of.
 
-use super::answer::Estimate;
 use super::details::{FamilyMember, FamilyReport};
 use super::doubt::Doubt;
-use super::estimate::{Number, estimates};
+use super::estimate::{Estimate, Number, estimates};
 use super::family::{FAMILIES, Family, family_of, is_alike, scaling};
 use super::finding::Diagnosis;
 use super::fit::robust_sum;

@@ -1,15 +1,13 @@
 //! From what was found to diagnosis.json.
 
-use super::answer::{
-    Alternative, Answer, Estimate, Extent, FoundEffect, FoundLaw, Mismatch, SCHEMA, Verdict,
-};
+use super::answer::{Alternative, Answer, Extent, FoundEffect, FoundLaw, SCHEMA, Verdict};
 use super::details::{
     ChannelMisfit, ChannelNoise, Considered, DETAILS_SCHEMA, Details, DetectableParameter,
     DetectableReport, IN_TURN, LinkReport, NextExperiment, PredictionError, RegimeReport,
     RemainingError, RemainingReport, RuledOutReport, ToleratedNumber, remaining_errors,
 };
 use super::detectable::DetectableNumber;
-use super::estimate::Number;
+use super::estimate::{Estimate, Number};
 use super::evidence::Prediction;
 use super::extent::NEAR_NOISE;
 use super::finding::{Diagnosis, ErrorSize, Unseen};
@@ -17,6 +15,7 @@ use super::fit::robust_sum;
 use super::hypothesis::{Hypothesis, spoken_name};
 use super::links::Link;
 use super::localise::{Misfit, NOISE_ALONE, misfits, robust_rms, root_mean_square};
+use super::mismatch::Mismatch;
 use super::recorded::COLUMNS;
 use super::regime::{Regime, regimes};
 use super::statements::{TRUSTED, far_above, forbids_fully};

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::account::Account;
-use super::answer::Estimate;
 use super::data_fault::report::DataFaultReport;
 use super::effort::EffortReport;
+use super::estimate::Estimate;
 use super::flange_fit::report::SimulatedFlange;
 use super::localise::NOISE_ALONE;
+use super::mismatch::Mismatch;
 use super::recorded::COLUMNS;
 use super::words::spoken;
 use crate::quantity::{change, significant};
@@ -45,7 +46,7 @@ pub struct Details {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub data_faults: Vec<DataFaultReport>,
     /// Where recordings differ from the believed model moved within its tolerances.
-    pub differences: Vec<super::answer::Mismatch>,
+    pub differences: Vec<Mismatch>,
     /// Residual of each link of the chain, and the variable that explains it.
     pub links: Vec<LinkReport>,
     /// Largest departure of the best explanation from the recordings, those left out in turn among them.

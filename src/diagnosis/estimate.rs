@@ -27,6 +27,37 @@ const INTERVAL: f64 = NORMAL_95;
 /// Share of a range, in the fit's coordinate, within which a number stands at its end [1]: a prior keeps a tolerated one a little short of it.
 const AT_LIMIT: f64 = 0.01;
 
+/// A number with its 95 % interval, in the unit that its name ends with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Value.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// End of its range at which the value stands, if it does: the recordings ask for more than it may be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_limit: Option<Limit>,
+    /// Value without the effect; none where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without: Option<f64>,
+}
+
+impl Estimate {
+    /// A value with its interval, between the ends of its range.
+    #[must_use]
+    pub const fn new(value: f64, low: f64, high: f64) -> Self {
+        Self {
+            value,
+            low,
+            high,
+            at_limit: None,
+            without: None,
+        }
+    }
+}
+
 /// An end of a number's range: of its tolerance, or of what an effect's number may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

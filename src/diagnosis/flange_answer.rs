@@ -1,11 +1,13 @@
 //! From what the runs of a contact flange show to an answer.
 
 use super::account::{Account, SectionKind};
-use super::answer::{Alternative, Answer, Estimate, FoundEffect, Mismatch, SCHEMA, Verdict};
+use super::answer::{Alternative, Answer, FoundEffect, SCHEMA, Verdict};
 use super::details::{DETAILS_SCHEMA, Details, PredictedRun, RunReport};
+use super::estimate::Estimate;
 use super::flange::{AVERAGED, BAND, RunMetrics, spread, spread_of_sizes};
 use super::flange_fit::account::{simulated, unseen};
 use super::flange_fit::report::SimulatedFlange;
+use super::mismatch::Mismatch;
 use super::statements::{doubts_of, in_headline, stated};
 use super::words::listed;
 

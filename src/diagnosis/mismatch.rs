@@ -5,6 +5,7 @@ use super::evidence::Evidence;
 use super::fit::with_values;
 use super::hypothesis::Hypothesis;
 use crate::plant::{CHANNELS, Channel, PlantParameters, simulate};
+use serde::{Deserialize, Serialize};
 
 /// Standard deviations of its sensor by which a channel must move [1].
 const DEVIATIONS: f64 = 3.0;
@@ -12,6 +13,19 @@ const DEVIATIONS: f64 = 3.0;
 const MERGED: f64 = 0.04;
 /// Time added at either end [s].
 const ADDED: f64 = 0.02;
+
+/// Where a recording differs from the model without the effects.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mismatch {
+    /// File name.
+    pub recording: String,
+    /// Column.
+    pub channel: String,
+    /// From [s].
+    pub start_s: f64,
+    /// Until [s].
+    pub end_s: f64,
+}
 
 /// A time in which a channel of a recording shows the effects.
 #[derive(Debug, Clone, PartialEq)]

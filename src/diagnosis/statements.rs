@@ -1,8 +1,9 @@
 //! Rules that hold the statements of an answer to each other, in one place: a diagnosis is stated through them, and [`contradictions`] checks any answer.
 
-use super::answer::{Answer, Estimate, Extent, FoundEffect, Verdict};
+use super::answer::{Answer, Extent, FoundEffect, Verdict};
 use super::details::{ChannelMisfit, IN_TURN, PredictionError, remaining_errors};
 use super::doubt::Doubt;
+use super::estimate::Estimate;
 use super::localise::NOISE_ALONE;
 use crate::effects::UNLISTED;
 

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::faces::{Face, faces};
 use super::simplify::{Bodies, simplify};
-use crate::recording::scene::{Colour, Scene};
+use crate::recording::colour::Colour;
+use crate::recording::scene::Scene;
 
 /// Corners within this are one, as fine as the page's numbers [m].
 const ONE: f64 = 1e-8;

@@ -8,10 +8,6 @@ use super::log::{Series, read_log};
 use super::map::{Clock, ImportMap};
 use super::rows::Remark;
 use crate::recording::{RecordedChannel, Recording};
-use crate::stats::median_step;
-
-/// Steps of a series beyond which nothing is read off between two of its samples.
-const GAP: f64 = 3.0;
 
 /// A recording with what its logs had to be told of.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,7 +89,7 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
                 series.values.clone()
             } else {
                 check_overlap(&log.file, &series.time, &logs[0].file, &time)?;
-                read_off(series, &time)
+                series.read_off(&time)
             };
             channels.push(RecordedChannel::new(
                 channel.quantity.clone(),
@@ -169,46 +165,4 @@ fn check_overlap(
         first_file: first_file.to_owned(),
         first: [first_from, first_to],
     })
-}
-
-/// Values of a series at other times, linear between its samples; NaN before the first, after the last, and in gaps.
-#[must_use]
-pub fn read_off(series: &Series, time: &[f64]) -> Vec<f64> {
-    let longest = GAP * median_step(&series.time);
-    let value = |t: &f64| {
-        let after = series.time.partition_point(|own| own < t);
-        let Some(&later) = series.time.get(after) else {
-            return f64::NAN;
-        };
-        if later == *t {
-            return series.values[after];
-        }
-        let Some(before) = after.checked_sub(1) else {
-            return f64::NAN;
-        };
-        let earlier = series.time[before];
-        if later - earlier > longest {
-            return f64::NAN;
-        }
-        let share = (t - earlier) / (later - earlier);
-        series.values[before] + share * (series.values[after] - series.values[before])
-    };
-    time.iter().map(value).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_read_off_between_samples_but_not_across_gaps() {
-        let series = Series {
-            time: vec![0.0, 1.0, 2.0, 3.0, 10.0, 11.0],
-            values: vec![0.0, 10.0, 20.0, 30.0, 0.0, 1.0],
-        };
-        let read = read_off(&series, &[-0.1, 0.0, 0.25, 3.0, 5.0, 10.5, 11.0, 11.1]);
-        assert_eq!(read[1..4], [0.0, 2.5, 30.0]);
-        assert_eq!(read[5..7], [0.5, 1.0]);
-        assert!([0, 4, 7].iter().all(|i| read[*i].is_nan()));
-    }
 }

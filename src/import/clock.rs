@@ -6,7 +6,6 @@
 //!
 //! between two such steps where the parabola through three of them is highest (Knapp and Carter 1976: the correlator; its peak).
 
-use super::assemble::read_off;
 use super::log::Series;
 use crate::stats::median_step;
 
@@ -40,7 +39,7 @@ pub fn align(first: &Series, own: &Series, largest: f64) -> Result<Alignment, f6
         let start = series.time[0];
         let count = (span(series) / step) as usize + 1;
         let time: Vec<f64> = (0..count).map(|i| start + step * i as f64).collect();
-        read_off(series, &time)
+        series.read_off(&time)
     };
     let (a, b) = (on_grid(first), on_grid(own));
     let least = (OVERLAP * a.len().min(b.len()) as f64) as usize;

@@ -2,7 +2,6 @@
 //!
 //! Each rule says why. None refuses: a strange recording may be right.
 
-use super::findings::Finding;
 use super::log::Series;
 use super::lone::lone;
 use super::map::{ChannelMap, Column, FileMap, Pressure};
@@ -40,18 +39,24 @@ const NO_UNITS: [&str; 9] = [
     "in", "min", "A", "meter", "metre", "day", "second", "volt", "amp",
 ];
 
-/// Doubts about a channel by itself, `values` being those that are there [SI].
+/// Doubts about a channel by itself: `values` that are there, the range of them, the step of its converter, and where it is cut off [SI].
 #[must_use]
-pub fn of_channel(channel: &ChannelMap, found: &Finding, values: &[f64]) -> Vec<String> {
+pub fn of_channel(
+    channel: &ChannelMap,
+    values: &[f64],
+    range: [f64; 2],
+    quantum: Option<f64>,
+    cut_off_at: &[f64],
+) -> Vec<String> {
     let mut doubts = Vec::new();
     doubts.extend(by_name(channel));
-    doubts.extend(by_size(channel.unit, found.range));
+    doubts.extend(by_size(channel.unit, range));
     if channel.is_plain() && !matches!(channel.unit.si, Unit::Volt | Unit::One | Unit::Second) {
-        doubts.extend(by_rail(channel.unit, &found.cut_off_at));
-        doubts.extend(by_step(channel.unit, found.quantum));
-        doubts.extend(by_counts(channel.unit, found.range, values));
+        doubts.extend(by_rail(channel.unit, cut_off_at));
+        doubts.extend(by_step(channel.unit, quantum));
+        doubts.extend(by_counts(channel.unit, range, values));
     }
-    doubts.extend(by_rest(channel, found.range, values));
+    doubts.extend(by_rest(channel, range, values));
     doubts.extend(by_neighbours(channel, values));
     if let Some(fallen) = thousandfold(values) {
         doubts.push(format!(

@@ -89,7 +89,13 @@ pub(super) fn finding(series: &Series, channel: &ChannelMap) -> Finding {
         .map(|pair| [pair[0], pair[1]])
         .collect();
     gaps.sort_by(|a, b| (b[1] - b[0]).total_cmp(&(a[1] - a[0])));
-    let mut found = Finding {
+    let (noise, quantum) = (noise(&there), quantum(&there));
+    // What is commanded has no noise, and stays where it is told.
+    let cut_off_at = match noise {
+        Some(noise) if noise > 0.0 => cut_off_at(&there, range),
+        _ => Vec::new(),
+    };
+    Finding {
         quantity: channel.quantity.clone(),
         unit: channel.unit.si,
         log_unit: channel.unit,
@@ -98,17 +104,11 @@ pub(super) fn finding(series: &Series, channel: &ChannelMap) -> Finding {
         rate: if step > 0.0 { 1.0 / step } else { 0.0 },
         gaps,
         range,
-        noise: noise(&there),
-        quantum: quantum(&there),
-        // What is commanded has no noise, and stays where it is told.
-        cut_off_at: match noise(&there) {
-            Some(noise) if noise > 0.0 => cut_off_at(&there, range),
-            _ => Vec::new(),
-        },
-        doubts: Vec::new(),
-    };
-    found.doubts = doubts::of_channel(channel, &found, &there);
-    found
+        noise,
+        quantum,
+        doubts: doubts::of_channel(channel, &there, range, quantum, &cut_off_at),
+        cut_off_at,
+    }
 }
 
 /// Standard deviation of white noise on a smooth trajectory.

@@ -8,10 +8,13 @@ use super::map::{ChannelMap, FileMap, Form};
 use super::rows::{Remark, Rows, Times};
 use super::stamps::are_whole_seconds;
 use super::{bag, mat_log, parquet_log, spreadsheet, tdms_log, text};
+use crate::stats::median_step;
 
 /// Times from here on count from 1970, not from a start [s]: over three years.
 pub(super) const EPOCH: f64 = 1e8;
 const NANOSECONDS: i64 = 1_000_000_000;
+/// Steps of a series beyond which nothing is read off between two of its samples.
+const GAP: f64 = 3.0;
 
 /// Content of a log for a map's channels.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,6 +36,33 @@ pub struct Series {
     pub time: Vec<f64>,
     /// Values [SI], NaN where the log has none.
     pub values: Vec<f64>,
+}
+
+impl Series {
+    /// Its values at other times, linear between its samples; NaN before the first, after the last, and in gaps.
+    #[must_use]
+    pub fn read_off(&self, time: &[f64]) -> Vec<f64> {
+        let longest = GAP * median_step(&self.time);
+        let value = |t: &f64| {
+            let after = self.time.partition_point(|own| own < t);
+            let Some(&later) = self.time.get(after) else {
+                return f64::NAN;
+            };
+            if later == *t {
+                return self.values[after];
+            }
+            let Some(before) = after.checked_sub(1) else {
+                return f64::NAN;
+            };
+            let earlier = self.time[before];
+            if later - earlier > longest {
+                return f64::NAN;
+            }
+            let share = (t - earlier) / (later - earlier);
+            self.values[before] + share * (self.values[after] - self.values[before])
+        };
+        time.iter().map(value).collect()
+    }
 }
 
 /// Reads a log as its map says.
@@ -314,4 +344,21 @@ fn check_used(
         there,
         why: why.join("; "),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_off_between_samples_but_not_across_gaps() {
+        let series = Series {
+            time: vec![0.0, 1.0, 2.0, 3.0, 10.0, 11.0],
+            values: vec![0.0, 10.0, 20.0, 30.0, 0.0, 1.0],
+        };
+        let read = series.read_off(&[-0.1, 0.0, 0.25, 3.0, 5.0, 10.5, 11.0, 11.1]);
+        assert_eq!(read[1..4], [0.0, 2.5, 30.0]);
+        assert_eq!(read[5..7], [0.5, 1.0]);
+        assert!([0, 4, 7].iter().all(|i| read[*i].is_nan()));
+    }
 }

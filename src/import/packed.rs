@@ -1,7 +1,7 @@
 //! Files and messages that are packed with gzip or zstd, unpacked up to a bound: few bytes may stand for any number of them.
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 use zstd::stream::read::Decoder;
@@ -16,6 +16,18 @@ pub(super) const LARGEST_MESSAGE: u64 = 1 << 26;
 /// First bytes of what is packed.
 pub(super) const GZIP: &[u8] = b"\x1f\x8b";
 pub(super) const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
+
+/// Endings of files that are packed.
+const ENDINGS: [&str; 3] = ["zstd", "zst", "gz"];
+
+/// A file's name without the ending of what is packed.
+pub(super) fn plain_name(file: &Path) -> PathBuf {
+    let ending = file.extension().and_then(|ending| ending.to_str());
+    match ending {
+        Some(ending) if ENDINGS.contains(&ending) => file.with_extension(""),
+        _ => file.to_owned(),
+    }
+}
 
 /// Bytes unpacked, if they begin as packed ones do.
 ///

@@ -5,7 +5,6 @@
 //! - [`spline`]: smooth joint angles over the path;
 //! - [`plan`]: the whole job (approach, engage, settle, follow, retract), checked against the arm's limits before anything moves.
 
-mod check;
 mod collisions;
 mod curvature;
 mod error;

@@ -1,23 +1,25 @@
 //! The whole job as joint motion over time: approach, engage, settle, follow, retract.
 //!
 //! Approach, engage and retract run along the tool's axis; the tool's ball is led so that at the working stroke it presses into the edge by the contact's
-//! nominal penetration.
+//! nominal penetration. Before anything moves the plan is held against the arm's limits.
 
-use super::check;
 use super::collisions;
-use super::error::PlanError;
+use super::error::{Obstacle, PlanError};
 use super::legs::Layout;
 use super::poses::Coarse;
-use super::posture::{Outline, Standing};
+use super::posture::{Outline, SINGULAR_LIMIT, Standing};
 use super::profile::PathState;
 use super::reference::Reference;
-use super::request::{Leg, Phase, PlanRequest, Way};
+use super::request::{Leg, Phase, PlanRequest, Way, waypoint_error};
 use super::toolpath::ToolPath;
+use super::torques;
 use crate::arm::chain::MAX_JOINTS;
 use crate::collision::JointMotion;
 
 /// Ways, by roll and posture, that are planned in full before a collision is told.
 const WAYS: usize = 4;
+/// Interval at which speeds and torques are checked [s].
+const INTERVAL: f64 = 4e-3;
 
 /// The most comfortable rolls and postures, at least one and at most `most`.
 fn outlines(request: &PlanRequest, most: usize) -> Result<Vec<Outline>, PlanError> {
@@ -101,7 +103,7 @@ impl Plan {
             joints: request.arm.len(),
             notes,
         };
-        check::limits(request, &standing, &plan)?;
+        limits(request, &standing, &plan)?;
         collisions::check(request, &plan.motion, &plan.legs)?;
         Ok(plan)
     }
@@ -131,13 +133,15 @@ impl Plan {
         self.reference(0.0).position[..self.joints].to_vec()
     }
 
+    /// The leg that runs at a time [s].
+    fn leg_at(&self, time: f64) -> &Leg {
+        let begun = self.legs.partition_point(|leg| leg.start_time <= time);
+        &self.legs[begun.saturating_sub(1)]
+    }
+
     /// The reference at a time [s].
     pub fn reference(&self, time: f64) -> Reference {
-        let index = self
-            .legs
-            .partition_point(|leg| leg.start_time <= time)
-            .saturating_sub(1);
-        let leg = &self.legs[index];
+        let leg = self.leg_at(time);
         let along: PathState = leg.profile.at(time - leg.start_time);
         let (mut position, mut slope, mut bend) =
             ([0.0; MAX_JOINTS], [0.0; MAX_JOINTS], [0.0; MAX_JOINTS]);
@@ -177,4 +181,97 @@ impl Plan {
             centre: station.point + station.normal * self.offset - station.axis * back,
         }
     }
+}
+
+/// Checks the whole plan against the arm's limits: singularities at every knot, speeds and torques over time.
+fn limits(request: &PlanRequest, standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
+    singularities(standing, plan)?;
+    let count = (plan.duration() / INTERVAL).ceil() as usize;
+    for i in 0..=count {
+        drives(request, plan, i as f64 * INTERVAL)?;
+    }
+    Ok(())
+}
+
+fn singularities(standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
+    for leg in &plan.legs {
+        for (index, q) in leg.spline.values().iter().enumerate() {
+            let value = standing.singularity(q);
+            if value < SINGULAR_LIMIT {
+                let axis = standing.weakest_axis(q);
+                let obstacle = Obstacle::Singular {
+                    value,
+                    limit: SINGULAR_LIMIT,
+                    axis,
+                };
+                return Err(along_leg(plan, leg, leg.spline.knots()[index], obstacle));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Speeds and torques at a time.
+fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError> {
+    let reference = plan.reference(time);
+    let torques = torques::needed(request, &reference);
+    for (joint, axis) in request.arm.joints.iter().enumerate() {
+        if reference.velocity[joint].abs() > axis.velocity {
+            return Err(too_fast(request, plan, time));
+        }
+        let needed = torques[joint];
+        if needed.abs() > axis.effort {
+            let obstacle = Obstacle::Effort {
+                axis: axis.name.clone(),
+                value: needed,
+                limit: axis.effort,
+            };
+            return Err(at_time(plan, time, obstacle));
+        }
+    }
+    Ok(())
+}
+
+/// An obstacle at a time, told by its waypoint.
+fn at_time(plan: &Plan, time: f64, obstacle: Obstacle) -> PlanError {
+    let leg = plan.leg_at(time);
+    let along = leg.profile.at(time - leg.start_time).position;
+    along_leg(plan, leg, along, obstacle)
+}
+
+/// An obstacle at a place along a leg.
+fn along_leg(plan: &Plan, leg: &Leg, along: f64, obstacle: Obstacle) -> PlanError {
+    let knots = leg.spline.knots();
+    let index = knots
+        .partition_point(|&knot| knot <= along)
+        .saturating_sub(1);
+    let place = leg.way.place(along, plan.tool_path.length());
+    let (path, count) = (&plan.tool_path, knots.len());
+    waypoint_error(path, leg.phase, index, count, place, obstacle)
+}
+
+/// The axis that is most too fast in the leg in which one is, from a time on: the speed that is told is the one that must come down.
+fn too_fast(request: &PlanRequest, plan: &Plan, from: f64) -> PlanError {
+    let leg = plan.leg_at(from);
+    let end = leg.start_time + leg.duration;
+    let mut worst = (0.0, from, 0);
+    let count = ((end - from) / INTERVAL).ceil().max(1.0) as usize;
+    for step in 0..=count {
+        let time = (from + step as f64 * INTERVAL).min(end - 1e-9).max(from);
+        let velocity = plan.reference(time).velocity;
+        for (joint, axis) in request.arm.joints.iter().enumerate() {
+            let share = velocity[joint].abs() / axis.velocity;
+            if share > worst.0 {
+                worst = (share, time, joint);
+            }
+        }
+    }
+    let (_, time, joint) = worst;
+    let axis = &request.arm.joints[joint];
+    let obstacle = Obstacle::Velocity {
+        axis: axis.name.clone(),
+        value: plan.reference(time).velocity[joint],
+        limit: axis.velocity,
+    };
+    at_time(plan, time, obstacle)
 }

@@ -252,8 +252,10 @@ pub fn worst_channel(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::answer::{Estimate, FoundEffect, Mismatch, SCHEMA};
+    use crate::diagnosis::answer::{FoundEffect, SCHEMA};
     use crate::diagnosis::details::Details;
+    use crate::diagnosis::estimate::Estimate;
+    use crate::diagnosis::mismatch::Mismatch;
     use crate::laboratory::SealedInterval;
 
     fn truth() -> SealedCase {

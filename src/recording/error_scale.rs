@@ -1,10 +1,8 @@
 //! Colours of the force error along an edge, scaled to what is there: the same on a page and in the viewer.
 
-use super::scene::{Colour, EdgePath};
+use super::colour::{Colour, of_error};
+use super::scene::EdgePath;
 
-const TOO_LITTLE: Colour = [0, 114, 178, 255];
-const ON_TARGET: Colour = [245, 245, 245, 255];
-const TOO_MUCH: Colour = [213, 94, 0, 255];
 const NO_CONTACT: Colour = [110, 110, 110, 255];
 
 /// Share of the segments whose errors lie within the scale; what lies beyond has its last colour.
@@ -44,15 +42,7 @@ impl ErrorScale {
         if relative_error.is_nan() {
             return NO_CONTACT;
         }
-        let share = (relative_error / self.end).clamp(-1.0, 1.0);
-        let end = if share < 0.0 { TOO_LITTLE } else { TOO_MUCH };
-        let mut colour = ON_TARGET;
-        for (value, end) in colour.iter_mut().zip(end) {
-            let start = f64::from(*value);
-            // Within 0 to 255 as a blend of two such values.
-            *value = (start + share.abs() * (f64::from(end) - start)).round() as u8;
-        }
-        colour
+        of_error((relative_error / self.end).clamp(-1.0, 1.0))
     }
 
     /// Its end in percent: `0.5`.
@@ -67,6 +57,7 @@ impl ErrorScale {
 
 #[cfg(test)]
 mod tests {
+    use super::super::colour::{PALE, TOO_LITTLE, TOO_MUCH};
     use super::*;
 
     fn scale(errors: &[f64]) -> ErrorScale {
@@ -81,7 +72,7 @@ mod tests {
         let scale = ErrorScale { end: 0.10 };
         assert_eq!(scale.colour(-0.10), TOO_LITTLE);
         assert_eq!(scale.colour(-3.0), TOO_LITTLE);
-        assert_eq!(scale.colour(0.0), ON_TARGET);
+        assert_eq!(scale.colour(0.0), PALE);
         assert_eq!(scale.colour(f64::INFINITY), TOO_MUCH);
         assert_eq!(scale.colour(f64::NAN), NO_CONTACT);
         // Half-way between white and blue.

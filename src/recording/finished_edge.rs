@@ -3,13 +3,9 @@
 use glam::DVec3;
 
 use super::RecordingError;
-use super::scene::Colour;
+use super::colour::{Colour, of_error};
 
-const TOO_LITTLE: Colour = [0, 114, 178, 255];
 const WITHIN: Colour = [0, 158, 115, 255];
-const TOO_MUCH: Colour = [213, 94, 0, 255];
-/// What an error of the chamfer that has only just begun starts from.
-const NEARLY: Colour = [245, 245, 245, 255];
 /// Share of the end's colour that the smallest error has: one that is out of tolerance is to be seen as such.
 const LEAST_SHARE: f64 = 0.35;
 /// Height and leg are drawn so many times as large that the largest is at most this share of the edge.
@@ -98,14 +94,7 @@ impl FinishedEdge {
             return WITHIN;
         }
         let share = LEAST_SHARE + (1.0 - LEAST_SHARE) * error.abs().min(1.0);
-        let end = if error < 0.0 { TOO_LITTLE } else { TOO_MUCH };
-        let mut colour = NEARLY;
-        for (value, end) in colour.iter_mut().zip(end) {
-            let start = f64::from(*value);
-            // Within 0 to 255 as a blend of two such values.
-            *value = (start + share * (f64::from(end) - start)).round() as u8;
-        }
-        colour
+        of_error(share.copysign(error))
     }
 
     /// Stretches of stations, from one to before another, on which more burr is left than may be.
@@ -167,6 +156,7 @@ impl FinishedEdge {
 
 #[cfg(test)]
 mod tests {
+    use super::super::colour::{TOO_LITTLE, TOO_MUCH};
     use super::*;
 
     /// An edge of 100 mm along x, a station each 10 mm.

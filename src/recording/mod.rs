@@ -6,6 +6,7 @@
 
 pub mod atomic;
 pub mod board;
+pub mod colour;
 pub mod csv;
 mod error;
 pub mod error_scale;
@@ -259,19 +260,6 @@ fn check_phases(phases: &[PhaseSpan]) -> Result<(), RecordingError> {
         previous = Some(phase);
     }
     Ok(())
-}
-
-/// Reads a recording from a Parquet table.
-///
-/// # Errors
-/// Those of the file; any file where the library is built without the feature `parquet`.
-pub fn read_table(path: &std::path::Path) -> Result<Recording, RecordingError> {
-    #[cfg(feature = "parquet")]
-    return Ok(parquet::read_parquet(path)?.recording);
-    #[cfg(not(feature = "parquet"))]
-    return Err(RecordingError::WithoutParquet {
-        file: path.display().to_string(),
-    });
 }
 
 #[cfg(test)]

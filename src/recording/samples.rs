@@ -8,6 +8,19 @@ use super::{Recording, RecordingError};
 /// Share of a sample period by which a tie is decided for the earlier row, as the sensors' clock has it.
 const TIE: f64 = 1e-6;
 
+/// Reads a recording from a Parquet table.
+///
+/// # Errors
+/// Those of the file; any file where the library is built without the feature `parquet`.
+pub fn read_table(path: &std::path::Path) -> Result<Recording, RecordingError> {
+    #[cfg(feature = "parquet")]
+    return Ok(super::parquet::read_parquet(path)?.recording);
+    #[cfg(not(feature = "parquet"))]
+    return Err(RecordingError::WithoutParquet {
+        file: path.display().to_string(),
+    });
+}
+
 /// Takes from the samples of a run what was commanded and read, `rate` times a second [Hz] if that is less often than there are rows. Pressures become
 /// those against an atmosphere [Pa].
 ///

@@ -7,10 +7,8 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use super::RecordingError;
+use super::colour::Colour;
 use super::finished_edge::FinishedEdge;
-
-/// Red, green, blue and opacity, 0 to 255.
-pub type Colour = [u8; 4];
 
 /// The shape of a part of a body, in the part's own frame.
 #[derive(Debug, Clone, PartialEq)]

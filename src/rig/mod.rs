@@ -10,4 +10,5 @@ mod simulation;
 
 pub use carrier::BenchCarrier;
 pub use error::RigError;
-pub use simulation::{Rig, RigSimulation, RigTruth};
+pub use sample::RigTruth;
+pub use simulation::{Rig, RigSimulation};

@@ -1,8 +1,7 @@
 //! Record of a bench rig at each step.
 
 use super::carrier::BenchCarrier;
-use super::simulation::{Rig, RigTruth};
-use crate::device::DeviceState;
+use crate::device::{Device, DeviceState, PistonMotion};
 use crate::estimation::EstimatorOutput;
 use crate::physics::valve::ValvePosition;
 use crate::recording::schema;
@@ -38,10 +37,25 @@ const CHANNELS: [&str; 25] = [
     schema::ESTIMATED_FORCE_DEVIATION,
 ];
 
+/// True state of the rig at a moment, as no sensor shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RigTruth {
+    /// Time [s].
+    pub time: f64,
+    /// Stroke and speed.
+    pub motion: PistonMotion,
+    /// Acceleration along extension [m/s2].
+    pub acceleration: f64,
+    /// Force of the tool on the load [N].
+    pub contact_force: f64,
+    /// Regulator's outlet, gauge [Pa].
+    pub regulator_pressure: f64,
+}
+
 /// Recorded quantities at a moment.
 pub(super) struct RigSample<'a> {
-    pub rig: &'a Rig,
-    pub device: &'a DeviceState,
+    pub device: &'a Device,
+    pub state: &'a DeviceState,
     pub truth: &'a RigTruth,
     pub readings: &'a Readings,
     pub carrier: &'a BenchCarrier<'a>,
@@ -69,15 +83,15 @@ impl RigLog {
 
     pub(super) fn push(&mut self, sample: &RigSample<'_>) {
         let RigSample {
-            rig,
             device,
+            state,
             truth,
             readings,
             ..
         } = *sample;
-        let atmosphere = rig.device.parameters().gas.atmosphere;
-        let pressures = rig.device.pressures(device, truth.motion.stroke);
-        let seal = rig.device.seal_force(device, truth.motion.speed);
+        let atmosphere = device.parameters().gas.atmosphere;
+        let pressures = device.pressures(state, truth.motion.stroke);
+        let seal = device.seal_force(state, truth.motion.speed);
         let surface = sample.carrier.surface();
         self.time.push(truth.time);
         self.rows.push([
@@ -87,7 +101,7 @@ impl RigLog {
             pressures[1],
             truth.contact_force,
             sample.desired_force,
-            rig.device.gas_force(device, truth.motion.stroke) + seal,
+            device.gas_force(state, truth.motion.stroke) + seal,
             seal,
             truth.motion.stroke,
             truth.motion.speed,
@@ -97,12 +111,12 @@ impl RigLog {
             } else {
                 f64::NAN
             },
-            f64::from(u8::from(device.valve == ValvePosition::Extend)),
-            device.air.masses[0],
-            device.air.masses[1],
-            device.air.line_mass(),
-            device.air.entered,
-            device.air.left,
+            f64::from(u8::from(state.valve == ValvePosition::Extend)),
+            state.air.masses[0],
+            state.air.masses[1],
+            state.air.line_mass(),
+            state.air.entered,
+            state.air.left,
             readings.force,
             readings.force_unfiltered,
             readings.stroke,

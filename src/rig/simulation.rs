@@ -5,7 +5,7 @@ use std::path::Path;
 use super::carrier::BenchCarrier;
 use super::error::RigError;
 use super::estimator::RigEstimator;
-use super::sample::{RigLog, RigSample};
+use super::sample::{RigLog, RigSample, RigTruth};
 use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::push_only::PushOnly;
@@ -89,21 +89,6 @@ impl Rig {
         }
         Ok((simulation.into_recording()?, stop))
     }
-}
-
-/// True state of the rig at a moment, as no sensor shows it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RigTruth {
-    /// Time [s].
-    pub time: f64,
-    /// Stroke and speed.
-    pub motion: PistonMotion,
-    /// Acceleration along extension [m/s2].
-    pub acceleration: f64,
-    /// Force of the tool on the load [N].
-    pub contact_force: f64,
-    /// Regulator's outlet, gauge [Pa].
-    pub regulator_pressure: f64,
 }
 
 /// A running bench rig.
@@ -358,8 +343,8 @@ impl<'a> RigSimulation<'a> {
             .and_then(|estimator| estimator.update(truth.time, &self.readings, self.device.valve));
         let carrier = BenchCarrier::at(&self.rig.scenario, truth.time);
         self.log.push(&RigSample {
-            rig: self.rig,
-            device: &self.device,
+            device: &self.rig.device,
+            state: &self.device,
             truth: &truth,
             readings: &self.readings,
             carrier: &carrier,

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
-use super::document::{Document, join};
+use super::document::Document;
 use super::error::ScenarioError;
+use super::suggestion::join;
 use super::units::{Unit, look_alike};
 use crate::plant::Number;
 

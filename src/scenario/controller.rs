@@ -8,9 +8,10 @@ use std::ops::RangeInclusive;
 use serde::Deserialize;
 
 use super::check::Section;
-use super::document::{Document, join};
+use super::document::Document;
 use super::error::{Place, ScenarioError};
 use super::sensing::stages::only;
+use super::suggestion::join;
 use crate::device::{DeviceParameters, PressureMap};
 use crate::physics::seal_friction::SealFriction;
 use crate::plant::registry;

@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::{Excerpt, Place, ScenarioError};
 use super::rig_file::NUMBER_OR_TABLE;
-use super::suggestion::{Sections, advice};
+use super::suggestion::{Sections, advice, join};
 use super::units::Unit;
 
 /// A file that is valid TOML.
@@ -219,15 +219,6 @@ impl<'a> Document<'a> {
         // The whole document has an empty span at its start.
         let found = exact.or_else(|| if span.is_empty() { None } else { around() });
         found.map_or_else(String::new, |entry| entry.key.clone())
-    }
-}
-
-/// `table.key`, or `key` at top level.
-pub(crate) fn join(table: &str, key: &str) -> String {
-    if table.is_empty() {
-        key.to_owned()
-    } else {
-        format!("{table}.{key}")
     }
 }
 

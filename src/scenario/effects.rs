@@ -23,9 +23,9 @@ mod value;
 mod written;
 
 use super::check::{Section, checked};
-use super::document::{Document, join};
+use super::document::Document;
 use super::error::ScenarioError;
-use super::suggestion::nearest;
+use super::suggestion::{join, nearest};
 use super::units::Unit;
 use crate::effects::{Effect, Parameter, PresentEffect};
 use crate::plant::PlantParameters;

@@ -9,12 +9,11 @@ use super::check::Section;
 use super::collision::collision;
 use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
-use super::document::Document;
+use super::document::{Document, read_text};
 use super::effects::{EffectKeys, effects};
 use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
 use super::judged;
-use super::rig_device::is_rig;
 use super::sections::scenario_sections;
 use super::sensing::sensing;
 use super::tool;
@@ -232,6 +231,13 @@ fn servo(section: &Section<'_>, keys: &file::ServoKeys) -> Result<ServoScenario,
         lag_bandwidth: section.known_or_default(&registry::SERVO_BANDWIDTH, "lag_bandwidth_hz", keys.lag_bandwidth_hz)?,
         encoder_noise: section.number("encoder_noise_rad", keys.encoder_noise_rad.unwrap_or(0.0), 0.0..=0.01)?,
     })
+}
+
+/// Whether it is a rig file. Whatever is wrong with it is said when it is read as what it is.
+pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {
+    let text = read_text(path)?;
+    let document = Document::new(path, &text, file::SCHEMA)?;
+    Ok(document.place("cylinder").position.is_some())
 }
 
 /// The device of a scenario: its model with what the scenario overrides.

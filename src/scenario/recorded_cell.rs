@@ -1,5 +1,6 @@
 //! The scenario file of a recorded cell, `kind = "recorded_cell"`: arm, device, part and contact as their owner believes them to be, and the sensors of
-//! recordings of it. It has no job: that is in the recordings' commands.
+//! recordings of it. It has no job: that is in the recordings' commands. The scenario of a cell that this project runs is read as such a belief, too; what is in its
+//! `[process]` is in the recordings' commands.
 
 use std::path::{Path, PathBuf};
 
@@ -12,15 +13,18 @@ use super::error::ScenarioError;
 use super::file::{self, Kind, KindOnly};
 use super::load;
 use super::sections::recorded_cell_sections;
+use super::sensing::white;
 use super::workpiece::workpiece;
-use super::{ArmScenario, BurrScenario, ContactScenario, DeviceScenario, WorkpieceScenario};
+use super::{
+    ArmScenario, BurrScenario, ContactScenario, DeviceScenario, Misplacement, Scenario,
+    WorkpieceScenario,
+};
 use crate::effects::PresentEffect;
 use crate::plant::{Observation, registry};
-
-mod keys;
-mod own;
+use crate::sensing::{FilterParameters, Measurement};
 
 mod improved;
+mod keys;
 
 pub use improved::improved_cell_text;
 pub(super) use keys::{BeliefKeys, JointsKeys, RecordedCellFile, SensorsKeys};
@@ -68,6 +72,12 @@ pub struct RecordedCell {
     pub sample_rate: f64,
 }
 
+/// Relative tolerance of a number that a scenario states: none of a data sheet is truer.
+const TOLERANCE: f64 = 0.005;
+/// Damping of springs that are not there over their stiffness, and its tolerance [s].
+static DAMPING_TIME: [f64; 2] = [registry::JOINT_DAMPING.default, 1e-3];
+/// Noise of encoders that a scenario says have none [rad].
+const ENCODER_NOISE: f64 = 2e-6;
 /// Force above which a tool touches, in standard deviations of the load cell's noise [1].
 const TOUCHING: f64 = 6.0;
 
@@ -90,7 +100,7 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let document = Document::new(path, &text, file::SCHEMA)?;
     let KindOnly { kind } = document.parse(&recorded_cell_sections())?;
     if kind == Kind::Cell {
-        return own::of_scenario(&any::load(path)?, &document, &text);
+        return of_scenario(&any::load(path)?, &document, &text);
     }
     let file: RecordedCellFile = document.parse(&recorded_cell_sections())?;
     if file.kind != Kind::RecordedCell {
@@ -108,7 +118,8 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     }
     let part = workpiece(&section("workpiece"), &file.workpiece)?;
     let contact = load::contact(&section("contact"), &file.contact, device.ideal)?;
-    refuse_what_is_sought(&document, &part)?;
+    let is_misplaced = section("workpiece").given().any(|key| key == "misplacement");
+    refuse_what_is_sought(&document, &part, is_misplaced)?;
     refuse_what_commands_say(&document)?;
     let (joints, sensors, belief) = (section("joints"), section("sensors"), section("belief"));
     let (drives, noise) = (&file.joints, &file.sensors);
@@ -145,17 +156,102 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     })
 }
 
+/// A cell's scenario as the belief of its owner.
+fn of_scenario(
+    scenario: &Scenario,
+    document: &Document<'_>,
+    text: &str,
+) -> Result<RecordedCell, ScenarioError> {
+    let section = |table: &str| Section::new(document, table);
+    let part = &scenario.workpiece;
+    refuse_what_is_sought(document, part, part.misplacement != Misplacement::default())?;
+    if !scenario.arm.drives.is_empty() {
+        return Err(section("arm").misplaced("drives", sought("what joints do")));
+    }
+    if scenario.contact.runout_amplitude > 0.0 {
+        return Err(section("contact").misplaced("runout_um", sought("a runout")));
+    }
+    if scenario.device.locked {
+        let reason = "a locked device moves nowhere, and tells nothing".to_owned();
+        return Err(section("device").misplaced("locked", reason));
+    }
+    let sensing = &scenario.sensing;
+    if sensing.force_filter != FilterParameters::None {
+        let reason = "a diagnosis takes the readings as they are sampled, not filtered".to_owned();
+        return Err(section("sensing").misplaced("filter", reason));
+    }
+    let noise = [
+        noise(
+            &section("sensing.regulator_pressure"),
+            &sensing.regulator_pressure,
+            white::PRESSURE,
+        )?,
+        noise(&section("sensing.stroke"), &sensing.stroke, white::STROKE)?,
+        noise(&section("sensing.force"), &sensing.force, white::FORCE)?,
+    ];
+    let encoders = scenario.arm.servo.encoder_noise;
+    Ok(RecordedCell {
+        path: scenario.path.clone(),
+        text: text.to_owned(),
+        effects: scenario.effects.clone(),
+        title: scenario.title.clone(),
+        arm: scenario.arm.clone(),
+        device: scenario.device.clone(),
+        workpiece: scenario.workpiece.clone(),
+        contact: scenario.contact,
+        gravity: scenario.simulation.gravity,
+        servo_bandwidth: scenario.arm.servo.lag_bandwidth,
+        joint_stiffness: None,
+        joint_damping: DAMPING_TIME,
+        joint_noise: if encoders > 0.0 {
+            encoders
+        } else {
+            ENCODER_NOISE
+        },
+        noise,
+        tolerance: TOLERANCE,
+        start_stroke_tolerance: 0.0,
+        observed: Observation::RUN,
+        has_job: true,
+        sample_rate: sensing.sample_rate,
+    })
+}
+
+/// Standard deviation of a sensor's noise; usual white noise of one that has none, for nothing is weighed by it.
+fn noise<S>(
+    section: &Section<'_>,
+    channel: &Measurement<S>,
+    usual: f64,
+) -> Result<f64, ScenarioError> {
+    match channel {
+        Measurement::White { standard_deviation } if *standard_deviation > 0.0 => {
+            Ok(*standard_deviation)
+        }
+        Measurement::Ideal | Measurement::White { .. } => Ok(usual),
+        Measurement::Real(_) => {
+            let expected =
+                "\"ideal\" or \"white\": a diagnosis finds what sensors do to what they measure";
+            Err(section.refuse("kind", "\"real\"".to_owned(), expected.to_owned()))
+        }
+    }
+}
+
+/// Why a file of what is nominal does not say what a diagnosis is to find.
+fn sought(what: &str) -> String {
+    format!("a diagnosis finds {what}, the file says what is believed")
+}
+
 fn refuse_what_is_sought(
     document: &Document<'_>,
     part: &WorkpieceScenario,
+    is_misplaced: bool,
 ) -> Result<(), ScenarioError> {
     let section = Section::new(document, "workpiece");
-    let reason = |what: &str| format!("a diagnosis finds {what}, the file says what is believed");
-    if section.given().any(|key| key == "misplacement") {
-        return Err(section.misplaced("misplacement", reason("how the part lies")));
+    if is_misplaced {
+        return Err(section.misplaced("misplacement", sought("how the part lies")));
     }
     if part.burr != BurrScenario::None {
-        return Err(section.misplaced("burr", reason("a burr")));
+        return Err(section.misplaced("burr", sought("a burr")));
     }
     Ok(())
 }

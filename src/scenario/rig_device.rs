@@ -1,13 +1,10 @@
 //! The device of a bench: a device model file, or a rig file with its contact and its sensors' errors.
 
-use std::path::Path;
-
 use super::DeviceScenario;
 use super::check::Section;
-use super::document::{Document, read_text};
 use super::error::ScenarioError;
-use super::file::{DeviceKeys, SCHEMA};
-use super::load::device;
+use super::file::DeviceKeys;
+use super::load::{device, is_rig};
 use super::rig_file::load_rig;
 use crate::plant::{ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors, registry};
 
@@ -31,13 +28,6 @@ pub(super) fn usual_contact(ideal: bool) -> ContactParameters {
         registry::CONTACT_STIFFNESS.default_of(ideal),
         registry::CONTACT_DAMPING.default_of(ideal),
     )
-}
-
-/// Whether it is a rig file. Whatever is wrong with it is said when it is read as what it is.
-pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {
-    let text = read_text(path)?;
-    let document = Document::new(path, &text, SCHEMA)?;
-    Ok(document.place("cylinder").position.is_some())
 }
 
 /// The device of a bench.

@@ -25,7 +25,7 @@ pub fn scenario() -> Value {
     let of = |schema: Value, chapters: &'static [&'static str]| {
         let rows = page::scenario_rows(chapters);
         describe(schema, |table, key| {
-            let dotted = super::document::join(table, key);
+            let dotted = super::suggestion::join(table, key);
             rows.get(&dotted).map(page::Row::described)
         })
     };
@@ -129,7 +129,7 @@ fn describe_table(schema: &mut Value, table: &str, of: &impl Fn(&str, &str) -> O
         if let (Some(described), Value::Object(property)) = (of(table, key), &mut *property) {
             apply(property, &described);
         }
-        let below = super::document::join(table, key);
+        let below = super::suggestion::join(table, key);
         if let Value::Object(property) = &mut *property {
             let heading = match property.contains_key("items") {
                 true => format!("Tables [[{below}]]."),

@@ -80,12 +80,18 @@ pub(crate) fn nearest_dotted(key: &str, sections: &Sections) -> String {
     });
     match nearest {
         Some(found) if likeness(&found).0 >= SIMILAR => {
-            format!(
-                "did you mean `{}`?",
-                super::document::join(&found.0, found.1)
-            )
+            format!("did you mean `{}`?", join(&found.0, found.1))
         }
         _ => advice(key, sections),
+    }
+}
+
+/// `table.key`, or `key` at top level.
+pub(crate) fn join(table: &str, key: &str) -> String {
+    if table.is_empty() {
+        key.to_owned()
+    } else {
+        format!("{table}.{key}")
     }
 }
 

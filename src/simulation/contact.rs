@@ -19,7 +19,6 @@ use nalgebra::DVector;
 use rapier3d::prelude::*;
 
 use super::dispatch::{TrueContact, TrueContacts};
-use super::world::ToolBall;
 use crate::plant::Relief;
 use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
 
@@ -27,6 +26,15 @@ use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
 const REACH: f64 = 1e-3;
 /// Natural frequency of a contact that carries a given force [rad/s].
 const CARRIER_RATE: f64 = 0.1;
+
+/// The ball nose of the tool on the last link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToolBall {
+    /// Radius [m].
+    pub radius: f64,
+    /// Centre in the last link's frame [m].
+    pub centre_in_link: DVec3,
+}
 
 /// A place where the ball touches the part, or is about to.
 #[derive(Debug, Clone, Copy, PartialEq)]

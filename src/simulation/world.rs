@@ -15,7 +15,7 @@ use glam::DVec3;
 use glamx::DPose3;
 use rapier3d::prelude::*;
 
-use super::contact::{ContactReading, PartContact, Touch};
+use super::contact::{ContactReading, PartContact, ToolBall, Touch};
 use crate::arm::chain::{JointKind, KinematicChain};
 use crate::cell::Cell;
 use crate::control::law::{DriveLimit, JointLaw};
@@ -25,15 +25,6 @@ use crate::workpiece::TriangleMesh;
 
 /// Stiffness of the spring that carries a constant force [N/m or N m/rad]: too soft to act as a spring.
 const CARRIER_STIFFNESS: f64 = 1e-3;
-
-/// The ball nose of the tool on the last link.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ToolBall {
-    /// Radius [m].
-    pub radius: f64,
-    /// Centre in the last link's frame [m].
-    pub centre_in_link: DVec3,
-}
 
 /// Description from which the world is built.
 pub struct WorldDescription<'a> {

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use glamx::DPose3;
-use idc_cell::simulation::world::{ToolBall, World, WorldDescription};
+use idc_cell::simulation::contact::ToolBall;
+use idc_cell::simulation::world::{World, WorldDescription};
 use idc_cell::workpiece::TriangleMesh;
 
 use super::{Robot, load, references};

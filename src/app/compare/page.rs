@@ -1,7 +1,7 @@
 //! The page of a comparison.
 
 use super::super::report::{ROLES, RunResult, chart_groups};
-use super::{Compared, MOST, Row, short};
+use super::numbers::{Compared, MOST, Row, short};
 use crate::figure::{Horizontal, Panel, Series, Stroke};
 use crate::page::{Block, Chart, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::recording::schema;

@@ -10,7 +10,6 @@ use super::super::files::Standing;
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
-use super::DiagnoseArguments;
 use super::one::{Prepared, complete, is_case};
 use super::shared::{SharedFamily, SharingCase, shared};
 use crate::case::{RIG, is_cell_case};
@@ -20,7 +19,7 @@ use crate::replay::LoadedCell;
 use crate::scenario::rig_file::load_rig;
 
 /// Outcome of a case.
-struct Outcome {
+pub(super) struct Outcome {
     name: String,
     result: Result<Done, String>,
 }
@@ -31,29 +30,27 @@ struct Done {
     kept: bool,
 }
 
-/// Diagnoses all cases below a folder.
+/// Diagnoses all cases below a folder, `jobs` at a time.
 pub(super) fn run(
-    arguments: &DiagnoseArguments,
-    cell: Option<&LoadedCell>,
+    folder: &Path,
+    (cell, limit): (Option<&LoadedCell>, EffortLimit),
     out: &Path,
     standing: Standing,
-) -> Result<ExitCode, AppError> {
-    let names = cases(&arguments.case, cell.is_some())?;
-    let silent = arguments.quiet || arguments.json;
+    jobs: usize,
+    silent: bool,
+) -> Result<Vec<Outcome>, AppError> {
+    let names = cases(folder, cell.is_some())?;
     let bar = progress::cases(names.len(), silent);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
-    // One at a time on all processors is no slower in all, and each is done sooner.
-    let jobs = arguments.jobs.map_or(1, usize::from);
     let jobs = jobs.min(names.len());
     let waiting: Mutex<VecDeque<(usize, String)>> =
         Mutex::new(names.iter().cloned().enumerate().collect());
     let outcomes: Mutex<Vec<(usize, Outcome)>> = Mutex::default();
     let interruptible = Interruptible::of_many(names.len(), "cases are diagnosed", out);
-    let limit = arguments.limit();
     let work = || {
         let next = || locked(&waiting).pop_front();
         while let Some((index, name)) = next() {
-            let case = arguments.case.join(&name);
+            let case = folder.join(&name);
             let result = caught(|| one(&case, (cell, limit), &out.join(&name), standing));
             if result.is_ok() {
                 interruptible.one_more();
@@ -82,17 +79,11 @@ pub(super) fn run(
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner);
     outcomes.sort_by_key(|(index, _)| *index);
-    let outcomes: Vec<Outcome> = outcomes.into_iter().map(|(_, outcome)| outcome).collect();
-    // A cell's cases have one file of it, and no parts to tell apart.
-    let shared = match cell {
-        Some(_) => Vec::new(),
-        None => known_together(&arguments.case, &outcomes),
-    };
-    report(arguments, out, &outcomes, &shared)
+    Ok(outcomes.into_iter().map(|(_, outcome)| outcome).collect())
 }
 
 /// What the cases know together, by the parts that their rig files state.
-fn known_together(folder: &Path, outcomes: &[Outcome]) -> Vec<SharedFamily> {
+pub(super) fn known_together(folder: &Path, outcomes: &[Outcome]) -> Vec<SharedFamily> {
     let cases = outcomes.iter().filter_map(|outcome| {
         Some(SharingCase {
             name: &outcome.name,
@@ -186,13 +177,14 @@ pub(in super::super) fn natural(name: &str) -> Vec<(u128, String)> {
 }
 
 /// Prints what became of the cases.
-fn report(
-    arguments: &DiagnoseArguments,
-    out: &Path,
+pub(super) fn report(
     outcomes: &[Outcome],
     shared: &[SharedFamily],
+    out: &Path,
+    quiet: bool,
+    json: bool,
 ) -> Result<ExitCode, AppError> {
-    if arguments.json {
+    if json {
         for outcome in outcomes {
             let line = match &outcome.result {
                 Ok(done) => serde_json::json!({ "case": outcome.name, "diagnosis": done.answer }),
@@ -203,7 +195,7 @@ fn report(
         if !shared.is_empty() {
             say(&format!("{}\n", serde_json::json!({ "shared": shared })))?;
         }
-    } else if !arguments.quiet {
+    } else if !quiet {
         say(&table(outcomes))?;
         for family in shared {
             say(&format!("\n{}", family.text()))?;
@@ -213,7 +205,7 @@ fn report(
     let failed: Vec<&Outcome> = outcomes.iter().filter(|o| o.result.is_err()).collect();
     for outcome in &failed {
         // As JSON they stand among the results.
-        if let (Err(error), false) = (&outcome.result, arguments.json) {
+        if let (Err(error), false) = (&outcome.result, json) {
             eprintln!("error: {}: {error}", outcome.name);
         }
     }

@@ -3,8 +3,9 @@
 mod text;
 
 use super::super::report::{lacking as lacking_of, most_of, variable};
-use crate::diagnosis::answer::{Answer, Mismatch};
+use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel, Comparison};
+use crate::diagnosis::mismatch::Mismatch;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::unlisted::report::{ShapeRow, UnlistedReport};
 use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};

@@ -19,8 +19,9 @@ use crate::cell::{CellError, arm_options};
 use crate::diagnosis::comparison::Compared;
 use crate::diagnosis::servo::Axes;
 use crate::plant::{ArmTrajectory, Channel, PlantParameters, follow};
+use crate::recording::colour::Colour;
 use crate::recording::scene::{
-    Colour, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
+    ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
 };
 use crate::replay::LoadedCell;
 use crate::workpiece::load_mesh;

@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use crate::diagnosis::answer::{Answer, Estimate};
+use crate::diagnosis::answer::Answer;
 use crate::diagnosis::details::{FamilyMember, FamilyReport};
+use crate::diagnosis::estimate::Estimate;
 use crate::diagnosis::family::{Scaling, scaling};
 use crate::diagnosis::shared::{
     InAll, InCase, NOT_STATED, SAME_NOMINAL, STATED, not_shown, together,

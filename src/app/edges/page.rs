@@ -1,30 +1,31 @@
 //! The page of a part's edges, from which one is picked for a scenario.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use glam::DVec3;
 
 use super::super::space::{MILLIMETRES, body, floats};
-use super::part::{EYE, MOST_TRIANGLES, name_of, place, scene_of, short};
-use super::{EdgesArguments, MeshUnit, convexity, kind};
+use super::part::{
+    EYE, MOST_TRIANGLES, MeshUnit, convexity, kind, name_of, place, scene_of, short,
+};
 use crate::drawing::{self, Numbered};
 use crate::page::{
     Block, Drawing, DrawnLine, DrawnView, Page, PageSection, PageTable, TableCell, html,
 };
 use crate::quantity::counted;
-use crate::workpiece::{Convexity, CurveKind, EdgeCurve, EdgeList, TriangleMesh};
+use crate::workpiece::{Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, TriangleMesh};
 
 /// The page's colours for lines.
 const COLOURS: usize = 5;
 /// How far an outline is drawn within the face that it bounds, so that outlines of neighbours lie apart: share of the part's size, and of its own length [1].
 const INSET: [f64; 2] = [0.012, 0.04];
+/// Where edges are from: mesh file, its unit, angle from which they are sharp [deg].
+type Source<'a> = (&'a Path, MeshUnit, f64);
+
 /// The page as a document.
-pub(super) fn page(
-    arguments: &EdgesArguments,
-    unit: MeshUnit,
-    mesh: &TriangleMesh,
-    list: &EdgeList,
-) -> String {
+pub(super) fn page(source: Source<'_>, mesh: &TriangleMesh, list: &EdgeList) -> String {
+    let (file, unit, sharp_angle) = source;
     let scene = scene_of(mesh.vertices().to_vec(), mesh.triangles().to_vec());
     let (solids, _) = drawing::solids(&scene, 0.0, MOST_TRIANGLES);
     let (low, high) = mesh.bounds();
@@ -36,7 +37,7 @@ pub(super) fn page(
             .map(|(curve, colour)| DrawnLine {
                 view: Some(view),
                 colour,
-                ..line((arguments, unit), curve, size.length())
+                ..line(source, curve, size.length())
             })
             .collect()
     };
@@ -78,11 +79,11 @@ pub(super) fn page(
         )
         .chain([Block::PageTable(table(list))]);
     html(&Page {
-        title: format!("Edges of {}", name_of(&arguments.mesh)),
+        title: format!("Edges of {}", name_of(file)),
         verdict: verdict(mesh, list),
         lead: vec![format!(
             "Pick an edge: its lines take the place of a scenario's [workpiece.edge]. An edge is one whose faces stand at an angle of at most {}°; file in {}.",
-            short(180.0 - arguments.sharp_angle_deg),
+            short(180.0 - sharp_angle),
             unit.name()
         )],
         sections: vec![PageSection::new("Part and edges", blocks.collect())],
@@ -115,7 +116,7 @@ fn verdict(mesh: &TriangleMesh, list: &EdgeList) -> String {
     format!("{} mm: {can}.", size.join(" × "))
 }
 
-fn line(source: (&EdgesArguments, MeshUnit), curve: &EdgeCurve, size: f64) -> DrawnLine {
+fn line(source: Source<'_>, curve: &EdgeCurve, size: f64) -> DrawnLine {
     let points = match curve.id.starts_with("loop") {
         true => within_its_face(curve, (INSET[0] * size).min(INSET[1] * curve.length)),
         false => curve.points.clone(),
@@ -235,22 +236,17 @@ fn end(curve: &EdgeCurve) -> DVec3 {
 }
 
 /// Lines of a scenario that choose an edge.
-fn to_paste((arguments, unit): (&EdgesArguments, MeshUnit), curve: &EdgeCurve) -> String {
+fn to_paste((mesh, unit, sharp_angle): Source<'_>, curve: &EdgeCurve) -> String {
     let key = curve.id.split('-').next().unwrap_or_default();
-    let mesh = arguments.mesh.display().to_string();
+    let mesh = mesh.display().to_string();
     let mut text = format!(
         "# of [workpiece] with mesh = {mesh:?}\n# and mesh_unit = \"{}\"\n[workpiece.edge]\n{key} = {}\n",
         unit.name(),
         number(curve),
     );
-    if (arguments.sharp_angle_deg
-        - crate::workpiece::EdgeSearch::default()
-            .sharp_angle
-            .to_degrees())
-    .abs()
-        > 1e-9
-    {
-        text += &format!("sharp_angle_deg = {:?}\n", arguments.sharp_angle_deg);
+    let default = EdgeSearch::default().sharp_angle.to_degrees();
+    if (sharp_angle - default).abs() > 1e-9 {
+        text += &format!("sharp_angle_deg = {sharp_angle:?}\n");
     }
     // Rounded up it would lie beyond the end.
     let end = (1e3 * MILLIMETRES * curve.length + 1e-6).floor() / 1e3;

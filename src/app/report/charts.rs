@@ -1,7 +1,8 @@
 //! The charts of a diagnosis: recordings beside models, and what links lack.
 
-use crate::diagnosis::answer::{Answer, Mismatch};
+use crate::diagnosis::answer::Answer;
 use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel};
+use crate::diagnosis::mismatch::Mismatch;
 use crate::diagnosis::recorded::COLUMNS;
 use crate::diagnosis::unlisted::report::{ShapeRow, UnlistedReport};
 use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};

@@ -1,26 +1,28 @@
 //! The page of a design study.
 
-mod robustness;
-
 use serde_json::Value;
 
 use super::super::files::{DESIGN, OVERRIDE};
 use super::judged::judged;
 use super::provenance::provenance_of;
-use super::run::labels;
+use super::run_result::labels;
 use crate::design::{number, spoken};
 use crate::diagnosis::words::capital;
 use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 
 /// The page.
-pub(super) fn page<'a>(document: &Value, [front, robustness]: [Option<&str>; 2]) -> Page<'a> {
+pub(super) fn page<'a>(
+    document: &Value,
+    front: Option<&str>,
+    robustness: Option<PageSection<'a>>,
+) -> Page<'a> {
     let sections = [
         Some(chosen(document)),
         front.map(|svg| trade_off(document, svg)),
         Some(binding(document)),
         limits(document),
-        robustness::robustness(document, robustness),
+        robustness,
         Some(steps(document)),
         Some(measured_by(document)),
         judged(document, DESIGN),
@@ -37,16 +39,16 @@ pub(super) fn page<'a>(document: &Value, [front, robustness]: [Option<&str>; 2])
     }
 }
 
-fn list(value: &Value) -> impl Iterator<Item = &Value> {
+pub(super) fn list(value: &Value) -> impl Iterator<Item = &Value> {
     value.as_array().into_iter().flatten()
 }
 
-fn text(value: &Value) -> &str {
+pub(super) fn text(value: &Value) -> &str {
     value.as_str().unwrap_or_default()
 }
 
 /// A metric's or a variable's name and unit.
-fn named(key: &str) -> (String, String) {
+pub(super) fn named(key: &str) -> (String, String) {
     let mut known = labels(true).into_iter().chain(labels(false));
     match known.find(|label| label.key == key) {
         Some(label) => (label.name, label.unit.to_owned()),
@@ -55,7 +57,7 @@ fn named(key: &str) -> (String, String) {
 }
 
 /// A metric's value with its unit.
-fn quantity(key: &str, value: &Value) -> String {
+pub(super) fn quantity(key: &str, value: &Value) -> String {
     let (_, unit) = named(key);
     value
         .as_f64()
@@ -68,7 +70,7 @@ fn changed(value: &Value) -> String {
 }
 
 /// A limit without its key: `impact peak at most 400 N`.
-fn limit_words(limit: &str) -> String {
+pub(super) fn limit_words(limit: &str) -> String {
     let (key, rest) = limit.split_once(' ').unwrap_or((limit, ""));
     let name = match key {
         "force_n" => "force at rest".to_owned(),
@@ -235,7 +237,7 @@ fn trade_off<'a>(document: &Value, svg: &str) -> PageSection<'a> {
 }
 
 /// An SVG document without what stands before its first element.
-fn bare(svg: &str) -> &str {
+pub(super) fn bare(svg: &str) -> &str {
     &svg[svg.find("<svg").unwrap_or(0)..]
 }
 

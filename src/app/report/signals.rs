@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::super::bench_figures::{FORCE, Line, PRESSURE, STROKE};
-use super::run::RunResult;
+use super::run_result::RunResult;
 use crate::figure::{Horizontal, Marker, Panel, Role, Series, Stroke};
 use crate::page::{Block, Chart, PageSection, PageTable, TableCell};
 use crate::quantity::column;

@@ -6,19 +6,18 @@ use clap::Args;
 
 use super::super::advice::AdviceArguments;
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, RUN_NAMES, Standing, VARIED, is_same, output_folder};
+use super::super::files::{OutputFolder, RUN_NAMES, Standing, output_folder};
 use super::super::interrupt::Interruptible;
 use super::super::output::show;
 use super::super::progress;
 use super::super::viewer::{Viewing, Watch};
 use super::job::{Job, Manner};
-use super::settings::{Setting, Variant, blamed, product, with_flags};
+use super::settings::{Setting, Variant, with_flags};
 use super::source::Source;
-use super::variants;
 use crate::cell::Cell;
 use crate::recording::rerun::Opening;
 use crate::report::Style;
-use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate, load_any};
+use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate};
 
 #[derive(Debug, Args)]
 pub(in super::super) struct RunArguments {
@@ -83,38 +82,6 @@ impl RunArguments {
     }
 }
 
-/// Runs a scenario, or each of its variants.
-pub(in super::super) fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
-    let mut variants = product(&arguments.settings)?;
-    let Some(template) = (!arguments.settings.is_empty() || !arguments.effects.is_empty())
-        .then(|| ScenarioTemplate::read(&arguments.scenario))
-        .transpose()?
-    else {
-        return one(arguments, load_any(&arguments.scenario)?, None);
-    };
-    let effects = put_in(&arguments.effects, &template)?;
-    for variant in &mut variants {
-        variant.edits.splice(0..0, effects.iter().cloned());
-    }
-    if let Some(input) = (variants.iter())
-        .map(|variant| arguments.folder().join(&variant.name).join(VARIED))
-        .find(|copy| is_same(copy, &arguments.scenario))
-    {
-        let file = input.display().to_string();
-        return Err(AppError::Overwrites { file });
-    }
-    let [alone] = variants.as_slice() else {
-        if arguments.view.is_some() {
-            let runs = variants.len();
-            return Err(AppError::ViewOfSeveral { runs });
-        }
-        return variants::run(arguments, &template, &variants);
-    };
-    let scenario =
-        (template.with(&alone.edits)).map_err(|error| blamed(error, &alone.edits, &template))?;
-    one(arguments, scenario, Some((&template, alone)))
-}
-
 /// Changes of a scenario by the effects that are asked for.
 pub(in super::super) fn put_in(
     requests: &[EffectRequest],
@@ -138,7 +105,8 @@ pub(in super::super) fn put_in(
     Ok(edits)
 }
 
-fn one(
+/// Runs one scenario; where it is varied, of that template.
+pub(super) fn one(
     arguments: &RunArguments,
     scenario: AnyScenario,
     varied: Option<(&ScenarioTemplate, &Variant)>,

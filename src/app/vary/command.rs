@@ -9,7 +9,8 @@ use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, REPORT, Standing, output_folder};
 use super::super::output::say;
 use super::super::run::put_in;
-use super::drivers::{self, SWEEP, Swept};
+use super::drivers::{SWEEP, Swept};
+use super::page::page_of;
 use super::planned::Sweep;
 use super::table::{RUNS, write_table};
 use super::work::Worker;
@@ -177,7 +178,7 @@ fn finish(
     write_table(plan, sweep.template.is_bench(), &table)?;
     let swept = Swept::of(sweep, &Plan::open(plan)?.head, &table)?;
     let document = serde_json::to_string_pretty(&swept)?;
-    let page = drivers::page_of(&swept, &table)?;
+    let page = page_of(&swept, &table)?;
     let folder = OutputFolder::prepare(out, &[], Standing::Keep)?;
     folder.write_texts(&[(REPORT, &page), (SWEEP, &document)])?;
     if arguments.json {

@@ -8,11 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::super::error::AppError;
 use super::super::report::Label;
 use super::super::run::FINISHED;
-use super::page::page;
 use super::planned::Sweep;
-use super::table::RUNS;
 use crate::design::{number, spoken};
-use crate::page::html;
 use crate::quantity::{column, counted};
 use crate::recording::RecordingError;
 use crate::recording::long_table::{LongColumn, read_columns};
@@ -360,10 +357,4 @@ fn ends(table: &Path) -> Result<Ends, RecordingError> {
         }
     }
     Ok((counts, told))
-}
-
-/// The page of a sweep, of its document and the table beside it.
-pub(in super::super) fn page_of(swept: &Swept, table: &Path) -> Result<String, AppError> {
-    debug_assert!(table.ends_with(RUNS));
-    Ok(html(&page(swept, table)?))
 }

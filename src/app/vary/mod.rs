@@ -8,7 +8,8 @@ mod table;
 mod work;
 
 pub(super) use command::{EXAMPLES, VaryArguments, run};
-pub(super) use drivers::{SWEEP, page_of};
+pub(super) use drivers::SWEEP;
+pub(super) use page::page_of;
 pub(super) use planned::Files;
 pub(super) use table::RUNS;
 pub(super) use work::{KIND, Worker, told};

@@ -8,7 +8,7 @@ use super::drivers::{MetricOfRuns, Swept, columns, percent, short};
 use super::table::RUNS;
 use crate::design::{number as plain, spoken};
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
-use crate::page::{Block, Page, PageSection, PageTable, TableCell, Tone};
+use crate::page::{Block, Page, PageSection, PageTable, TableCell, Tone, html};
 use crate::quantity::{UNKNOWN, column, number};
 use crate::recording::long_table::LongColumn;
 use crate::stats::quantiles;
@@ -21,8 +21,13 @@ const POINTS: usize = 2000;
 /// Steps of a curve of shares.
 const STEPS: usize = 100;
 
-/// The page.
-pub(super) fn page(swept: &Swept, table: &Path) -> Result<Page<'static>, AppError> {
+/// The page of a sweep, of its document and the table beside it.
+pub(in super::super) fn page_of(swept: &Swept, table: &Path) -> Result<String, AppError> {
+    debug_assert!(table.ends_with(RUNS));
+    Ok(html(&page(swept, table)?))
+}
+
+fn page(swept: &Swept, table: &Path) -> Result<Page<'static>, AppError> {
     let clean = !swept.codes.keys().any(|code| *code > 0);
     let stopped = swept.stopped.iter();
     let stopped = stopped.map(|(run, reason)| format!("Run {run}: {reason}"));

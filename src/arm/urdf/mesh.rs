@@ -1,6 +1,6 @@
 //! Finds and reads the mesh files that a URDF file names.
 
-use super::{ArmOptions, visuals};
+use super::ArmOptions;
 use crate::mesh_file::{self, Up};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -67,8 +67,13 @@ fn scaled_part(part: mesh_file::MeshPart, scale: DVec3, file: &Path) -> Result<M
     Ok(MeshPart {
         vertices,
         triangles,
-        colour: part.colour.map(visuals::bytes),
+        colour: part.colour.map(bytes),
     })
+}
+
+/// Shares of one to bytes.
+pub(super) fn bytes(rgba: [f64; 4]) -> [u8; 4] {
+    rgba.map(|share| (share.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
 /// The files that a robot's meshes lead to, each once.

@@ -1,6 +1,6 @@
 //! Shapes in the file that are drawn, their poses and colours.
 
-use super::mesh::{self, MeshPart};
+use super::mesh::{self, MeshPart, bytes};
 use super::tree::{Placed, Tree, pose_of};
 use super::{ArmOptions, Refusal, Visual, VisualShape};
 use glam::DVec3;
@@ -75,11 +75,6 @@ fn colour_of(material: &Material, named: &BTreeMap<&str, [u8; 4]>) -> Option<[u8
         Some(colour) => Some(bytes(*colour.rgba)),
         None => named.get(material.name.as_str()).copied(),
     }
-}
-
-/// Shares of one to bytes.
-pub(super) fn bytes(rgba: [f64; 4]) -> [u8; 4] {
-    rgba.map(|share| (share.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
 type Shape = (VisualShape, Option<[u8; 4]>, DPose3);

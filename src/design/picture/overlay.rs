@@ -1,14 +1,14 @@
 //! The overlay of the data: limits with their words, the starting and the chosen design with their values.
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{CHOSEN, Chart, DARK, Drawn, FONT, GREY, LIMIT, PX, TEXT, inside, limits_of};
+use super::style::{
+    Area, CHOSEN, Chart, DARK, Drawn, FONT, GREY, LIMIT, PX, TEXT, inside, limits_of,
+};
 use crate::design::label::{raised, with_unit};
 use crate::design::result::{LimitState, StudyResult};
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Corners = [(i32, i32); 2];
 
 /// A limit on an axis, in the picture's units.

@@ -1,12 +1,10 @@
 //! The draws as a picture: how the objective and each limited quantity are distributed over them, with the limits.
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{
-    CHOSEN, DARK, Drawn, FONT, FRONT, GREY, GRID, LARGE, LIMIT, MARGIN, PX, TEXT, WIDTH, extent,
-    limits_of, tick,
+use super::style::{
+    Area, CHOSEN, DARK, Drawn, FONT, FRONT, GREY, GRID, LARGE, LIMIT, MARGIN, PX, TEXT, extent,
+    limits_of, svg, tick, written,
 };
 use crate::design::error::DesignError;
 use crate::design::label::axis;
@@ -26,19 +24,11 @@ pub fn robustness_svg(result: &StudyResult) -> Result<Option<String>, DesignErro
         return Ok(None);
     };
     let rows = robustness.quantiles.len().div_ceil(2).max(1) as i32;
-    let height = HEAD + rows * ROW;
-    let mut svg = String::new();
-    draw(&mut svg, result, robustness, height)
-        .map_err(|error| DesignError::Picture(error.to_string()))?;
-    let size = format!("width=\"{WIDTH}\" height=\"{height}\"");
-    let shown = format!("width=\"{}\" height=\"{}\"", WIDTH / PX, height / PX);
-    Ok(Some(svg.replacen(&size, &shown, 1)))
+    svg(HEAD + rows * ROW, |root| draw(root, result, robustness)).map(Some)
 }
 
-fn draw(svg: &mut String, result: &StudyResult, robustness: &Robustness, height: i32) -> Drawn {
-    let root = SVGBackend::with_string(svg, (WIDTH as u32, height as u32)).into_drawing_area();
-    root.fill(&WHITE)?;
-    heading(&root, result, robustness)?;
+fn draw(root: &Area<'_>, result: &StudyResult, robustness: &Robustness) -> Drawn {
+    heading(root, result, robustness)?;
     let (_, panels) = root.split_vertically(HEAD);
     let rows = robustness.quantiles.len().div_ceil(2).max(1);
     for (place, area) in panels.split_evenly((rows, 2)).iter().enumerate() {
@@ -46,27 +36,19 @@ fn draw(svg: &mut String, result: &StudyResult, robustness: &Robustness, height:
             panel(area, result, robustness, place)?;
         }
     }
-    root.present()
+    Ok(())
 }
 
-fn heading(
-    root: &DrawingArea<SVGBackend<'_>, Shift>,
-    result: &StudyResult,
-    robustness: &Robustness,
-) -> Drawn {
-    let style = |size: i32| {
-        let anchor = Pos::new(HPos::Left, VPos::Center);
-        (FONT, size).into_font().color(&DARK).pos(anchor)
-    };
+fn heading(root: &Area<'_>, result: &StudyResult, robustness: &Robustness) -> Drawn {
     let title = result.title.replace(char::is_control, " ");
-    root.draw(&Text::new(title, (40 * PX, 26 * PX), style(LARGE)))?;
+    root.draw(&Text::new(title, (40 * PX, 26 * PX), written(LARGE)))?;
     let share = &robustness.all_limits;
     let [low, high] = share.interval_percent;
     let words = format!(
         "{} of {} draws at the chosen design keep all limits: {:.0} %, with 95 % confidence {low:.0} to {high:.0} %",
         share.kept, robustness.runs, share.share_percent
     );
-    root.draw(&Text::new(words, (40 * PX, 52 * PX), style(TEXT)))?;
+    root.draw(&Text::new(words, (40 * PX, 52 * PX), written(TEXT)))?;
     let y = 76 * PX;
     let legend = [
         (40, FRONT, "draw that keeps all limits"),
@@ -74,27 +56,22 @@ fn heading(
     ];
     for (x, colour, words) in legend {
         root.draw(&Circle::new((x * PX, y), 4 * PX, colour.filled()))?;
-        root.draw(&Text::new(words, ((x + 12) * PX, y), style(TEXT)))?;
+        root.draw(&Text::new(words, ((x + 12) * PX, y), written(TEXT)))?;
     }
     let line = [(490 * PX, y), (516 * PX, y)];
     root.draw(&PathElement::new(line, DARK.stroke_width(2 * PX as u32)))?;
     root.draw(&Text::new(
         "chosen design as it is",
         (524 * PX, y),
-        style(TEXT),
+        written(TEXT),
     ))?;
     let corners = [(720 * PX, y - 7 * PX), (746 * PX, y + 7 * PX)];
     root.draw(&Rectangle::new(corners, LIMIT.mix(0.25).filled()))?;
-    root.draw(&Text::new("beyond a limit", (754 * PX, y), style(TEXT)))
+    root.draw(&Text::new("beyond a limit", (754 * PX, y), written(TEXT)))
 }
 
 /// One quantity: the share of the draws that lies at or below each value.
-fn panel(
-    area: &DrawingArea<SVGBackend<'_>, Shift>,
-    result: &StudyResult,
-    robustness: &Robustness,
-    place: usize,
-) -> Drawn {
+fn panel(area: &Area<'_>, result: &StudyResult, robustness: &Robustness, place: usize) -> Drawn {
     let told = &robustness.quantiles[place];
     let mut values: Vec<(f64, bool)> = (robustness.draws.iter())
         .filter_map(|draw| Some((draw.metrics[place]?, draw.kept)))

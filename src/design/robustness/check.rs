@@ -1,8 +1,7 @@
 //! From `[robustness]` to what is drawn.
 
 use super::{DEFAULT_RUNS, Distribution, Scatter, Scattering};
-use crate::design::file::{RobustnessKeys, ScatterKeys};
-use crate::design::study::DEFAULT_SEED;
+use crate::design::file::{DEFAULT_SEED, RobustnessKeys, ScatterKeys};
 use crate::design::variable::Variable;
 use crate::scenario::ScenarioError;
 use crate::scenario::check::Section;

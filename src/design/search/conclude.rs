@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{Good, best, good};
-use crate::design::archive::{Archive, Judged};
+use crate::design::archive::{Archive, Good, Judged};
 use crate::design::error::DesignError;
 use crate::design::front::{non_dominated, thinned};
 use crate::design::goal::Goal;
@@ -23,10 +22,10 @@ pub(super) fn conclude(
     archive: &Archive<'_>,
     goal: &Goal,
     start: &Good,
+    (chosen, score): Good,
     budget: usize,
 ) -> Result<StudyResult, DesignError> {
     let study = archive.study();
-    let (chosen, score) = best(archive, goal)?;
     // What these try is apart from the search: it may lie outside bounds and limits, and it is not there to be chosen.
     let aside = archive.aside();
     aside.begin(study.evaluations - budget, study.evaluations);
@@ -34,11 +33,7 @@ pub(super) fn conclude(
     let active_limits = active_limits(&aside, goal, &chosen, &score, budget.saturating_sub(steps))?;
     let sensitivities = sensitivities(&aside, &chosen, &score);
     let all = archive.all();
-    let feasible: Vec<Good> = all
-        .iter()
-        .filter_map(good)
-        .filter(|(_, s)| s.feasible())
-        .collect();
+    let feasible = archive.feasible();
     let points: Vec<[f64; 2]> = feasible
         .iter()
         .map(|(_, s)| [s.trade_off, s.objective])

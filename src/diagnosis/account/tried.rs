@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::super::answer::Estimate;
 use super::super::details::{Departure, TriedReport};
+use super::super::estimate::Estimate;
 use super::super::estimate::Number;
 use super::super::extent::Largest;
 use super::super::finding::Diagnosis;

@@ -1,6 +1,7 @@
 //! An answer with the faults of its data.
 
-use super::super::answer::{Answer, Estimate};
+use super::super::answer::Answer;
+use super::super::estimate::Estimate;
 use super::super::statements::TRUSTED;
 use super::super::words::{CHANNEL_WORDS, listed};
 use super::fault::{DataFault, Kind};

@@ -1,14 +1,15 @@
 //! A run as the simulation logs it, and its results by the same measure as the recorded ones.
 
-use super::super::flange::{Run, RunMetrics};
+use super::super::flange::{MIDDLE, Run, RunMetrics, deviation, mean};
 use super::course::RunCourse;
 use super::report::SimulatedResult;
-use super::sliding::spreads;
 use crate::plant::flange::{FlangeCourse, FlangeModel, Reader, Ripple, SAMPLED, flange_force};
 use crate::stats::median;
 
 /// Time before contact from which a run is simulated [s].
 const LEAD: f64 = 0.3;
+/// Time over which a sliding force is averaged [s].
+const SLOW: f64 = 0.05;
 /// Instants of reading that are looked at, by the period [1]: which of them a run will have nobody knows.
 pub(super) const PHASES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
@@ -62,6 +63,21 @@ impl<'a> Logged<'a> {
             force,
         }
     }
+}
+
+/// Spread of the force, and of its averages [N], while the arm slides [s].
+pub(super) fn spreads(time: &[f64], force: &[f64], slides: [f64; 2]) -> [f64; 2] {
+    let end = time[time.len() - 1];
+    let [from, to] = MIDDLE.map(|share| slides[0] + share * (slides[1] - slides[0]));
+    let at = |t: f64| time.partition_point(|own| *own < t);
+    let middle = &force[at(from)..at(to)];
+    if middle.len() < 2 {
+        return [0.0; 2];
+    }
+    let period = (end - time[0]) / (time.len() - 1) as f64;
+    let width = ((SLOW / period).round() as usize).clamp(1, middle.len());
+    let means: Vec<f64> = middle.windows(width).map(mean).collect();
+    [deviation(middle), deviation(&means)]
 }
 
 /// What the log of a run would have of a course [N], with readings at a phase [s].

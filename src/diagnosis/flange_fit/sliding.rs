@@ -1,32 +1,14 @@
-//! The arm's ripple, of the force while it slides: its size meets the spread of the force, its bandwidth the spread of the force averaged over [`SLOW`].
+//! The arm's ripple, of the force while it slides: its size meets the spread of the force, its bandwidth the spread of the force averaged over a while.
 
-use super::super::flange::{MIDDLE, deviation, mean};
-use super::prediction::{Logged, logged};
+use super::prediction::{Logged, logged, spreads};
 use crate::plant::flange::{FlangeModel, Ripple};
 
-/// Time of the average [s].
-const SLOW: f64 = 0.05;
 /// Bandwidths looked at [Hz].
 const BANDWIDTHS: [f64; 11] = [
     4.0, 6.0, 8.0, 11.0, 15.0, 21.0, 29.0, 40.0, 55.0, 76.0, 105.0,
 ];
 /// Ripple: least and largest [1], halvings of what is between.
 const RATIOS: (f64, f64, u32) = (1e-4, 1.0, 12);
-
-/// Spread of the force, and of its averages [N], while the arm slides [s].
-pub(super) fn spreads(time: &[f64], force: &[f64], slides: [f64; 2]) -> [f64; 2] {
-    let end = time[time.len() - 1];
-    let [from, to] = MIDDLE.map(|share| slides[0] + share * (slides[1] - slides[0]));
-    let at = |t: f64| time.partition_point(|own| *own < t);
-    let middle = &force[at(from)..at(to)];
-    if middle.len() < 2 {
-        return [0.0; 2];
-    }
-    let period = (end - time[0]) / (time.len() - 1) as f64;
-    let width = ((SLOW / period).round() as usize).clamp(1, middle.len());
-    let means: Vec<f64> = middle.windows(width).map(mean).collect();
-    [deviation(middle), deviation(&means)]
-}
 
 /// The ripple with which a flange spreads the force as some runs that slide do; none without such runs.
 pub(super) fn ripple(model: &FlangeModel, runs: &[Logged<'_>]) -> Option<Ripple> {

@@ -3,10 +3,11 @@
 use super::law::{Deviation, TableRow};
 use super::select::{Left, RemovalDiagnosis, Rival, Told as Value};
 use crate::diagnosis::account::SectionKind;
-use crate::diagnosis::answer::{Alternative, Answer, Estimate, FoundEffect, SCHEMA, Verdict};
+use crate::diagnosis::answer::{Alternative, Answer, FoundEffect, SCHEMA, Verdict};
 use crate::diagnosis::details::{
     DETAILS_SCHEMA, Details, FamilyMember, FamilyReport, NextExperiment, PredictionError,
 };
+use crate::diagnosis::estimate::Estimate;
 use crate::diagnosis::family::family;
 use crate::diagnosis::statements::{TRUSTED, doubts_of, in_headline, stated};
 use crate::quantity::{counted, significant};

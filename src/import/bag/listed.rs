@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use yaml_rust2::{Yaml, YamlLoader};
 
-use super::store::plain_name;
+use crate::import::packed::plain_name;
 
 /// Name of the file, and bytes of it that are read at most.
 const NAME: &str = "metadata.yaml";

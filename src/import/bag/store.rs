@@ -11,13 +11,12 @@ use tempfile::TempDir;
 use super::listed::Listed;
 use super::message::{Message, There};
 use super::{mcap_file, sqlite_file};
-use crate::import::packed::{LARGEST_FILE, begins_packed, unpacked};
+use crate::import::packed::{LARGEST_FILE, begins_packed, plain_name, unpacked};
 use crate::import::rows::Remark;
 use crate::import::signature;
 
-/// Endings of files that are bags, and of those that are packed.
+/// Endings of files that are bags.
 const ENDINGS: [&str; 2] = ["mcap", "db3"];
-const PACKED: [&str; 3] = ["zstd", "zst", "gz"];
 /// Beginning of a SQLite file (its format, 1.3).
 const SQLITE: &[u8] = b"SQLite format 3\0";
 
@@ -181,15 +180,6 @@ fn is_named_as_bag(file: &Path) -> bool {
     ENDINGS
         .iter()
         .any(|ending| name.ends_with(&format!(".{ending}")))
-}
-
-/// A file's name without the ending of what is packed.
-pub(super) fn plain_name(file: &Path) -> PathBuf {
-    let ending = file.extension().and_then(|ending| ending.to_str());
-    match ending {
-        Some(ending) if PACKED.contains(&ending) => file.with_extension(""),
-        _ => file.to_owned(),
-    }
 }
 
 /// Whether a file is a bag that is packed.

@@ -1,8 +1,9 @@
 //! The clocks of a log: one for all of its columns, or one for each group behind a column of times.
 
-use super::names::{Thing, parts, said};
+use super::assign::described;
+use super::names::parts;
 use super::seen::{Cells, Looked, Seen};
-use super::time::{is_time, name_of};
+use super::time::is_time;
 
 /// Columns with their clock.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,7 +56,7 @@ pub(super) fn clocks(looked: &Looked, logs: usize) -> Clocks {
     }
     let names: Vec<String> = times
         .iter()
-        .map(|place| name_of(&columns[*place]))
+        .map(|place| described(&columns[*place]))
         .collect();
     Clocks::Open(format!(
         "{} may all be times: which of them is the clock of which column? A [[file]] for each clock, the further ones with `same_log = true`, has the columns of that clock",
@@ -168,11 +169,4 @@ fn same(columns: &[Seen], clocks: &[usize]) -> bool {
         !own.is_empty() && own == first && unit(*place) == unit(clocks[0])
     };
     clocks.iter().all(alike)
-}
-
-/// Whether a name says times.
-pub(super) fn says_time(name: &str) -> bool {
-    said(name)
-        .thing
-        .is_some_and(|(thing, _)| thing == Thing::Time)
 }

@@ -91,7 +91,7 @@ fn of_texts(texts: Vec<Option<String>>) -> Cells {
         return Cells::Numbers(numbers);
     }
     if most(filled.iter().filter(|text| stamps::is_stamp(text)).count()) {
-        return text::stamped(&filled);
+        return Cells::stamped(&filled);
     }
     Cells::Other
 }

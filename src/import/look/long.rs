@@ -3,7 +3,6 @@
 use super::names::{self, Thing};
 use super::seen::{Cells, Seen, Variable};
 use super::table::{Kind, Table};
-use super::text::stamped;
 use super::units;
 use crate::import::text::Record;
 
@@ -66,7 +65,7 @@ fn by(table: &Table, rows: &[Numbered], columns: &[Seen], chooser: usize) -> Opt
             Cells::States(numbers) => Cells::States(own.iter().map(|row| numbers[*row]).collect()),
             Cells::Stamps { .. } => {
                 let field = |row: &usize| rows[*row].1.get(place).unwrap_or("").to_owned();
-                stamped(&own.iter().map(field).collect::<Vec<_>>())
+                Cells::stamped(&own.iter().map(field).collect::<Vec<_>>())
             }
             Cells::Other => Cells::Other,
         };
@@ -98,9 +97,7 @@ fn by(table: &Table, rows: &[Numbered], columns: &[Seen], chooser: usize) -> Opt
 fn value_column(columns: &[Seen], chooser: usize) -> Option<usize> {
     let may = |place: &usize| {
         let column = &columns[*place];
-        let is_time = names::said(&column.name)
-            .thing
-            .is_some_and(|(thing, _)| thing == Thing::Time);
+        let is_time = names::says_time(&column.name);
         let moves = column.range().is_some_and(|[low, high]| low < high);
         *place != chooser && !is_time && moves && matches!(column.cells, Cells::Numbers(_))
     };

@@ -172,6 +172,13 @@ fn push_plain(text: &mut String, c: char) {
     }
 }
 
+/// Whether a name says times.
+pub(super) fn says_time(name: &str) -> bool {
+    said(name)
+        .thing
+        .is_some_and(|(thing, _)| thing == Thing::Time)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

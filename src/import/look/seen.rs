@@ -1,8 +1,10 @@
 //! A log as it was seen: its columns, and how sure what is said of them is.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use crate::import::map::{Column, Pressure};
+use crate::import::stamps;
 use crate::import::units::LogUnit;
 
 /// A map's text with what is left to be told by its owner.
@@ -75,6 +77,29 @@ pub(super) enum Cells {
     },
     /// Something else.
     Other,
+}
+
+impl Cells {
+    /// Stamps, as they are written.
+    pub fn stamped(texts: &[String]) -> Self {
+        let filled: Vec<String> = texts
+            .iter()
+            .filter(|text| !text.is_empty())
+            .cloned()
+            .collect();
+        let first = filled.first().map_or("", String::as_str);
+        let distinct: BTreeSet<&String> = filled.iter().collect();
+        let read = stamps::nanoseconds(&filled, stamps::Reading::default());
+        Self::Stamps {
+            has: stamps::parts(first).unwrap_or_default(),
+            distinct: distinct.len(),
+            rows: filled.len(),
+            because: Because::certain(format!("stamps such as `{first}`")),
+            problem: (read.as_ref().err())
+                .map(|unread| format!("`{}` needs {}", filled[unread.index], unread.expected)),
+            times: read.unwrap_or_default(),
+        }
+    }
 }
 
 /// A column of a log.

@@ -430,7 +430,7 @@ fn columns(
             cells: match kind {
                 Kind::Number => Cells::Numbers(numbers()),
                 Kind::State => Cells::States(numbers()),
-                Kind::Stamp => stamped(&rows.iter().map(field).collect::<Vec<_>>()),
+                Kind::Stamp => Cells::stamped(&rows.iter().map(field).collect::<Vec<_>>()),
                 Kind::Text | Kind::Empty => Cells::Other,
             },
         }
@@ -464,26 +464,5 @@ fn agreed(name: Option<SaidUnit>, row: Option<SaidUnit>) -> Option<SaidUnit> {
             Some(name)
         }
         (name, row) => name.or(row),
-    }
-}
-
-/// A column of stamps.
-pub(super) fn stamped(texts: &[String]) -> Cells {
-    let filled: Vec<String> = texts
-        .iter()
-        .filter(|text| !text.is_empty())
-        .cloned()
-        .collect();
-    let first = filled.first().map_or("", String::as_str);
-    let distinct: BTreeSet<&String> = filled.iter().collect();
-    let read = stamps::nanoseconds(&filled, stamps::Reading::default());
-    Cells::Stamps {
-        has: stamps::parts(first).unwrap_or_default(),
-        distinct: distinct.len(),
-        rows: filled.len(),
-        because: Because::certain(format!("stamps such as `{first}`")),
-        problem: (read.as_ref().err())
-            .map(|unread| format!("`{}` needs {}", filled[unread.index], unread.expected)),
-        times: read.unwrap_or_default(),
     }
 }

@@ -1,7 +1,7 @@
 //! Which column of a log holds the times, and in what unit.
 
-use super::clocks::says_time;
-use super::names::{parts, said};
+use super::assign::described;
+use super::names::{parts, said, says_time};
 use super::seen::{Because, Cells, Looked, SaidRate, SaidUnit, Seen, TimeSeen};
 use super::units::shown;
 use crate::import::map::Column;
@@ -577,11 +577,6 @@ fn by_stamps(columns: &[Seen], place: usize, rise: &Rise) -> Option<&'static Log
     Some(fitting.find(|unit| unit.zero != 0.0).unwrap_or(first))
 }
 
-/// A column for people.
-pub(super) fn name_of(column: &Seen) -> String {
-    super::assign::described(column)
-}
-
 /// Why no column is taken for times, with what stands in the first ones.
 pub(super) fn nothing_found(looked: &Looked) -> String {
     let mut what = "no column rises from row to row or holds stamps".to_owned();
@@ -589,7 +584,7 @@ pub(super) fn nothing_found(looked: &Looked) -> String {
     let others =
         others.filter(|(column, text)| matches!(column.cells, Cells::Other) && !text.is_empty());
     for (column, text) in others.take(2) {
-        what += &format!("; {} holds texts such as `{text}`", name_of(column));
+        what += &format!("; {} holds texts such as `{text}`", described(column));
     }
     let named = looked
         .columns
@@ -598,7 +593,7 @@ pub(super) fn nothing_found(looked: &Looked) -> String {
     if let Some(column) = named
         && matches!(looked.time, TimeSeen::Column)
     {
-        what += &format!("; {} does not rise throughout", name_of(column));
+        what += &format!("; {} does not rise throughout", described(column));
     }
     what + "; where rows follow each other at a rate, `sample_rate_hz` takes its place"
 }

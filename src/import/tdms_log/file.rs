@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 
 use super::bytes::{Bytes, Ended};
-use super::scaling::Scales;
+use super::scaling::{Property, Scales};
 use crate::recording::table::Cells;
 
 const LEAD_IN: usize = 28;
@@ -26,15 +26,6 @@ const AS_BEFORE: u32 = 0;
 const DAQMX: [u32; 3] = [0x1269, 0x126a, 0x1369];
 /// Type of texts.
 const TEXT: u32 = 0x20;
-
-/// A property of an object.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::import) enum Property {
-    Number(f64),
-    Text(String),
-    /// Since 1970 [ns]; none where it is zero.
-    Stamp(Option<i64>),
-}
 
 /// Times of a channel as its properties say.
 #[derive(Debug, Clone, Copy, PartialEq)]

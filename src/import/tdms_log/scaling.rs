@@ -1,8 +1,15 @@
-//! Scales that make quantities of a converter's numbers, as the properties of a channel say (`NI_Scale[0]_Linear_Slope`): linear ones and polynomials.
+//! Properties of an object, and the scales that make quantities of a converter's numbers, as the properties of a channel say (`NI_Scale[0]_Linear_Slope`): linear ones and polynomials.
 
 use std::collections::BTreeMap;
 
-use super::file::Property;
+/// A property of an object.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::import) enum Property {
+    Number(f64),
+    Text(String),
+    /// Since 1970 [ns]; none where it is zero.
+    Stamp(Option<i64>),
+}
 
 /// Input of a scale that takes the numbers as they are stored.
 const RAW: u32 = u32::MAX;

@@ -15,9 +15,10 @@ use super::options::RerunOptions;
 use super::rrd::{RrdError, RrdWriter};
 use super::shading::shade;
 use super::timelines::Axes;
+use crate::recording::colour::Colour;
 use crate::recording::error_scale::ErrorScale;
 use crate::recording::scene::{
-    CollisionShape, Colour, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
+    CollisionShape, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
 };
 
 /// Entity of which everything in space is a child.

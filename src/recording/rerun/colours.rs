@@ -1,7 +1,7 @@
 //! Colours that people with any colour vision can tell apart, the same for a signal in every run.
 
 use crate::recording::board::BoardRole;
-use crate::recording::scene::Colour;
+use crate::recording::colour::Colour;
 
 /// The palette of Okabe and Ito (2008), without its black; its light colours darker, so that all are seen on the viewer's dark and on its light ground.
 pub(super) const ORANGE: Colour = [200, 132, 0, 255];

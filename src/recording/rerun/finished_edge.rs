@@ -7,8 +7,9 @@ use super::colours::{PURPLE, rerun_colour};
 use super::options::SUMMARY;
 use super::rrd::{RrdError, RrdWriter};
 use super::timelines::Axes;
+use crate::recording::colour::Colour;
 use crate::recording::finished_edge::FinishedEdge;
-use crate::recording::scene::{Colour, Scene};
+use crate::recording::scene::Scene;
 
 /// The burr before any work: a ribbon that stands on the edge.
 pub(super) const BEFORE: &str = "/cell/edge/before";

@@ -5,7 +5,8 @@ use super::colours::{
     BLUE, GREEN, GREY, ORANGE, PALE_GREY, PALETTE, PURPLE, SKY_BLUE, VERMILLION, YELLOW,
 };
 use super::options::FOLLOW_PHASE;
-use crate::recording::scene::{Colour, SceneLimits};
+use crate::recording::colour::Colour;
+use crate::recording::scene::SceneLimits;
 use crate::recording::schema::{self, JointSignal, PlotGroup};
 use crate::recording::{Recording, RecordingError, Unit};
 

@@ -17,10 +17,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::super::check::{Section, plain};
-use super::super::document::{Document, join};
+use super::super::document::Document;
 use super::super::effects::as_written;
 use super::super::error::ScenarioError;
-use super::super::suggestion::nearest;
+use super::super::suggestion::{join, nearest};
 use super::entry::Entry;
 use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, Port, Variable};
 

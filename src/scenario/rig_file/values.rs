@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::super::check::{Section, checked, plain};
-use super::super::document::{Document, join};
+use super::super::document::Document;
 use super::super::error::ScenarioError;
-use super::super::suggestion::advice;
+use super::super::suggestion::{advice, join};
 use super::super::units::Unit;
 use super::keys::{Numbers, RecordingsKeys, RigKeys, SharesKeys, sections};
 use super::number::Number;

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use toml::{Table, Value};
 
 use super::super::AnyScenario;
-use super::super::document::join;
 use super::super::sections::{bench_sections, model_sections, scenario_sections};
+use super::super::suggestion::join;
 use super::super::units::Unit;
 use super::{MINIMAL, MINIMAL_BENCH, read_any, scenarios};
 use crate::plant::{Number, registry};

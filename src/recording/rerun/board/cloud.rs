@@ -4,9 +4,9 @@ use ::rerun::{LineStrips2D, Points2D, Radius};
 
 use super::super::colours::role_colour;
 use crate::recording::board::Cloud;
+use crate::recording::colour::Colour;
 use crate::recording::rerun::colours::{GREY, PALE_GREY, rerun_colour};
 use crate::recording::rerun::rrd::{RrdError, RrdWriter};
-use crate::recording::scene::Colour;
 
 /// Width and height of the field in which points lie, in units of the view.
 pub(super) const FIELD: [f64; 2] = [1600.0, 900.0];

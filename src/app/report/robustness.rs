@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use super::{bare, limit_words, list, named, quantity, spoken, text};
-use crate::design::number;
+use super::design::{bare, limit_words, list, named, quantity, text};
+use crate::design::{number, spoken};
 use crate::page::{Block, PageSection, PageTable, TableCell};
 use crate::quantity::UNKNOWN;
 
