@@ -328,7 +328,9 @@ fn planted_circles_of_three_and_of_two_are_found() {
             ("d.rs", "use crate::{a::A, b::B};"),
         ]))
     };
-    let of = |files: &[&str]| BTreeSet::from_iter(files.iter().map(|file| (*file).to_owned()));
+    let of = |files: &[&str]| -> BTreeSet<String> {
+        files.iter().map(|file| (*file).to_owned()).collect()
+    };
     let three = "use crate::{d, a::{self as x}}; pub fn g() { x::A; d::nothing }";
     assert_eq!(found(three), [of(&["a.rs", "b.rs", "c.rs"])]);
     let two = "use crate::b::B; pub fn g() {}";

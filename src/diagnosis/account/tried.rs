@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::super::details::{Departure, TriedReport};
-use super::super::estimate::Estimate;
-use super::super::estimate::Number;
+use super::super::estimate::{Estimate, Number};
 use super::super::extent::Largest;
 use super::super::finding::Diagnosis;
 use super::super::words::{listed, odds, percent, with_interval_in_si};
