@@ -57,6 +57,8 @@ struct Count {
     passed: AtomicU64,
     /// Evaluations at the checkpoint that stopped the search; 0 where none did.
     stopped: AtomicU64,
+    /// Evaluations spent on formulas.
+    on_formulas: AtomicU64,
     /// Evaluations from which no formula was asked for any more; 0 where all were.
     without_formulas: AtomicU64,
 }
@@ -91,15 +93,21 @@ impl Effort {
         }
     }
 
-    /// A checkpoint of the search for formulas: whether one is to be asked for no more, past so many evaluations or at a limit.
-    pub(super) fn is_past(&self, most: u64) -> bool {
-        let evaluations = self.evaluations();
-        let past = evaluations >= most;
-        if past {
+    /// What is found in a search for formulas; nothing where so many evaluations were spent on such before, or at a limit. A checkpoint.
+    pub(super) fn on_formulas<T>(&self, most: u64, search: impl FnOnce() -> Vec<T>) -> Vec<T> {
+        let begun = self.evaluations();
+        if self.0.on_formulas.load(Ordering::Relaxed) >= most {
             let first = &self.0.without_formulas;
-            let _ = first.compare_exchange(0, evaluations, Ordering::Relaxed, Ordering::Relaxed);
+            let _ = first.compare_exchange(0, begun, Ordering::Relaxed, Ordering::Relaxed);
+            return Vec::new();
         }
-        past || self.is_spent()
+        if self.is_spent() {
+            return Vec::new();
+        }
+        let found = search();
+        let spent = self.evaluations() - begun;
+        self.0.on_formulas.fetch_add(spent, Ordering::Relaxed);
+        found
     }
 
     /// In a sentence for people that no formula was asked for any more, where that is so.
@@ -167,18 +175,22 @@ mod tests {
         assert!(timed.is_spent());
     }
 
+    /// A planted law was not looked for, as the known effects had taken so many evaluations before: what is spent on formulas counts alone.
     #[test]
     fn past_its_evaluations_no_formula_is_asked_for_and_that_is_said_with_where_it_began() {
         let effort = Effort::default();
-        (0..9).for_each(|_| effort.count());
-        assert!(!effort.is_past(10));
+        let search = || {
+            effort.on_formulas(10, || {
+                (0..6).for_each(|_| effort.count());
+                vec![()]
+            })
+        };
+        (0..20).for_each(|_| effort.count());
+        assert_eq!([search().len(), search().len()], [1, 1]);
         assert_eq!(effort.note_of_formulas(), None);
-        (0..2).for_each(|_| effort.count());
-        assert!(effort.is_past(10));
-        effort.count();
-        assert!(effort.is_past(10));
+        assert_eq!([search().len(), search().len()], [0, 0]);
         let note = effort.note_of_formulas().unwrap();
-        assert!(note.contains("after 11 model evaluations"), "{note}");
+        assert!(note.contains("after 32 model evaluations"), "{note}");
         // The search itself goes on.
         assert!(!effort.report().stopped);
     }

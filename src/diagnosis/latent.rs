@@ -331,9 +331,18 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
-        if self.asks_no_more() {
-            return Vec::new();
-        }
+        let most = self.settings.formulas_within;
+        let effort = &self.evidence.effort;
+        effort.on_formulas(most, || self.formulas_beside(base, rival, scale, observer))
+    }
+
+    fn formulas_beside(
+        &self,
+        base: &Hypothesis,
+        rival: f64,
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
         let base = &self.held(base);
         let noise = self.left_alone(scale);
         let limit = noise + PROMISING * (rival - noise).max(0.0);
@@ -372,9 +381,18 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
-        if self.asks_no_more() {
-            return Vec::new();
-        }
+        let most = self.settings.formulas_within;
+        let effort = &self.evidence.effort;
+        effort.on_formulas(most, || self.curves_beside(base, rival, scale, observer))
+    }
+
+    fn curves_beside(
+        &self,
+        base: &Hypothesis,
+        rival: f64,
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
         let base = &self.held(base);
         let promising = self.promising(base, HOPELESS * rival, scale, observer);
         let curves = self.curves(base, &promising, observer);
@@ -387,11 +405,6 @@ impl Search<'_> {
         found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         self.name_variables(base, &mut found, &promising);
         found
-    }
-
-    /// Whether so much was evaluated that no formula is asked for any more.
-    fn asks_no_more(&self) -> bool {
-        self.evidence.effort.is_past(self.settings.formulas_within)
     }
 
     /// Curves that are told apart by what they leave of recordings that were left out, fitted in full, best first.
