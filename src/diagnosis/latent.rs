@@ -381,18 +381,6 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
-        let most = self.settings.formulas_within;
-        let effort = &self.evidence.effort;
-        effort.on_formulas(most, || self.curves_beside(base, rival, scale, observer))
-    }
-
-    fn curves_beside(
-        &self,
-        base: &Hypothesis,
-        rival: f64,
-        scale: &Scale,
-        observer: &mut Observer<'_>,
-    ) -> Vec<Hypothesis> {
         let base = &self.held(base);
         let promising = self.promising(base, HOPELESS * rival, scale, observer);
         let curves = self.curves(base, &promising, observer);
