@@ -7,7 +7,7 @@ ANSWERS/<case>/diagnosis.json are answers, TRUTH/<case>.json the sealed truth of
 counted, and are in no figure. The names of the sets in the tables are those of the folders of answers.
 
 Right is a name that is in the truth: an effect of the list by its name, a number that is off by `number_off` with its key or by the vocabulary's effects that say the same, an unlisted
-effect in its subsystem, a fault of the data that is an effect of the vocabulary as well.
+effect in its subsystem, a fault of the data that is an effect of the vocabulary as well, and what a rough device also has (`also_there`).
 
 True cause of a case: each of its effects and numbers that are off; where there is none, that nothing is missing. Stated probability of it: that of its name; of an effect that is not
 named that of the alternatives which have it, or of its family's law; of nothing the share of the explanation without effects among those not ruled out.
@@ -35,6 +35,7 @@ def allowed(truth):
             right.add((GAIN_NAMES[f["channel"]], None))
         if f["kind"] == "clock_offset" and f["channel"] == "force_n":
             right.add(("channel_time_offset", None))
+    right |= {(name, None) for name in truth.get("also_there") or []}
     return right
 
 
