@@ -43,7 +43,7 @@ pub(super) struct DiagnoseArguments {
     /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
     #[arg(long)]
     scenario: Option<PathBuf>,
-    /// Diagnose every folder in it that holds a rig.toml, each into a folder of its name, and tell what they know together of parts that they share.
+    /// Diagnose every folder in it that holds a rig.toml, each into a folder of its name, and state what they show together of parts that they share.
     #[arg(long)]
     all: bool,
     /// Go on where it was stopped: what has been diagnosed already is left as it is.
@@ -75,7 +75,7 @@ pub(super) struct DiagnoseArguments {
     /// Print on stderr what the search tries, and what each explanation would cost.
     #[arg(long, conflicts_with_all = ["quiet", "all"])]
     verbose: bool,
-    /// Print what diagnosis.json holds instead of the account; with --all, one line for each case, and one of what they know together.
+    /// Print what diagnosis.json holds instead of the account; with --all, one line for each case, and one of what they show together.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
 }

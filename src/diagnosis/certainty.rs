@@ -2,7 +2,7 @@
 
 use super::details::{FamilyMember, FamilyReport};
 use super::doubt::Doubt;
-use super::estimate::{Estimate, Number, estimates};
+use super::estimate::{Estimate, estimates};
 use super::family::{FAMILIES, Family, family_of, is_alike, scaling};
 use super::finding::Diagnosis;
 use super::fit::robust_sum;
@@ -267,9 +267,7 @@ impl Diagnosis {
             members,
         }
     }
-}
 
-impl Diagnosis {
     /// The number of an effect given the likeliest explanation with it: no other widens its interval.
     fn number_with(&self, effect: &Effect) -> Option<Estimate> {
         let has = |r: &&Ranked| r.hypothesis.effects.iter().any(|e| e.name == effect.name);
@@ -278,16 +276,5 @@ impl Diagnosis {
         let mut own = of_it.effects.iter().filter(|(e, _)| e.name == effect.name);
         let mut numbers = own.next()?.1.iter().filter(|n| n.reported);
         numbers.next().map(Estimate::from)
-    }
-}
-
-impl From<&Number> for Estimate {
-    fn from(number: &Number) -> Self {
-        let [low, high] = number.interval;
-        Self {
-            at_limit: number.at_limit,
-            without: number.without,
-            ..Self::new(number.value, low, high)
-        }
     }
 }

@@ -115,7 +115,7 @@ impl Effort {
         let count = self.0.without_formulas.load(Ordering::Relaxed);
         (count > 0).then(|| {
             format!(
-                "no further law that the list does not hold was looked for after {count} model evaluations: where none leaves noise alone by then, what is left is rarely one law"
+                "no further law that the list does not hold was looked for after {count} model evaluations: none is ruled out by that"
             )
         })
     }

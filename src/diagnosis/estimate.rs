@@ -123,6 +123,17 @@ pub struct Number {
     pub reported: bool,
 }
 
+impl From<&Number> for Estimate {
+    fn from(number: &Number) -> Self {
+        let [low, high] = number.interval;
+        Self {
+            at_limit: number.at_limit,
+            without: number.without,
+            ..Self::new(number.value, low, high)
+        }
+    }
+}
+
 /// Numbers of an explanation.
 #[derive(Debug, Clone)]
 pub struct Estimates {

@@ -7,7 +7,7 @@
 //! F_peak largest force of the impact [N], F_0 force desired before it [N]. Each run gives one number of each kind, so that their intervals come from how
 //! they differ from run to run (Student's t), with the force sampled as it was. What cannot be told without pressure and stroke is said to be so.
 
-use crate::stats::{median, student_95};
+use crate::stats::{mean, median, student_95};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -365,10 +365,6 @@ pub fn spread(values: &[f64]) -> [f64; 3] {
     let sample = deviation(values) * (values.len() as f64 / free as f64).sqrt();
     let half = student_95(free as f64) * sample / (values.len() as f64).sqrt();
     [centre, centre - half, centre + half]
-}
-
-pub(super) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 pub(super) fn deviation(values: &[f64]) -> f64 {

@@ -331,9 +331,16 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
+        self.within_effort(|| self.formulas_beside(base, rival, scale, observer))
+    }
+
+    /// What a search for formulas finds, unless so much was spent on such before that none is begun.
+    pub(super) fn within_effort(
+        &self,
+        search: impl FnOnce() -> Vec<Hypothesis>,
+    ) -> Vec<Hypothesis> {
         let most = self.settings.formulas_within;
-        let effort = &self.evidence.effort;
-        effort.on_formulas(most, || self.formulas_beside(base, rival, scale, observer))
+        self.evidence.effort.on_formulas(most, search)
     }
 
     fn formulas_beside(

@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_case_that_has_another_part_than_it_states_is_told_from_those_that_agree() {
+    fn a_case_that_has_another_part_than_it_states_is_found_among_those_that_agree() {
         let mut cases: Vec<InCase> = (drawn(5, 0.0, 0.03, 1e-3).into_iter())
             .map(|scale| InCase {
                 probability: 0.5,

@@ -238,7 +238,7 @@ fn noise<S>(
 
 /// Why a file of what is nominal does not say what a diagnosis is to find.
 fn sought(what: &str) -> String {
-    format!("a diagnosis finds {what}, the file says what is believed")
+    format!("a diagnosis finds {what}, the file states what is nominal")
 }
 
 fn refuse_what_is_sought(

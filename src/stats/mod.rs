@@ -69,10 +69,10 @@ pub fn median_step(time: &[f64]) -> f64 {
     median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(0.0)
 }
 
-/// The mean; NaN of nothing.
+/// The mean; 0 of nothing.
 #[must_use]
 pub fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
+    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 #[cfg(test)]
@@ -103,6 +103,7 @@ mod tests {
         assert_eq!(median([]), None);
         assert_eq!(median_step(&[0.0, 1.0, 3.0, 4.0]), 1.0);
         assert_eq!(median_step(&[0.0]), 0.0);
+        assert_eq!([mean(&[1.0, 2.0, 6.0]), mean(&[])], [3.0, 0.0]);
     }
 
     #[test]

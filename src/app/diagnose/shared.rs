@@ -490,7 +490,7 @@ mod tests {
     const LC_7: &str = "force_sensor = \"LC-7\"";
 
     #[test]
-    fn a_case_that_would_have_shown_it_is_told_from_those_that_agree() {
+    fn a_case_that_would_have_shown_it_counts_against_those_that_agree() {
         let named = || naming([1.03, BORE * 1.015], 0.5, 1.0);
         let all = [(BORE, LC_7, named()), (BORE, LC_7, named())];
         let two = of(&all).unwrap();
@@ -532,7 +532,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_told_of_one_case_or_of_a_family_that_few_name() {
+    fn nothing_is_stated_of_one_case_or_of_a_family_that_few_name() {
         let named = |value: f64| naming([1.03, BORE * 1.015], 0.5 * value, value);
         assert!(of(&[(BORE, LC_7, named(1.0)), (BORE, LC_7, answer(SHOWN))]).is_none());
         assert!(of(&[(BORE, LC_7, named(1.0)), (BORE, LC_7, named(0.4))]).is_none());

@@ -1,10 +1,10 @@
 //! A run as the simulation logs it, and its results by the same measure as the recorded ones.
 
-use super::super::flange::{MIDDLE, Run, RunMetrics, deviation, mean};
+use super::super::flange::{MIDDLE, Run, RunMetrics, deviation};
 use super::course::RunCourse;
 use super::report::SimulatedResult;
 use crate::plant::flange::{FlangeCourse, FlangeModel, Reader, Ripple, SAMPLED, flange_force};
-use crate::stats::median;
+use crate::stats::{mean, median};
 
 /// Time before contact from which a run is simulated [s].
 const LEAD: f64 = 0.3;

@@ -1,4 +1,4 @@
-//! The arm's ripple, of the force while it slides: its size meets the spread of the force, its bandwidth the spread of the force averaged over a while.
+//! The arm's ripple, of the force while it slides: its size meets the spread of the force, its bandwidth the spread of the averaged force (`super::prediction::spreads`).
 
 use super::prediction::{Logged, logged, spreads};
 use crate::plant::flange::{FlangeModel, Ripple};
