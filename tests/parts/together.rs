@@ -90,8 +90,12 @@ fn four_pistons_on_one_load_cell_tell_its_gain_from_their_bores() {
     };
     let alone = of_case("piston-0");
     assert!(alone["shared"].is_null());
-    for member in alone["families"][0]["members"].as_array().unwrap() {
-        assert!(member["probability"].as_f64().unwrap() <= 0.7, "{alone:#}");
+    let members = alone["families"][0]["members"].as_array().unwrap();
+    assert_eq!(members.len(), 2, "{alone:#}");
+    for member in members {
+        // The one that was fitted first stood at nothing beside the other, which does the same.
+        let probability = member["probability"].as_f64().unwrap();
+        assert!((0.3..=0.7).contains(&probability), "{alone:#}");
         assert!(member["number"]["value"].is_number(), "{alone:#}");
     }
     // Nothing is assumed where nothing is stated: what would let them decide is said.
