@@ -8,9 +8,11 @@ use super::finding::Diagnosis;
 use super::fit::robust_sum;
 use super::hypothesis::Hypothesis;
 use super::ranking::Ranked;
+use super::ruled_out::RuledOut;
 use super::scale::IMMATERIAL;
 use super::statements::{doubts_of, stated};
 use crate::effects::{Effect, LINK_EFFECTS, NUMBERS_OFF, UNLISTED, every};
+use crate::plant::Channel;
 
 /// Ratio of what two laws leave up to which one does as well as the other [1]: a hundredth is what a law of the catalogue is good to.
 const AS_WELL: f64 = 1.01;
@@ -164,9 +166,13 @@ impl Diagnosis {
             return false;
         };
         // A whole device's variants were compared by their evidence, and an effect that is not worth its numbers was taken out.
-        let own = self.left_of(channel);
         let mut variants = self.ruled_out.iter().filter(|v| kind(&v.effects));
-        variants.any(|v| v.rms <= AS_WELL * own)
+        variants.any(|variant| self.does_as_well(variant, channel))
+    }
+
+    /// Whether a variant leaves as little of a part's channel as the best explanation.
+    pub(super) fn does_as_well(&self, variant: &RuledOut, channel: Channel) -> bool {
+        variant.rms <= AS_WELL * self.left_of(channel)
     }
 
     /// Numbers of the rig file that stand at an end of their tolerance, and that no explanation that was fitted has beyond it.

@@ -90,6 +90,14 @@ fn four_pistons_on_one_load_cell_tell_its_gain_from_their_bores() {
     };
     let alone = of_case("piston-0");
     assert!(alone["shared"].is_null());
+    let account = std::fs::read_to_string(one.path().join("out/piston-0/account.txt")).unwrap();
+    let account = account.split_whitespace().collect::<Vec<_>>().join(" ");
+    let headline = "another scale of force by pressure (which law is open)";
+    assert!(account.contains(headline), "{account}");
+    assert!(
+        account.contains("As little is left, and so not ruled out, with"),
+        "{account}"
+    );
     let members = alone["families"][0]["members"].as_array().unwrap();
     assert_eq!(members.len(), 2, "{alone:#}");
     for member in members {

@@ -7,7 +7,10 @@ use super::super::hypothesis::spoken_name;
 use super::super::statements::{TRUSTED, in_headline};
 use super::super::words::{capital, listed};
 use super::missing::probability;
-use crate::effects::UNLISTED;
+use crate::effects::{Effect, UNLISTED};
+
+/// Odds from which one law of a family is told from another (Kass and Raftery, Journal of the American Statistical Association 90, 1995) [1].
+const CLEAR: f64 = 3.0;
 
 impl Diagnosis {
     /// Names in the headline: of effects that are sure, of the family where its law is open, and of what may be; none of what is only doubted.
@@ -21,8 +24,9 @@ impl Diagnosis {
                 .iter()
                 .find(|f| has(f, effect.vocabulary().0, effect.number_key()));
             let may_stand = in_headline(confidence, &self.doubts(effect.name));
+            let open = family.is_some_and(|f| is_open(f, effect, confidence));
             let said = match family.filter(|f| f.probability >= TRUSTED) {
-                _ if confidence >= TRUSTED && may_stand => name,
+                _ if confidence >= TRUSTED && may_stand && !open => name,
                 Some(family) => format!("{} (which law is open)", family.words),
                 None if may_stand => format!("perhaps {name}"),
                 None => continue,
@@ -91,6 +95,15 @@ impl Diagnosis {
         });
         words.collect()
     }
+}
+
+/// Whether another law of a family is nearly as likely as one of it.
+fn is_open(family: &FamilyReport, own: &Effect, confidence: f64) -> bool {
+    let mut members = family.members.iter();
+    members.any(|m| {
+        let other = m.name != own.vocabulary().0 || m.key.as_deref() != own.number_key();
+        other && CLEAR * m.probability > confidence
+    })
 }
 
 /// Whether a law is of a family.

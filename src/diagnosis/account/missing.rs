@@ -7,6 +7,7 @@ use super::super::finding::Diagnosis;
 use super::super::hypothesis::spoken_name;
 use super::super::links::Link;
 use super::super::recorded::COLUMNS;
+use super::super::ruled_out::RuledOut;
 use super::super::words::{
     CHANNEL_UNITS, CHANNEL_WORDS, capital, in_unit, listed, percent, spoken, with_interval,
     yardstick,
@@ -277,25 +278,38 @@ impl Diagnosis {
         };
         let (unit, factor) = CHANNEL_UNITS[channel as usize];
         let said = |rms: f64| format!("{} {unit}", significant(rms * factor, 3));
-        let variants: Vec<String> = (self.ruled_out.iter())
-            .map(|variant| {
-                let names: Vec<String> = variant.effects.iter().map(|n| spoken_name(n)).collect();
-                let names = if names.is_empty() {
-                    "nothing".to_owned()
-                } else {
-                    listed(&names)
-                };
-                format!("{names}: {}", said(variant.rms))
-            })
-            .collect();
-        if variants.is_empty() {
+        if self.ruled_out.is_empty() {
             return String::new();
         }
-        format!(
-            "The explanation leaves {} RMS. Without one of its effects, or with another law in its place, there would be left, with {}.",
-            said(self.left_of(channel)),
-            variants.join("; with ")
-        )
+        let words = |variants: &[&RuledOut]| -> String {
+            let one = |variant: &&RuledOut| {
+                let names: Vec<String> = variant.effects.iter().map(|n| spoken_name(n)).collect();
+                let names = match names.is_empty() {
+                    true => "nothing".to_owned(),
+                    false => listed(&names),
+                };
+                format!("{names}: {}", said(variant.rms))
+            };
+            let all: Vec<String> = variants.iter().map(one).collect();
+            all.join("; with ")
+        };
+        let (as_well, worse): (Vec<&RuledOut>, Vec<&RuledOut>) =
+            (self.ruled_out.iter()).partition(|v| self.does_as_well(v, channel));
+        let mut text = format!(
+            "The explanation leaves {} RMS.",
+            said(self.left_of(channel))
+        );
+        if !as_well.is_empty() {
+            let as_well = words(&as_well);
+            text += &format!(" As little is left, and so not ruled out, with {as_well}.");
+        }
+        if !worse.is_empty() {
+            let worse = words(&worse);
+            text += &format!(
+                " Without one of its effects, or with another law in its place, there would be left, with {worse}."
+            );
+        }
+        text
     }
 
     pub(super) fn own_numbers(&self) -> String {
