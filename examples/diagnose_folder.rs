@@ -9,7 +9,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use idc_cell::diagnosis::progress::{Progress, Step};
+use idc_cell::diagnosis::search::progress::{Progress, Step};
 use idc_cell::{Case, Settings, diagnose};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use idc_cell::cell::Cell;
+use idc_cell::diagnosis::flange::fit::report::SimulatedRun;
+use idc_cell::diagnosis::flange::fit::{fit_flange, predict_flange};
 use idc_cell::diagnosis::flange::{ForceRamp, Run};
-use idc_cell::diagnosis::flange_fit::report::SimulatedRun;
-use idc_cell::diagnosis::flange_fit::{fit_flange, predict_flange};
 use idc_cell::plant::flange::{FlangeCourse, FlangeModel, Reader, SAMPLED, flange_force};
 use idc_cell::recording::schema;
 use idc_cell::scenario::Scenario;

@@ -1,12 +1,12 @@
 //! Intervals of a diagnosis hold what they say: fits to devices of the laboratory, by the product's own fit and its own intervals, hold the truth in 95 of 100.
 
-use idc_cell::diagnosis::cross_validation::{Depth, left_out};
-use idc_cell::diagnosis::estimate::estimates;
-use idc_cell::diagnosis::evidence::{Evidence, Measured};
+use idc_cell::diagnosis::answer::estimate::estimates;
+use idc_cell::diagnosis::fit::cross_validation::{Depth, left_out};
+use idc_cell::diagnosis::fit::free::{Free, free_of};
+use idc_cell::diagnosis::fit::hypothesis::Hypothesis;
 use idc_cell::diagnosis::fit::{Refit, fit};
-use idc_cell::diagnosis::free::{Free, free_of};
-use idc_cell::diagnosis::hypothesis::Hypothesis;
-use idc_cell::diagnosis::ranking::Ranked;
+use idc_cell::diagnosis::recordings::evidence::{Evidence, Measured};
+use idc_cell::diagnosis::search::ranking::Ranked;
 use idc_cell::effects::{Effect, every};
 use idc_cell::laboratory::{
     Concealed, Conditions, LaboratoryRig, LaboratoryTrajectory, Programme, Recipe, run,

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 use idc_cell::diagnosis::answer::{Answer, FoundEffect, Verdict};
-use idc_cell::diagnosis::flange_fit::report::SimulatedRun;
+use idc_cell::diagnosis::flange::fit::report::SimulatedRun;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;

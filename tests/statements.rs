@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use idc_cell::diagnosis::answer::Answer;
-use idc_cell::diagnosis::statements::contradictions;
+use idc_cell::diagnosis::answer::statements::contradictions;
 
 use crate::common::{project, shared};
 use crate::program::Bench;

@@ -13,8 +13,8 @@ use super::files::{DIAGNOSIS, SAMPLES, SUMMARY, Standing, is_same, prepare_file}
 use super::output::say;
 use super::report::{Label, RunResult, read_json, read_run};
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::estimate::Estimate;
-use crate::diagnosis::words::{capital, of_column, percent, spoken};
+use crate::diagnosis::answer::estimate::Estimate;
+use crate::diagnosis::answer::words::{capital, of_column, percent, spoken};
 use crate::page::html;
 use crate::recording::atomic::write_text;
 use numbers::{Compared, MOST, Row, text};

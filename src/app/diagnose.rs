@@ -27,7 +27,7 @@ use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress::StagedLine;
 use crate::diagnosis::effort::EffortLimit;
-use crate::diagnosis::progress::Progress;
+use crate::diagnosis::search::progress::Progress;
 use crate::plant::LawText;
 use crate::replay::LoadedCell;
 use crate::scenario::effects::law_of_line;

@@ -5,7 +5,7 @@ use crate::case::CaseError;
 use crate::cell::CellError;
 use crate::design::DesignError;
 use crate::diagnosis::answer::AnswerError;
-use crate::diagnosis::recorded::RecordedError;
+use crate::diagnosis::recordings::recorded::RecordedError;
 use crate::import::ImportError;
 use crate::metrics::MetricsError;
 use crate::quantity::counted;

@@ -14,10 +14,10 @@ use super::progress;
 use crate::case::{
     check_finite, predict_flange_run, predict_table, predicted_by, read_rig, shown_columns,
 };
-use crate::diagnosis::clean::clean;
-use crate::diagnosis::details::UnknownGround;
-use crate::diagnosis::recorded::{COLUMNS, recorded_of};
-use crate::diagnosis::words::of_column;
+use crate::diagnosis::answer::details::UnknownGround;
+use crate::diagnosis::answer::words::of_column;
+use crate::diagnosis::recordings::clean::clean;
+use crate::diagnosis::recordings::recorded::{COLUMNS, recorded_of};
 use crate::plant::Channel;
 use crate::plant::flange::FittedFlange;
 use crate::quantity::{counted, significant};

@@ -29,7 +29,7 @@ use super::fleet::{self, FLEET};
 use super::output::say;
 use super::vary::{self, SWEEP};
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::comparison::Comparison;
+use crate::diagnosis::difference::comparison::Comparison;
 use crate::page::html;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;

@@ -1,10 +1,10 @@
 //! Findings of the improved arm in the recording that is to be predicted, where it holds encoders and torques: servos and friction show there, and hardly in
 //! what the device feels.
 
-use crate::diagnosis::details::PredictionError;
-use crate::diagnosis::joint_friction::{DriveLoad, JointFriction};
-use crate::diagnosis::localise::root_mean_square;
-use crate::diagnosis::servo::ServoLink;
+use crate::diagnosis::answer::details::PredictionError;
+use crate::diagnosis::difference::localise::root_mean_square;
+use crate::diagnosis::joints::friction::{DriveLoad, JointFriction};
+use crate::diagnosis::joints::servo::ServoLink;
 use crate::plant::follow;
 use crate::recording::csv::CellRecording;
 use crate::replay::LoadedCell;

@@ -11,7 +11,7 @@
 use nalgebra::DMatrix;
 
 use super::ground::unknown;
-use crate::diagnosis::details::UnknownGround;
+use crate::diagnosis::answer::details::UnknownGround;
 use crate::plant::{CHANNELS, PlantInputs, PlantParameters, simulate};
 use crate::scenario::rig_file::{Known, RigFile};
 use crate::stats::NORMAL_90;
@@ -172,7 +172,10 @@ impl Predicted {
         let mut all: Vec<(String, Vec<f64>)> = (shown.iter())
             .map(|(name, values)| ((*name).to_owned(), values.to_vec()))
             .collect();
-        for (place, name) in crate::diagnosis::recorded::COLUMNS.into_iter().enumerate() {
+        for (place, name) in crate::diagnosis::recordings::recorded::COLUMNS
+            .into_iter()
+            .enumerate()
+        {
             if shown.iter().any(|(own, _)| *own == name) {
                 for (end, values) in [("low", &self.low[place]), ("high", &self.high[place])] {
                     all.push((format!("{name}_{end}"), values.clone()));

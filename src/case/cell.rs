@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use super::arm_prediction::arm_prediction;
 use super::error::CaseError;
-use crate::diagnosis::details::PredictionError;
-use crate::diagnosis::free::{Free, Prior};
-use crate::diagnosis::input::{DiagnosisInput, NamedRecording, tolerated};
-use crate::diagnosis::joint_friction::{DriveLoad, JointFriction, joint_friction};
-use crate::diagnosis::recorded::{QUANTITIES, Recorded, RecordedError, check, hold};
-use crate::diagnosis::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
+use crate::diagnosis::answer::details::PredictionError;
+use crate::diagnosis::fit::free::{Free, Prior};
+use crate::diagnosis::joints::friction::{DriveLoad, JointFriction, joint_friction};
+use crate::diagnosis::joints::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
+use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording, tolerated};
+use crate::diagnosis::recordings::recorded::{QUANTITIES, Recorded, RecordedError, check, hold};
 use crate::effects::{CATALOGUE, CELL_EFFECTS, Coordinate, Effect, JOINT_EFFECTS, sought};
 use crate::plant::{CHANNELS, InitialState, PlantInputs, PlantParameters, Quantity, registry};
 use crate::recording::csv::{CellRecording, read_cell_csv};

@@ -1,12 +1,12 @@
 //! Additions to the account of a cell: which joint, and where on the path.
 
 use super::cell::CellCase;
-use crate::diagnosis::account::SectionKind;
-use crate::diagnosis::details::Details;
-use crate::diagnosis::finding::Diagnosis;
-use crate::diagnosis::mismatch::{Interval, without_effects};
-use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::words::{of_column, with_interval};
+use crate::diagnosis::answer::account::SectionKind;
+use crate::diagnosis::answer::details::Details;
+use crate::diagnosis::answer::finding::Diagnosis;
+use crate::diagnosis::answer::words::{of_column, with_interval};
+use crate::diagnosis::difference::mismatch::{Interval, without_effects};
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::plant::{Channel, simulate};
 use crate::quantity::{significant, with_unit};
 use crate::replay::LoadedCell;

@@ -2,7 +2,7 @@
 
 use crate::cell::CellError;
 use crate::diagnosis::flange::NoContact;
-use crate::diagnosis::recorded::RecordedError;
+use crate::diagnosis::recordings::recorded::RecordedError;
 use crate::recording::RecordingError;
 use crate::scenario::ScenarioError;
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::error::CaseError;
 use super::rig::flange_run;
-use crate::diagnosis::flange_fit::report::SimulatedRun;
-use crate::diagnosis::flange_fit::{predict_flange, settings_of};
+use crate::diagnosis::flange::fit::report::SimulatedRun;
+use crate::diagnosis::flange::fit::{predict_flange, settings_of};
 use crate::plant::flange::FittedFlange;
 use crate::quantity::significant;
 use crate::scenario::rig_file::RigFile;

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::diagnosis::details::UnknownGround;
+use crate::diagnosis::answer::details::UnknownGround;
 use crate::plant::{PlantInputs, PlantParameters, Trajectory, simulate};
 
 /// What there is at a sample, by name.

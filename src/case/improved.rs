@@ -1,7 +1,7 @@
 //! improved.toml: the believed model's file with what was found, in the vocabulary of effects.
 
-use crate::diagnosis::estimate::Number;
-use crate::diagnosis::finding::Diagnosis;
+use crate::diagnosis::answer::estimate::Number;
+use crate::diagnosis::answer::finding::Diagnosis;
 use crate::effects::{PresentEffect, own_effect};
 use crate::plant::{Latent, Quantity};
 use crate::scenario::effects::WrittenEffect;

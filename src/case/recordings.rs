@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::CaseError;
-use crate::diagnosis::recorded::COLUMNS;
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Chain};
 use crate::recording::csv::{read_csv, read_csv_in_any_unit, read_readings};
 use crate::recording::samples::read_table;

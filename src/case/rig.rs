@@ -7,8 +7,8 @@ use super::error::CaseError;
 use super::recordings::{read_in_any_unit, read_rig};
 use crate::diagnosis::data_fault::take_off;
 use crate::diagnosis::flange::{ForceRamp, NoContact, Run, RunMetrics};
-use crate::diagnosis::input::{DiagnosisInput, NamedRecording, of_link, tolerated};
-use crate::diagnosis::recorded::{recorded_of, run_of};
+use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording, of_link, tolerated};
+use crate::diagnosis::recordings::recorded::{recorded_of, run_of};
 use crate::effects::{candidates, numbers_off, sought};
 use crate::scenario::rig_file::{RigFile, load_rig};
 

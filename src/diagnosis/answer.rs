@@ -1,16 +1,29 @@
 //! diagnosis.json: what was found, in the form of an answer that can be scored.
 
+pub mod account;
+pub mod band;
+pub(super) mod certainty;
+pub mod conclude;
+pub mod details;
+pub mod doubt;
+pub mod estimate;
+pub mod family;
+pub mod finding;
+pub mod shared;
+pub mod statements;
+pub mod words;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::details::Details;
-use super::doubt::Doubt;
-use super::estimate::Estimate;
-use super::mismatch::Mismatch;
-use super::unlisted::report::UnlistedReport;
-use super::words::spoken;
+use self::details::Details;
+use self::doubt::Doubt;
+use self::estimate::Estimate;
+use self::words::spoken;
+use super::difference::mismatch::Mismatch;
+use super::formula::unlisted::report::UnlistedReport;
 use crate::effects::UNLISTED;
 use crate::effects::meaning;
 use crate::plant::LawText;

@@ -1,33 +1,33 @@
 //! From a case to everything that is found in it.
 
-use super::band::half_widths;
-use super::clean::clean;
-use super::cross_validation::{Depth, left_out};
-use super::detectable::detectable;
+use super::answer::band::half_widths;
+use super::answer::estimate::estimates;
+use super::answer::finding::{Baseline, Diagnosis, ErrorSize, Unseen};
+use super::answer::words::listed;
+use super::difference::extent::Largest;
+use super::difference::links::links;
+use super::difference::localise::differences;
+use super::difference::mismatch::intervals;
+use super::difference::regime::regimes;
+use super::difference::remaining::Remaining;
 use super::effort::Effort;
-use super::estimate::estimates;
-use super::evidence::Evidence;
-use super::extent::Largest;
-use super::finding::{Baseline, Diagnosis, ErrorSize, Unseen};
+use super::experiment::next_experiment::{Separation, separations};
+use super::fit::cross_validation::{Depth, left_out};
+use super::fit::free::Free;
+use super::fit::hypothesis::Hypothesis;
+use super::fit::model_error::ModelError;
 use super::fit::{Limit, Refit, Start};
-use super::free::Free;
-use super::hypothesis::Hypothesis;
-use super::input::{DiagnosisInput, NamedRecording, Prepared};
-use super::links::links;
-use super::localise::differences;
-use super::mismatch::intervals;
-use super::model_error::ModelError;
-use super::next_experiment::{Separation, separations};
-use super::progress::{Observer, Step};
-use super::ranking::{Ranked, rank};
-use super::regime::regimes;
-use super::remaining::Remaining;
-use super::ruled_out::{add_exchanged, ruled_out};
+use super::formula::unlisted::Shape;
+use super::recordings::clean::clean;
+use super::recordings::evidence::Evidence;
+use super::recordings::input::{DiagnosisInput, NamedRecording, Prepared};
+use super::search::detectable::detectable;
+use super::search::progress::{Observer, Step};
+use super::search::ranking::{Ranked, rank};
+use super::search::ruled_out::{add_exchanged, ruled_out};
+use super::search::tried::Tried;
 use super::search::{RoughFit, Search};
 use super::settings::Settings;
-use super::tried::Tried;
-use super::unlisted::Shape;
-use super::words::listed;
 use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
 
 /// The fit of the answer to all recordings but one, from where that to all is.

@@ -1,6 +1,8 @@
 //! Experiments that a bench can do, within what its recordings show that it does.
 
-use super::evidence::Evidence;
+pub mod next_experiment;
+
+use super::recordings::evidence::Evidence;
 use crate::plant::{InitialState, PlantInputs, PlantParameters};
 use std::f64::consts::TAU;
 

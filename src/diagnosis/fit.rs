@@ -4,9 +4,17 @@
 //! minimise   sum rho(r_i) + sum ((value - mean)/deviation)^2,     rho(r) = r^2 for |r| <= c,   2 c |r| - c^2 beyond    (Huber)
 //! ```
 
-use super::evidence::{Evidence, Prediction};
-use super::free::{Free, Prior};
-use super::normal_equations::weighted_products;
+pub(super) mod autocorrelation;
+pub(super) mod covariance;
+pub mod cross_validation;
+pub mod free;
+pub mod hypothesis;
+pub(super) mod model_error;
+pub(super) mod normal_equations;
+
+use self::free::{Free, Prior};
+use self::normal_equations::weighted_products;
+use super::recordings::evidence::{Evidence, Prediction};
 use super::settings::HUBER;
 use crate::plant::PlantParameters;
 use crate::stats::quantile;

@@ -7,6 +7,9 @@
 //! F_peak largest force of the impact [N], F_0 force desired before it [N]. Each run gives one number of each kind, so that their intervals come from how
 //! they differ from run to run (Student's t), with the force sampled as it was. What cannot be told without pressure and stroke is said to be so.
 
+pub mod answer;
+pub mod fit;
+
 use crate::stats::{mean, median, student_95};
 use std::f64::consts::TAU;
 use std::ops::Range;

@@ -1,18 +1,25 @@
 //! Which effects explain what the believed model leaves.
 
+pub mod detectable;
 pub(super) mod finish;
 mod formulas;
 pub(super) mod influence;
+pub mod known;
 mod modular;
+pub mod progress;
+pub mod ranking;
+pub mod ruled_out;
+pub(super) mod scale;
 mod screen;
+pub(super) mod tried;
 
-use super::evidence::{Evidence, Prediction};
+use self::progress::{Observer, Step};
+use self::scale::Scale;
+use super::fit::free::Free;
+use super::fit::hypothesis::{Hypothesis, stands_for};
+use super::fit::model_error::ModelError;
 use super::fit::{Limit, ROUGH, Refit, Stage, fit, rough_noise};
-use super::free::Free;
-use super::hypothesis::{Hypothesis, stands_for};
-use super::model_error::ModelError;
-use super::progress::{Observer, Step};
-use super::scale::Scale;
+use super::recordings::evidence::{Evidence, Prediction};
 use super::settings::Settings;
 use crate::effects::Effect;
 use crate::plant::{Chain, PlantInputs, PlantParameters};

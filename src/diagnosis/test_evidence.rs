@@ -1,9 +1,9 @@
 //! Evidence for unit tests.
 
-use super::evidence::{Evidence, Measured, Prediction};
 use super::fit::Fit;
-use super::free::{Free, Prior};
-use super::model_error::ModelError;
+use super::fit::free::{Free, Prior};
+use super::fit::model_error::ModelError;
+use super::recordings::evidence::{Evidence, Measured, Prediction};
 use super::search::Search;
 use super::settings::Settings;
 use crate::device::DeviceParameters;

@@ -8,7 +8,7 @@ use super::queue;
 use super::score::{CaseScore, judge, worst_channel};
 use super::summary::ProofSummary;
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::recorded::QUANTITIES;
+use crate::diagnosis::recordings::recorded::QUANTITIES;
 use crate::laboratory::SealedCase;
 use crate::recording::csv::read_readings;
 
@@ -130,8 +130,8 @@ fn same_times(one: &[f64], other: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnosis::answer::details::Details;
     use crate::diagnosis::answer::{SCHEMA, Verdict};
-    use crate::diagnosis::details::Details;
     use crate::laboratory::{Conditions, Recipe, write_case};
 
     fn nothing() -> Answer {

@@ -252,10 +252,10 @@ pub fn worst_channel(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnosis::answer::details::Details;
+    use crate::diagnosis::answer::estimate::Estimate;
     use crate::diagnosis::answer::{FoundEffect, SCHEMA};
-    use crate::diagnosis::details::Details;
-    use crate::diagnosis::estimate::Estimate;
-    use crate::diagnosis::mismatch::Mismatch;
+    use crate::diagnosis::difference::mismatch::Mismatch;
     use crate::laboratory::SealedInterval;
 
     fn truth() -> SealedCase {

@@ -284,8 +284,8 @@ fn attempt(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnosis::answer::details::Details;
     use crate::diagnosis::answer::{Answer, SCHEMA, Verdict};
-    use crate::diagnosis::details::Details;
 
     #[test]
     fn a_sweep_goes_on_where_it_was_stopped_and_only_as_it_began() {

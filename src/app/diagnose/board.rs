@@ -4,11 +4,11 @@ mod text;
 
 use super::super::report::{lacking as lacking_of, most_of, variable};
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel, Comparison};
-use crate::diagnosis::mismatch::Mismatch;
-use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::unlisted::report::{ShapeRow, UnlistedReport};
-use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
+use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
+use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChannel, Comparison};
+use crate::diagnosis::difference::mismatch::Mismatch;
+use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::page::kept;
 use crate::plant::CHANNELS;
 use crate::recording::board::{

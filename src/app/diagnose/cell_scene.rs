@@ -16,8 +16,8 @@ use super::super::picture::{PART, device_bodies, visual_shapes};
 use crate::arm::kinematics::link_poses;
 use crate::arm::{Arm, load_arm};
 use crate::cell::{CellError, arm_options};
-use crate::diagnosis::comparison::Compared;
-use crate::diagnosis::servo::Axes;
+use crate::diagnosis::difference::comparison::Compared;
+use crate::diagnosis::joints::servo::Axes;
 use crate::plant::{ArmTrajectory, Channel, PlantParameters, follow};
 use crate::recording::colour::Colour;
 use crate::recording::scene::{

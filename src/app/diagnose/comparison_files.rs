@@ -9,8 +9,8 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::files::{BALANCE, COMPARISON};
-use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel, Comparison};
-use crate::diagnosis::recorded::COLUMNS;
+use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChannel, Comparison};
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Channel};
 use crate::recording::RecordingError;
 use crate::recording::long_table::{LongColumn, read_long, write_long};

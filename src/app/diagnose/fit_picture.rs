@@ -1,8 +1,8 @@
 //! fit.svg: of a part of the device, each recording as measured, as believed and with what was found, and what is left.
 
 use super::super::error::AppError;
-use crate::diagnosis::finding::Diagnosis;
-use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS};
+use crate::diagnosis::answer::finding::Diagnosis;
+use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS};
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
 
 /// Recordings drawn at most.

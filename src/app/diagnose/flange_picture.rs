@@ -2,7 +2,7 @@
 
 use super::super::error::AppError;
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::comparison::{Compared, Comparison};
+use crate::diagnosis::difference::comparison::{Compared, Comparison};
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
 
 /// Runs drawn at most: the one that it never saw first.

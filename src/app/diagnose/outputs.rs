@@ -9,7 +9,7 @@ use super::board::board;
 use super::comparison_files::{write_balances, write_recordings};
 use crate::case::IMPROVED;
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::comparison::Comparison;
+use crate::diagnosis::difference::comparison::Comparison;
 use crate::recording::atomic::write_text;
 use crate::recording::rerun::write_board;
 use crate::recording::scene::Scene;

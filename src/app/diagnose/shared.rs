@@ -3,14 +3,14 @@
 use serde::Serialize;
 
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::details::{FamilyMember, FamilyReport};
-use crate::diagnosis::estimate::Estimate;
-use crate::diagnosis::family::{Scaling, scaling};
-use crate::diagnosis::shared::{
+use crate::diagnosis::answer::details::{FamilyMember, FamilyReport};
+use crate::diagnosis::answer::estimate::Estimate;
+use crate::diagnosis::answer::family::{Scaling, scaling};
+use crate::diagnosis::answer::shared::{
     InAll, InCase, NOT_STATED, SAME_NOMINAL, STATED, not_shown, together,
 };
-use crate::diagnosis::statements::TRUSTED;
-use crate::diagnosis::words::{capital, listed, percent, wrapped};
+use crate::diagnosis::answer::statements::TRUSTED;
+use crate::diagnosis::answer::words::{capital, listed, percent, wrapped};
 use crate::effects::{Effect, candidates, numbers_off};
 use crate::plant::Chain;
 use crate::quantity::{DIGITS, significant, with_unit};

@@ -1,6 +1,6 @@
 //! Stages of a diagnosis as people see them. The time that a search takes depends on what it finds: the share of the work behind each step is a guess.
 
-use crate::diagnosis::progress::{Progress, Step};
+use crate::diagnosis::search::progress::{Progress, Step};
 
 /// Stages in their order.
 const STAGES: [&str; 5] = [

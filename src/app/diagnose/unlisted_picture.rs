@@ -1,10 +1,10 @@
 //! unlisted.svg: a term without a name against its variable, with its 95 % band, what the recordings say is needed there, and the form that comes next.
 
 use super::super::error::AppError;
-use crate::diagnosis::finding::Diagnosis;
-use crate::diagnosis::unlisted::words::{self, DisplayQuantity};
-use crate::diagnosis::unlisted::{Shape, ShapePoint};
-use crate::diagnosis::words::odds;
+use crate::diagnosis::answer::finding::Diagnosis;
+use crate::diagnosis::answer::words::odds;
+use crate::diagnosis::formula::unlisted::words::{self, DisplayQuantity};
+use crate::diagnosis::formula::unlisted::{Shape, ShapePoint};
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
 use crate::plant::Latent;
 

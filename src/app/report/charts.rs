@@ -1,11 +1,11 @@
 //! The charts of a diagnosis: recordings beside models, and what links lack.
 
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::comparison::{Balance, Compared, ComparedChannel};
-use crate::diagnosis::mismatch::Mismatch;
-use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::unlisted::report::{ShapeRow, UnlistedReport};
-use crate::diagnosis::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
+use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
+use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChannel};
+use crate::diagnosis::difference::mismatch::Mismatch;
+use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::figure::{Band, Horizontal, Panel, Role, Series, Stroke};
 use crate::page::Chart;
 use crate::stats::{NORMAL_95, quantiles};

@@ -7,7 +7,7 @@ use super::judged::judged;
 use super::provenance::provenance_of;
 use super::run_result::labels;
 use crate::design::{number, spoken};
-use crate::diagnosis::words::capital;
+use crate::diagnosis::answer::words::capital;
 use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 

@@ -3,14 +3,16 @@
 use super::charts::{balance, channel, origin, unlisted};
 use super::provenance::provenance;
 use super::tables::{detectable, how_well, own_numbers, ruled_out, told};
-use crate::diagnosis::account::SectionKind;
+use crate::diagnosis::answer::account::SectionKind;
+use crate::diagnosis::answer::details::remaining_errors;
+use crate::diagnosis::answer::estimate::Estimate;
+use crate::diagnosis::answer::statements::TRUSTED;
+use crate::diagnosis::answer::words::{
+    CHANNEL_WORDS, capital, in_unit, of_column, percent, yardstick,
+};
 use crate::diagnosis::answer::{Answer, FoundEffect, Verdict};
-use crate::diagnosis::comparison::{Compared, Comparison};
-use crate::diagnosis::details::remaining_errors;
-use crate::diagnosis::estimate::Estimate;
-use crate::diagnosis::recorded::COLUMNS;
-use crate::diagnosis::statements::TRUSTED;
-use crate::diagnosis::words::{CHANNEL_WORDS, capital, in_unit, of_column, percent, yardstick};
+use crate::diagnosis::difference::comparison::{Compared, Comparison};
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::effects::UNLISTED;
 use crate::effects::meaning;
 use crate::page::{Block, Fact, Page, PageSection, PageTable, Strip, TableCell, Tone};

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::diagnosis::words::listed;
+use crate::diagnosis::answer::words::listed;
 use crate::page::{Block, PageSection};
 use crate::quantity::counted;
 

@@ -1,12 +1,12 @@
 //! The tables of a diagnosis: how well it fits, the rig's own numbers, what was ruled out.
 
-use crate::diagnosis::account::SectionKind;
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::details::{
+use crate::diagnosis::answer::account::SectionKind;
+use crate::diagnosis::answer::details::{
     ChannelMisfit, Considered, DetectableReport, PredictionError, RuledOutReport, ToleratedNumber,
 };
-use crate::diagnosis::estimate::Limit;
-use crate::diagnosis::words::{odds, of_column, percent, spoken, yardstick};
+use crate::diagnosis::answer::estimate::Limit;
+use crate::diagnosis::answer::words::{odds, of_column, percent, spoken, yardstick};
 use crate::page::{Block, PageSection, PageTable, TableCell};
 use crate::quantity::{change, significant};
 

@@ -6,10 +6,10 @@
 //!
 //! signal that of the nominal model, s stamp over true time [1], offset [s].
 
-use super::super::input::{DiagnosisInput, NamedRecording};
 use super::clock::WORTH;
 use super::curvature::{LEAST_STRETCHES, curvatures};
 use super::fault::{DataFault, Kind};
+use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
 use crate::plant::registry::{REGULATOR_DEAD_TIME, REGULATOR_TIME_CONSTANT};
 use crate::plant::{Channel, simulate};
 use crate::stats::median;

@@ -6,9 +6,9 @@
 //!
 //! s stamp over true time [1], x stroke [m], a acceleration [m/s2].
 
-use super::super::input::DiagnosisInput;
 use super::curvature::curvature_ratio;
 use super::fault::{DataFault, Kind};
+use crate::diagnosis::recordings::input::DiagnosisInput;
 use crate::plant::Channel;
 use crate::stats::{mean, median_step};
 

@@ -9,8 +9,8 @@
 
 use std::collections::HashMap;
 
-use super::super::input::DiagnosisInput;
 use super::fault::{DataFault, Kind};
+use crate::diagnosis::recordings::input::DiagnosisInput;
 use crate::plant::CHANNELS;
 
 /// Readings by which a copy is known.

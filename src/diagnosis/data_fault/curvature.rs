@@ -1,8 +1,8 @@
 //! Stroke and accelerometer tell of one motion: the stroke's second derivative against the acceleration, over short stretches.
 
-use super::super::input::{DiagnosisInput, NamedRecording};
 use super::line::Line;
 use super::resample::read_at;
+use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
 use crate::plant::Channel;
 
 /// Length of a stretch over which an acceleration is integrated twice [s].

@@ -6,10 +6,10 @@
 //!
 //! F_m reading [N], d drift [N/s], t_0 start of the recording [s]. One that is the same in all recordings is a listed effect (`force_sensor_bias_drift`).
 
-use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::free_air::in_the_air;
 use super::line::Line;
+use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
 use crate::plant::Channel;
 
 /// Readings in the air that are needed.

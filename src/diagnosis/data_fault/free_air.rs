@@ -1,6 +1,6 @@
 //! Readings of a tool that touches nothing.
 
-use super::super::input::NamedRecording;
+use crate::diagnosis::recordings::input::NamedRecording;
 use crate::plant::Channel;
 
 /// Distance from the surface beyond which a tool does not touch [m].

@@ -1,8 +1,8 @@
 //! Slips of unit and sign: a gain among the usual factors.
 
-use super::super::input::DiagnosisInput;
 use super::curvature::curvature_ratio;
 use super::fault::{DataFault, Kind};
+use crate::diagnosis::recordings::input::DiagnosisInput;
 use crate::plant::{CHANNELS, Channel, InitialState, PlantInputs, simulate};
 
 /// Standard gravity [m/s2]: a kilogram-force in newton.

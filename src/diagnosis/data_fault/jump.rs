@@ -1,9 +1,9 @@
 //! Zeros that jump: a step from one sample to the next that the motion denies.
 
-use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::free_air::in_the_air;
 use super::line::Line;
+use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
 use crate::plant::Channel;
 use nalgebra::{DMatrix, DVector};
 

@@ -30,7 +30,7 @@ pub use reported::reported;
 use crate::stats::median;
 use fault::{DataFault, Kind};
 
-use super::input::{DiagnosisInput, NamedRecording};
+use super::recordings::input::{DiagnosisInput, NamedRecording};
 use crate::plant::{CHANNELS, Chain, Channel, InitialState};
 use resample::{held, interpolated, read_at, set_impacts_aside};
 

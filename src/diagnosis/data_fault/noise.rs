@@ -1,8 +1,8 @@
 //! Noise that is louder than the sheet's.
 
-use super::super::clean::{clean, departures};
-use super::super::input::{DiagnosisInput, OTHER_NOISE};
 use super::fault::{DataFault, Kind};
+use crate::diagnosis::recordings::clean::{clean, departures};
+use crate::diagnosis::recordings::input::{DiagnosisInput, OTHER_NOISE};
 use crate::plant::CHANNELS;
 use crate::stats::median;
 

@@ -6,9 +6,9 @@
 //!
 //! z how sure a size is [1], s_r standard deviation of what the explanation leaves, t the samples that tell as much as one, n_1 and n_2 readings on either side.
 
-use super::super::autocorrelation::integrated_autocorrelation_time;
-use super::super::evidence::{Evidence, by_channel};
 use super::fault::{DataFault, Kind};
+use crate::diagnosis::fit::autocorrelation::integrated_autocorrelation_time;
+use crate::diagnosis::recordings::evidence::{Evidence, by_channel};
 use crate::plant::Channel;
 use crate::stats::{NORMAL_MAD, median};
 

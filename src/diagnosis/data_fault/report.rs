@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::recorded::COLUMNS;
-use super::super::words::{CHANNEL_UNITS, CHANNEL_WORDS, percent};
 use super::fault::{DataFault, Kind};
+use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS, percent};
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::plant::Channel;
 use crate::quantity::significant;
 

@@ -1,11 +1,11 @@
 //! An answer with the faults of its data.
 
 use super::super::answer::Answer;
-use super::super::estimate::Estimate;
-use super::super::statements::TRUSTED;
-use super::super::words::{CHANNEL_WORDS, listed};
 use super::fault::{DataFault, Kind};
 use super::report::DataFaultReport;
+use crate::diagnosis::answer::estimate::Estimate;
+use crate::diagnosis::answer::statements::TRUSTED;
+use crate::diagnosis::answer::words::{CHANNEL_WORDS, listed};
 use crate::plant::Channel;
 
 /// An answer with the faults of its data: those taken off before the search, and those that the search names as an effect of the same meaning.

@@ -1,8 +1,8 @@
 //! Runs of equal readings: a channel that stands still for a while, and one that is sampled and held.
 
-use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::line::Line;
+use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
 use crate::plant::CHANNELS;
 use crate::stats::{median, median_step};
 

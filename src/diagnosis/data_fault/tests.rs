@@ -1,11 +1,11 @@
 //! Faults planted into simulated recordings and asked back; nothing planted, and what only looks like a fault, asked back as nothing.
 
-use super::super::evidence::{Evidence, by_channel};
-use super::super::input::DiagnosisInput;
-use super::super::input::prepare;
-use super::super::recorded::Recorded;
 use super::super::test_evidence::{evidence_of, plant};
 use super::*;
+use crate::diagnosis::recordings::evidence::{Evidence, by_channel};
+use crate::diagnosis::recordings::input::DiagnosisInput;
+use crate::diagnosis::recordings::input::prepare;
+use crate::diagnosis::recordings::recorded::Recorded;
 use crate::plant::{PlantInputs, PlantParameters, registry, simulate};
 
 const NOISE: [f64; 4] = [400.0, 2e-5, 0.8, 0.15];

@@ -1,8 +1,8 @@
 //! Zeros: absolute pressure for gauge, and those that the rest at the start of each recording shows.
 
-use super::super::input::{DiagnosisInput, NamedRecording};
 use super::fault::{DataFault, Kind};
 use super::free_air::{CLEAR, in_the_air};
+use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
 use crate::plant::{CHANNELS, Channel, InitialState, simulate};
 use crate::stats::{NORMAL_MAD, median};
 

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::super::free::{Free, Prior};
-use super::super::hypothesis::Hypothesis;
-use super::super::latent::scale;
 use super::grammar::{Form, Role, per, symbol};
+use super::latent::scale;
+use crate::diagnosis::fit::free::{Free, Prior};
+use crate::diagnosis::fit::hypothesis::Hypothesis;
 use crate::effects::{Coordinate, UNLISTED};
 use crate::plant::registry::LATENT_COEFFICIENT;
 use crate::plant::{

@@ -9,7 +9,10 @@
 
 mod candidate;
 mod grammar;
+pub mod latent;
 mod matching;
+pub mod reach;
+pub mod unlisted;
 
 use crate::stats::median;
 use rayon::prelude::*;
@@ -17,12 +20,12 @@ use rayon::prelude::*;
 use self::candidate::{Candidate, modulated};
 use self::grammar::{FORMS, WAVE};
 use self::matching::CurveModel;
+use super::fit::free::Free;
+use super::fit::hypothesis::Hypothesis;
 use super::fit::{FULL, Fit, Limit, ROUGH, Refit, Stage, Start, fit};
-use super::free::Free;
-use super::hypothesis::Hypothesis;
-use super::progress::{Observer, Step};
-use super::scale::Scale;
 use super::search::Search;
+use super::search::progress::{Observer, Step};
+use super::search::scale::Scale;
 use crate::effects::Coordinate;
 use crate::plant::{Basis, Latent, Moment, Port, Variable};
 

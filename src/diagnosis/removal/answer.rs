@@ -2,14 +2,14 @@
 
 use super::law::{Deviation, TableRow};
 use super::select::{Left, RemovalDiagnosis, Rival, Told as Value};
-use crate::diagnosis::account::SectionKind;
-use crate::diagnosis::answer::{Alternative, Answer, FoundEffect, SCHEMA, Verdict};
-use crate::diagnosis::details::{
+use crate::diagnosis::answer::account::SectionKind;
+use crate::diagnosis::answer::details::{
     DETAILS_SCHEMA, Details, FamilyMember, FamilyReport, NextExperiment, PredictionError,
 };
-use crate::diagnosis::estimate::Estimate;
-use crate::diagnosis::family::family;
-use crate::diagnosis::statements::{TRUSTED, doubts_of, in_headline, stated};
+use crate::diagnosis::answer::estimate::Estimate;
+use crate::diagnosis::answer::family::family;
+use crate::diagnosis::answer::statements::{TRUSTED, doubts_of, in_headline, stated};
+use crate::diagnosis::answer::{Alternative, Answer, FoundEffect, SCHEMA, Verdict};
 use crate::quantity::{counted, significant};
 
 /// Half width of an exponent's interval beyond which the table does not tell it.

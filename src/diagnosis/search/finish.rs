@@ -1,12 +1,12 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
-use super::super::cross_validation::{Depth, left_out};
 use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, rough_noise};
-use super::super::free::{Free, free_of};
-use super::super::hypothesis::{Hypothesis, covers, stands_for};
-use super::super::progress::{Observer, Step};
-use super::super::scale::Scale;
+use super::progress::{Observer, Step};
+use super::scale::Scale;
 use super::{Search, same};
+use crate::diagnosis::fit::cross_validation::{Depth, left_out};
+use crate::diagnosis::fit::free::{Free, free_of};
+use crate::diagnosis::fit::hypothesis::{Hypothesis, covers, stands_for};
 use crate::effects::Effect;
 use crate::plant::Chain;
 
@@ -54,7 +54,7 @@ impl Search<'_> {
             .filter(plainer)
             .map(|h| self.refit(h, Refit::FULL))
             .collect();
-        // Of a part of the device all such variants are fitted and told (`super::super::ruled_out`).
+        // Of a part of the device all such variants are fitted and told (`super::ruled_out`).
         let own = match self.believed.chain {
             Chain::Whole => self.shown.len()..best.effects.len(),
             _ => 0..0,

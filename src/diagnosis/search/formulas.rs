@@ -1,11 +1,11 @@
 //! Formulas beside the known effects of a search, and known effects in the place of a formula.
 
 use super::super::fit::{Limit, ROUGH, Refit, Start, jacobian, rough_noise};
-use super::super::hypothesis::Hypothesis;
-use super::super::progress::{Observer, Step};
-use super::super::scale::Scale;
 use super::finish::LAST;
+use super::progress::{Observer, Step};
+use super::scale::Scale;
 use super::{Climb, Search};
+use crate::diagnosis::fit::hypothesis::Hypothesis;
 use crate::plant::{Chain, Latent};
 
 /// Known effects that are fitted from where a formula stands, at most.

@@ -1,13 +1,13 @@
 //! What an effect moves: what moves no channel by a share of its noise is taken out, and what explains by no more than leading a fit to the tolerated numbers is missing
 //! nothing.
 
-use super::super::evidence::by_channel;
 use super::super::fit::{Limit, robust_sum};
-use super::super::free::Free;
-use super::super::hypothesis::Hypothesis;
-use super::super::progress::{Observer, Step};
 use super::Search;
 use super::finish::{LAST, LIGHTER};
+use super::progress::{Observer, Step};
+use crate::diagnosis::fit::free::Free;
+use crate::diagnosis::fit::hypothesis::Hypothesis;
+use crate::diagnosis::recordings::evidence::by_channel;
 use crate::plant::{CHANNELS, Chain, PlantParameters};
 
 /// Influence of an effect on the channel that it moves most below which it is not named, in standard deviations of that channel's noise [1].
@@ -121,9 +121,9 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::free::free_of;
     use super::super::super::test_evidence::{evidence_of, plant, search};
     use super::*;
+    use crate::diagnosis::fit::free::free_of;
     use crate::effects::{Effect, every};
 
     /// Steps of the set pressure, which warm the air up.

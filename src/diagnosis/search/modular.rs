@@ -5,14 +5,14 @@
 //! channel alone and held, the others then to all (modularisation: Liu, Bayarri and Berger, Bayesian Analysis 4, 2009; cutting feedback: Plummer,
 //! Statistics and Computing 25, 2015).
 
-use super::super::covariance::covariance;
-use super::super::evidence::by_channel;
 use super::super::fit::{Fit, Limit, Refit, Start, fit};
-use super::super::free::{Free, Prior};
-use super::super::hypothesis::Hypothesis;
-use super::super::localise::{NOISE_ALONE, robust_rms};
-use super::super::progress::{Observer, Step};
+use super::progress::{Observer, Step};
 use super::{Search, same};
+use crate::diagnosis::difference::localise::{NOISE_ALONE, robust_rms};
+use crate::diagnosis::fit::covariance::covariance;
+use crate::diagnosis::fit::free::{Free, Prior};
+use crate::diagnosis::fit::hypothesis::Hypothesis;
+use crate::diagnosis::recordings::evidence::by_channel;
 use crate::effects::Subsystem;
 use crate::plant::Channel;
 
@@ -117,9 +117,9 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::input::tolerated;
     use super::super::super::test_evidence::{evidence_of, plant, search};
     use super::*;
+    use crate::diagnosis::recordings::input::tolerated;
     use crate::plant::registry;
 
     /// A spring that nobody modelled bends a joint fit of the regulator; its own channel tells the truth.

@@ -1,12 +1,12 @@
 //! Which effects promise to explain what a hypothesis leaves: one simulation a start, derivatives of those that promise, a short fit of the best.
 
-use super::super::bumps;
-use super::super::evidence::Prediction;
 use super::super::fit::{Limit, Stage, fit, jacobian, linearised_cost, with_values};
-use super::super::free::{Free, Prior, free_of};
-use super::super::hypothesis::Hypothesis;
-use super::super::spectrum::{self, Line};
 use super::{Search, same};
+use crate::diagnosis::difference::bumps;
+use crate::diagnosis::difference::spectrum::{self, Line};
+use crate::diagnosis::fit::free::{Free, Prior, free_of};
+use crate::diagnosis::fit::hypothesis::Hypothesis;
+use crate::diagnosis::recordings::evidence::Prediction;
 use crate::effects::{Clues, Coordinate, Effect, Subsystem};
 use crate::plant::{Latent, PlantParameters, Quantity, registry};
 use rayon::prelude::*;
@@ -347,10 +347,10 @@ fn best_of_each(promises: Vec<Promise>) -> Vec<Promise> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::evidence::Evidence;
     use super::super::super::fit::{ROUGH, Refit};
     use super::super::super::test_evidence::{evidence_of, plant, search};
     use super::*;
+    use crate::diagnosis::recordings::evidence::Evidence;
     use crate::effects::every;
     use crate::plant::{Basis, Port, Variable};
 

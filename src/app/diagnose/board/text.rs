@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::words::{capital, of_column, percent, yardstick};
+use crate::diagnosis::answer::words::{capital, of_column, percent, yardstick};
 use crate::quantity::significant;
 
 /// Verdict, numbers, prediction, and the account.

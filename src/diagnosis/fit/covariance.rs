@@ -1,0 +1,90 @@
+//! Covariance of fitted quantities that holds where the residuals are not white.
+//!
+//! ```text
+//! V = H^-1 (B + P) H^-1,   B = sum over blocks of g g^T,   g = sum over a block's samples of w c r         (White 1982; blocks: Newey and West 1987)
+//! ```
+//!
+//! H information with priors, P that of the priors alone, c derivatives of a residual r by the fit's coordinates, w its robust weight. Where a law is a
+//! little wrong its residuals have the same sign for a while, and a block of them counts as one. Where they are white, B is H less P and V is H^-1; less
+//! than that is never believed.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Fit, robust_weight};
+use crate::diagnosis::recordings::evidence::Evidence;
+use crate::plant::CHANNELS;
+
+/// Covariance of the free quantities in the fit's coordinates.
+pub fn covariance(evidence: &Evidence, fit: &Fit) -> DMatrix<f64> {
+    let inverse = inverse(&fit.information);
+    let count = fit.free.len();
+    if fit.columns.len() != count {
+        return inverse;
+    }
+    let mut meat = DMatrix::zeros(count, count);
+    for (i, free) in fit.free.iter().enumerate() {
+        meat[(i, i)] = free.departure_slope(fit.values[i]).powi(2);
+    }
+    for block in blocks(evidence, fit) {
+        meat += &block * block.transpose();
+    }
+    let robust = &inverse * meat * &inverse;
+    let stretch = DVector::from_fn(count, |i, _| {
+        (inverse[(i, i)] / robust[(i, i)].max(f64::MIN_POSITIVE))
+            .sqrt()
+            .max(1.0)
+    });
+    DMatrix::from_fn(count, count, |i, j| {
+        stretch[i] * stretch[j] * robust[(i, j)]
+    })
+}
+
+/// Gradients of each block.
+fn blocks(evidence: &Evidence, fit: &Fit) -> Vec<DVector<f64>> {
+    let residuals = &fit.prediction.residuals;
+    let mut found = Vec::new();
+    let mut at = 0;
+    for measured in &evidence.recordings {
+        let time = &measured.inputs.time;
+        let first = time[0];
+        let number = |t: f64| ((t - first) / evidence.block) as usize;
+        let mut own = vec![DVector::zeros(fit.free.len()); number(time[time.len() - 1]) + 1];
+        for _ in 0..CHANNELS.len() {
+            for (i, t) in time.iter().enumerate() {
+                let residual = residuals[at + i];
+                if !residual.is_finite() {
+                    continue;
+                }
+                let weighted = robust_weight(residual) * residual;
+                let block = &mut own[number(*t)];
+                for (sum, column) in block.iter_mut().zip(&fit.columns) {
+                    let slope = column[at + i];
+                    if slope.is_finite() {
+                        *sum += weighted * slope;
+                    }
+                }
+            }
+            at += time.len();
+        }
+        found.append(&mut own);
+    }
+    found
+}
+
+/// Inverse of an information matrix, scaled first; what is not determined at all gets a large variance.
+fn inverse(information: &DMatrix<f64>) -> DMatrix<f64> {
+    let count = information.nrows();
+    let scale: Vec<f64> = (0..count)
+        .map(|i| 1.0 / information[(i, i)].max(1e-12).sqrt())
+        .collect();
+    let mut scaled = DMatrix::from_fn(count, count, |i, j| {
+        information[(i, j)] * scale[i] * scale[j]
+    });
+    for i in 0..count {
+        scaled[(i, i)] += 1e-10;
+    }
+    let inverse = scaled
+        .cholesky()
+        .map_or_else(|| DMatrix::identity(count, count), |c| c.inverse());
+    DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] * scale[i] * scale[j])
+}

@@ -1,0 +1,6 @@
+//! What was recorded: read, cleaned, and as a fit sees it.
+
+pub mod clean;
+pub mod evidence;
+pub mod input;
+pub mod recorded;

@@ -1,0 +1,134 @@
+//! Explanations in the order of their evidence.
+
+use super::Search;
+use crate::diagnosis::fit::cross_validation::{Depth, LeftOut, left_out};
+use crate::diagnosis::fit::hypothesis::{Hypothesis, stands_for};
+use crate::diagnosis::fit::model_error::ModelError;
+
+/// An explanation among others.
+#[derive(Debug, Clone)]
+pub struct Ranked {
+    /// The explanation.
+    pub hypothesis: Hypothesis,
+    /// Its cost, penalty included [1].
+    pub score: f64,
+    /// Its odds against the best one [1].
+    pub odds: f64,
+    /// Its probability among those looked at in full [1].
+    pub probability: f64,
+    /// Each recording as predicted by a fit to the others; none where there are no others.
+    pub left_out: Option<LeftOut>,
+}
+
+impl Ranked {
+    /// Robust sum of squares of what was left out in turn.
+    fn left_out_sum(&self, model_error: &ModelError) -> Option<f64> {
+        Some(self.left_out.as_ref()?.sum(model_error))
+    }
+}
+
+/// Explanations by evidence, unless what was left out in turn speaks as clearly for another as evidence would have to.
+pub(in crate::diagnosis) fn rank(search: &Search<'_>, found: Vec<Hypothesis>) -> Vec<Ranked> {
+    let mut ranked: Vec<Ranked> = found
+        .into_iter()
+        .map(|hypothesis| Ranked {
+            score: search.score(&hypothesis),
+            odds: 1.0,
+            probability: 1.0,
+            left_out: None,
+            hypothesis,
+        })
+        .collect();
+    let limit = -2.0 * search.settings.least_odds.ln();
+    let close = ranked[0].score + limit;
+    let near = ranked.iter().take_while(|r| r.score <= close).count();
+    for leading in &mut ranked[..near] {
+        let fit = &leading.hypothesis.fit;
+        leading.left_out = left_out(search.evidence, fit, Depth::OneStep);
+    }
+    let sums: Vec<Option<f64>> = (ranked[..near].iter())
+        .map(|r| r.left_out_sum(&search.model_error))
+        .collect();
+    if let Some(first) = sums[0] {
+        let others = sums.iter().enumerate().skip(1);
+        // A richer law in place of a plain one predicts a little better whether or not it is at work: the search has weighed them.
+        let others =
+            others.filter(|(i, _)| !stands_for(&ranked[*i].hypothesis, &ranked[0].hypothesis));
+        let predicts = others.filter_map(|(i, sum)| Some((i, (*sum)?)));
+        let better = predicts.min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((index, sum)) = better
+            && first - sum > limit
+        {
+            let chosen = ranked.remove(index);
+            ranked.insert(0, chosen);
+        }
+    }
+    let own: Vec<f64> = ranked.iter().map(|r| odds(search, &ranked[0], r)).collect();
+    let sum: f64 = own.iter().sum();
+    for (r, odds) in ranked.iter_mut().zip(own) {
+        (r.odds, r.probability) = (odds, odds / sum);
+    }
+    ranked
+}
+
+/// Odds of an explanation against the one that was put first. One that was put first for what it predicts is not held to be less likely than those behind it.
+/// Where a plain law was put before a richer one, what that gains was found to be no more than idealisation leaves: its penalty stands.
+fn odds(search: &Search<'_>, first: &Ranked, other: &Ranked) -> f64 {
+    let (plain, richer) = (&first.hypothesis, &other.hypothesis);
+    let passed_over = other.score < first.score
+        && richer.fit.free.len() > plain.fit.free.len()
+        && stands_for(plain, richer);
+    let behind = match passed_over {
+        true => search.penalty(richer) - search.penalty(plain),
+        false => other.score - first.score,
+    };
+    (-0.5 * behind).exp().min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ruled_out::variant;
+    use super::*;
+    use crate::diagnosis::fit::FULL;
+    use crate::diagnosis::test_evidence::{evidence_of, plant, search};
+    use crate::effects::every;
+
+    /// A case with dry friction alone was said to be as likely one whose friction grows with the pressure, by 0.04 N of 25 N: that law had followed the
+    /// errors of the other numbers and was passed over for it, yet stood beside the plain one at even odds.
+    #[test]
+    fn a_richer_law_that_was_passed_over_costs_its_numbers() {
+        let mut truth = plant();
+        let friction = |name: &str| every().find(|e| e.name == name).unwrap();
+        let (plain, richer) = (
+            friction("coulomb_viscous_friction"),
+            friction("pressure_dependent_friction"),
+        );
+        truth.device.seal_friction.viscous = 40.0;
+        let evidence = evidence_of(&truth, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
+        let search = search(&evidence);
+        let fitted = |effect| Hypothesis {
+            effects: vec![effect],
+            fit: variant(&search, &[effect], &FULL[FULL.len() - 1..]).unwrap(),
+            depends_on: Vec::new(),
+        };
+        let (plain, mut richer) = (fitted(plain), fitted(richer));
+        let count = evidence.count() as f64;
+        let odds = |richer: &Hypothesis| {
+            let ranked = rank(&search, vec![plain.clone(), richer.clone()]);
+            assert_eq!(ranked[0].hypothesis.names(), plain.names());
+            let sum: f64 = ranked.iter().map(|r| r.probability).sum();
+            assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+            ranked[1].odds
+        };
+        // One number more: Schwarz's penalty for it, whatever it gained.
+        richer.fit.misfit = plain.fit.misfit - 200.0;
+        assert!((odds(&richer) * count.sqrt() - 1.0).abs() < 1e-9);
+        richer.fit.misfit = plain.fit.misfit - 400.0;
+        assert!((odds(&richer) * count.sqrt() - 1.0).abs() < 1e-9);
+        // One that scores no better is as likely as its score says.
+        richer.fit.misfit = plain.fit.misfit + 4.0;
+        richer.fit.prior = plain.fit.prior;
+        let expected = (-0.5 * (4.0 + count.ln())).exp();
+        assert!((odds(&richer) / expected - 1.0).abs() < 1e-9);
+    }
+}
