@@ -22,6 +22,7 @@
 //! - [`rig`]: the bench rig, the device without an arm
 //! - [`recording`]: sampled signals, CSV, Parquet, Rerun
 //! - [`metrics`]: the numbers of a run
+//! - [`run`]: a scenario run to its end, with its numbers
 //! - [`report`]: tables for people
 //! - [`design`]: the design study
 //! - [`plant`]: a rig as one description of numbers, driven by the inputs of a recording
@@ -85,6 +86,7 @@ pub mod replay;
 #[cfg(feature = "cli")]
 pub mod report;
 pub mod rig;
+pub mod run;
 pub mod scenario;
 pub mod sensing;
 pub mod shell;

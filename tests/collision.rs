@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use glamx::DPose3;
-use idc_cell::app::run_cell;
 use idc_cell::cell::{Cell, CellError};
 use idc_cell::path::{Obstacle as InTheWay, PlanError};
 use idc_cell::place::{Hindrance, PlaceGrid, best_places, tried_places};
+use idc_cell::run::run_cell;
 use idc_cell::scenario::{Obstacle, ObstacleShape, Scenario};
 use idc_cell::simulation::SimulationError;
 

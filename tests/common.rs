@@ -3,8 +3,8 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use idc_cell::app::{Finished, run_cell};
 use idc_cell::cell::Cell;
+use idc_cell::run::{FinishedCell, run_cell};
 use idc_cell::scenario::{Scenario, load};
 
 /// A path inside the project.
@@ -81,7 +81,7 @@ pub fn scenario(name: &str) -> Scenario {
 }
 
 /// Runs a scenario to its end, which it must reach.
-pub fn run(scenario: Scenario) -> Finished {
+pub fn run(scenario: Scenario) -> FinishedCell {
     let cell = Cell::new(scenario).unwrap_or_else(|error| panic!("{error}"));
     let finished = run_cell(&cell, &mut |_, _| ()).unwrap();
     assert!(finished.stop.is_none(), "{}", finished.stop.unwrap());

@@ -4,7 +4,7 @@ use idc_cell::diagnosis::answer::estimate::estimates;
 use idc_cell::diagnosis::fit::cross_validation::{Depth, left_out};
 use idc_cell::diagnosis::fit::free::{Free, free_of};
 use idc_cell::diagnosis::fit::hypothesis::Hypothesis;
-use idc_cell::diagnosis::fit::{Refit, fit};
+use idc_cell::diagnosis::fit::{FINEST, Limit, fit};
 use idc_cell::diagnosis::recordings::evidence::{Evidence, Measured};
 use idc_cell::diagnosis::search::ranking::Ranked;
 use idc_cell::effects::{Effect, every};
@@ -106,8 +106,8 @@ fn held(device: &Device, seed: u64) -> Vec<(&'static str, bool)> {
         &evidence,
         (&believed, None),
         (&free, &[]),
-        Refit::FINEST.stages,
-        Refit::FINEST.limit,
+        FINEST,
+        Limit::FULL,
     );
     let found = Ranked {
         left_out: left_out(&evidence, &fit, Depth::OneStep),

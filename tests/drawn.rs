@@ -4,13 +4,14 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
-use idc_cell::app::{edge_course, finished_edge, run_cell, scene_of};
+use idc_cell::app::{edge_course, finished_edge, scene_of};
 use idc_cell::arm::VisualShape;
 use idc_cell::cell::Cell;
 use idc_cell::recording::csv::EdgeProfile;
 use idc_cell::recording::finished_edge::EdgeMoment;
 use idc_cell::recording::rerun::{RerunOptions, write_rrd};
 use idc_cell::recording::scene::Scene;
+use idc_cell::run::run_cell;
 use idc_cell::scenario::{BurrScenario, Obstacle, ObstacleShape};
 use rerun::{
     ChunkStore, ChunkStoreConfig, CoordinateFrame, LineStrips3D, Mesh3D, TextDocument, Transform3D,

@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use glamx::DPose3;
-use idc_cell::app::{Finished, run_cell};
 use idc_cell::arm::chain::MAX_JOINTS;
 use idc_cell::arm::dynamics::inverse_dynamics;
 use idc_cell::arm::kinematics::link_poses;
 use idc_cell::cell::{Cell, CellError};
 use idc_cell::recording::schema::{self, JointSignal, joint_quantity};
+use idc_cell::run::{FinishedCell, run_cell};
 use idc_cell::scenario::{LimitOverride, Scenario};
 
 use crate::common::{run, scenario};
@@ -24,7 +24,7 @@ fn short() -> Scenario {
 }
 
 /// Lag and lateral error in the middle of following [m].
-fn in_the_middle(finished: &Finished) -> (f64, f64) {
+fn in_the_middle(finished: &FinishedCell) -> (f64, f64) {
     let recording = &finished.recording;
     let span = recording.phase("follow").unwrap();
     let middle = 0.5 * (span.start + span.end);
@@ -59,7 +59,7 @@ fn drives_that_lag_make_a_lag_along_the_path_and_no_lateral_error() {
 }
 
 /// Largest torque of a joint from 1 [N m].
-fn largest_torque(finished: &Finished, joint: usize) -> f64 {
+fn largest_torque(finished: &FinishedCell, joint: usize) -> f64 {
     let quantity = joint_quantity(joint, JointSignal::Torque);
     let torques = &finished.recording.channel(&quantity).unwrap().values;
     torques

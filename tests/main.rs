@@ -49,6 +49,7 @@ mod removal;
 mod removal_table;
 mod report;
 mod rig_file;
+mod run_in_one_call;
 mod scenario_comments;
 mod schemas;
 mod settings;

@@ -10,8 +10,8 @@ use std::error::Error;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use idc_cell::app::run_cell;
 use idc_cell::cell::Cell;
+use idc_cell::run::run_cell;
 use idc_cell::scenario::{Scenario, load};
 
 /// Rounds of everything, interleaved, of which the median counts.

@@ -7,9 +7,9 @@ use serde_json::Value;
 
 use super::error::AppError;
 use super::progress;
-use super::run::run_cell;
 use crate::advice::{Advice, Effort, Manner, Remedy, RunOutcome, Trial, advise};
 use crate::cell::{Cell, CellError};
+use crate::run::run_cell;
 use crate::scenario::{KeyValue, ScenarioTemplate};
 
 /// Time that a search of the usual extent may take [s]; it is shorter unless the computer is slow or busy.

@@ -10,6 +10,7 @@ use crate::import::ImportError;
 use crate::metrics::MetricsError;
 use crate::quantity::counted;
 use crate::recording::RecordingError;
+use crate::run::RunError;
 use crate::scenario::ScenarioError;
 use crate::workpiece::WorkpieceError;
 
@@ -29,6 +30,17 @@ pub enum ExitCode {
 impl From<ExitCode> for std::process::ExitCode {
     fn from(code: ExitCode) -> Self {
         Self::from(code as u8)
+    }
+}
+
+impl From<RunError> for AppError {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Scenario(error) => Self::Scenario(error),
+            RunError::Cell(error) => Self::Cell(error),
+            RunError::Metrics { file, source } => Self::Metrics { file, source },
+            RunError::Recording(error) => Self::Recording(error),
+        }
     }
 }
 

@@ -39,7 +39,6 @@ mod vary;
 mod view;
 mod viewer;
 
-pub use bench::{FinishedBench, run_rig};
 pub use cli::{Cli, execute};
 pub use complaint::{complain, wants_json};
 pub use design::ScenarioEvaluator;
@@ -47,5 +46,4 @@ pub use edge_course::edge_course;
 pub use error::{AppError, ExitCode};
 pub use interrupt::listen;
 pub use picture::{finished_edge, scene_of};
-pub use run::{Finished, run_cell};
 pub use viewer::ViewerError;

@@ -9,7 +9,6 @@ mod source;
 mod table;
 mod variants;
 
-pub use cell_run::{Finished, run_cell};
 pub(super) use cell_run::{Listener, RunPart};
 pub(super) use command::{RunArguments, put_in};
 pub(super) use numbers::{Numbers, can_run, metric_names, numbers};

@@ -172,7 +172,7 @@ fn found(
         let search = search_of(case, &evidence, settings);
         let (mut found, roughly, model_error) = search.run_with_rough(observer);
         let weighed = Search {
-            model_error,
+            model_error: model_error.clone(),
             ..search.clone()
         };
         if let Some(effect) = case.tried {

@@ -14,9 +14,10 @@ pub(super) mod normal_equations;
 
 use self::free::{Free, Prior};
 use self::normal_equations::weighted_products;
+use super::recordings::device::Device;
 use super::recordings::evidence::{Evidence, Prediction};
+use super::recordings::subject::Subject;
 use super::settings::HUBER;
-use crate::plant::PlantParameters;
 use crate::stats::quantile;
 use nalgebra::{DMatrix, DVector};
 
@@ -33,13 +34,13 @@ const MOST_TRIES: usize = 8;
 
 /// A fitted description.
 #[derive(Debug, Clone)]
-pub struct Fit {
+pub struct Fit<S: Subject = Device> {
     /// Free quantities.
-    pub free: Vec<Free>,
+    pub free: Vec<Free<S>>,
     /// Values of the free quantities.
     pub values: Vec<f64>,
     /// The description with what it gives.
-    pub prediction: Prediction,
+    pub prediction: Prediction<S>,
     /// Robust sum of squares of the samples [1].
     pub misfit: f64,
     /// Sum of a bounded loss that forgives errors in time, for the comparison of rough fits [1].
@@ -52,14 +53,14 @@ pub struct Fit {
     pub information: DMatrix<f64>,
 }
 
-impl Fit {
+impl<S: Subject> Fit<S> {
     /// The objective of the fit.
     pub fn cost(&self) -> f64 {
         self.misfit + self.prior
     }
 
     /// Free quantities, to go on from where the fit is.
-    pub fn free_from_here(&self) -> Vec<Free> {
+    pub fn free_from_here(&self) -> Vec<Free<S>> {
         let values = self.free.iter().zip(&self.values);
         values.map(|(f, value)| f.from(*value)).collect()
     }
@@ -147,7 +148,7 @@ fn limit_for(residuals: &[f64], shares: &[f64]) -> f64 {
     HUBER * (high.unwrap_or(0.0) / 2.5).max(1.0)
 }
 
-fn prior_sum(free: &[Free], values: &[f64]) -> f64 {
+fn prior_sum<S: Subject>(free: &[Free<S>], values: &[f64]) -> f64 {
     free.iter()
         .zip(values)
         .map(|(f, v)| f.departure(*v).powi(2))
@@ -155,24 +156,24 @@ fn prior_sum(free: &[Free], values: &[f64]) -> f64 {
 }
 
 /// A description with quantities set.
-pub fn with_values(plant: &PlantParameters, free: &[Free], values: &[f64]) -> PlantParameters {
+pub fn with_values<S: Subject>(plant: &S::Model, free: &[Free<S>], values: &[f64]) -> S::Model {
     let mut changed = plant.clone();
     for (f, value) in free.iter().zip(values) {
-        f.quantity.set(&mut changed, *value);
+        S::set(&f.quantity, &mut changed, *value);
     }
     changed
 }
 
 /// Derivatives of the residuals by the coordinates of `free[from..]`.
-pub fn jacobian(
-    evidence: &Evidence,
-    here: &Prediction,
-    free: &[Free],
+pub fn jacobian<S: Subject>(
+    evidence: &Evidence<S>,
+    here: &Prediction<S>,
+    free: &[Free<S>],
     values: &[f64],
     from: usize,
 ) -> Vec<Vec<f64>> {
     let mut steps = Vec::with_capacity(free.len());
-    let plants: Vec<PlantParameters> = (from..free.len())
+    let plants: Vec<S::Model> = (from..free.len())
         .map(|i| {
             let f = &free[i];
             let at = f.coordinate.of(values[i]);
@@ -182,7 +183,7 @@ pub fn jacobian(
             }
             steps.push(step);
             let mut plant = here.plant.clone();
-            f.quantity.set(&mut plant, f.coordinate.value(at + step));
+            S::set(&f.quantity, &mut plant, f.coordinate.value(at + step));
             plant
         })
         .collect();
@@ -196,11 +197,11 @@ pub fn jacobian(
 }
 
 /// Information and gradient with the samples' weights, priors included.
-fn normal_equations(
+fn normal_equations<S: Subject>(
     columns: &[Vec<f64>],
     residuals: &[f64],
     weighing: &Weighing<'_>,
-    free: &[Free],
+    free: &[Free<S>],
     values: &[f64],
 ) -> (DMatrix<f64>, DVector<f64>) {
     let weights = weighing.weights(residuals);
@@ -267,6 +268,8 @@ pub const FULL: &[Stage] = &[
         gain: 0.0,
     },
 ];
+/// The last stage of a full fit alone.
+pub const FINEST: &[Stage] = FULL.split_at(FULL.len() - 1).1;
 /// Error in time that a rough fit forgives [s].
 const ROUGH_TIME: f64 = 0.006;
 
@@ -280,6 +283,9 @@ pub struct Limit {
 }
 
 impl Limit {
+    /// That of a full fit.
+    pub const FULL: Self = Self::of(40);
+
     /// So many iterations, with steps for the numbers of laws.
     pub const fn of(iterations: usize) -> Self {
         Self {
@@ -298,38 +304,47 @@ impl Limit {
 }
 
 /// Start of a fit.
-#[derive(Debug, Clone, Copy)]
-pub enum Start<'a> {
+#[derive(Debug)]
+pub enum Start<'a, S: Subject = Device> {
     /// Where it was; what is tolerated from what was believed, because a model that lacks something bends it out of shape.
     Believed,
     /// Where it was.
     Here,
     /// Where another description stands: impacts make many minima, and a fit comes to rest in one of them. What another gains by having come to a better
     /// one is not what it has more.
-    Where(&'a PlantParameters),
+    Where(&'a S::Model),
 }
+
+// By hand: a derive asks that the model itself may be copied.
+impl<S: Subject> Clone for Start<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Subject> Copy for Start<'_, S> {}
 
 /// A fit of what a hypothesis has free.
 #[derive(Debug, Clone, Copy)]
-pub struct Refit<'a> {
+pub struct Refit<'a, S: Subject = Device> {
     /// Its start.
-    pub start: Start<'a>,
+    pub start: Start<'a, S>,
     /// Its stages.
     pub stages: &'a [Stage],
     /// Its end.
     pub limit: Limit,
 }
 
-impl<'a> Refit<'a> {
+impl<'a, S: Subject> Refit<'a, S> {
     /// The full fit from where it was.
     pub const FULL: Self = Self {
         start: Start::Believed,
         stages: FULL,
-        limit: Limit::of(40),
+        limit: Limit::FULL,
     };
     /// The finest measure alone.
     pub const FINEST: Self = Self {
-        stages: FULL.split_at(FULL.len() - 1).1,
+        stages: FINEST,
         ..Self::FULL
     };
     /// The rough fit.
@@ -341,7 +356,7 @@ impl<'a> Refit<'a> {
 
     /// The same from another start.
     #[must_use]
-    pub const fn from(self, start: Start<'a>) -> Self {
+    pub const fn from(self, start: Start<'a, S>) -> Self {
         Self { start, ..self }
     }
 
@@ -352,7 +367,7 @@ impl<'a> Refit<'a> {
     }
 
     /// What is free in a fit, from this start.
-    pub fn free(&self, fitted: &Fit) -> Vec<Free> {
+    pub fn free(&self, fitted: &Fit<S>) -> Vec<Free<S>> {
         let here = fitted.free_from_here().into_iter();
         match self.start {
             Start::Here => here.collect(),
@@ -368,7 +383,7 @@ impl<'a> Refit<'a> {
 }
 
 /// Cost of a prediction by the rough measure: the piston held to its measured motion.
-fn rough_cost(evidence: &Evidence, prediction: &Prediction) -> f64 {
+fn rough_cost<S: Subject>(evidence: &Evidence<S>, prediction: &Prediction<S>) -> f64 {
     let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
     let held = (!prediction.guided).then(|| evidence.predict(&prediction.plant, true, None));
     let weighing = Weighing {
@@ -380,12 +395,12 @@ fn rough_cost(evidence: &Evidence, prediction: &Prediction) -> f64 {
 }
 
 /// A fit on its way.
-struct Walk<'a> {
-    evidence: &'a Evidence,
-    free: &'a [Free],
+struct Walk<'a, S: Subject> {
+    evidence: &'a Evidence<S>,
+    free: &'a [Free<S>],
     values: Vec<f64>,
     /// Prediction at these values.
-    here: Prediction,
+    here: Prediction<S>,
     /// Penalty of the prior at these values [1].
     prior: f64,
     /// Levenberg and Marquardt's damping [1].
@@ -393,7 +408,7 @@ struct Walk<'a> {
     longest_step: f64,
 }
 
-impl Walk<'_> {
+impl<S: Subject> Walk<'_, S> {
     /// One iteration from where the cost is `before`: steps more and more damped, until one gains or none promises to. Returns the gain.
     fn iterate(
         &mut self,
@@ -434,13 +449,13 @@ impl Walk<'_> {
 }
 
 /// Fits free quantities from where they start, the derivatives by the first of them `frozen`; `known` may spare simulations.
-pub fn fit(
-    evidence: &Evidence,
-    (plant, known): (&PlantParameters, Option<&Prediction>),
-    (free, frozen): (&[Free], &[Vec<f64>]),
+pub fn fit<S: Subject>(
+    evidence: &Evidence<S>,
+    (plant, known): (&S::Model, Option<&Prediction<S>>),
+    (free, frozen): (&[Free<S>], &[Vec<f64>]),
     stages: &[Stage],
     limit: Limit,
-) -> Fit {
+) -> Fit<S> {
     let values: Vec<f64> = free.iter().map(|f| f.clamp(f.start)).collect();
     let mut walk = Walk {
         evidence,
@@ -512,10 +527,10 @@ pub fn fit(
 }
 
 /// Cost that a description could come to in a stage by one step, and where, by the derivatives known, without a simulation more.
-pub fn linearised_cost(
-    evidence: &Evidence,
-    there: &Prediction,
-    free: &[Free],
+pub fn linearised_cost<S: Subject>(
+    evidence: &Evidence<S>,
+    there: &Prediction<S>,
+    free: &[Free<S>],
     values: &[f64],
     columns: &[Vec<f64>],
     stage: &Stage,
@@ -544,8 +559,8 @@ pub fn linearised_cost(
 }
 
 /// Damped step to where the quadratic model is least within the bounds, by an active set: values tried and the gain promised.
-fn step(
-    free: &[Free],
+fn step<S: Subject>(
+    free: &[Free<S>],
     values: &[f64],
     normal: &DMatrix<f64>,
     gradient: &DVector<f64>,
@@ -614,12 +629,12 @@ fn step(
 }
 
 /// The rough cost that noise alone has [1].
-pub fn rough_noise(evidence: &Evidence) -> f64 {
+pub fn rough_noise<S: Subject>(evidence: &Evidence<S>) -> f64 {
     let shares = evidence.shares(ROUGH[0].forgiven, ROUGH[0].guided);
     let readings = evidence
         .recordings
         .iter()
-        .flat_map(|m| &m.readings)
+        .flat_map(|m| m.readings.as_ref())
         .flatten();
     readings
         .zip(shares.iter())

@@ -7,14 +7,13 @@ use rayon::prelude::*;
 
 use super::failure::Failure;
 use super::force_range::{force_range, intersection};
-use crate::app::bench::run_rig;
-use crate::app::run::run_cell;
 use crate::cell::Cell;
 use crate::design::{
     Design, DesignError, Evaluate, EvaluateError, Outcome, ScenarioOutcome, Study,
 };
 use crate::metrics::{BENCH_METRICS, METRICS, Metric};
 use crate::rig::Rig;
+use crate::run::{run_bench, run_cell};
 use crate::scenario::{AnyScenario, BenchScenario, KeyValue, Scenario, ScenarioTemplate};
 
 /// Simulates designs in the scenarios of a study: benches on the rig, cells in the cell. Noise and search for a posture keep the scenarios' seeds.
@@ -124,7 +123,7 @@ fn run(template: &ScenarioTemplate, values: &[KeyValue]) -> Result<Run, Failure>
 
 fn bench(scenario: BenchScenario) -> Result<Run, Failure> {
     let rig = Rig::new(scenario)?;
-    let mut finished = run_rig(&rig, &mut |_, _| ())?;
+    let mut finished = run_bench(&rig, &mut |_, _| ())?;
     if let Some(stop) = finished.stop {
         return Err(stop.into());
     }

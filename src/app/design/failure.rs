@@ -1,9 +1,9 @@
 //! Why a design could not be simulated, in the same words for the same cause.
 
-use crate::app::error::AppError;
 use crate::cell::CellError;
 use crate::design::EvaluateError;
 use crate::rig::RigError;
+use crate::run::RunError;
 use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
 
@@ -75,8 +75,8 @@ impl From<SimulationError> for Failure {
     }
 }
 
-impl From<AppError> for Failure {
-    fn from(error: AppError) -> Self {
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
         Self::new("run not measurable", &error)
     }
 }

@@ -9,12 +9,12 @@ use rayon::prelude::*;
 
 use super::super::error::AppError;
 use super::super::progress;
-use super::super::run::run_cell;
 use super::part::Files;
 use crate::arm::{ArmDraft, draft_of};
 use crate::cell::{Cell, CellError, Setup, Stance};
 use crate::metrics;
 use crate::quantity::significant;
+use crate::run::run_cell;
 use crate::scenario::load;
 
 /// Stretch of the plate's edge that is worked: its middle and the longest [mm], and the longest of the arm's reach [1].

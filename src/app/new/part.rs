@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::super::error::AppError;
 use super::super::progress;
-use super::super::run::run_cell;
 use crate::advice::{Effort, Manner, RunOutcome, Trial, anywhere, pose_edits};
 use crate::cell::{Cell, Setup, largest_balls};
 use crate::metrics;
+use crate::run::run_cell;
 use crate::scenario::{KeyValue, ScenarioTemplate};
 use crate::workpiece::{
     Convexity, EdgeList, EdgeSearch, PartFile, WorkpieceError, list_edges, load_mesh,

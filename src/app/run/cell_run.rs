@@ -1,92 +1,37 @@
-//! A run of a cell: simulated, watched part by part while it goes on, measured.
-
-use std::time::Instant;
+//! A run of a cell, watched part by part while it goes on, and its summary.json.
 
 use super::super::error::AppError;
 use super::super::picture::{motion_of, scene_of};
 use super::super::viewer::{PART_INTERVAL, Watch};
 use super::source::Source;
 use crate::cell::{Cell, EstimatedArm};
-use crate::metrics::{
-    BoundCheck, EdgeLimits, Summary, SummaryLimits, Timing, summarise, summarise_edge,
-};
-use crate::recording::csv::EdgeProfile;
+use crate::metrics::{BoundCheck, Summary};
 use crate::recording::provenance::Provenance;
 use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
+use crate::run::{FinishedCell, run_cell_observed};
 use crate::scenario::{ChamferScenario, JudgedValue};
-use crate::simulation::{CellRun, FrameLog, SampleLog, SimulationError};
-
-/// Steps between two looks at the progress bar.
-const PROGRESS_STEPS: usize = 500;
-
-/// A run that has ended.
-pub struct Finished {
-    /// The recording.
-    pub recording: Recording,
-    /// Poses for the picture.
-    pub frames: FrameLog,
-    /// Its numbers.
-    pub summary: Summary,
-    /// Reason for an early stop.
-    pub stop: Option<SimulationError>,
-    /// The edge as a turning tool left it.
-    pub edge: Option<EdgeProfile>,
-}
-
-/// Simulates the whole job. `progress` is told steps done and in all.
-///
-/// # Errors
-/// Nothing could be recorded or measured.
-pub fn run_cell(cell: &Cell, progress: &mut dyn FnMut(usize, usize)) -> Result<Finished, AppError> {
-    run_heard(cell, progress, Vec::new())
-}
+use crate::simulation::{FrameLog, SampleLog};
 
 /// Simulates the whole job, and gives what is recorded to listeners while it goes on.
 pub(super) fn run_heard(
     cell: &Cell,
     progress: &mut dyn FnMut(usize, usize),
     mut listeners: Vec<Listener<'_>>,
-) -> Result<Finished, AppError> {
-    let start = Instant::now();
+) -> Result<FinishedCell, AppError> {
     let mut failed = None;
-    let run = cell.run(&mut |simulation| {
-        let (steps, last) = (simulation.steps(), simulation.total_steps());
-        if steps.is_multiple_of(PROGRESS_STEPS) {
-            progress(steps, last);
-        }
+    let finished = run_cell_observed(cell, progress, &mut |simulation| {
         for listener in &mut listeners {
-            let due = simulation.done() || steps.is_multiple_of(listener.part);
+            let due = simulation.done() || simulation.steps().is_multiple_of(listener.part);
             if failed.is_none() && due {
                 failed = listener.hand_over(simulation.logs()).err();
             }
         }
-    })?;
-    if let Some(error) = failed {
-        return Err(error);
+    });
+    match failed {
+        Some(error) => Err(error),
+        None => Ok(finished?),
     }
-    let wall = start.elapsed().as_secs_f64();
-    let CellRun {
-        recording,
-        frames,
-        stop,
-        edge,
-    } = run;
-    let mut summary = summarise(&recording, &limits(cell)).map_err(|source| AppError::Metrics {
-        file: cell.scenario.path.display().to_string(),
-        source,
-    })?;
-    if let Some(edge) = &edge {
-        summarise_edge(&mut summary, edge, &edge_limits(cell));
-    }
-    summary.timing = Some(Timing::new(summary.duration_s, wall));
-    Ok(Finished {
-        recording,
-        frames,
-        summary,
-        stop,
-        edge,
-    })
 }
 
 /// Tolerance of the edge; a leg without upper bound has none.
@@ -100,16 +45,6 @@ fn chamfer(cell: &Cell) -> serde_json::Value {
         "leg_max_mm": most.is_finite().then_some(1e3 * most),
         "residual_burr_max_mm": 1e3 * residual_burr,
     })
-}
-
-/// What its edge is measured against.
-fn edge_limits(cell: &Cell) -> EdgeLimits {
-    let ChamferScenario { leg, residual_burr } = cell.scenario.workpiece.chamfer;
-    EdgeLimits {
-        leg,
-        residual_burr,
-        ends: (cell.scenario.removal).map_or(0.0, |removal| removal.contact_length),
-    }
 }
 
 /// Samples and frames of a run that have come since the last part.
@@ -181,17 +116,6 @@ impl<'a> Listener<'a> {
     }
 }
 
-fn limits(cell: &Cell) -> SummaryLimits {
-    let joints = &cell.arm.chain.joints;
-    SummaryLimits {
-        desired_force: cell.passes[0].force,
-        later_forces: cell.passes[1..].iter().map(|pass| pass.force).collect(),
-        stroke_limits: (0.0, cell.scenario.device.parameters.full_stroke),
-        joint_efforts: joints.iter().map(|joint| joint.effort).collect(),
-        joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),
-    }
-}
-
 /// Content of summary.json, which `--json` prints.
 #[derive(serde::Serialize)]
 pub(super) struct SummaryDocument<'a> {
@@ -224,7 +148,7 @@ impl<'a> SummaryDocument<'a> {
     /// The document of a run.
     pub(super) fn new(
         cell: &'a Cell,
-        finished: &'a Finished,
+        finished: &'a FinishedCell,
         expectations: &'a [BoundCheck],
         source: &'a Source,
         origin: &'a Provenance,

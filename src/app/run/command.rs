@@ -11,12 +11,13 @@ use super::super::interrupt::Interruptible;
 use super::super::output::show;
 use super::super::progress;
 use super::super::viewer::{Viewing, Watch};
-use super::job::{Job, Manner};
+use super::job::Manner;
 use super::settings::{Setting, Variant, with_flags};
 use super::source::Source;
 use crate::cell::Cell;
 use crate::recording::rerun::Opening;
 use crate::report::Style;
+use crate::run::Job;
 use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate};
 
 #[derive(Debug, Args)]
@@ -118,24 +119,26 @@ pub(super) fn one(
     }
     let viewing = arguments.view.as_deref().map(Viewing::parse).transpose()?;
     let quiet = arguments.quiet || arguments.json;
-    let job = Job::new(scenario).map_err(|error| {
-        let read = || ScenarioTemplate::read(&arguments.scenario);
-        let error = match varied {
-            Some((template, variant)) => {
-                (arguments.advice).with_advice(error, template, &variant.edits, quiet)
-            }
-            None => match (&error, read()) {
-                (AppError::Cell(_), Ok(template)) => {
-                    (arguments.advice).with_advice(error, &template, &[], quiet)
+    let job = Job::new(scenario)
+        .map_err(AppError::from)
+        .map_err(|error| {
+            let read = || ScenarioTemplate::read(&arguments.scenario);
+            let error = match varied {
+                Some((template, variant)) => {
+                    (arguments.advice).with_advice(error, template, &variant.edits, quiet)
                 }
-                _ => error,
-            },
-        };
-        match varied {
-            Some((_, variant)) => with_flags(error, &variant.edits),
-            None => error,
-        }
-    })?;
+                None => match (&error, read()) {
+                    (AppError::Cell(_), Ok(template)) => {
+                        (arguments.advice).with_advice(error, &template, &[], quiet)
+                    }
+                    _ => error,
+                },
+            };
+            match varied {
+                Some((_, variant)) => with_flags(error, &variant.edits),
+                None => error,
+            }
+        })?;
     let path = arguments.folder();
     let folder = OutputFolder::prepare(&path, &RUN_NAMES, Standing::of(arguments.force))?;
     let source = match varied {

@@ -1,4 +1,4 @@
-//! A run of a cell or a bench, from the checked scenario to its files.
+//! What the program writes of a job.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use super::super::{bench, bench_figures, bench_picture};
 use super::cell_run::{Listener, SummaryDocument, run_heard};
 use super::source::Source;
 use crate::cell::Cell;
-use crate::metrics::{self, BoundCheck, MetricsError, Summary};
+use crate::metrics::{BoundCheck, Summary};
 use crate::recording::csv::EdgeProfile;
 use crate::recording::finished_edge::FinishedEdge;
 use crate::recording::provenance::Provenance;
@@ -24,15 +24,8 @@ use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
 use crate::recording::scene::Scene;
 use crate::report::{Style, bench_markdown, bench_text, drives as told_drives, markdown, text};
 use crate::rig::Rig;
-use crate::scenario::{AnyScenario, BenchScenario, Scenario, files_of_cell};
-
-/// A scenario that can be run.
-pub(super) enum Job {
-    /// Of a cell.
-    Cell(Box<Cell>),
-    /// Of a bench.
-    Bench(Box<Rig>),
-}
+use crate::run::Job;
+use crate::scenario::{BenchScenario, Scenario, files_of_cell};
 
 /// Settings of a run.
 #[derive(Debug, Clone, Copy)]
@@ -62,34 +55,6 @@ pub(super) struct Ended {
 }
 
 impl Job {
-    /// Checks a scenario to its end: bounds, path, supply, stability.
-    pub(super) fn new(scenario: AnyScenario) -> Result<Self, AppError> {
-        let metrics_error = |path: &Path| {
-            let file = path.display().to_string();
-            move |source| AppError::Metrics { file, source }
-        };
-        Ok(match scenario {
-            AnyScenario::Cell(cell) => {
-                let known = metrics::validate_cell(&cell.expect, &cell.expect_of_passes());
-                known.map_err(metrics_error(&cell.path))?;
-                Self::Cell(Box::new(Cell::new(*cell)?))
-            }
-            AnyScenario::Bench(bench) => {
-                let known = metrics::validate(metrics::BENCH_METRICS, &bench.expect);
-                known.map_err(metrics_error(&bench.path))?;
-                Self::Bench(Box::new(Rig::new(*bench)?))
-            }
-        })
-    }
-
-    /// Notes before it begins.
-    pub(super) fn notes(&self) -> &[String] {
-        match self {
-            Self::Cell(cell) => &cell.notes,
-            Self::Bench(_) => &[],
-        }
-    }
-
     /// Whether a run of it writes the file of this name, of those that a run may write.
     pub(super) fn writes(&self, name: &str, recorded: bool) -> bool {
         match name {
@@ -167,10 +132,7 @@ fn perform_cell(
         let growing_too = growing.iter().map(GrowingFile::listener);
         let listeners = watching.into_iter().chain(growing_too).collect();
         let finished = run_heard(cell, told, listeners)?;
-        let scenario = &cell.scenario;
-        let of_passes = scenario.expect_of_passes();
-        let verdicts = metrics::check_cell(&finished.summary, &scenario.expect, &of_passes)
-            .map_err(|source| unmeasured(&cell.scenario.path, source))?;
+        let verdicts = finished.bounds(cell)?;
         let title = &cell.scenario.title;
         let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
         let course = edge_course(cell, &finished.recording)?;
@@ -236,8 +198,7 @@ fn perform_bench(
     let (origin, _) = job.provenance(source)?;
     let finished = bench::run_watched(rig, told, watch)?;
     let scenario = &rig.scenario;
-    let verdicts = metrics::check(metrics::BENCH_METRICS, &finished.summary, &scenario.expect)
-        .map_err(|source| unmeasured(&scenario.path, source))?;
+    let verdicts = finished.bounds(rig)?;
     let document = bench::document(scenario, &finished, &verdicts, source, &origin)?;
     let scene = bench_picture::scene_of(scenario, &finished.recording)?;
     let sketches = Sketches::of(&scene, &finished.recording);
@@ -268,13 +229,6 @@ fn perform_bench(
         code,
         shown: (scene, options.summary_markdown),
     })
-}
-
-fn unmeasured(path: &Path, source: MetricsError) -> AppError {
-    AppError::Metrics {
-        file: path.display().to_string(),
-        source,
-    }
 }
 
 /// Why a run stopped early, if it did, or else which results lie outside their bounds.

@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::bench::run_rig;
 use super::super::error::{AppError, ExitCode};
-use super::cell_run::run_cell;
-use super::job::{Job, judged};
-use crate::metrics::{self, BENCH_METRICS, BoundCheck, METRICS, Metric, MetricsError};
+use super::job::judged;
+use crate::metrics::{BENCH_METRICS, METRICS};
+use crate::run::{Job, RunError};
 use crate::scenario::AnyScenario;
 
 /// The numbers of a run.
@@ -22,7 +21,7 @@ pub(in super::super) struct Numbers {
 
 /// Whether a scenario can be run, as far as is known before it is.
 pub(in super::super) fn can_run(scenario: AnyScenario) -> Result<(), AppError> {
-    Job::new(scenario).map(drop)
+    Ok(Job::new(scenario).map(drop)?)
 }
 
 /// Names and units of the metrics of a kind of scenario.
@@ -35,60 +34,18 @@ pub(in super::super) fn metric_names(is_bench: bool) -> Vec<&'static str> {
 
 /// Runs a scenario; what refuses it is a result as well.
 pub(in super::super) fn numbers(scenario: AnyScenario) -> Numbers {
-    let refused = |error: AppError| Numbers {
+    let refused = |error: RunError| Numbers {
         code: ExitCode::BadInput as u8,
         reason: error.to_string(),
         metrics: Vec::new(),
     };
-    Job::new(scenario)
-        .and_then(measured)
-        .unwrap_or_else(refused)
-}
-
-fn measured(job: Job) -> Result<Numbers, AppError> {
-    match job {
-        Job::Cell(cell) => {
-            let mut run = run_cell(&cell, &mut |_, _| ())?;
-            // How long it took says nothing about the scenario.
-            run.summary.timing = None;
-            let scenario = &cell.scenario;
-            let verdicts =
-                metrics::check_cell(&run.summary, &scenario.expect, &scenario.expect_of_passes());
-            let file = scenario.path.display().to_string();
-            of(METRICS, &run.summary, run.stop.as_ref(), verdicts, file)
+    let run = Job::new(scenario).and_then(|job| job.run(&mut |_, _| ()));
+    run.map_or_else(refused, |outcome| {
+        let (code, reasons) = judged(outcome.stop.as_ref(), &outcome.bounds);
+        Numbers {
+            code: code as u8,
+            reason: reasons.join("; "),
+            metrics: outcome.metrics.iter().map(|(_, value)| *value).collect(),
         }
-        Job::Bench(rig) => {
-            let mut run = run_rig(&rig, &mut |_, _| ())?;
-            run.summary.timing = None;
-            let scenario = &rig.scenario;
-            let verdicts = metrics::check(BENCH_METRICS, &run.summary, &scenario.expect);
-            let file = scenario.path.display().to_string();
-            of(
-                BENCH_METRICS,
-                &run.summary,
-                run.stop.as_ref(),
-                verdicts,
-                file,
-            )
-        }
-    }
-}
-
-fn of<S>(
-    metrics: &[Metric<S>],
-    summary: &S,
-    stop: Option<&impl std::fmt::Display>,
-    verdicts: Result<Vec<BoundCheck>, MetricsError>,
-    file: String,
-) -> Result<Numbers, AppError> {
-    let verdicts = verdicts.map_err(|source| AppError::Metrics { file, source })?;
-    let (code, told) = judged(stop, &verdicts);
-    let values = metrics.iter().map(|metric| (metric.value)(summary));
-    Ok(Numbers {
-        code: code as u8,
-        reason: told.join("; "),
-        metrics: values
-            .map(|value| value.filter(|v| v.is_finite()))
-            .collect(),
     })
 }

@@ -13,11 +13,11 @@ use super::super::output::say;
 use super::super::progress;
 use super::super::report::read_json;
 use super::command::RunArguments;
-use super::job::Job;
 use super::settings::{Variant, blamed, with_flags};
 use super::source::Source;
 use super::table::{Done, table};
 use crate::proof::in_order;
+use crate::run::Job;
 use crate::scenario::ScenarioTemplate;
 
 /// The page beside the folders.
@@ -92,7 +92,7 @@ pub(super) fn run(
 fn job(template: &ScenarioTemplate, variant: &Variant) -> Result<Job, AppError> {
     let scenario =
         (template.with(&variant.edits)).map_err(|error| blamed(error, &variant.edits, template))?;
-    Job::new(scenario).map_err(|error| with_flags(error, &variant.edits))
+    Job::new(scenario).map_err(|error| with_flags(error.into(), &variant.edits))
 }
 
 fn one(

@@ -79,7 +79,7 @@ mod tests {
             odds: 1.0,
             probability: 1.0,
             left_out: Some(LeftOut {
-                residuals: vec![most.map(spread); 2],
+                residuals: vec![most.map(spread).to_vec(); 2],
                 values: vec![vec![0.0]; 2],
             }),
         };

@@ -101,6 +101,7 @@ mod tests {
     use crate::diagnosis::fit::cross_validation::LeftOut;
     use crate::diagnosis::fit::hypothesis::Hypothesis;
     use crate::diagnosis::test_evidence::{evidence, fit};
+    use crate::plant::CHANNELS;
 
     #[test]
     fn the_percentile_is_of_sizes_and_of_what_is_finite() {
@@ -127,7 +128,7 @@ mod tests {
             odds: 1.0,
             probability: 1.0,
             left_out: Some(LeftOut {
-                residuals: vec![std::array::from_fn(|_| vec![1.0; samples]); 2],
+                residuals: vec![vec![vec![1.0; samples]; CHANNELS.len()]; 2],
                 values: vec![vec![0.0]; 2],
             }),
         };

@@ -12,10 +12,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Fit, robust_weight};
 use crate::diagnosis::recordings::evidence::Evidence;
-use crate::plant::CHANNELS;
+use crate::diagnosis::recordings::subject::Subject;
 
 /// Covariance of the free quantities in the fit's coordinates.
-pub fn covariance(evidence: &Evidence, fit: &Fit) -> DMatrix<f64> {
+pub fn covariance<S: Subject>(evidence: &Evidence<S>, fit: &Fit<S>) -> DMatrix<f64> {
     let inverse = inverse(&fit.information);
     let count = fit.free.len();
     if fit.columns.len() != count {
@@ -40,16 +40,16 @@ pub fn covariance(evidence: &Evidence, fit: &Fit) -> DMatrix<f64> {
 }
 
 /// Gradients of each block.
-fn blocks(evidence: &Evidence, fit: &Fit) -> Vec<DVector<f64>> {
+fn blocks<S: Subject>(evidence: &Evidence<S>, fit: &Fit<S>) -> Vec<DVector<f64>> {
     let residuals = &fit.prediction.residuals;
     let mut found = Vec::new();
     let mut at = 0;
     for measured in &evidence.recordings {
-        let time = &measured.inputs.time;
+        let time = S::time(&measured.inputs);
         let first = time[0];
         let number = |t: f64| ((t - first) / evidence.block) as usize;
         let mut own = vec![DVector::zeros(fit.free.len()); number(time[time.len() - 1]) + 1];
-        for _ in 0..CHANNELS.len() {
+        for _ in S::CHANNELS {
             for (i, t) in time.iter().enumerate() {
                 let residual = residuals[at + i];
                 if !residual.is_finite() {

@@ -11,9 +11,10 @@ use super::free::Free;
 use super::model_error::ModelError;
 use super::normal_equations::weighted_products;
 use super::{Fit, ROUGH, Refit, fit, robust_sum, with_values};
+use crate::diagnosis::recordings::device::Device;
 use crate::diagnosis::recordings::evidence::Evidence;
+use crate::diagnosis::recordings::subject::Subject;
 use crate::diagnosis::settings::HUBER;
-use crate::plant::CHANNELS;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -23,18 +24,18 @@ const LONGEST: f64 = 3.0;
 
 /// Depth of a fit to the others.
 #[derive(Debug, Clone, Copy)]
-pub enum Depth {
+pub enum Depth<S: Subject = Device> {
     /// One step from the optimum of all, without a simulation.
     OneStep,
     /// A fit.
-    Refit(Refit<'static>),
+    Refit(Refit<'static, S>),
 }
 
 /// Recordings, each predicted by a fit to the others.
 #[derive(Debug, Clone)]
 pub struct LeftOut {
     /// Measured less predicted in standard deviations, by recording and channel.
-    pub residuals: Vec<[Vec<f64>; CHANNELS.len()]>,
+    pub residuals: Vec<Vec<Vec<f64>>>,
     /// Values of what is free in the fits, in the order of the fit to all.
     pub values: Vec<Vec<f64>>,
 }
@@ -51,9 +52,9 @@ impl LeftOut {
 
     /// Variance of each free quantity in the fit's coordinates by how its value moves as recordings are left out: (n - 1) / n sum of (u_r - mean u)^2, the
     /// jackknife with recordings as its groups (Efron and Stein, Ann. Stat. 9, 1981). A law that is a little wrong is so in each recording in another way.
-    pub fn jackknife(&self, free: &[Free]) -> Vec<f64> {
+    pub fn jackknife<S: Subject>(&self, free: &[Free<S>]) -> Vec<f64> {
         let count = self.values.len() as f64;
-        let of = |(index, free): (usize, &Free)| {
+        let of = |(index, free): (usize, &Free<S>)| {
             let at: Vec<f64> = (self.values.iter())
                 .map(|values| free.coordinate.of(values[index]))
                 .collect();
@@ -66,12 +67,16 @@ impl LeftOut {
 
 /// Each recording as predicted by a fit to the others; none where there are no others, or where derivatives are asked for that the fit has not.
 #[must_use]
-pub fn left_out(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<LeftOut> {
+pub fn left_out<S: Subject>(
+    evidence: &Evidence<S>,
+    whole: &Fit<S>,
+    depth: Depth<S>,
+) -> Option<LeftOut> {
     let values = values(evidence, whole, depth)?;
     let residuals = values.par_iter().enumerate().map(|(left, values)| {
         let plant = with_values(&whole.prediction.plant, &whole.free, values);
         let own = evidence.of_those(|i| i == left);
-        by_channel(own.predict(&plant, false, None).residuals)
+        by_channel::<S>(own.predict(&plant, false, None).residuals)
     });
     Some(LeftOut {
         residuals: residuals.collect(),
@@ -81,7 +86,11 @@ pub fn left_out(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<LeftOu
 
 /// Cost of each recording by a fit to the others, the piston held to its measured motion and errors in time forgiven [1]; none where there are no others.
 #[must_use]
-pub fn rough_cost(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<f64> {
+pub fn rough_cost<S: Subject>(
+    evidence: &Evidence<S>,
+    whole: &Fit<S>,
+    depth: Depth<S>,
+) -> Option<f64> {
     let values = values(evidence, whole, depth)?;
     let turns = values.iter().enumerate().map(|(left, values)| {
         let own = evidence.of_those(|i| i == left);
@@ -97,11 +106,11 @@ pub fn rough_cost(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<f64>
 /// Standard deviations of the predictions of a recording by a fit to the others, noise included, in standard deviations of the noise, by channel:
 /// sqrt(1 + c' V c), c the derivatives of a sample and V the covariance of that fit [1]; none where the fit has no derivatives.
 #[must_use]
-pub fn predictive(
-    evidence: &Evidence,
-    whole: &Fit,
+pub fn predictive<S: Subject>(
+    evidence: &Evidence<S>,
+    whole: &Fit<S>,
     left: usize,
-) -> Option<[Vec<f64>; CHANNELS.len()]> {
+) -> Option<Vec<Vec<f64>>> {
     let samples = samples(evidence, left);
     let known = normal_without(whole, &samples)?.0.cholesky()?;
     let deviation = |i: usize| {
@@ -110,24 +119,29 @@ pub fn predictive(
         let c = DVector::from_iterator(whole.columns.len(), slopes);
         (1.0 + c.dot(&known.solve(&c))).sqrt()
     };
-    Some(by_channel(samples.map(deviation).collect()))
+    Some(by_channel::<S>(samples.map(deviation).collect()))
 }
 
 /// Values of one recording's samples by channel.
-fn by_channel(all: Vec<f64>) -> [Vec<f64>; CHANNELS.len()] {
-    let count = all.len() / CHANNELS.len();
-    std::array::from_fn(|channel| all[channel * count..(channel + 1) * count].to_vec())
+fn by_channel<S: Subject>(all: Vec<f64>) -> Vec<Vec<f64>> {
+    let count = (all.len() / S::CHANNELS.len()).max(1);
+    all.chunks(count).map(<[f64]>::to_vec).collect()
 }
 
 /// Samples of a recording among the residuals of all.
-fn samples(evidence: &Evidence, recording: usize) -> Range<usize> {
-    let count = |i: usize| CHANNELS.len() * evidence.recordings[i].inputs.time.len();
+fn samples<S: Subject>(evidence: &Evidence<S>, recording: usize) -> Range<usize> {
+    let length = |i: usize| S::time(&evidence.recordings[i].inputs).len();
+    let count = |i: usize| S::CHANNELS.len() * length(i);
     let start: usize = (0..recording).map(count).sum();
     start..start + count(recording)
 }
 
 /// Values of what is free by a fit to all recordings but one, for each of them.
-fn values(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<Vec<Vec<f64>>> {
+fn values<S: Subject>(
+    evidence: &Evidence<S>,
+    whole: &Fit<S>,
+    depth: Depth<S>,
+) -> Option<Vec<Vec<f64>>> {
     let count = evidence.recordings.len();
     let turn = |left: usize| match depth {
         Depth::Refit(refit) => {
@@ -143,7 +157,10 @@ fn values(evidence: &Evidence, whole: &Fit, depth: Depth) -> Option<Vec<Vec<f64>
 }
 
 /// Normal equations in the fit's coordinates without some samples, priors included: information and gradient; none without derivatives.
-fn normal_without(fit: &Fit, left: &Range<usize>) -> Option<(DMatrix<f64>, DVector<f64>)> {
+fn normal_without<S: Subject>(
+    fit: &Fit<S>,
+    left: &Range<usize>,
+) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let count = fit.free.len();
     if fit.columns.len() != count {
         return None;
@@ -168,12 +185,12 @@ fn normal_without(fit: &Fit, left: &Range<usize>) -> Option<(DMatrix<f64>, DVect
 }
 
 /// Values of the free quantities without some samples, by one step.
-fn without(fit: &Fit, left: &Range<usize>) -> Option<Vec<f64>> {
+fn without<S: Subject>(fit: &Fit<S>, left: &Range<usize>) -> Option<Vec<f64>> {
     let (normal, gradient) = normal_without(fit, left)?;
     let Some(step) = normal.cholesky().map(|c| c.solve(&gradient)) else {
         return Some(fit.values.clone());
     };
-    let moved = |(i, free): (usize, &Free)| {
+    let moved = |(i, free): (usize, &Free<S>)| {
         let at = free.coordinate.of(fit.values[i]) - step[i].clamp(-LONGEST, LONGEST);
         free.clamp(free.coordinate.value(at))
     };
@@ -184,6 +201,7 @@ fn without(fit: &Fit, left: &Range<usize>) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
     use crate::diagnosis::test_evidence::{evidence, fit, free};
+    use crate::plant::CHANNELS;
 
     /// Of a mean the jackknife is the sample variance over the number, to the last digit.
     #[test]

@@ -1,8 +1,9 @@
 //! A quantity that a fit may move, and what is believed of it before the recordings are looked at.
 
+use crate::diagnosis::recordings::device::Device;
+use crate::diagnosis::recordings::subject::Subject;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::PlantParameters;
-use crate::plant::Quantity;
 use crate::plant::registry::PRESSURE_DRIFT;
 
 /// Standard deviations of a sensor's drift that its sheet allows [1].
@@ -29,9 +30,9 @@ pub enum Prior {
 
 /// A quantity that a fit may move.
 #[derive(Debug, Clone, Copy)]
-pub struct Free {
+pub struct Free<S: Subject = Device> {
     /// The quantity.
-    pub quantity: Quantity,
+    pub quantity: S::Quantity,
     /// Where it starts.
     pub start: f64,
     /// Coordinate of the fit.
@@ -57,7 +58,9 @@ impl Free {
             _ => *self,
         }
     }
+}
 
+impl<S: Subject> Free<S> {
     /// The same from another start.
     #[must_use]
     pub fn from(self, start: f64) -> Self {
@@ -66,8 +69,8 @@ impl Free {
 
     /// The same from where it stands in a description.
     #[must_use]
-    pub fn from_where(self, plant: &PlantParameters) -> Self {
-        self.from(self.clamp(self.quantity.get(plant)))
+    pub fn from_where(self, plant: &S::Model) -> Self {
+        self.from(self.clamp(S::value(&self.quantity, plant)))
     }
 
     /// The nearest value within the bounds.

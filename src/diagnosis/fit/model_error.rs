@@ -12,38 +12,42 @@
 use super::autocorrelation::integrated_autocorrelation_time;
 use super::{Fit, loss, robust_sum};
 use crate::diagnosis::recordings::evidence::{Evidence, Prediction, by_channel};
+use crate::diagnosis::recordings::subject::Subject;
 use crate::diagnosis::settings::HUBER;
-use crate::plant::CHANNELS;
 
 /// Multiple of the noise's variance up to which a channel's residuals count as noise [1].
 const NOISE_ALONE: f64 = 1.3;
 
 /// Variance of a channel's residuals in units of the noise's, times the samples that tell as much as one [1].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ModelError {
-    variance: [f64; CHANNELS.len()],
+    /// By channel; empty where each has noise alone.
+    variance: Vec<f64>,
 }
 
 impl ModelError {
     /// Noise alone.
     pub const NONE: Self = Self {
-        variance: [1.0; CHANNELS.len()],
+        variance: Vec::new(),
     };
 
     /// What a prediction leaves.
-    pub fn of(evidence: &Evidence, prediction: &Prediction) -> Self {
-        let mut sums = [[0.0; 3]; CHANNELS.len()];
+    pub fn of<S: Subject>(evidence: &Evidence<S>, prediction: &Prediction<S>) -> Self {
+        let mut sums = vec![[0.0; 3]; S::CHANNELS.len()];
         for (_, channel, residuals) in by_channel(evidence, &prediction.residuals) {
             let left: Vec<f64> = (residuals.iter().filter(|r| r.is_finite()))
                 .map(|r| r.signum() * loss(*r, HUBER).sqrt())
                 .collect();
             let count = left.len() as f64;
-            let [squares, times, samples] = &mut sums[channel as usize];
+            let Some(at) = place::<S>(channel) else {
+                continue;
+            };
+            let [squares, times, samples] = &mut sums[at];
             *squares += left.iter().map(|r| r * r).sum::<f64>();
             *times += count * integrated_autocorrelation_time(&left);
             *samples += count;
         }
-        let variance = sums.map(|[squares, times, samples]| {
+        let variance = sums.into_iter().map(|[squares, times, samples]| {
             let [size, time] = [squares, times].map(|sum| (sum / samples.max(1.0)).max(1.0));
             if size * time < NOISE_ALONE {
                 1.0
@@ -51,16 +55,20 @@ impl ModelError {
                 size * time
             }
         });
-        Self { variance }
+        let variance: Vec<f64> = variance.collect();
+        match variance.iter().all(|v| *v == 1.0) {
+            true => Self::NONE,
+            false => Self { variance },
+        }
     }
 
     /// Whether there is noise alone.
     pub fn is_none(&self) -> bool {
-        *self == Self::NONE
+        self.variance.is_empty()
     }
 
     /// Cost that a fit leaves beyond noise; nothing where there is noise alone [1].
-    pub fn left(&self, evidence: &Evidence, fit: &Fit) -> f64 {
+    pub fn left<S: Subject>(&self, evidence: &Evidence<S>, fit: &Fit<S>) -> f64 {
         match self.is_none() {
             true => 0.0,
             false => (fit.cost() - evidence.count() as f64).max(0.0),
@@ -68,28 +76,33 @@ impl ModelError {
     }
 
     /// Robust sum of squares of residuals, recording by recording and channel by channel [1].
-    pub fn cost(&self, evidence: &Evidence, residuals: &[f64]) -> f64 {
+    pub fn cost<S: Subject>(&self, evidence: &Evidence<S>, residuals: &[f64]) -> f64 {
         if self.is_none() {
             return robust_sum(residuals);
         }
         let channels = by_channel(evidence, residuals);
-        channels
-            .map(|(_, channel, residuals)| self.cost_of(channel as usize, residuals))
-            .sum()
+        let cost = |(_, channel, residuals)| Some(self.cost_of(place::<S>(channel)?, residuals));
+        channels.filter_map(cost).sum()
     }
 
     /// That of one channel.
     pub fn cost_of(&self, channel: usize, residuals: &[f64]) -> f64 {
-        let scale = self.variance[channel].sqrt();
+        let scale = self.variance.get(channel).copied().unwrap_or(1.0).sqrt();
         let counted = residuals.iter().filter(|r| !r.is_nan());
         counted.map(|r| loss(r / scale, HUBER)).sum()
     }
+}
+
+/// Place of a channel among those of its subject.
+fn place<S: Subject>(channel: S::Channel) -> Option<usize> {
+    S::CHANNELS.iter().position(|known| *known == channel)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::diagnosis::test_evidence::{evidence, fit};
+    use crate::plant::CHANNELS;
     use rand::{Rng, SeedableRng};
     use rand_distr::StandardNormal;
 
@@ -126,7 +139,7 @@ mod tests {
         let (evidence, residuals, error) = planted(40, memory, size);
         let tau = 1.0 + 0.95 * 2.0 * memory / (1.0 - memory);
         let expected = size * size * tau;
-        for variance in error.variance {
+        for variance in &error.variance {
             assert!(
                 (variance / expected - 1.0).abs() < 0.25,
                 "{variance}, {expected}"

@@ -1,22 +1,20 @@
 //! Recordings as a fit sees them: inputs, readings, their noise, and which samples count.
 
+use super::device::Device;
+use super::subject::Subject;
 use crate::diagnosis::effort::Effort;
-use crate::plant::{
-    CHANNELS, Channel, Nudging, PlantInputs, PlantParameters, PlantTrajectory, Trajectory,
-    readings, true_trajectory,
-};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
 /// One recording with what was measured in it.
 #[derive(Debug, Clone)]
-pub struct Measured {
+pub struct Measured<S: Subject = Device> {
     /// File name.
     pub name: String,
-    /// Inputs of the rig.
-    pub inputs: PlantInputs,
-    /// Readings in the order of [`CHANNELS`]; NaN where there is none or none that counts.
-    pub readings: [Vec<f64>; 4],
+    /// Inputs of the subject.
+    pub inputs: S::Inputs,
+    /// Readings in the order of the channels; NaN where there is none or none that counts.
+    pub readings: S::Readings,
     /// Whether there is no workpiece.
     pub free: bool,
 }
@@ -33,48 +31,37 @@ const BLOCK: f64 = 0.25;
 
 /// Recordings and the noise of their channels.
 #[derive(Debug)]
-pub struct Evidence {
+pub struct Evidence<S: Subject = Device> {
     /// The recordings.
-    pub recordings: Vec<Measured>,
-    /// Standard deviation of each channel's noise, in the order of [`CHANNELS`].
-    pub noise: [f64; 4],
+    pub recordings: Vec<Measured<S>>,
+    /// Standard deviation of each channel's noise, in the order of the channels.
+    pub noise: S::Noise,
     /// Time for which what a law leaves is taken to be alike at most [s].
     pub block: f64,
     /// Weight of a sample, where neighbours tell the same [1].
     pub worth: f64,
     /// Effort of the search that looks at it.
     pub effort: Effort,
-    /// Motions measured, one per recording.
-    nudgings: Vec<Nudging>,
+    /// What holds a simulation to each recording's measured course.
+    guides: Vec<S::Guide>,
     /// Shares found before.
     shares: Mutex<Vec<Shares>>,
 }
 
-impl Evidence {
-    /// Recordings with the standard deviation of each channel's noise, in the order of [`CHANNELS`].
-    /// The motion in a time in which a recording's piston is held is used, and no reading of that time is compared with.
-    pub fn new(mut recordings: Vec<Measured>, noise: [f64; 4]) -> Self {
-        let nudging = |measured: &Measured| {
-            let force = &measured.readings[2];
-            let touching = |i: usize| force[i].abs() > 6.0 * noise[2];
-            Nudging::new(
-                &measured.inputs.time,
-                &measured.readings[1],
-                &measured.readings[3],
-                noise[1],
-                noise[3],
-                touching,
-            )
-        };
-        let nudgings = recordings.iter().map(nudging).collect();
+impl<S: Subject> Evidence<S> {
+    /// Recordings with the standard deviation of each channel's noise, in the order of the channels.
+    /// What the model takes of the start of a recording as it was measured is used, and no reading of that time is compared with.
+    pub fn new(mut recordings: Vec<Measured<S>>, noise: S::Noise) -> Self {
+        let guide = |m: &Measured<S>| S::guide(&m.inputs, &m.readings, &noise);
+        let guides = recordings.iter().map(guide).collect();
         for (place, measured) in recordings.iter_mut().enumerate() {
-            measured.inputs.place = place;
-            for readings in &mut measured.readings {
-                readings[..measured.inputs.initial.samples()].fill(f64::NAN);
+            let given = S::placed(&mut measured.inputs, place);
+            for readings in measured.readings.as_mut() {
+                readings[..given].fill(f64::NAN);
             }
         }
         Self {
-            nudgings,
+            guides,
             recordings,
             noise,
             block: BLOCK,
@@ -83,16 +70,14 @@ impl Evidence {
             shares: Mutex::default(),
         }
     }
-}
 
-impl Evidence {
     /// The same of some of the recordings, by their index.
     #[must_use]
     pub fn of_those(&self, which: impl Fn(usize) -> bool) -> Self {
         let chosen = || (0..self.recordings.len()).filter(|i| which(*i));
         Self {
             recordings: chosen().map(|i| self.recordings[i].clone()).collect(),
-            nudgings: chosen().map(|i| self.nudgings[i].clone()).collect(),
+            guides: chosen().map(|i| self.guides[i].clone()).collect(),
             shares: Mutex::default(),
             effort: self.effort.clone(),
             noise: self.noise,
@@ -103,11 +88,12 @@ impl Evidence {
 
     /// The same with the readings of one channel alone.
     #[must_use]
-    pub fn of_channel(&self, channel: Channel) -> Self {
+    pub fn of_channel(&self, channel: S::Channel) -> Self {
         let mut own = self.of_those(|_| true);
         for measured in &mut own.recordings {
-            for other in CHANNELS.into_iter().filter(|other| *other != channel) {
-                measured.readings[other as usize].fill(f64::NAN);
+            let channels = S::CHANNELS.iter().zip(measured.readings.as_mut());
+            for (_, readings) in channels.filter(|(other, _)| **other != channel) {
+                readings.fill(f64::NAN);
             }
         }
         own
@@ -116,52 +102,35 @@ impl Evidence {
 
 /// A description with what it gives.
 #[derive(Debug, Clone)]
-pub struct Prediction {
+pub struct Prediction<S: Subject = Device> {
     /// The description.
-    pub plant: PlantParameters,
-    /// Whether the piston was held to its measured motion.
+    pub plant: S::Model,
+    /// Whether it was held to the measured course.
     pub guided: bool,
-    /// One trajectory per recording.
-    pub trajectories: Vec<PlantTrajectory>,
+    /// One simulation per recording.
+    pub trajectories: Vec<S::Simulated>,
     /// Measured less simulated, in standard deviations of the noise; recording by recording, channel by channel; NaN where nothing counts,
     /// infinite where the simulation is no number.
     pub residuals: Vec<f64>,
 }
 
-impl Evidence {
-    /// Prediction of a description; trajectories are taken from `known` where only sensors differ.
+impl<S: Subject> Evidence<S> {
+    /// Prediction of a description; `known` may spare simulations.
     pub fn predict(
         &self,
-        plant: &PlantParameters,
+        plant: &S::Model,
         guided: bool,
-        known: Option<&Prediction>,
-    ) -> Prediction {
+        known: Option<&Prediction<S>>,
+    ) -> Prediction<S> {
         self.effort.count();
-        let reusable = |measured: &Measured| {
-            known.filter(|known| {
-                if known.guided != guided
-                    || (guided && plant.sensors.stroke_gain != known.plant.sensors.stroke_gain)
-                {
-                    return false;
-                }
-                plant.moves_as(&known.plant, measured.inputs.place)
-                    || (measured.free && plant.moves_freely_as(&known.plant))
-            })
+        let known = known.filter(|known| known.guided == guided);
+        let simulated = |(index, measured): (usize, &Measured<S>)| {
+            let guide = guided.then(|| &self.guides[index]);
+            let known = known.map(|known| (&known.plant, &known.trajectories[index]));
+            S::simulate(plant, &measured.inputs, measured.free, guide, known)
         };
-        let trajectory = |(index, measured): (usize, &Measured)| {
-            let truth: Trajectory = match reusable(measured) {
-                Some(known) => known.trajectories[index].truth.clone(),
-                None => true_trajectory(
-                    plant,
-                    &measured.inputs,
-                    guided.then(|| &self.nudgings[index]),
-                ),
-            };
-            let readings = readings(plant, &measured.inputs, &truth);
-            PlantTrajectory { truth, readings }
-        };
-        let trajectories: Vec<PlantTrajectory> =
-            self.recordings.iter().enumerate().map(trajectory).collect();
+        let trajectories: Vec<S::Simulated> =
+            self.recordings.iter().enumerate().map(simulated).collect();
         Prediction {
             plant: plant.clone(),
             guided,
@@ -170,27 +139,27 @@ impl Evidence {
         }
     }
 
-    fn residuals(&self, trajectories: &[PlantTrajectory]) -> Vec<f64> {
+    fn residuals(&self, trajectories: &[S::Simulated]) -> Vec<f64> {
         let mut all = Vec::new();
         for (measured, trajectory) in self.recordings.iter().zip(trajectories) {
-            for channel in 0..CHANNELS.len() {
-                let noise = self.noise[channel];
-                let pairs = measured.readings[channel]
-                    .iter()
-                    .zip(&trajectory.readings[channel]);
+            let channels = measured.readings.as_ref().iter();
+            let channels = channels
+                .zip(S::readings(trajectory))
+                .zip(self.noise.as_ref());
+            for ((measured, simulated), noise) in channels {
                 // A model that is no longer finite is as far off as can be: as a value that does not count it would be the best of all.
                 let residual = |(measured, simulated): (&f64, &f64)| match simulated.is_finite() {
                     false if measured.is_finite() => f64::INFINITY,
                     _ => (measured - simulated) / noise,
                 };
-                all.extend(pairs.map(residual));
+                all.extend(measured.iter().zip(simulated).map(residual));
             }
         }
         all
     }
 
     /// Residuals of many descriptions, in order.
-    pub fn residuals_of(&self, plants: &[PlantParameters], known: &Prediction) -> Vec<Vec<f64>> {
+    pub fn residuals_of(&self, plants: &[S::Model], known: &Prediction<S>) -> Vec<Vec<f64>> {
         plants
             .par_iter()
             .map(|plant| self.predict(plant, known.guided, Some(known)).residuals)
@@ -199,7 +168,7 @@ impl Evidence {
 
     /// Samples that count, as many as tell something of their own.
     pub fn count(&self) -> usize {
-        let readings = self.recordings.iter().flat_map(|m| &m.readings);
+        let readings = self.recordings.iter().flat_map(|m| m.readings.as_ref());
         let finite = readings.flatten().filter(|value| value.is_finite()).count();
         (finite as f64 * self.worth) as usize
     }
@@ -225,11 +194,11 @@ impl Evidence {
     fn compute_shares(&self, forgiven: f64, guided: bool) -> Vec<f64> {
         let mut all = Vec::new();
         for measured in &self.recordings {
-            for (channel, (readings, noise)) in measured.readings.iter().zip(self.noise).enumerate()
-            {
+            let channels = measured.readings.as_ref().iter().zip(self.noise.as_ref());
+            for ((readings, noise), channel) in channels.zip(S::CHANNELS) {
                 let count = readings.len();
-                // The acceleration went into the motion that the piston is held to.
-                if guided && channel == 3 {
+                // What went into the course that it is held to is met by that alone.
+                if guided && S::guides(*channel) {
                     all.extend(std::iter::repeat_n(0.0, count));
                     continue;
                 }
@@ -237,7 +206,7 @@ impl Evidence {
                     all.extend(std::iter::repeat_n(1.0, count));
                     continue;
                 }
-                let time = &measured.inputs.time;
+                let time = S::time(&measured.inputs);
                 for i in 0..count {
                     let from = time.partition_point(|t| *t < time[i] - forgiven);
                     let to = time.partition_point(|t| *t <= time[i] + forgiven);
@@ -258,19 +227,19 @@ impl Evidence {
 }
 
 /// Residuals of each recording and channel.
-pub fn by_channel<'a>(
-    evidence: &'a Evidence,
+pub fn by_channel<'a, S: Subject>(
+    evidence: &'a Evidence<S>,
     residuals: &'a [f64],
-) -> impl Iterator<Item = (usize, Channel, &'a [f64])> {
+) -> impl Iterator<Item = (usize, S::Channel, &'a [f64])> {
     let mut start = 0;
     let recordings = evidence.recordings.iter().enumerate();
     recordings.flat_map(move |(recording, measured)| {
-        let count = measured.inputs.time.len();
+        let count = S::time(&measured.inputs).len();
         let first = start;
-        start += CHANNELS.len() * count;
-        CHANNELS.into_iter().enumerate().map(move |(at, channel)| {
+        start += S::CHANNELS.len() * count;
+        S::CHANNELS.iter().enumerate().map(move |(at, channel)| {
             let from = first + at * count;
-            (recording, channel, &residuals[from..from + count])
+            (recording, *channel, &residuals[from..from + count])
         })
     })
 }

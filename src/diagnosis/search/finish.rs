@@ -1,6 +1,6 @@
 //! From full fits to an answer: what is not needed is taken out, what only the finest measure shows is put in, of equals the plainest comes first.
 
-use super::super::fit::{FULL, Limit, ROUGH, Refit, Stage, Start, rough_noise};
+use super::super::fit::{FINEST, FULL, Limit, ROUGH, Refit, Stage, Start, rough_noise};
 use super::progress::{Observer, Step};
 use super::scale::Scale;
 use super::{Search, same};
@@ -125,7 +125,7 @@ impl Search<'_> {
             believed.latent = Some(term.clone());
             free.extend_from_slice(&here[here.len() - term.numbers()..]);
         }
-        let limit = Refit::FULL.limit;
+        let limit = Limit::FULL;
         Some(Hypothesis {
             depends_on: best.depends_on.clone(),
             ..self.fitted(effects, (&believed, None), &free, FULL, limit)
@@ -308,7 +308,7 @@ impl Search<'_> {
             f.start = *value;
         }
         let effects = rough.effects;
-        Some(self.fitted(effects, from, &free, FULL, Refit::FULL.limit))
+        Some(self.fitted(effects, from, &free, FULL, Limit::FULL))
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good. What a law is a little wrong by at an impact, an effect
@@ -338,7 +338,7 @@ impl Search<'_> {
             };
             // From where it is: what the finest measure alone shows lies in the minimum that the fit is in.
             let refit = Refit::FINEST.from(Start::Here);
-            let promising = self.screen(best, Refit::FINEST.stages, most).into_iter();
+            let promising = self.screen(best, FINEST, most).into_iter();
             let refitted = promising
                 .filter(|more| gain(best, more) > 0.0)
                 .take(MOST_SMALL)

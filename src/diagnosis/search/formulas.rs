@@ -227,6 +227,6 @@ impl Search<'_> {
         plant.latent = None;
         let effects = hypothesis.effects.clone();
         let free = self.settled(free);
-        self.fitted(effects, (&plant, None), &free, LAST, Refit::FULL.limit)
+        self.fitted(effects, (&plant, None), &free, LAST, Limit::FULL)
     }
 }

@@ -5,7 +5,7 @@
 //! channel alone and held, the others then to all (modularisation: Liu, Bayarri and Berger, Bayesian Analysis 4, 2009; cutting feedback: Plummer,
 //! Statistics and Computing 25, 2015).
 
-use super::super::fit::{Fit, Limit, Refit, Start, fit};
+use super::super::fit::{FINEST, Fit, Limit, Refit, Start, fit};
 use super::progress::{Observer, Step};
 use super::{Search, same};
 use crate::diagnosis::difference::localise::{NOISE_ALONE, robust_rms};
@@ -65,7 +65,7 @@ impl Search<'_> {
             .map(|i| fitted.free[*i].from(fitted.values[*i]))
             .collect();
         let plant = &fitted.prediction.plant;
-        let (stages, limit) = (Refit::FINEST.stages, Limit::of(20));
+        let (stages, limit) = (FINEST, Limit::of(20));
         let alone = fit(&own, (plant, None), (&free, &[]), stages, limit);
         // What is missing at the outlet itself, its numbers would hide.
         let (_, left) = robust_rms(&alone.prediction.residuals)?;

@@ -89,7 +89,7 @@ fn odds(search: &Search<'_>, first: &Ranked, other: &Ranked) -> f64 {
 mod tests {
     use super::super::ruled_out::variant;
     use super::*;
-    use crate::diagnosis::fit::FULL;
+    use crate::diagnosis::fit::FINEST;
     use crate::diagnosis::test_evidence::{evidence_of, plant, search};
     use crate::effects::every;
 
@@ -108,7 +108,7 @@ mod tests {
         let search = search(&evidence);
         let fitted = |effect| Hypothesis {
             effects: vec![effect],
-            fit: variant(&search, &[effect], &FULL[FULL.len() - 1..]).unwrap(),
+            fit: variant(&search, &[effect], FINEST).unwrap(),
             depends_on: Vec::new(),
         };
         let (plain, mut richer) = (fitted(plain), fitted(richer));

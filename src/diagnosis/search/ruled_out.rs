@@ -5,7 +5,7 @@ use super::{Search, same};
 use crate::diagnosis::answer::family::is_alike;
 use crate::diagnosis::fit::free::free_of;
 use crate::diagnosis::fit::hypothesis::Hypothesis;
-use crate::diagnosis::fit::{FULL, Fit, Limit, Stage, fit};
+use crate::diagnosis::fit::{FINEST, FULL, Fit, Limit, Stage, fit};
 use crate::effects::{Clues, Effect};
 use crate::plant::Channel;
 
@@ -34,7 +34,7 @@ pub fn ruled_out(search: &Search<'_>, best: &Hypothesis, channel: Channel) -> Ve
     let mut found: Vec<RuledOut> = variants
         .into_iter()
         .filter_map(|effects| {
-            let fit = variant(search, &effects, &FULL[FULL.len() - 1..])?;
+            let fit = variant(search, &effects, FINEST)?;
             Some(described(search, &effects, &fit, channel))
         })
         .collect();

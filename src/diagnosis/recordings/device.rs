@@ -1,0 +1,89 @@
+//! The device as the subject of a diagnosis, by itself, in a cell, or a part of it.
+
+use super::subject::Subject;
+use crate::plant::{
+    CHANNELS, Channel, Nudging, PlantInputs, PlantParameters, PlantTrajectory, Quantity, readings,
+    true_trajectory,
+};
+
+/// Multiple of the load cell's noise from which the tool touches [1].
+const TOUCHES: f64 = 6.0;
+
+/// The pneumatic device.
+#[derive(Debug, Clone, Copy)]
+pub struct Device;
+
+impl Subject for Device {
+    type Model = PlantParameters;
+    type Quantity = Quantity;
+    type Inputs = PlantInputs;
+    type Channel = Channel;
+    type Readings = [Vec<f64>; CHANNELS.len()];
+    type Noise = [f64; CHANNELS.len()];
+    type Simulated = PlantTrajectory;
+    type Guide = Nudging;
+
+    const CHANNELS: &'static [Channel] = &CHANNELS;
+
+    fn value(quantity: &Quantity, model: &PlantParameters) -> f64 {
+        quantity.get(model)
+    }
+
+    fn set(quantity: &Quantity, model: &mut PlantParameters, value: f64) {
+        quantity.set(model, value);
+    }
+
+    fn time(inputs: &PlantInputs) -> &[f64] {
+        &inputs.time
+    }
+
+    fn placed(inputs: &mut PlantInputs, place: usize) -> usize {
+        inputs.place = place;
+        inputs.initial.samples()
+    }
+
+    fn guide(inputs: &PlantInputs, readings: &Self::Readings, noise: &Self::Noise) -> Nudging {
+        let [_, stroke, force, acceleration] = readings;
+        let [_, stroke_noise, force_noise, acceleration_noise] = *noise;
+        let touching = |i: usize| force[i].abs() > TOUCHES * force_noise;
+        Nudging::new(
+            &inputs.time,
+            stroke,
+            acceleration,
+            stroke_noise,
+            acceleration_noise,
+            touching,
+        )
+    }
+
+    fn guides(channel: Channel) -> bool {
+        channel == Channel::Acceleration
+    }
+
+    /// The trajectory is the known one where only sensors differ.
+    fn simulate(
+        model: &PlantParameters,
+        inputs: &PlantInputs,
+        free: bool,
+        guide: Option<&Nudging>,
+        known: Option<(&PlantParameters, &PlantTrajectory)>,
+    ) -> PlantTrajectory {
+        let moves_alike = |other: &PlantParameters| {
+            // A stroke's gain is one of the motion that a piston is held to.
+            let held_alike =
+                guide.is_none() || model.sensors.stroke_gain == other.sensors.stroke_gain;
+            let free_alike = || free && model.moves_freely_as(other);
+            held_alike && (model.moves_as(other, inputs.place) || free_alike())
+        };
+        let truth = match known.filter(|(other, _)| moves_alike(other)) {
+            Some((_, known)) => known.truth.clone(),
+            None => true_trajectory(model, inputs, guide),
+        };
+        let readings = readings(model, inputs, &truth);
+        PlantTrajectory { truth, readings }
+    }
+
+    fn readings(simulated: &PlantTrajectory) -> &[Vec<f64>] {
+        &simulated.readings
+    }
+}

@@ -1,0 +1,217 @@
+//! What a diagnosis is of: a model in numbers that gives readings of channels for the inputs of a recording. A fit knows no more of it than this.
+
+use std::fmt::Debug;
+
+/// A kind of thing that is diagnosed.
+pub trait Subject: Copy + Debug + Send + Sync + 'static {
+    /// Its description in numbers.
+    type Model: Clone + Debug + Send + Sync;
+    /// A number of the description that a fit may move.
+    type Quantity: Copy + Debug + Send + Sync;
+    /// Inputs of one recording.
+    type Inputs: Clone + Debug + Send + Sync;
+    /// A measured channel.
+    type Channel: Copy + Debug + PartialEq + Send + Sync;
+    /// Readings of all channels, in their order.
+    type Readings: Clone + Debug + AsRef<[Vec<f64>]> + AsMut<[Vec<f64>]> + Send + Sync;
+    /// Standard deviations of all channels' noise, in their order.
+    type Noise: Copy + Debug + AsRef<[f64]> + Send + Sync;
+    /// A simulated recording.
+    type Simulated: Clone + Debug + Send + Sync;
+    /// What holds a simulation to the measured course of a recording.
+    type Guide: Clone + Debug + Send + Sync;
+
+    /// All channels, in their order.
+    const CHANNELS: &'static [Self::Channel];
+
+    /// Value of a quantity.
+    fn value(quantity: &Self::Quantity, model: &Self::Model) -> f64;
+
+    /// Changes a quantity.
+    fn set(quantity: &Self::Quantity, model: &mut Self::Model, value: f64);
+
+    /// Sample times of a recording [s].
+    fn time(inputs: &Self::Inputs) -> &[f64];
+
+    /// Takes its place among the recordings that are fitted together, from 0, and the number of samples at its start that the model takes as they were
+    /// measured: these are compared with nothing.
+    fn placed(inputs: &mut Self::Inputs, place: usize) -> usize;
+
+    /// What holds a simulation to a recording's measured course.
+    fn guide(inputs: &Self::Inputs, readings: &Self::Readings, noise: &Self::Noise) -> Self::Guide;
+
+    /// Whether the readings of a channel go into the course that a guided simulation is held to.
+    fn guides(channel: Self::Channel) -> bool;
+
+    /// Simulates a recording, `free` of a workpiece or not. `known` is what another model gave of it, guided alike, which may spare a part of the work.
+    fn simulate(
+        model: &Self::Model,
+        inputs: &Self::Inputs,
+        free: bool,
+        guide: Option<&Self::Guide>,
+        known: Option<(&Self::Model, &Self::Simulated)>,
+    ) -> Self::Simulated;
+
+    /// Readings in the order of the channels.
+    fn readings(simulated: &Self::Simulated) -> &[Vec<f64>];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::fit::covariance::covariance;
+    use crate::diagnosis::fit::cross_validation::{Depth, left_out};
+    use crate::diagnosis::fit::free::{Free, Prior};
+    use crate::diagnosis::fit::model_error::ModelError;
+    use crate::diagnosis::fit::{FULL, Limit, fit};
+    use crate::diagnosis::recordings::evidence::{Evidence, Measured, by_channel};
+    use crate::effects::Coordinate;
+    use rand::{Rng, SeedableRng};
+    use rand_distr::StandardNormal;
+
+    /// A tank that fills: its level and its inflow, two channels where the device has four.
+    #[derive(Debug, Clone, Copy)]
+    struct Tank;
+
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    enum Seen {
+        Level,
+        Inflow,
+    }
+
+    impl Subject for Tank {
+        /// Level at which it stands at last for an input of one [m], and rate at which it gets there [1/s].
+        type Model = [f64; 2];
+        type Quantity = usize;
+        /// Times [s], input [1] and samples at the start that count nothing.
+        type Inputs = (Vec<f64>, f64, usize);
+        type Channel = Seen;
+        type Readings = [Vec<f64>; 2];
+        type Noise = [f64; 2];
+        type Simulated = [Vec<f64>; 2];
+        type Guide = ();
+
+        const CHANNELS: &'static [Seen] = &[Seen::Level, Seen::Inflow];
+
+        fn value(quantity: &usize, model: &[f64; 2]) -> f64 {
+            model[*quantity]
+        }
+
+        fn set(quantity: &usize, model: &mut [f64; 2], value: f64) {
+            model[*quantity] = value;
+        }
+
+        fn time((time, ..): &Self::Inputs) -> &[f64] {
+            time
+        }
+
+        fn placed((_, _, given): &mut Self::Inputs, _: usize) -> usize {
+            *given
+        }
+
+        fn guide(_: &Self::Inputs, _: &[Vec<f64>; 2], _: &[f64; 2]) {}
+
+        fn guides(channel: Seen) -> bool {
+            channel == Seen::Inflow
+        }
+
+        fn simulate(
+            [size, rate]: &[f64; 2],
+            (time, input, _): &Self::Inputs,
+            _: bool,
+            _: Option<&()>,
+            _: Option<(&[f64; 2], &[Vec<f64>; 2])>,
+        ) -> [Vec<f64>; 2] {
+            let left = |t: &f64| input * size * (-rate * t).exp();
+            let level = time.iter().map(|t| input * size - left(t)).collect();
+            [level, time.iter().map(|t| rate * left(t)).collect()]
+        }
+
+        fn readings(simulated: &[Vec<f64>; 2]) -> &[Vec<f64>] {
+            simulated
+        }
+    }
+
+    const TRUTH: [f64; 2] = [0.4, 1.7];
+    const NOISE: [f64; 2] = [2e-3, 5e-3];
+
+    /// Fills with inputs of their own, the first samples of the last spoilt.
+    fn fills(given: usize) -> Evidence<Tank> {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(3);
+        let fill = |input: f64| {
+            let time: Vec<f64> = (0..300).map(|i| 0.01 * i as f64).collect();
+            let inputs = (time, input, given);
+            let mut readings = Tank::simulate(&TRUTH, &inputs, false, None, None);
+            for (readings, noise) in readings.iter_mut().zip(NOISE) {
+                for reading in readings.iter_mut() {
+                    let drawn: f64 = random.sample(StandardNormal);
+                    *reading += noise * drawn;
+                }
+                readings[..given].fill(1e3);
+            }
+            Measured {
+                name: format!("{input}"),
+                inputs,
+                readings,
+                free: false,
+            }
+        };
+        Evidence::new([1.0, 0.6, 1.4].map(fill).to_vec(), NOISE)
+    }
+
+    fn free(quantity: usize, start: f64) -> Free<Tank> {
+        Free {
+            quantity,
+            start,
+            coordinate: Coordinate::Logarithmic,
+            bounds: [1e-3, 1e3],
+            prior: Prior::Flat,
+        }
+    }
+
+    #[test]
+    fn another_subject_with_two_channels_is_fitted_by_the_same_code() {
+        let evidence = fills(5);
+        assert_eq!(evidence.count(), 3 * 2 * 295);
+        let free = [free(0, 1.0), free(1, 0.5)];
+        let whole = fit(
+            &evidence,
+            (&[1.0, 0.5], None),
+            (&free, &[]),
+            FULL,
+            Limit::of(40),
+        );
+        let covariance = covariance(&evidence, &whole);
+        for (i, (value, truth)) in whole.values.iter().zip(TRUTH).enumerate() {
+            let deviation = covariance[(i, i)].sqrt();
+            assert!((1e-4..1e-2).contains(&deviation), "{deviation}");
+            assert!((value / truth).ln().abs() < 4.0 * deviation, "{value}");
+        }
+        // It leaves noise alone, in each channel of each recording.
+        assert!(ModelError::of(&evidence, &whole.prediction).is_none());
+        let channels = by_channel(&evidence, &whole.prediction.residuals);
+        let channels: Vec<(usize, Seen)> = channels.map(|(r, c, _)| (r, c)).collect();
+        assert_eq!(channels[..2], [(0, Seen::Level), (0, Seen::Inflow)]);
+        assert_eq!(channels.len(), 6);
+        // Each fill is predicted by the two others.
+        let left = left_out(&evidence, &whole, Depth::OneStep).unwrap();
+        for residuals in left.residuals.iter().flatten() {
+            let counted = residuals.iter().filter(|r| r.is_finite());
+            let square = counted.map(|r| r * r).sum::<f64>() / 295.0;
+            assert!((0.7..1.4).contains(&square), "{square}");
+        }
+    }
+
+    /// Guided, what its guide took counts nothing.
+    #[test]
+    fn a_channel_that_guides_is_not_counted_while_it_does() {
+        let evidence = fills(0);
+        let shares = evidence.shares(0.0, true);
+        for (place, share) in shares.iter().enumerate() {
+            let is_inflow = (place / 300) % 2 == 1;
+            assert_eq!(*share == 0.0, is_inflow);
+        }
+        let level = evidence.of_channel(Seen::Level);
+        assert_eq!(level.count(), 3 * 300);
+    }
+}

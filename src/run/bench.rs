@@ -1,0 +1,85 @@
+//! A bench's whole job: simulated and measured.
+
+use std::time::Instant;
+
+use super::PROGRESS_STEPS;
+use super::error::RunError;
+use crate::metrics::{BenchLimits, BenchSummary, Timing, summarise_bench};
+use crate::recording::Recording;
+use crate::rig::{Rig, RigError, RigSimulation};
+use crate::scenario::BenchScenario;
+use crate::scenario::bench::LoadScenario;
+
+/// A run of a bench that has ended.
+pub struct FinishedBench {
+    /// The recording.
+    pub recording: Recording,
+    /// Its numbers.
+    pub summary: BenchSummary,
+    /// Reason for an early stop.
+    pub stop: Option<RigError>,
+}
+
+/// Simulates and measures the whole job. `progress` is given steps done and in all.
+///
+/// # Errors
+/// Nothing could be recorded or measured.
+pub fn run_bench(
+    rig: &Rig,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<FinishedBench, RunError> {
+    run_bench_observed(rig, progress, &mut |_| ())
+}
+
+/// The same; `observer` is given the simulation after every step.
+///
+/// # Errors
+/// Nothing could be recorded or measured.
+pub fn run_bench_observed(
+    rig: &Rig,
+    progress: &mut dyn FnMut(usize, usize),
+    observer: &mut dyn FnMut(&RigSimulation<'_>),
+) -> Result<FinishedBench, RunError> {
+    let start = Instant::now();
+    let (recording, stop) = rig.run(&mut |simulation| {
+        let steps = simulation.steps();
+        if steps.is_multiple_of(PROGRESS_STEPS) {
+            progress(steps, simulation.total_steps());
+        }
+        observer(simulation);
+    })?;
+    let wall = start.elapsed().as_secs_f64();
+    let mut summary = summarise_bench(&recording, &limits(&rig.scenario))
+        .map_err(RunError::metrics(&rig.scenario.path))?;
+    summary.timing = Some(Timing::new(summary.duration_s, wall));
+    Ok(FinishedBench {
+        recording,
+        summary,
+        stop,
+    })
+}
+
+fn limits(scenario: &BenchScenario) -> BenchLimits {
+    let steps = scenario.command.steps();
+    let motion = match scenario.load {
+        LoadScenario::Contact { motion, .. } => motion.map(|motion| motion.start),
+        LoadScenario::Free => None,
+    };
+    let hand = scenario.hand.map(|hand| hand.start);
+    let disturbed_from = motion.into_iter().chain(hand).reduce(f64::min);
+    // The first period brings the rig into its swing.
+    let moving = match scenario.load {
+        LoadScenario::Contact {
+            motion: Some(motion),
+            ..
+        } => Some((motion.start + 1.0 / motion.frequency, scenario.duration)),
+        _ => None,
+    };
+    BenchLimits {
+        command_times: steps.iter().map(|(time, _)| *time).collect(),
+        disturbed_from,
+        moving,
+        stroke_limits: (0.0, scenario.device.parameters.full_stroke),
+        atmosphere: scenario.device.parameters.gas.atmosphere,
+    }
+}

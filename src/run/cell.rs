@@ -1,0 +1,96 @@
+//! A cell's whole job: simulated and measured.
+
+use std::time::Instant;
+
+use super::PROGRESS_STEPS;
+use super::error::RunError;
+use crate::cell::Cell;
+use crate::metrics::{EdgeLimits, Summary, SummaryLimits, Timing, summarise, summarise_edge};
+use crate::recording::Recording;
+use crate::recording::csv::EdgeProfile;
+use crate::scenario::ChamferScenario;
+use crate::simulation::{CellRun, FrameLog, Simulation, SimulationError};
+
+/// A run of a cell that has ended.
+pub struct FinishedCell {
+    /// The recording.
+    pub recording: Recording,
+    /// Poses for the picture.
+    pub frames: FrameLog,
+    /// Its numbers.
+    pub summary: Summary,
+    /// Reason for an early stop.
+    pub stop: Option<SimulationError>,
+    /// The edge as a turning tool left it.
+    pub edge: Option<EdgeProfile>,
+}
+
+/// Simulates and measures the whole job. `progress` is given steps done and in all.
+///
+/// # Errors
+/// Nothing could be recorded or measured.
+pub fn run_cell(
+    cell: &Cell,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<FinishedCell, RunError> {
+    run_cell_observed(cell, progress, &mut |_| ())
+}
+
+/// The same; `observer` is given the simulation after every step.
+///
+/// # Errors
+/// Nothing could be recorded or measured.
+pub fn run_cell_observed(
+    cell: &Cell,
+    progress: &mut dyn FnMut(usize, usize),
+    observer: &mut dyn FnMut(&Simulation<'_>),
+) -> Result<FinishedCell, RunError> {
+    let start = Instant::now();
+    let CellRun {
+        recording,
+        frames,
+        stop,
+        edge,
+    } = cell.run(&mut |simulation| {
+        let steps = simulation.steps();
+        if steps.is_multiple_of(PROGRESS_STEPS) {
+            progress(steps, simulation.total_steps());
+        }
+        observer(simulation);
+    })?;
+    let wall = start.elapsed().as_secs_f64();
+    let mut summary =
+        summarise(&recording, &limits(cell)).map_err(RunError::metrics(&cell.scenario.path))?;
+    if let Some(edge) = &edge {
+        summarise_edge(&mut summary, edge, &edge_limits(cell));
+    }
+    summary.timing = Some(Timing::new(summary.duration_s, wall));
+    Ok(FinishedCell {
+        recording,
+        frames,
+        summary,
+        stop,
+        edge,
+    })
+}
+
+/// What its edge is measured against.
+fn edge_limits(cell: &Cell) -> EdgeLimits {
+    let ChamferScenario { leg, residual_burr } = cell.scenario.workpiece.chamfer;
+    EdgeLimits {
+        leg,
+        residual_burr,
+        ends: (cell.scenario.removal).map_or(0.0, |removal| removal.contact_length),
+    }
+}
+
+fn limits(cell: &Cell) -> SummaryLimits {
+    let joints = &cell.arm.chain.joints;
+    SummaryLimits {
+        desired_force: cell.passes[0].force,
+        later_forces: cell.passes[1..].iter().map(|pass| pass.force).collect(),
+        stroke_limits: (0.0, cell.scenario.device.parameters.full_stroke),
+        joint_efforts: joints.iter().map(|joint| joint.effort).collect(),
+        joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),
+    }
+}

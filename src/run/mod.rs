@@ -1,0 +1,24 @@
+//! A scenario run to its end: its recording, its numbers and the bounds on them, in one call.
+//!
+//! ```no_run
+//! # fn main() -> Result<(), idc_cell::run::RunError> {
+//! let job = idc_cell::run::Job::load(std::path::Path::new("scenarios/plate_edge.toml"))?;
+//! for (metric, value) in job.run(&mut |_, _| ())?.metrics {
+//!     println!("{metric} {value:?}");
+//! }
+//! # Ok(())
+//! # }
+//! ```
+
+mod bench;
+mod cell;
+mod error;
+mod job;
+
+pub use bench::{FinishedBench, run_bench, run_bench_observed};
+pub use cell::{FinishedCell, run_cell, run_cell_observed};
+pub use error::RunError;
+pub use job::{Job, Outcome};
+
+/// Steps between two reports of progress.
+const PROGRESS_STEPS: usize = 500;
