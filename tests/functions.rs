@@ -16,7 +16,7 @@ const MOST_LONG: usize = 5;
 type Place = (&'static str, &'static str);
 
 /// Longer ones, with the reason.
-const LONG: [(Place, &str); 4] = [
+const LONG: [(Place, &str); 3] = [
     (
         ("device/pneumatics.rs", "air_rates"),
         "one balance, inlined as one into every sub-step",
@@ -28,10 +28,6 @@ const LONG: [(Place, &str); 4] = [
     (
         ("plant/nudging.rs", "new"),
         "a filter and its smoother, which share all matrices",
-    ),
-    (
-        ("plant/simulate.rs", "true_trajectory"),
-        "the loop of all fits: its state stays in registers",
     ),
 ];
 /// Ones with more arguments, with the reason.

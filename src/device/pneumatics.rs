@@ -1,10 +1,10 @@
 //! The device's equations put together: flows between its parts and the force on its piston, at a state.
 
-use super::carrier::{PistonMotion, Predicted};
 use super::leaks::LeakFlows;
+use super::load::{PistonMotion, Predicted};
 use super::rates::{PistonRates, longest_line_step};
 use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
-use super::{Carrier, DeviceParameters};
+use super::{DeviceParameters, Load};
 use crate::physics::chamber::Chamber;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::line_chain::UPSTREAM;
@@ -212,7 +212,7 @@ impl Device {
         ledger.axial_work += axial * travel;
         ledger.seal_work += seal * travel;
         // Who holds the piston at its speed takes all that the device does to it.
-        ledger.carrier_work -= impulse * motion.speed + besides_gas * travel;
+        ledger.load_work -= impulse * motion.speed + besides_gas * travel;
         DeviceForce {
             force: impulse / dt + besides_gas,
             damping: stop_damping + cushion_damping + seals.viscous,
@@ -221,33 +221,20 @@ impl Device {
         }
     }
 
-    /// Advances device and piston together by `dt` [s]: the piston, of the device's moving mass, moves under the device's force and its carrier's.
-    /// `substeps` is the least number; stiff parts get more, and contacts, stops and reversals are met where they happen. Keeps the energy ledger.
-    /// Returns the piston's impulse on its load along extension [N s], of a carrier that tells it.
-    pub fn advance_carried<C: Carrier>(
+    /// Advances device and piston together by `dt` [s]: the piston, of the device's moving mass, moves under the device's force and its load's.
+    /// `substeps` is the least number; stiff parts get more, and contacts, stops and reversals are met where they happen. Without the energy ledger it is a
+    /// fifth faster; with it, returns the piston's impulse on its contact along extension [N s].
+    pub fn advance_loaded<L: Load, const LEDGER: bool>(
         &self,
         state: &mut DeviceState,
         motion: &mut PistonMotion,
         set_pressure: f64,
-        carrier: &C,
+        load: &L,
         dt: f64,
         substeps: usize,
     ) -> f64 {
-        self.integrate::<C, true>(state, motion, set_pressure, carrier, dt, substeps)
+        self.integrate::<L, LEDGER>(state, motion, set_pressure, load, dt, substeps)
             .load
-    }
-
-    /// As [`Device::advance_carried`] without the ledger, a fifth faster.
-    pub fn advance_carried_unaudited<C: Carrier>(
-        &self,
-        state: &mut DeviceState,
-        motion: &mut PistonMotion,
-        set_pressure: f64,
-        carrier: &C,
-        dt: f64,
-        substeps: usize,
-    ) {
-        self.integrate::<C, false>(state, motion, set_pressure, carrier, dt, substeps);
     }
 
     /// Bends the bristles by the motion since they were last looked at.

@@ -89,7 +89,7 @@ fn run(
         let time = step as f64 * 1e-3;
         state.valve = held(trajectory.valve, time).unwrap_or(ValvePosition::Extend);
         let set = held(trajectory.commands, time).unwrap_or(0.0);
-        device.advance_carried(&mut state, &mut motion, set, &outside, 1e-3, substeps);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, set, &outside, 1e-3, substeps);
         look(&device, &state, motion);
     }
 }
@@ -159,7 +159,7 @@ fn accounts(state: &DeviceState) -> [f64; 9] {
         ledger.stop_work,
         ledger.cushion_work,
         ledger.axial_work,
-        ledger.carrier_work,
+        ledger.load_work,
     ]
 }
 

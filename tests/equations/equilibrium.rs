@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use idc_cell::device::{Carrier, Device, DeviceParameters, PistonMotion};
+use idc_cell::device::{Device, DeviceParameters, Load, PistonMotion};
 use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::hose::Hose;
@@ -134,9 +134,7 @@ struct Counting {
     asked: Cell<usize>,
 }
 
-impl Carrier for Counting {
-    const MOVES: bool = true;
-
+impl Load for Counting {
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
         self.asked.set(self.asked.get() + 1);
         self.outside.force(time, motion, touching)
@@ -170,7 +168,7 @@ fn a_tool_at_rest_on_its_load_stays_and_costs_no_more_than_its_substeps() {
             if ms == 3000 {
                 carrier.asked.set(0);
             }
-            device.advance_carried(&mut state, &mut motion, SET, &carrier, 1e-3, 1);
+            device.advance_loaded::<_, true>(&mut state, &mut motion, SET, &carrier, 1e-3, 1);
             if ms >= 3000 {
                 let last = strokes.last().map_or(motion.stroke, |&(stroke, _)| stroke);
                 strokes.push((motion.stroke, motion.stroke - last));

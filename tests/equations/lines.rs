@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use idc_cell::device::{Carrier, Device, DeviceParameters, PistonMotion};
+use idc_cell::device::{Device, DeviceParameters, Load, PistonMotion};
 use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::hose::Hose;
@@ -25,9 +25,7 @@ struct Counting {
     asked: Cell<usize>,
 }
 
-impl Carrier for Counting {
-    const MOVES: bool = true;
-
+impl Load for Counting {
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
         self.asked.set(self.asked.get() + 1);
         self.outside.force(time, motion, touching)
@@ -58,7 +56,7 @@ fn trajectory(parameters: &DeviceParameters, substeps: usize) -> (Vec<[f64; 3]>,
             600..1000 => ValvePosition::Retract,
             _ => ValvePosition::Extend,
         };
-        device.advance_carried(&mut state, &mut motion, 4e5, &carrier, 1e-3, substeps);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 4e5, &carrier, 1e-3, substeps);
         let [one, two] = device.pressures(&state, motion.stroke);
         rows.push([one / 6e5, two / 6e5, motion.stroke / 0.05]);
         let gap = state.air.held() - first - (state.air.entered - state.air.left);
