@@ -241,10 +241,7 @@ impl<L: Load> Surroundings<'_, L> {
         if travel < 2.0 * proportional || parameters.hose.is_some() {
             return 0;
         }
-        let supplied = match self.valve {
-            ValvePosition::Extend => 0,
-            ValvePosition::Retract => 1,
-        };
+        let supplied = self.valve.supplied();
         let volumes = [0, 1].map(|i| self.device.chambers[i].volume(flow.motion.stroke));
         let away = (outlet - self.device.pressures_of(&flow.air, volumes)[supplied]).abs();
         let halvings = (travel / away.max(proportional)).log2() as i32;

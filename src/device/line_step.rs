@@ -171,10 +171,7 @@ impl Device {
         (held, share): (Feed, f64),
     ) -> Feed {
         let gas = &self.parameters.gas;
-        let fed = match valve {
-            ValvePosition::Extend => 0,
-            ValvePosition::Retract => 1,
-        };
+        let fed = valve.supplied();
         let volumes = [0, 1].map(|i| self.chambers[i].volume(motion.stroke));
         let after = self.pressures_of(air, volumes)[fed];
         let backward = (gas.temperature / self.temperature_of(air, fed)).sqrt();

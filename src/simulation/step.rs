@@ -124,18 +124,17 @@ impl<'a> Simulation<'a> {
             parameters.full_stroke + desired.max(0.0) / parameters.end_stop.stiffness
         };
         let motion = PistonMotion { stroke, speed: 0.0 };
-        let device = cell.device.at_rest(stroke, set_pressure);
-        let device = RunningDevice::new(&cell.plant, &cell.device, (motion, device));
+        let at_rest = (motion, cell.device.at_rest(stroke, set_pressure));
+        let device = RunningDevice::new(&cell.plant, &cell.device, at_rest);
         let mut positions = cell.plan.start();
         for (position, offset) in positions.iter_mut().zip(cell.plant.cell.encoder_offset) {
             *position -= offset;
         }
         let bandwidth = cell.plant.cell.servo_bandwidth;
         let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
-        let lags = if bandwidth.is_finite() {
-            positions.iter().map(lag).collect()
-        } else {
-            Vec::new()
+        let lags = match bandwidth.is_finite() {
+            true => positions.iter().map(lag).collect(),
+            false => Vec::new(),
         };
         positions.push(stroke);
         let count = positions.len();

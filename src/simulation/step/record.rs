@@ -96,10 +96,6 @@ impl Simulation<'_> {
             stroke,
             regulator_pressure: self.device.state.regulator.outlet + added_outlet,
         };
-        let moment = moment.map(|now| Moment {
-            contact_force: normal_force,
-            ..now
-        });
         self.read_sensors(time, &there, acceleration, moment);
         let off = self.world.tool_centre() - reference.centre;
         let axial = off.dot(reference.axis);
